@@ -1,0 +1,47 @@
+#pragma once
+// Cameras: pinhole, thin lens, orthographic. Raster: pixel (0,0) is the top left, y grows downward.
+
+#include "tungsten/camera/ReconstructionFilter.h"
+#include "tungsten/core/Transform.h"
+
+#include <optional>
+#include <variant>
+
+namespace tungsten {
+
+struct Pinhole {
+    float fovDegrees = 60.0f; ///< horizontal
+};
+struct ThinLens {
+    float fovDegrees = 60.0f;
+    float focusDistance = 1.0f; ///< along the axis
+    float apertureRadius = 0.001f;
+    float catEye = 0.0f;
+};
+struct Orthographic {
+    float size = 1.0f; ///< half the image height
+};
+
+/// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated (scene format, section 3).
+class Camera {
+  public:
+    std::variant<Pinhole, ThinLens, Orthographic> model;
+    Vec2i resolution{1000, 563};
+    Transform toWorld; ///< x axis already negated
+    ReconstructionFilter filter;
+
+    /// Ray through raster position `pixel` + 0.5 + filter offset; weight 1. `uLens` is used by the thin lens only.
+    [[nodiscard]] Ray generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const;
+    [[nodiscard]] Vec3f position() const { return toWorld.translation; }
+    [[nodiscard]] Vec3f forward() const { return toWorld.z.normalized(); }
+    /// Raster position of a world point (pinhole and thin lens: through the lens centre; orthographic: along the axis); none behind
+    /// the camera. May lie outside the image.
+    [[nodiscard]] std::optional<Vec2f> project(const Vec3f& point) const;
+    /// Every sensor ray leaves the same point.
+    [[nodiscard]] bool hasSinglePosition() const { return std::holds_alternative<Pinhole>(model); }
+};
+
+/// camera-to-world from the scene's transform: negates the x axis.
+Transform cameraTransform(const Transform& sceneTransform);
+
+} // namespace tungsten

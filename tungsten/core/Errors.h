@@ -1,0 +1,43 @@
+#pragma once
+// Errors a user can cause, as values that say where, what was found and what is accepted.
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tungsten {
+
+/// One mistake in an input file: `file: path: message`.
+struct Problem {
+    std::string file;
+    std::string path; ///< JSON path such as `primitives[3].transform`; empty for other files
+    std::string message;
+
+    [[nodiscard]] std::string text() const;
+};
+
+/// Bad input: exit code 1. Carries every problem found, not only the first.
+class InputError : public std::runtime_error {
+  public:
+    explicit InputError(std::vector<Problem> problems);
+    InputError(std::string file, std::string message);
+    [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
+
+  private:
+    std::vector<Problem> problems_;
+};
+
+/// Bad command line: exit code 2.
+class UsageError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// The candidate closest to `name` by edit distance, or an empty string when none is near.
+std::string nearestName(std::string_view name, const std::vector<std::string>& candidates);
+
+/// "a, b or c", for messages that list what is accepted.
+std::string listOf(const std::vector<std::string>& names);
+
+} // namespace tungsten

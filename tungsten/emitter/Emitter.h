@@ -1,0 +1,111 @@
+#pragma once
+// Light sources: a closed set of plain structs. Radiometry and power follow the scene format (section 7.2).
+
+#include "tungsten/core/Distribution.h"
+#include "tungsten/geometry/Shape.h"
+#include "tungsten/texture/Texture.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace tungsten {
+
+/// Isotropic point; intensity in W/sr.
+struct PointEmitter {
+    Vec3f position;
+    Rgb intensity{0.0f};
+};
+/// An ideal beam from a point; carries `power` in one direction.
+struct DirectionalPointEmitter {
+    Vec3f position, direction;
+    Rgb power{0.0f};
+};
+/// A parallel beam from a disc of `radius` (0: a line) carrying `power`.
+struct CollimatedEmitter {
+    Vec3f position;
+    Frame frame; ///< n is the beam direction
+    float radius = 0.0f;
+    Rgb power{0.0f};
+};
+/// A point with a cone: full intensity inside cosInner, smoothstep to zero at cosOuter.
+struct SpotEmitter {
+    Vec3f position, direction;
+    Rgb intensity{0.0f}; ///< on the axis, W/sr
+    float cosInner = 0.9f, cosOuter = 0.8f;
+
+    [[nodiscard]] float falloff(float cosTheta) const;
+};
+/// Any surface with emission: one-sided radiance on the side of the geometric normal.
+struct AreaEmitter {
+    const Shape* shape = nullptr;
+    uint32_t primitive = 0; ///< index in Scene::primitives
+    Texture radiance;
+    std::shared_ptr<const AreaSampler> areaSampler;
+};
+/// Environment (steady state only): constant or bitmap radiance.
+struct InfiniteSphereEmitter {
+    Texture radiance;
+    Frame frame; ///< rotation part of the transform
+    bool samplable = true;
+    std::shared_ptr<const Distribution2D> distribution; ///< over uv for bitmaps
+    Vec3f sceneCentre{0, 0, 0}; ///< set when the scene is complete, for photon emission
+    float sceneRadius = 1.0f;
+};
+
+using EmitterModel =
+    std::variant<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter, InfiniteSphereEmitter>;
+
+struct Emitter {
+    std::string name;
+    EmitterModel model;
+    double emissionTime = 0.0; ///< when its pulse starts
+    int medium = -1;           ///< medium that surrounds it (ext_medium), -1 for vacuum
+    float vacuumSpeed = -1.0f; ///< ext_speed_of_light where positive
+
+    [[nodiscard]] bool isInfinite() const { return std::holds_alternative<InfiniteSphereEmitter>(model); }
+    [[nodiscard]] bool isArea() const { return std::holds_alternative<AreaEmitter>(model); }
+    /// Emits in a single direction (directional_point, collimated): cannot be connected to.
+    [[nodiscard]] bool isDelta() const;
+    /// Point-like in position (point, spot, directional_point, collimated of radius 0).
+    [[nodiscard]] bool isPointLike() const;
+};
+
+/// A photon leaving an emitter.
+struct EmissionSample {
+    Ray ray;
+    Rgb power;           ///< L |cos| / (p_position p_direction): the power of the one photon that stands for the emitter
+    float pdfDirection;  ///< per solid angle; 0 for a single direction
+    Vec3f normal;        ///< of the emitting surface; equals the direction for points
+};
+EmissionSample sampleEmission(const Emitter& emitter, const Vec2f& uPosition, const Vec2f& uDirection);
+/// The same with the start fixed and the direction chosen by the caller: power per steradian that leaves along `direction`
+/// (intensity for points, radiance times cosine divided by the density of the position for areas). Zero for single directions.
+Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction);
+/// A starting point for the above: position, normal (points: position only).
+SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u);
+
+/// A connection from a receiver to an emitter.
+struct DirectSample {
+    Vec3f direction;     ///< from the receiver, unit
+    float distance;      ///< Infinity for the environment
+    Rgb weight;          ///< radiance / pdf (area, environment) or intensity / distance^2 (points); visibility not included
+    float pdf;           ///< per solid angle at the receiver; 0 for point-like emitters (no MIS with directions)
+    Vec3f position;      ///< on the emitter
+};
+/// None when the emitter cannot light the point (behind it, outside the cone, single direction).
+std::optional<DirectSample> sampleDirect(const Emitter& emitter, const Vec3f& receiver, const Vec2f& u);
+/// Density of sampleDirect for a direction that hit this area emitter at `position` with geometric normal `ng`.
+float pdfDirect(const Emitter& emitter, const Vec3f& receiver, const Vec3f& position, const Vec3f& ng);
+/// The same for an escaped direction and an environment.
+float pdfDirectInfinite(const Emitter& emitter, const Vec3f& direction);
+/// Radiance that leaves a surface hit toward `towards` (zero on the back side).
+Rgb emittedRadiance(const Emitter& emitter, const Vec2f& uv, const Vec3f& ng, const Vec3f& towards);
+/// Radiance from the environment along an escaping direction.
+Rgb environmentRadiance(const Emitter& emitter, const Vec3f& direction);
+
+/// Total emitted power per channel.
+Rgb emitterPower(const Emitter& emitter);
+
+} // namespace tungsten

@@ -1,0 +1,52 @@
+#pragma once
+// Triangle meshes in world space and their files.
+
+#include "tungsten/core/Transform.h"
+#include "tungsten/core/Types.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace tungsten {
+
+struct Triangle {
+    uint32_t v[3];
+};
+
+/// Triangles over shared vertices. `normals` and `uvs` are empty or one per vertex; `materials` empty (all 0) or one per triangle.
+struct TriangleMesh {
+    std::vector<Vec3f> positions;
+    std::vector<Vec3f> normals;
+    std::vector<Vec2f> uvs;
+    std::vector<Triangle> triangles;
+    std::vector<int32_t> materials;
+    bool smooth = false; ///< interpolate `normals`; otherwise shading normals are face normals
+
+    /// Normalised (p1 - p0) x (p2 - p0); (0, 1, 0) for a degenerate triangle.
+    [[nodiscard]] Vec3f faceNormal(uint32_t triangle) const;
+    [[nodiscard]] float faceArea(uint32_t triangle) const;
+};
+
+/// Reads .wo3, .obj, .ply, .gltf, .glb (by extension, case-insensitive; glTF node transforms applied, all nodes merged).
+/// Throws InputError naming the file for anything missing, truncated, corrupt or out of range (indices, counts against the
+/// file's size, non-finite positions).
+TriangleMesh loadMesh(const std::filesystem::path& file);
+
+TriangleMesh loadWo3(const std::filesystem::path& file);
+TriangleMesh loadObj(const std::filesystem::path& file);
+TriangleMesh loadPly(const std::filesystem::path& file);
+TriangleMesh loadGltf(const std::filesystem::path& file);
+
+/// Replaces the vertex normals by area-weighted ones with the format's 27 degree crease rule (may split vertices).
+void recomputeNormals(TriangleMesh& mesh);
+
+/// Positions by M; normals by M S^-2 (S the column lengths of M), normalised.
+void transformMesh(TriangleMesh& mesh, const Transform& transform);
+
+/// [-1/2, 1/2]^2 in xz with normal e1 x e0 (+y), uv along +x, +z; a mirroring transform flips the normal.
+TriangleMesh makeQuad(const Transform& transform);
+/// [-1/2, 1/2]^3 with outward normals; for the faces of axis k, u runs along axis k+1 and v along axis k+2.
+TriangleMesh makeCube(const Transform& transform);
+
+} // namespace tungsten

@@ -1,0 +1,53 @@
+#pragma once
+// The closed set of shapes: triangle meshes (quads and cubes too), spheres, disks. World space.
+
+#include "tungsten/geometry/Mesh.h"
+
+#include "tungsten/core/Distribution.h"
+
+#include <variant>
+
+namespace tungsten {
+
+struct Sphere {
+    Vec3f centre{0, 0, 0};
+    float radius = 1.0f;
+    Frame frame; ///< local axes: uv azimuth about n (local z)
+};
+
+struct Disk {
+    Vec3f centre{0, 0, 0};
+    float radius = 1.0f;
+    Frame frame; ///< n is the emitting, front side
+    float cosConeAngle = 0.0f; ///< emission is seen only inside the cone about n
+};
+
+using Shape = std::variant<TriangleMesh, Sphere, Disk>;
+
+/// Sphere of `transform`: radius = largest scale.
+Sphere makeSphere(const Transform& transform);
+/// Disk of `transform`: radius = max(scale x, scale z), normal = image of +y.
+Disk makeDisk(const Transform& transform, float coneAngleDegrees);
+
+float surfaceArea(const Shape& shape);
+
+/// A point on a surface, uniform by area; density 1 / area per unit area.
+struct SurfaceSample {
+    Vec3f position;
+    Vec3f normal; ///< geometric
+    Vec2f uv;
+};
+
+/// Draws points uniformly over a shape's surface.
+class AreaSampler {
+  public:
+    explicit AreaSampler(const Shape& shape);
+    [[nodiscard]] SurfaceSample sample(const Shape& shape, const Vec2f& u) const;
+    [[nodiscard]] float area() const { return area_; }
+
+  private:
+    float area_ = 0.0f;
+    Distribution1D triangles_;
+};
+
+} // namespace tungsten

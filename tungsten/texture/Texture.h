@@ -1,0 +1,82 @@
+#pragma once
+// Textures: constant, checker, bitmap. A texture is fetched as a colour (albedo, emission) or as a scalar (roughness, ratio, alpha).
+
+#include "tungsten/core/Types.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace tungsten {
+
+/// Decoded image in texture space: row 0 is the top edge (v = 1). LDR files keep their 8-bit texels, HDR ones are floats.
+class Bitmap {
+  public:
+    int width = 0, height = 0;
+    int channels = 0;                ///< channels reported by the decoder (1..4)
+    std::vector<uint8_t> ldr;        ///< RGBA8, colour NOT linearised; empty for HDR files
+    std::vector<float> hdr;          ///< RGB float; empty for LDR files
+    bool gammaCorrect = true;        ///< LDR colour fetches: i -> floor(255 (i/255)^2.2)
+    bool interpolate = true;
+    bool clamp = false;
+    float scale = 1.0f;
+
+    [[nodiscard]] Rgb rgb(const Vec2f& uv) const;
+    /// Mean of R, G, B without gamma.
+    [[nodiscard]] float scalar(const Vec2f& uv) const;
+    /// Alpha where the decoder reports four channels (PNG and JPEG always do), else the mean.
+    [[nodiscard]] float alpha(const Vec2f& uv) const;
+    [[nodiscard]] Rgb maximum() const;
+    [[nodiscard]] Rgb average() const;
+};
+
+/// Reads png, jpg, tga, bmp, gif, psd, hdr (stb), pfm, exr. Throws InputError for a missing or corrupt file.
+std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file);
+
+struct ConstantTexture {
+    Rgb value{0.0f};
+};
+struct CheckerTexture {
+    Rgb onColor{0.8f}, offColor{0.2f};
+    int resU = 20, resV = 20;
+};
+struct BitmapTexture {
+    std::shared_ptr<const Bitmap> bitmap;
+};
+
+/// A value over the surface, by uv.
+struct Texture {
+    std::variant<ConstantTexture, CheckerTexture, BitmapTexture> model;
+
+    Texture() = default;
+    explicit Texture(const Rgb& constant) : model(ConstantTexture{constant}) {}
+    explicit Texture(float constant) : model(ConstantTexture{Rgb(constant)}) {}
+    explicit Texture(CheckerTexture checker) : model(checker) {}
+    explicit Texture(std::shared_ptr<const Bitmap> bitmap) : model(BitmapTexture{std::move(bitmap)}) {}
+
+    [[nodiscard]] Rgb rgb(const Vec2f& uv) const {
+        if (const auto* constant = std::get_if<ConstantTexture>(&model)) return constant->value;
+        return lookupRgb(uv);
+    }
+    [[nodiscard]] float scalar(const Vec2f& uv) const {
+        if (const auto* constant = std::get_if<ConstantTexture>(&model)) return meanComponent(constant->value);
+        return lookupScalar(uv);
+    }
+    /// The "auto" scalar of transparency: alpha where the file has four channels.
+    [[nodiscard]] float alpha(const Vec2f& uv) const;
+    [[nodiscard]] bool isConstant() const { return std::holds_alternative<ConstantTexture>(model); }
+    [[nodiscard]] Rgb maximum() const;
+    [[nodiscard]] Rgb average() const;
+    /// Multiplied by a constant colour (power conversions); a bitmap is copied as floats.
+    [[nodiscard]] Texture scaled(const Rgb& factor) const;
+    /// Bump: central texel differences (dh/du, dh/dv) of the scalar, as the format defines them; zero for constants.
+    [[nodiscard]] Vec2f derivatives(const Vec2f& uv) const;
+
+  private:
+    [[nodiscard]] Rgb lookupRgb(const Vec2f& uv) const;
+    [[nodiscard]] float lookupScalar(const Vec2f& uv) const;
+};
+
+} // namespace tungsten
