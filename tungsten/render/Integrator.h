@@ -1,0 +1,61 @@
+#pragma once
+// The open set: integrators, loaded from plugins, registered by type name.
+
+#include "tungsten/film/Film.h"
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/Statistics.h"
+#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/scene/Scene.h"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace tungsten {
+
+/// One progressive pass.
+struct PassInfo {
+    uint32_t index = 0;       ///< from 0
+    uint64_t firstSample = 0; ///< samples per pixel already taken by earlier passes
+    uint32_t samples = 1;     ///< samples per pixel of this pass
+    uint64_t seed = 0;
+};
+
+/// Renders passes. A pass must depend only on (scene, settings, pass): no state is carried from pass to pass, so a resumed render
+/// equals an uninterrupted one. Work is spread by oneTBB inside renderPass.
+class Integrator {
+  public:
+    virtual ~Integrator() = default;
+    /// Called once before the first pass, and for `--explain`: adds the effects the integrator decides on to the plan.
+    virtual void plan(EffectPlan& plan) const = 0;
+    /// Called once after plan(): builds what the plan names (tables, distributions).
+    virtual void prepare(const EffectPlan& plan, Statistics& statistics) = 0;
+    /// Adds the pass's image to every frame of film.passPixel(): each pixel's mean over the pass's samples, averaged over the gate.
+    virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;
+};
+
+/// Reads its settings (problems go to the reader's diagnostics) and keeps the scene.
+using IntegratorFactory =
+    std::function<std::unique_ptr<Integrator>(std::shared_ptr<const Scene> scene, const ObjectReader& settings)>;
+
+/// Integrator types and where each comes from.
+class IntegratorRegistry {
+  public:
+    struct Entry {
+        IntegratorFactory factory;
+        std::string description; ///< one line, for `--list`
+        std::string origin;      ///< the plugin's file
+    };
+    /// Registers a type; a second registration of a name is an InputError naming both origins.
+    void add(const std::string& type, const std::string& description, IntegratorFactory factory);
+    [[nodiscard]] const std::map<std::string, Entry>& entries() const { return entries_; }
+    /// Origin recorded for the types that follow.
+    void setOrigin(std::string origin) { origin_ = std::move(origin); }
+
+  private:
+    std::map<std::string, Entry> entries_;
+    std::string origin_ = "built in";
+};
+
+} // namespace tungsten

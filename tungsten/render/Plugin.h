@@ -1,0 +1,34 @@
+#pragma once
+// What a plugin exports, and how the host finds plugins.
+//
+// A plugin is a shared object libtungsten-NAME.so beside the executable (or in ../lib/tungsten) or on TUNGSTEN_PLUGIN_PATH
+// (colon separated). It defines
+//
+//     extern "C" const tungsten::PluginDescriptor* tungstenPlugin() {
+//         static const tungsten::PluginDescriptor descriptor{tungsten::PluginAbi, "name", registerIntegrators};
+//         return &descriptor;
+//     }
+
+#include "tungsten/render/Integrator.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace tungsten {
+
+/// Increases whenever a header that plugins include changes incompatibly; the compiler's ABI is part of it.
+inline constexpr const char* PluginAbi = "tungsten-plugin-1/" __VERSION__;
+
+struct PluginDescriptor {
+    const char* abi;
+    const char* name;
+    void (*registerIntegrators)(IntegratorRegistry& registry);
+};
+
+/// Loads every plugin found in `directories` (in order) and registers its integrators. The libraries stay loaded for the life of the
+/// process. A file that cannot be loaded, lacks the entry point or has another ABI throws InputError saying which and why.
+void loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry);
+/// TUNGSTEN_PLUGIN_PATH's directories, then those beside the executable.
+std::vector<std::filesystem::path> pluginDirectories();
+
+} // namespace tungsten

@@ -1,0 +1,42 @@
+#pragma once
+// A ray meets a surface; a ray crosses boundaries: what both integrators share.
+
+#include "tungsten/scene/Scene.h"
+
+namespace tungsten {
+
+/// A surface hit ready for shading. Directions `wi` and samples are local to `frame`.
+struct SurfaceInteraction {
+    SurfaceHit hit;
+    const Primitive* primitive = nullptr;
+    const Bsdf* bsdf = nullptr;
+    Frame frame;   ///< shading frame, flipped toward the ray for two-sided models
+    Vec3f wi;      ///< local direction back along the ray
+    bool twoSided = false; ///< the frame was, or would be, flipped (no transmissive lobes, two-sided shading on)
+
+    [[nodiscard]] BsdfQuery query(TransportMode mode, LobeMask requested = lobe::All) const {
+        return {hit.uv, mode, requested};
+    }
+    /// |(wo.Ng)(wi.Ns) / ((wi.Ng)(wo.Ns))|: the shading-normal factor of photon transport.
+    [[nodiscard]] float photonShadingFactor(const Vec3f& worldWi, const Vec3f& worldWo) const;
+    /// False when the consistency checks are on and the side of `worldWo` differs between shading and geometric normal.
+    [[nodiscard]] bool consistent(const Vec3f& worldWo, bool checksOn) const;
+};
+
+SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, const Vec3f& rayDirection);
+
+/// The region beyond a surface for a path that leaves it along `direction` (world).
+Region regionBeyond(const Primitive& primitive, const SurfaceHit& hit, const Vec3f& direction, const Region& current);
+
+/// A straight connection between two points through index-matched boundaries.
+struct Visibility {
+    Rgb transmittance{0.0f}; ///< 0 when blocked
+    double time = 0.0;       ///< of flight over the whole connection, all speeds included
+    int crossings = 0;       ///< forward surfaces passed: each counts as a bounce
+};
+/// From `origin` (in `region`) along the unit `direction` for `distance`; `fromSurface` and `toSurface` say whether the ends lie on
+/// surfaces (ray offsets). `distance` may be Infinity. `rays` is increased by the number of rays traced.
+Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction, float distance,
+                           bool toSurface, Region region, uint64_t& rays);
+
+} // namespace tungsten

@@ -1,0 +1,54 @@
+#pragma once
+// Scene files in, typed scenes out.
+
+#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/scene/Scene.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tungsten {
+
+/// `output_buffers` entry of type `transients`: the per-frame file series.
+struct TransientsBuffer {
+    std::string ldrFile, hdrFile; ///< empty: not written
+};
+
+/// The `renderer` block; file names as in the scene, not yet resolved.
+struct RendererSettings {
+    std::string outputDirectory;
+    std::string outputFile = "TungstenRender.png";
+    std::string hdrOutputFile;
+    std::string resumeFile = "TungstenRenderState.dat";
+    bool overwriteOutputFiles = true;
+    bool enableResume = false;
+    int64_t spp = 32;
+    int64_t sppStep = 16;
+    double checkpointSeconds = 0.0; ///< 0: none
+    double timeoutSeconds = 0.0;    ///< 0: none
+    std::vector<TransientsBuffer> transients;
+};
+
+struct LoadOptions {
+    std::filesystem::path inputDirectory;       ///< base of resources; empty: the scene's directory
+    std::vector<std::string> overrides;         ///< "path.to.field=value", applied to the JSON in order
+};
+
+struct LoadedScene {
+    std::shared_ptr<const Scene> scene;
+    RendererSettings renderer;
+    std::string integratorType;
+    ObjectReader integratorSettings; ///< the integrator block, for its plugin; warns about fields nobody reads
+    std::shared_ptr<Diagnostics> diagnostics;
+    uint64_t hash = 0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
+};
+
+/// Reads and checks a scene file. Throws InputError listing every problem found, UsageError for an override that names nothing.
+LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options = {});
+
+/// Throws InputError if any problem has been recorded.
+void throwIfProblems(const Diagnostics& diagnostics);
+
+} // namespace tungsten
