@@ -35,7 +35,7 @@ struct Range {
 /// copies share what is known. Keeps the document alive.
 class ObjectReader {
   public:
-    struct Node; ///< the JSON value behind the view; defined where JSON is known
+    struct Node; ///< stands for the JSON value behind the view (see Json.h)
 
     ObjectReader(std::shared_ptr<const void> document, const Node* node, std::string path,
                  std::shared_ptr<Diagnostics> diagnostics);
@@ -94,8 +94,5 @@ class ObjectReader {
     std::shared_ptr<Diagnostics> diagnostics_;
     std::shared_ptr<std::set<std::string>> known_;
 };
-
-/// Seconds of a duration string (sum of number[unit]: ms, s, m, h, d; no unit: minutes), or none if it is not one.
-std::optional<double> parseDuration(const std::string& text);
 
 } // namespace tungsten

@@ -30,6 +30,8 @@ struct Primitive {
     int emitter = -1;
     /// Whether crossing the surface changes the region; then `inside` holds behind the geometric normal, `outside` before it.
     bool boundsRegion = false;
+    /// The surface names a medium on some side. If it names speeds only, a path inside a medium stays in it.
+    bool boundsMedium = false;
     Region inside, outside;
 };
 

@@ -1,0 +1,79 @@
+#include "tungsten/scene/Interaction.h"
+
+#include "tungsten/bsdf/ShadingFrame.h"
+
+namespace tungsten {
+
+Region Scene::regionOf(const Emitter& emitter) const {
+    if (emitter.medium >= 0) return {emitter.medium, media[size_t(emitter.medium)].speedOfLight};
+    return {-1, emitter.vacuumSpeed > 0.0f ? emitter.vacuumSpeed : transport.vacuumSpeed};
+}
+
+float SurfaceInteraction::photonShadingFactor(const Vec3f& worldWi, const Vec3f& worldWo) const {
+    const float numerator = worldWo.dot(hit.ng) * worldWi.dot(frame.n);
+    const float denominator = worldWi.dot(hit.ng) * worldWo.dot(frame.n);
+    return denominator == 0.0f ? 0.0f : std::abs(numerator / denominator);
+}
+
+bool SurfaceInteraction::consistent(const Vec3f& worldWo, bool checksOn) const {
+    if (!checksOn) return true;
+    // The frame may be flipped toward the ray; compare with the geometric normal flipped in the same sense.
+    const float side = hit.ng.dot(frame.n) < 0.0f ? -1.0f : 1.0f;
+    return (worldWo.dot(frame.n) >= 0.0f) == (side * worldWo.dot(hit.ng) >= 0.0f);
+}
+
+SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, const Vec3f& rayDirection) {
+    SurfaceInteraction interaction;
+    interaction.hit = hit;
+    interaction.primitive = &scene.primitives[hit.shape];
+    interaction.bsdf = &scene.bsdfOf(hit);
+    interaction.frame = shadingFrame(*interaction.bsdf, hit.ns, hit.dpdu, hit.dpdv, hit.uv);
+    interaction.twoSided =
+        scene.transport.twoSidedShading && (interaction.bsdf->lobes() & lobe::Transmissive) == lobe::None;
+    if (interaction.twoSided && rayDirection.dot(hit.ng) > 0.0f) {
+        interaction.frame.n = -interaction.frame.n;
+        interaction.frame.s = -interaction.frame.s;
+    }
+    interaction.wi = interaction.frame.toLocal(-rayDirection);
+    return interaction;
+}
+
+Region regionBeyond(const Primitive& primitive, const SurfaceHit& hit, const Vec3f& direction, const Region& current) {
+    if (!primitive.boundsRegion) return current;
+    if (!primitive.boundsMedium && current.medium >= 0) return current;
+    return direction.dot(hit.ng) < 0.0f ? primitive.inside : primitive.outside;
+}
+
+Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction, float distance,
+                           bool toSurface, Region region, uint64_t& rays) {
+    Visibility result;
+    result.transmittance = Rgb(1.0f);
+    const float end = toSurface ? distance - scene.rayEpsilon : distance;
+    float start = 0.0f;
+    Ray ray{origin, direction, fromSurface ? scene.rayEpsilon : 0.0f, end};
+    const auto advance = [&](float to) {
+        const float length = to - start;
+        if (const Medium* medium = scene.medium(region)) result.transmittance = result.transmittance * medium->transmittance(length);
+        result.time += double(length) / double(region.speed);
+        start = to;
+    };
+    constexpr int MostCrossings = 4096; // a guard against endless coincident surfaces
+    while (ray.tMin < ray.tMax) {
+        ++rays;
+        const auto hit = scene.geometry->intersect(ray);
+        if (!hit) break;
+        const Rgb through = scene.bsdfOf(*hit).forwardWeight(hit->uv);
+        if (isBlack(through) || ++result.crossings > MostCrossings) {
+            result.transmittance = Rgb(0.0f);
+            return result;
+        }
+        advance(hit->t);
+        result.transmittance = result.transmittance * through;
+        region = regionBeyond(scene.primitives[hit->shape], *hit, direction, region);
+        ray.tMin = hit->t + scene.rayEpsilon;
+    }
+    advance(distance);
+    return result;
+}
+
+} // namespace tungsten

@@ -1,0 +1,136 @@
+#include "tungsten/scene/Json.h"
+
+#include <rapidjson/error/en.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace tungsten {
+
+namespace {
+
+constexpr unsigned Grammar = rapidjson::kParseCommentsFlag | rapidjson::kParseTrailingCommasFlag |
+                             rapidjson::kParseNanAndInfFlag | rapidjson::kParseFullPrecisionFlag |
+                             rapidjson::kParseIterativeFlag;
+constexpr std::uintmax_t LargestScene = std::uintmax_t(1) << 30;
+
+std::string lineAndColumn(const std::string& text, size_t offset) {
+    size_t line = 1, column = 1;
+    for (size_t i = 0; i < std::min(offset, text.size()); ++i) {
+        column = text[i] == '\n' ? 1 : column + 1;
+        line += text[i] == '\n' ? 1 : 0;
+    }
+    return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+std::vector<std::string> memberNames(const rapidjson::Value& value) {
+    std::vector<std::string> names;
+    if (value.IsObject())
+        for (const auto& member : value.GetObject()) names.emplace_back(member.name.GetString());
+    if (value.IsArray())
+        for (const auto& element : value.GetArray())
+            if (element.IsObject() && element.HasMember("name") && element["name"].IsString())
+                names.emplace_back(element["name"].GetString());
+    return names;
+}
+
+[[noreturn]] void failOverride(const std::string& assignment, const std::string& step, const rapidjson::Value& at) {
+    std::string message = "--set " + assignment + ": nothing is called '" + step + "' there";
+    const std::vector<std::string> names = memberNames(at);
+    const std::string near = nearestName(step, names);
+    if (!near.empty()) message += "; did you mean '" + near + "'?";
+    if (at.IsArray()) message += " (the array has " + std::to_string(at.Size()) + " elements, from index 0)";
+    throw UsageError(message);
+}
+
+rapidjson::Value* element(rapidjson::Value& array, const std::string& step) {
+    const bool isIndex = !step.empty() && step.size() < 9 && step.find_first_not_of("0123456789") == std::string::npos;
+    if (isIndex) {
+        const auto index = rapidjson::SizeType(std::stoul(step));
+        return index < array.Size() ? &array[index] : nullptr;
+    }
+    for (auto& candidate : array.GetArray())
+        if (candidate.IsObject() && candidate.HasMember("name") && candidate["name"].IsString() &&
+            candidate["name"].GetString() == step)
+            return &candidate;
+    return nullptr;
+}
+
+/// Dots separate steps; a name that contains dots itself is matched against the rest of the path first.
+rapidjson::Value* namedWithDots(rapidjson::Value& array, const std::string& rest, std::string& consumed) {
+    for (size_t end = rest.size(); end != std::string::npos && end > 0; end = rest.rfind('.', end - 1)) {
+        consumed = rest.substr(0, end);
+        if (rapidjson::Value* found = element(array, consumed)) return found;
+    }
+    return nullptr;
+}
+
+rapidjson::Value parseValue(const std::string& text, rapidjson::Document::AllocatorType& allocator) {
+    rapidjson::Document parsed;
+    parsed.Parse<Grammar>(text.c_str());
+    rapidjson::Value value;
+    if (parsed.HasParseError())
+        value.SetString(text.c_str(), rapidjson::SizeType(text.size()), allocator);
+    else
+        value.CopyFrom(parsed, allocator);
+    return value;
+}
+
+} // namespace
+
+std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) throw InputError(file.string(), "no such scene file");
+    if (std::filesystem::is_directory(file, error)) throw InputError(file.string(), "is a folder, not a scene file");
+    if (std::filesystem::file_size(file, error) > LargestScene && !error)
+        throw InputError(file.string(), "larger than 1 GiB: not a scene file");
+    std::ifstream in(file, std::ios::binary);
+    std::stringstream buffer;
+    buffer << in.rdbuf();
+    if (!in) throw InputError(file.string(), "cannot be read (empty or no permission)");
+    std::string text = buffer.str();
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+
+    auto document = std::make_shared<rapidjson::Document>();
+    document->Parse<Grammar>(text.c_str(), text.size());
+    if (document->HasParseError())
+        throw InputError(file.string(), "not valid JSON at " + lineAndColumn(text, document->GetErrorOffset()) + ": " +
+                                            rapidjson::GetParseError_En(document->GetParseError()));
+    if (!document->IsObject()) throw InputError(file.string(), "the top level must be an object { ... }");
+    return document;
+}
+
+void applyOverride(rapidjson::Document& document, const std::string& assignment) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw UsageError("--set " + assignment + ": expected path.to.field=value");
+    auto& allocator = document.GetAllocator();
+    std::string rest = assignment.substr(0, equals);
+    rapidjson::Value* at = &document;
+    while (true) {
+        if (at->IsArray()) {
+            std::string consumed;
+            rapidjson::Value* next = namedWithDots(*at, rest, consumed);
+            if (!next) failOverride(assignment, rest.substr(0, rest.find('.')), *at);
+            at = next;
+            if (consumed.size() == rest.size()) break;
+            rest.erase(0, consumed.size() + 1);
+            continue;
+        }
+        const size_t dot = rest.find('.');
+        const std::string step = rest.substr(0, dot);
+        if (!at->IsObject() || step.empty()) failOverride(assignment, step, *at);
+        if (!at->HasMember(step.c_str())) {
+            // Only the last step may be new: a field the scene leaves at its default. A block (top level) may be new too.
+            if (dot != std::string::npos && at != &document) failOverride(assignment, step, *at);
+            rapidjson::Value name(step.c_str(), rapidjson::SizeType(step.size()), allocator);
+            at->AddMember(name, rapidjson::Value(rapidjson::kObjectType), allocator);
+        }
+        at = &(*at)[step.c_str()];
+        if (dot == std::string::npos) break;
+        rest.erase(0, dot + 1);
+    }
+    *at = parseValue(assignment.substr(equals + 1), allocator);
+}
+
+} // namespace tungsten

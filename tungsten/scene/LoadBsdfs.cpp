@@ -1,0 +1,180 @@
+#include "tungsten/scene/LoadContext.h"
+
+#include <functional>
+
+namespace tungsten {
+
+namespace {
+
+constexpr double LargestIor = 100.0;
+
+float readIor(const ObjectReader& reader) {
+    return float(reader.number("ior", 1.5, {1e-2, LargestIor}));
+}
+
+MicrofacetModel readDistribution(const ObjectReader& reader, const std::string& fallback) {
+    static const std::map<std::string, MicrofacetModel> models{{"beckmann", MicrofacetModel::Beckmann},
+                                                               {"ggx", MicrofacetModel::Ggx},
+                                                               {"phong", MicrofacetModel::Phong},
+                                                               {"pbrt-ggx", MicrofacetModel::PbrtGgx}};
+    std::vector<std::string> names;
+    for (const auto& [name, model] : models) names.push_back(name);
+    return models.at(reader.choice("distribution", fallback, names));
+}
+
+Texture readRoughness(LoadContext& context, const ObjectReader& reader, float fallback) {
+    return readTexture(context, reader, "roughness", Texture(fallback), {0.0, 10.0});
+}
+
+/// A material name wins over eta and k, which replace the default only together.
+std::pair<Rgb, Rgb> readConductor(const ObjectReader& reader) {
+    std::pair<Rgb, Rgb> optics = *conductorByName("Cu");
+    const Rgb eta = reader.rgb("eta", optics.first, {1e-6, 1e6}), k = reader.rgb("k", optics.second, {0.0, 1e6});
+    if (reader.has("eta") != reader.has("k"))
+        reader.warn(reader.has("eta") ? "eta" : "k", "eta and k take effect only together; copper is used");
+    else
+        optics = {eta, k};
+    if (reader.has("material"))
+        if (const auto named = conductorByName(reader.choice("material", "Cu", conductorNames()))) optics = *named;
+    return optics;
+}
+
+BsdfModel readOrenNayar(LoadContext& context, const ObjectReader& reader) {
+    const float sigma = float(reader.number("sigma", 0.0, Range::nonNegative()));
+    return OrenNayar{readRoughness(context, reader, std::sqrt(2.0f) * sigma)};
+}
+
+BsdfModel readRoughConductor(LoadContext& context, const ObjectReader& reader) {
+    const auto [eta, k] = readConductor(reader);
+    return RoughConductor{eta, k, readDistribution(reader, "ggx"), readRoughness(context, reader, 0.1f)};
+}
+
+BsdfModel readConductorModel(LoadContext&, const ObjectReader& reader) {
+    const auto [eta, k] = readConductor(reader);
+    return Conductor{eta, k};
+}
+
+BsdfModel readDielectric(LoadContext&, const ObjectReader& reader) {
+    return Dielectric{readIor(reader), reader.flag("enable_refraction", true)};
+}
+
+BsdfModel readRoughDielectric(LoadContext& context, const ObjectReader& reader) {
+    return RoughDielectric{readIor(reader), readDistribution(reader, "ggx"), readRoughness(context, reader, 0.1f),
+                           reader.flag("enable_refraction", true)};
+}
+
+BsdfModel readPlastic(LoadContext&, const ObjectReader& reader) {
+    return makePlastic(readIor(reader), float(reader.number("thickness", 1.0, Range::nonNegative())),
+                       reader.rgb("sigma_a", Rgb(0.0f), Range::nonNegative()));
+}
+
+BsdfModel readRoughPlastic(LoadContext& context, const ObjectReader& reader) {
+    return makeRoughPlastic(readIor(reader), float(reader.number("thickness", 1.0, Range::nonNegative())),
+                            reader.rgb("sigma_a", Rgb(0.0f), Range::nonNegative()), readDistribution(reader, "ggx"),
+                            readRoughness(context, reader, 0.02f), reader.rgb("Ks", Rgb(1.0f), Range::nonNegative()));
+}
+
+BsdfModel readPbrtPlastic(LoadContext& context, const ObjectReader& reader) {
+    return PbrtPlastic{readIor(reader), readDistribution(reader, "pbrt-ggx"), readRoughness(context, reader, 0.1f),
+                       reader.rgb("Ks", Rgb(0.25f), Range::nonNegative())};
+}
+
+BsdfPtr defaultBsdf() {
+    return std::make_shared<const Bsdf>("", BsdfModel(Lambert{}));
+}
+
+BsdfModel readTransparency(LoadContext& context, const ObjectReader& reader) {
+    const BsdfPtr base = reader.has("base") ? readBsdfReference(context, reader, "base") : defaultBsdf();
+    return Transparency{base, readTexture(context, reader, "alpha", Texture(1.0f), Range::unit())};
+}
+
+BsdfModel readMixed(LoadContext& context, const ObjectReader& reader) {
+    for (const char* field : {"bsdf0", "bsdf1"})
+        if (!reader.has(field)) reader.problem(field, "a mixed BSDF needs bsdf0 and bsdf1");
+    return Mixed{readBsdfReference(context, reader, "bsdf0"), readBsdfReference(context, reader, "bsdf1"),
+                 readTexture(context, reader, "ratio", Texture(0.5f), Range::unit())};
+}
+
+using ModelReader = std::function<BsdfModel(LoadContext&, const ObjectReader&)>;
+
+template <typename Model>
+BsdfModel plainModel(LoadContext&, const ObjectReader&) {
+    return Model{};
+}
+
+const std::map<std::string, ModelReader>& modelReaders() {
+    static const std::map<std::string, ModelReader> readers{{"lambert", plainModel<Lambert>},
+                                                            {"oren_nayar", readOrenNayar},
+                                                            {"mirror", plainModel<Mirror>},
+                                                            {"conductor", readConductorModel},
+                                                            {"rough_conductor", readRoughConductor},
+                                                            {"dielectric", readDielectric},
+                                                            {"rough_dielectric", readRoughDielectric},
+                                                            {"plastic", readPlastic},
+                                                            {"rough_plastic", readRoughPlastic},
+                                                            {"pbrt_plastic", readPbrtPlastic},
+                                                            {"null", plainModel<Null>},
+                                                            {"forward", plainModel<Forward>},
+                                                            {"transparency", readTransparency},
+                                                            {"mixed", readMixed}};
+    return readers;
+}
+
+BsdfPtr readBsdf(LoadContext& context, const ObjectReader& reader) {
+    std::vector<std::string> types;
+    for (const auto& [type, modelReader] : modelReaders()) types.push_back(type);
+    if (!reader.has("type")) reader.problem("type", "a BSDF needs a type: " + listOf(types));
+    const std::string type = reader.choice("type", "lambert", types);
+    const std::string name = reader.text("name", "");
+    Texture albedo = readTexture(context, reader, "albedo", Texture(1.0f), Range::nonNegative());
+    BsdfModel model = modelReaders().at(type)(context, reader);
+    auto bsdf = std::make_shared<Bsdf>(name, std::move(model), std::move(albedo));
+    if (reader.has("bump")) {
+        Texture bump = readTexture(context, reader, "bump", Texture(0.0f));
+        if (!bump.isConstant()) bsdf->bump = std::move(bump);
+    }
+    reader.warnAboutUnknown();
+    if (!name.empty()) context.bsdfs.emplace(name, bsdf);
+    return bsdf;
+}
+
+BsdfPtr bsdfByName(LoadContext& context, const ObjectReader& owner, const std::string& field, const std::string& name) {
+    const auto found = context.bsdfs.find(name);
+    if (found != context.bsdfs.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& [known, bsdf] : context.bsdfs) names.push_back(known);
+    const std::string near = nearestName(name, names);
+    owner.problem(field, "there is no BSDF called '" + name + "' above it" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    return defaultBsdf();
+}
+
+} // namespace
+
+void readBsdfs(LoadContext& context, const ObjectReader& root) {
+    for (const ObjectReader& bsdf : root.objects("bsdfs")) readBsdf(context, bsdf);
+}
+
+BsdfPtr readBsdfReference(LoadContext& context, const ObjectReader& owner, const std::string& field) {
+    if (!owner.has(field)) return defaultBsdf();
+    if (owner.isText(field)) return bsdfByName(context, owner, field, owner.text(field, ""));
+    if (const auto inlined = owner.object(field)) return readBsdf(context, *inlined);
+    return defaultBsdf();
+}
+
+std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owner, const std::string& field) {
+    if (!owner.isArray(field)) return {readBsdfReference(context, owner, field)};
+    std::vector<BsdfPtr> list;
+    for (size_t i = 0; i < owner.arraySize(field); ++i) {
+        const std::string item = field + "[" + std::to_string(i) + "]";
+        if (const auto name = owner.arrayText(field, i))
+            list.push_back(bsdfByName(context, owner, item, *name));
+        else if (const auto inlined = owner.arrayObject(field, i))
+            list.push_back(readBsdf(context, *inlined));
+        else
+            owner.problem(item, "expected the name of a BSDF or an object");
+    }
+    if (list.empty()) list.push_back(defaultBsdf());
+    return list;
+}
+
+} // namespace tungsten

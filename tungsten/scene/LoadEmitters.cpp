@@ -1,0 +1,140 @@
+#include "tungsten/scene/LoadEmitters.h"
+
+#include "tungsten/emitter/Power.h"
+
+namespace tungsten {
+
+namespace {
+
+/// `power` wins over `emission`; the flag says which was given.
+struct Strength {
+    Rgb value{0.0f};
+    bool isPower = false;
+};
+
+Strength readStrength(LoadContext& context, const ObjectReader& reader) {
+    const Rgb emission = readConstantTexture(context, reader, "emission");
+    if (!reader.has("power")) return {emission, false};
+    return {readConstantTexture(context, reader, "power"), true};
+}
+
+void addEmitter(LoadContext& context, const ObjectReader& reader, EmitterModel model) {
+    Emitter emitter;
+    emitter.name = reader.text("name", "");
+    emitter.model = std::move(model);
+    emitter.emissionTime = readEmissionTime(reader);
+    if (reader.has("ext_medium")) emitter.medium = readMediumReference(context, reader, "ext_medium");
+    emitter.vacuumSpeed = float(reader.number("ext_speed_of_light", -1.0));
+    // A light source without a surface has no inside and no material; scenes name them all the same.
+    reader.accept({"int_medium", "int_speed_of_light", "bsdf"});
+    context.scene.emitters.push_back(std::move(emitter));
+}
+
+void readPoint(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
+    const Strength strength = readStrength(context, reader);
+    const Rgb intensity = strength.isPower ? pointIntensityFromPower(strength.value) : strength.value;
+    if (maxComponent(intensity) > 0.0f) addEmitter(context, reader, PointEmitter{transform.translation, intensity});
+}
+
+void readSpot(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
+    const float halfAngle = float(reader.number("cone_angle", 30.0, {0.1, 180.0}));
+    const float edge = float(reader.number("edge_angle", 0.1 * halfAngle, {0.0, halfAngle}));
+    const float radians = Pi / 180.0f;
+    SpotEmitter spot;
+    spot.position = transform.translation;
+    spot.direction = transform.rotation().n;
+    spot.cosOuter = std::cos(halfAngle * radians);
+    spot.cosInner = std::cos((halfAngle - edge) * radians);
+    const Strength strength = readStrength(context, reader);
+    spot.intensity = strength.isPower ? spotIntensityFromPower(strength.value, spot.cosInner, spot.cosOuter) : strength.value;
+    if (maxComponent(spot.intensity) > 0.0f) addEmitter(context, reader, spot);
+}
+
+void readDirectionalPoint(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
+    const Strength strength = readStrength(context, reader);
+    const Rgb power = strength.isPower ? strength.value : directionalPointPower(strength.value);
+    if (maxComponent(power) > 0.0f)
+        addEmitter(context, reader, DirectionalPointEmitter{transform.translation, transform.rotation().n, power});
+}
+
+void readCollimated(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
+    const float radius = float(reader.number("radius", 0.0, Range::nonNegative()));
+    const Strength strength = readStrength(context, reader);
+    const Rgb power = strength.isPower ? collimatedPowerFromPower(strength.value, radius)
+                                       : collimatedPowerFromEmission(strength.value, radius);
+    if (maxComponent(power) > 0.0f)
+        addEmitter(context, reader, CollimatedEmitter{transform.translation, transform.rotation(), radius, power});
+}
+
+void readInfiniteSphere(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
+    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f), Range::nonNegative());
+    if (reader.has("power"))
+        radiance = infiniteRadianceFromPower(readTexture(context, reader, "power", Texture(0.0f), Range::nonNegative()));
+    const bool samplable = reader.flag("sample", true);
+    if (maxComponent(radiance.maximum()) <= 0.0f) return;
+    if (!context.scene.transport.gate.steadyState)
+        reader.problem("type", "light of an infinite_sphere never arrives in a time-resolved render; remove it, or render "
+                               "steady state");
+    addEmitter(context, reader, makeInfiniteSphere(radiance, transform.rotation(), samplable));
+}
+
+using EmitterReader = void (*)(LoadContext&, const ObjectReader&, const Transform&);
+
+const std::map<std::string, EmitterReader>& emitterReaders() {
+    static const std::map<std::string, EmitterReader> readers{{"point", readPoint},
+                                                              {"spot", readSpot},
+                                                              {"directional_point", readDirectionalPoint},
+                                                              {"collimated", readCollimated},
+                                                              {"infinite_sphere", readInfiniteSphere}};
+    return readers;
+}
+
+} // namespace
+
+std::vector<std::string> emitterTypes() {
+    std::vector<std::string> types;
+    for (const auto& [type, reader] : emitterReaders()) types.push_back(type);
+    return types;
+}
+
+bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader, const std::string& type) {
+    const auto found = emitterReaders().find(type);
+    if (found == emitterReaders().end()) return false;
+    const Transform transform = reader.transform("transform");
+    // Read (and so checked) even where the emitter turns out dark.
+    reader.accept({"name", "ext_medium", "int_medium", "ext_speed_of_light", "int_speed_of_light", "bsdf", "emission_time"});
+    found->second(context, reader, transform);
+    return true;
+}
+
+std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader& reader, const Shape& shape) {
+    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f), Range::nonNegative());
+    if (reader.has("power"))
+        radiance = areaRadianceFromPower(readTexture(context, reader, "power", Texture(0.0f), Range::nonNegative()),
+                                         surfaceArea(shape));
+    if (maxComponent(radiance.maximum()) <= 0.0f) return std::nullopt;
+    return radiance;
+}
+
+double readEmissionTime(const ObjectReader& reader) {
+    return reader.number("emission_time", 0.0);
+}
+
+void finishEmitters(LoadContext& context, const ObjectReader& root) {
+    Scene& scene = context.scene;
+    if (scene.emitters.empty()) {
+        if (!scene.transport.gate.steadyState) {
+            root.problem("primitives", "nothing emits light: a time-resolved render needs a primitive with `emission` or `power`");
+            return;
+        }
+        root.warn("primitives", "nothing emits light: lit by a white environment of radiance 1");
+        Emitter sky;
+        sky.name = "default environment";
+        sky.model = makeInfiniteSphere(Texture(1.0f), Frame(), true);
+        scene.emitters.push_back(std::move(sky));
+    }
+    for (size_t i = 0; i < scene.emitters.size(); ++i)
+        if (scene.emitters[i].isInfinite()) scene.infiniteEmitters.push_back(int(i));
+}
+
+} // namespace tungsten

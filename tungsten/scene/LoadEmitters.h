@@ -1,0 +1,21 @@
+#pragma once
+// Reading light sources out of primitives.
+
+#include "tungsten/scene/LoadContext.h"
+
+#include <optional>
+
+namespace tungsten {
+
+/// Types of primitives that are nothing but light sources.
+std::vector<std::string> emitterTypes();
+/// Adds the emitter if `type` is one of emitterTypes(); false otherwise.
+bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader, const std::string& type);
+/// Radiance of a surface with `emission` or `power` (power wins), or none if it is dark.
+std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader& reader, const Shape& shape);
+/// `emission_time`: when the source's pulse starts.
+double readEmissionTime(const ObjectReader& reader);
+/// Default light of a scene without emitters, and the checks that need all of them.
+void finishEmitters(LoadContext& context, const ObjectReader& root);
+
+} // namespace tungsten

@@ -1,0 +1,91 @@
+// The renderer block, and what every integrator's block has in common.
+
+#include "tungsten/scene/LoadContext.h"
+
+namespace tungsten {
+
+namespace {
+
+constexpr double MostFrames = 1e6;
+
+void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
+    static const std::vector<std::string> types{"color", "depth", "normal", "albedo", "visibility", "transients"};
+    const std::string type = buffer.choice("type", "color", types);
+    if (!buffer.has("type")) buffer.problem("type", "an output buffer needs a type: " + listOf(types));
+    const TransientsBuffer files{buffer.text("ldr_output_file", ""), buffer.text("hdr_output_file", "")};
+    buffer.accept({"two_buffer_variance", "sample_variance"});
+    if (type == "transients")
+        renderer.transients.push_back(files);
+    else if (type != "color")
+        buffer.warn("type", "the " + type + " buffer is not produced");
+    buffer.warnAboutUnknown();
+}
+
+/// Whether a block of this type without a gate of its own still has the transient integrators' default gate.
+bool isTransientType(const std::string& type) {
+    return type.find("transient_") != std::string::npos;
+}
+bool isSteadyPhotonMap(const std::string& type) {
+    return type == "photon_map" || type == "progressive_photon_map";
+}
+
+TimeGate readGate(const ObjectReader& reader, const std::string& type) {
+    const double defaultWidth = isTransientType(type) ? 0.1 : 0.0;
+    const double width = reader.number("transient_time_width", defaultWidth, Range::nonNegative());
+    const double centre = reader.number("transient_time_center", isTransientType(type) ? 0.0 : -1.0);
+    const double start = reader.number("start_time", 0.0);
+    const int frames = int(reader.integer("frame_num", 0, {0, MostFrames}));
+    const bool delta = reader.flag("delta_time_gate", false);
+    TimeGate gate;
+    if (isSteadyPhotonMap(type)) return gate;
+    if (delta) {
+        gate = {false, true, centre, 0.0, 1};
+    } else if (frames > 0) {
+        if (width <= 0.0) reader.problem("transient_time_width", "a sequence (frame_num > 0) needs a frame width above 0");
+        gate = {false, false, start, width, frames};
+    } else if (width > 0.0 && (centre >= 0.0 || isTransientType(type))) {
+        gate = {false, false, centre - 0.5 * width, width, 1};
+    } else if (isTransientType(type)) {
+        reader.problem("transient_time_width", "a time gate needs a width above 0 (or delta_time_gate)");
+    }
+    return gate;
+}
+
+} // namespace
+
+TransportSettings readTransport(const ObjectReader& reader, const std::string& type) {
+    TransportSettings transport;
+    transport.minBounces = int(reader.integer("min_bounces", 0, {0, 2e9}));
+    transport.maxBounces = int(reader.integer("max_bounces", 64, {0, 2e9}));
+    transport.twoSidedShading = reader.flag("enable_two_sided_shading", true);
+    transport.consistencyChecks = reader.flag("enable_consistency_checks", false);
+    transport.gate = readGate(reader, type);
+    transport.cameraUnwarped = reader.flag("camera_unwarped", false);
+    transport.integrateOverGate = reader.choice("time_normalization", "average", {"average", "integral"}) == "integral";
+    transport.vacuumSpeed = float(reader.number("vaccum_speed_of_light", 1.0, Range::positive()));
+    return transport;
+}
+
+RendererSettings readRenderer(const ObjectReader& root) {
+    RendererSettings renderer;
+    const ObjectReader reader = root.has("renderer") && root.isObject("renderer")
+                                    ? *root.object("renderer")
+                                    : ObjectReader::empty("renderer", root.diagnostics());
+    renderer.outputDirectory = reader.text("output_directory", "");
+    renderer.outputFile = reader.text("output_file", renderer.outputFile);
+    renderer.hdrOutputFile = reader.text("hdr_output_file", "");
+    renderer.resumeFile = reader.text("resume_render_file", renderer.resumeFile);
+    renderer.overwriteOutputFiles = reader.flag("overwrite_output_files", true);
+    renderer.enableResume = reader.flag("enable_resume_render", false);
+    renderer.spp = reader.integer("spp", renderer.spp, {1, 1e12});
+    renderer.sppStep = reader.integer("spp_step", renderer.sppStep, {1, 1e6});
+    renderer.checkpointSeconds = reader.durationSeconds("checkpoint_interval", 0.0);
+    renderer.timeoutSeconds = reader.durationSeconds("timeout", 0.0);
+    for (const ObjectReader& buffer : reader.objects("output_buffers")) readOutputBuffer(buffer, renderer);
+    // Choices of the format that make no difference here.
+    reader.accept({"variance_output_file", "adaptive_sampling", "stratified_sampler", "scene_bvh"});
+    reader.warnAboutUnknown();
+    return renderer;
+}
+
+} // namespace tungsten

@@ -1,0 +1,86 @@
+#include "tungsten/scene/LoadContext.h"
+
+namespace tungsten {
+
+namespace {
+
+std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::string& file, bool gammaCorrect, bool interpolate,
+                                           bool clamp, float scale) {
+    const std::filesystem::path path = context.resource(file);
+    const std::string key = path.string() + '\n' + (gammaCorrect ? 'g' : '-') + (interpolate ? 'i' : '-') +
+                            (clamp ? 'c' : '-') + std::to_string(scale);
+    auto& entry = context.bitmaps[key];
+    if (entry) return entry;
+    const std::shared_ptr<Bitmap> bitmap = loadBitmap(path);
+    bitmap->gammaCorrect = gammaCorrect;
+    bitmap->interpolate = interpolate;
+    bitmap->clamp = clamp;
+    bitmap->scale = scale;
+    entry = bitmap;
+    return entry;
+}
+
+Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const std::string& field, const std::string& file,
+                       bool gammaCorrect, bool interpolate, bool clamp, float scale) {
+    try {
+        return Texture(cachedBitmap(context, file, gammaCorrect, interpolate, clamp, scale));
+    } catch (const InputError& error) {
+        owner.problem(field, error.what());
+        return Texture(0.5f);
+    }
+}
+
+Texture readTextureObject(LoadContext& context, const ObjectReader& texture, const Texture& fallback, Range range) {
+    static const std::vector<std::string> types{"bitmap", "checker", "constant"};
+    const std::string type = texture.choice("type", "", types);
+    texture.accept({"name"});
+    Texture result = fallback;
+    if (type == "constant") {
+        result = Texture(texture.rgb("value", Rgb(0.0f), range));
+    } else if (type == "checker") {
+        CheckerTexture checker;
+        checker.onColor = texture.rgb("on_color", checker.onColor, range);
+        checker.offColor = texture.rgb("off_color", checker.offColor, range);
+        checker.resU = int(texture.integer("res_u", checker.resU, {1, 1e9}));
+        checker.resV = int(texture.integer("res_v", checker.resV, {1, 1e9}));
+        result = Texture(checker);
+    } else if (type == "bitmap") {
+        const std::string file = texture.text("file", "");
+        const bool gammaCorrect = texture.flag("gamma_correct", true), interpolate = texture.flag("interpolate", true),
+                   clamp = texture.flag("clamp", false);
+        const float scale = float(texture.number("scale", 1.0));
+        if (file.empty())
+            texture.problem("file", "a bitmap needs the name of an image file");
+        else
+            result = readBitmapFile(context, texture, "file", file, gammaCorrect, interpolate, clamp, scale);
+    } else if (!texture.has("type")) {
+        texture.problem("type", "a texture object needs a type: " + listOf(types));
+    }
+    texture.warnAboutUnknown();
+    return result;
+}
+
+} // namespace
+
+std::filesystem::path LoadContext::resource(const std::string& name) {
+    const std::filesystem::path path = resourceDirectory / std::filesystem::path(name);
+    resources.push_back(path);
+    return path;
+}
+
+Texture readTexture(LoadContext& context, const ObjectReader& owner, const std::string& field, const Texture& fallback,
+                    Range range) {
+    if (!owner.has(field)) return fallback;
+    if (owner.isText(field))
+        return readBitmapFile(context, owner, field, owner.text(field, ""), true, true, false, 1.0f);
+    if (owner.isObject(field)) return readTextureObject(context, *owner.object(field), fallback, range);
+    return Texture(owner.rgb(field, Rgb(0.0f), range));
+}
+
+Rgb readConstantTexture(LoadContext& context, const ObjectReader& owner, const std::string& field) {
+    const Texture texture = readTexture(context, owner, field, Texture(0.0f), Range::nonNegative());
+    if (!texture.isConstant()) owner.problem(field, "this emitter takes a constant: a number or an array of 3");
+    return texture.isConstant() ? texture.rgb({0.0f, 0.0f}) : Rgb(0.0f);
+}
+
+} // namespace tungsten

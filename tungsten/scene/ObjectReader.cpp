@@ -1,0 +1,294 @@
+#include "tungsten/scene/ObjectReader.h"
+
+#include "tungsten/scene/Duration.h"
+#include "tungsten/scene/Json.h"
+
+#include <cmath>
+
+namespace tungsten {
+
+namespace {
+
+std::string found(const rapidjson::Value& value) {
+    if (value.IsNull()) return "null";
+    if (value.IsBool()) return value.GetBool() ? "true" : "false";
+    if (value.IsString()) return "the string \"" + std::string(value.GetString()).substr(0, 60) + "\"";
+    if (value.IsArray()) return "an array of " + std::to_string(value.Size());
+    if (value.IsObject()) return "an object";
+    const double number = value.GetDouble();
+    const std::string text = std::to_string(number);
+    return "the number " + (number == std::floor(number) && std::abs(number) < 1e15 ? text.substr(0, text.find('.')) : text);
+}
+
+std::string brief(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", number);
+    return text;
+}
+
+std::string describe(const Range& range) {
+    const bool low = range.low > -1e300, high = range.high < 1e300;
+    if (range.low == 1e-300) return high ? "a positive number up to " + brief(range.high) : "a positive number";
+    if (low && high) return "a number from " + brief(range.low) + " to " + brief(range.high);
+    if (low) return "a number of at least " + brief(range.low);
+    if (high) return "a number of at most " + brief(range.high);
+    return "a finite number";
+}
+
+bool inside(const Range& range, double number) {
+    return std::isfinite(number) && number >= range.low && number <= range.high;
+}
+
+} // namespace
+
+ObjectReader::ObjectReader(std::shared_ptr<const void> document, const Node* node, std::string path,
+                           std::shared_ptr<Diagnostics> diagnostics)
+    : document_(std::move(document)), node_(node), path_(std::move(path)), diagnostics_(std::move(diagnostics)),
+      known_(std::make_shared<std::set<std::string>>()) {}
+
+ObjectReader ObjectReader::empty(std::string path, std::shared_ptr<Diagnostics> diagnostics) {
+    auto document = std::make_shared<rapidjson::Document>();
+    document->SetObject();
+    const Node* node = nodeOf(*document);
+    return {document, node, std::move(path), std::move(diagnostics)};
+}
+
+const ObjectReader::Node* ObjectReader::find(const std::string& name) const {
+    known_->insert(name);
+    const auto member = valueOf(node_).FindMember(name.c_str());
+    return member == valueOf(node_).MemberEnd() ? nullptr : nodeOf(member->value);
+}
+
+std::string ObjectReader::pathOf(const std::string& field) const {
+    return path_.empty() ? field : path_ + "." + field;
+}
+
+void ObjectReader::problem(const std::string& field, const std::string& message) const {
+    diagnostics_->problems.push_back({diagnostics_->file, field.empty() ? path_ : pathOf(field), message});
+}
+
+void ObjectReader::warn(const std::string& field, const std::string& message) const {
+    diagnostics_->warnings.push_back({diagnostics_->file, field.empty() ? path_ : pathOf(field), message});
+}
+
+void ObjectReader::accept(const std::vector<std::string>& names) const {
+    known_->insert(names.begin(), names.end());
+}
+
+void ObjectReader::warnAboutUnknown() const {
+    const std::vector<std::string> names(known_->begin(), known_->end());
+    for (const auto& member : valueOf(node_).GetObject()) {
+        const std::string name = member.name.GetString();
+        if (!known_->insert(name).second) continue;
+        const std::string near = nearestName(name, names);
+        warn(name, "unknown field, ignored" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+}
+
+bool ObjectReader::has(const std::string& name) const {
+    return find(name) != nullptr;
+}
+bool ObjectReader::isText(const std::string& name) const {
+    const Node* node = find(name);
+    return node && valueOf(node).IsString();
+}
+bool ObjectReader::isObject(const std::string& name) const {
+    const Node* node = find(name);
+    return node && valueOf(node).IsObject();
+}
+bool ObjectReader::isArray(const std::string& name) const {
+    const Node* node = find(name);
+    return node && valueOf(node).IsArray();
+}
+bool ObjectReader::isNumber(const std::string& name) const {
+    const Node* node = find(name);
+    return node && valueOf(node).IsNumber();
+}
+
+double ObjectReader::number(const std::string& name, double fallback, Range range) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    if (valueOf(node).IsNumber() && inside(range, valueOf(node).GetDouble())) return valueOf(node).GetDouble();
+    problem(name, "expected " + describe(range) + ", found " + found(valueOf(node)));
+    return fallback;
+}
+
+int64_t ObjectReader::integer(const std::string& name, int64_t fallback, Range range) const {
+    constexpr double Largest = 9e15; // exact in a double
+    const Range bounded{std::max(range.low, -Largest), std::min(range.high, Largest)};
+    return int64_t(number(name, double(fallback), bounded));
+}
+
+bool ObjectReader::flag(const std::string& name, bool fallback) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    if (valueOf(node).IsBool()) return valueOf(node).GetBool();
+    problem(name, "expected true or false, found " + found(valueOf(node)));
+    return fallback;
+}
+
+std::string ObjectReader::text(const std::string& name, const std::string& fallback) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    if (valueOf(node).IsString()) return valueOf(node).GetString();
+    problem(name, "expected a string, found " + found(valueOf(node)));
+    return fallback;
+}
+
+std::string ObjectReader::choice(const std::string& name, const std::string& fallback,
+                                 const std::vector<std::string>& accepted) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    const std::string value = valueOf(node).IsString() ? valueOf(node).GetString() : "";
+    if (std::find(accepted.begin(), accepted.end(), value) != accepted.end()) return value;
+    const std::string near = nearestName(value, accepted);
+    problem(name, "expected " + listOf(accepted) + ", found " + found(valueOf(node)) +
+                      (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    return fallback;
+}
+
+std::vector<double> ObjectReader::numbers(const std::string& name) const {
+    std::vector<double> values;
+    const Node* node = find(name);
+    if (!node) return values;
+    if (valueOf(node).IsNumber()) return {valueOf(node).GetDouble()};
+    if (valueOf(node).IsArray())
+        for (const auto& entry : valueOf(node).GetArray())
+            if (entry.IsNumber()) values.push_back(entry.GetDouble());
+    if (!valueOf(node).IsArray() || values.size() != valueOf(node).Size()) {
+        problem(name, "expected an array of numbers, found " + found(valueOf(node)));
+        values.clear();
+    }
+    return values;
+}
+
+Vec3f ObjectReader::vec3(const std::string& name, const Vec3f& fallback, Range range) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    std::vector<double> values;
+    if (valueOf(node).IsNumber()) values.assign(3, valueOf(node).GetDouble());
+    if (valueOf(node).IsArray() && valueOf(node).Size() == 3)
+        for (const auto& entry : valueOf(node).GetArray())
+            if (entry.IsNumber()) values.push_back(entry.GetDouble());
+    const bool valid = values.size() == 3 && std::all_of(values.begin(), values.end(), [&](double v) {
+                           return inside(range, v) && std::abs(v) <= double(std::numeric_limits<float>::max());
+                       });
+    if (valid) return {float(values[0]), float(values[1]), float(values[2])};
+    problem(name, "expected one number or an array of 3, each " + describe(range) + "; found " + found(valueOf(node)));
+    return fallback;
+}
+
+Rgb ObjectReader::rgb(const std::string& name, const Rgb& fallback, Range range) const {
+    const Vec3f value = vec3(name, {fallback.x, fallback.y, fallback.z}, range);
+    return {value.x, value.y, value.z};
+}
+
+Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, Range range) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    std::vector<double> values;
+    if (valueOf(node).IsNumber()) values.assign(2, valueOf(node).GetDouble());
+    if (valueOf(node).IsArray() && valueOf(node).Size() == 2)
+        for (const auto& entry : valueOf(node).GetArray())
+            if (entry.IsNumber()) values.push_back(entry.GetDouble());
+    const bool valid =
+        values.size() == 2 && inside(range, values[0]) && inside(range, values[1]) && values[0] < 2e9 && values[1] < 2e9;
+    if (valid) return {int(values[0]), int(values[1])};
+    problem(name, "expected one number or an array of 2, each " + describe(range) + "; found " + found(valueOf(node)));
+    return fallback;
+}
+
+Transform ObjectReader::transform(const std::string& name) const {
+    const Node* node = find(name);
+    if (!node) return {};
+    if (valueOf(node).IsArray()) {
+        const std::vector<double> m = numbers(name);
+        if (m.size() == 16) {
+            const auto column = [&](size_t c) { return Vec3f(float(m[c]), float(m[c + 4]), float(m[c + 8])); };
+            return {column(0), column(1), column(2), column(3)};
+        }
+        problem(name, "expected 16 numbers (row-major) or an object, found " + found(valueOf(node)));
+        return {};
+    }
+    const auto fields = object(name);
+    if (!fields) return {};
+    TransformRecipe recipe;
+    recipe.position = fields->vec3("position", recipe.position);
+    recipe.scale = fields->vec3("scale", recipe.scale);
+    recipe.rotationDegrees = fields->vec3("rotation", recipe.rotationDegrees);
+    if ((recipe.hasZ = fields->has("look_at"))) recipe.zAxis = fields->vec3("look_at", Vec3f(0.0f)) - recipe.position;
+    if ((recipe.hasY = fields->has("up"))) recipe.yAxis = fields->vec3("up", recipe.yAxis);
+    const auto axis = [&](const char* field, Vec3f& value, bool& explicitly) {
+        if (!fields->has(field)) return;
+        value = fields->vec3(field, value);
+        explicitly = true;
+    };
+    axis("x_axis", recipe.xAxis, recipe.hasX);
+    axis("y_axis", recipe.yAxis, recipe.hasY);
+    axis("z_axis", recipe.zAxis, recipe.hasZ);
+    const bool degenerate = recipe.xAxis.length() == 0 || recipe.yAxis.length() == 0 || recipe.zAxis.length() == 0;
+    if (degenerate) {
+        problem(name, "an axis has length zero (is look_at the same as position?)");
+        return {};
+    }
+    fields->warnAboutUnknown();
+    return composeTransform(recipe);
+}
+
+double ObjectReader::durationSeconds(const std::string& name, double fallback) const {
+    const Node* node = find(name);
+    if (!node) return fallback;
+    if (valueOf(node).IsString())
+        if (const auto seconds = parseDuration(valueOf(node).GetString())) return std::max(*seconds, 0.0);
+    problem(name, "expected a quoted duration such as \"1h 30m\", \"45s\" or \"10\" (minutes), found " + found(valueOf(node)));
+    return fallback;
+}
+
+std::optional<ObjectReader> ObjectReader::object(const std::string& name) const {
+    const Node* node = find(name);
+    if (!node) return std::nullopt;
+    if (valueOf(node).IsObject()) return ObjectReader(document_, node, pathOf(name), diagnostics_);
+    problem(name, "expected an object, found " + found(valueOf(node)));
+    return std::nullopt;
+}
+
+std::vector<ObjectReader> ObjectReader::objects(const std::string& name) const {
+    std::vector<ObjectReader> readers;
+    const Node* node = find(name);
+    if (!node) return readers;
+    if (!valueOf(node).IsArray()) {
+        problem(name, "expected an array of objects, found " + found(valueOf(node)));
+        return readers;
+    }
+    for (size_t i = 0; i < valueOf(node).Size(); ++i) {
+        if (auto reader = arrayObject(name, i))
+            readers.push_back(*reader);
+        else
+            problem(name + "[" + std::to_string(i) + "]",
+                    "expected an object, found " + found(valueOf(node)[rapidjson::SizeType(i)]));
+    }
+    return readers;
+}
+
+size_t ObjectReader::arraySize(const std::string& name) const {
+    const Node* node = find(name);
+    return node && valueOf(node).IsArray() ? valueOf(node).Size() : 0;
+}
+
+std::optional<std::string> ObjectReader::arrayText(const std::string& name, size_t index) const {
+    const Node* node = find(name);
+    if (!node || !valueOf(node).IsArray() || index >= valueOf(node).Size()) return std::nullopt;
+    const auto& value = valueOf(node)[rapidjson::SizeType(index)];
+    if (!value.IsString()) return std::nullopt;
+    return value.GetString();
+}
+
+std::optional<ObjectReader> ObjectReader::arrayObject(const std::string& name, size_t index) const {
+    const Node* node = find(name);
+    if (!node || !valueOf(node).IsArray() || index >= valueOf(node).Size()) return std::nullopt;
+    const auto& value = valueOf(node)[rapidjson::SizeType(index)];
+    if (!value.IsObject()) return std::nullopt;
+    return ObjectReader(document_, nodeOf(value), pathOf(name) + "[" + std::to_string(index) + "]", diagnostics_);
+}
+
+} // namespace tungsten
