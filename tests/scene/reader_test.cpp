@@ -1,0 +1,139 @@
+// Reading JSON: the grammar, durations, values and their problems, overrides.
+
+#include "tungsten/scene/Duration.h"
+#include "tungsten/scene/Json.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include <unistd.h>
+
+namespace tungsten {
+namespace {
+
+class JsonFile {
+  public:
+    explicit JsonFile(const std::string& text)
+        : path_(std::filesystem::temp_directory_path() /
+                ("reader_test_" + std::to_string(::getpid()) + "_" + std::to_string(count_++) + ".json")) {
+        std::ofstream(path_, std::ios::binary) << text;
+    }
+    ~JsonFile() { std::filesystem::remove(path_); }
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  private:
+    static inline int count_ = 0;
+    std::filesystem::path path_;
+};
+
+ObjectReader readerOf(const std::string& text, const std::shared_ptr<Diagnostics>& diagnostics) {
+    const JsonFile file(text);
+    const auto document = parseJsonFile(file.path());
+    diagnostics->file = "test.json";
+    return {document, nodeOf(*document), "", diagnostics};
+}
+
+TEST(Duration, SumsTokensAndDefaultsToMinutes) {
+    EXPECT_DOUBLE_EQ(*parseDuration("0.3"), 18.0);
+    EXPECT_DOUBLE_EQ(*parseDuration("10"), 600.0);
+    EXPECT_DOUBLE_EQ(*parseDuration("1h 30m"), 5400.0);
+    EXPECT_DOUBLE_EQ(*parseDuration("250ms"), 0.25);
+    EXPECT_DOUBLE_EQ(*parseDuration("2 D 5 Seconds"), 2 * 86400.0 + 5.0);
+    EXPECT_FALSE(parseDuration(""));
+    EXPECT_FALSE(parseDuration("soon"));
+    EXPECT_FALSE(parseDuration("5 parsecs"));
+}
+
+TEST(Json, AcceptsCommentsTrailingCommasNanAndByteOrderMark) {
+    auto diagnostics = std::make_shared<Diagnostics>();
+    const auto reader = readerOf("\xEF\xBB\xBF{ /* a */ \"x\": 1e4, // b\n \"y\": [1, 2, 3,], \"n\": NaN, }", diagnostics);
+    EXPECT_EQ(reader.integer("x", 0), 10000);
+    EXPECT_EQ(reader.vec3("y", Vec3f(0.0f)), Vec3f(1, 2, 3));
+    EXPECT_TRUE(diagnostics->problems.empty());
+    EXPECT_EQ(reader.number("n", 7.0), 7.0); // parsed, but not a usable number
+    ASSERT_EQ(diagnostics->problems.size(), 1u);
+    EXPECT_EQ(diagnostics->problems[0].path, "n");
+}
+
+TEST(Json, SyntaxErrorsNameLineAndColumn) {
+    const JsonFile file("{\n  \"a\": 1,\n  \"b\": ]\n}");
+    try {
+        parseJsonFile(file.path());
+        FAIL() << "accepted broken JSON";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("line 3, column 8"), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(parseJsonFile("/no/such/scene.json"), InputError);
+}
+
+TEST(Json, DeepNestingIsNoCrash) {
+    const JsonFile file(std::string(200000, '['));
+    EXPECT_THROW(parseJsonFile(file.path()), InputError);
+}
+
+TEST(ObjectReader, BadValuesBecomeProblemsWithPathFoundAndAccepted) {
+    auto diagnostics = std::make_shared<Diagnostics>();
+    const auto reader = readerOf(R"({"a": "text", "b": -1, "c": [1, 2], "d": "tnet", "e": 1, "f": 3})", diagnostics);
+    EXPECT_EQ(reader.number("a", 5.0), 5.0);
+    EXPECT_EQ(reader.number("b", 5.0, Range::nonNegative()), 5.0);
+    EXPECT_EQ(reader.rgb("c", Rgb(0.25f)), Rgb(0.25f));
+    EXPECT_EQ(reader.choice("d", "box", {"box", "tent"}), "box");
+    EXPECT_TRUE(reader.flag("e", true));
+    EXPECT_EQ(reader.durationSeconds("f", 9.0), 9.0);
+    ASSERT_EQ(diagnostics->problems.size(), 6u);
+    EXPECT_EQ(diagnostics->problems[1].text(), "test.json: b: expected a number of at least 0, found the number -1");
+    EXPECT_NE(diagnostics->problems[3].message.find("did you mean 'tent'"), std::string::npos);
+}
+
+TEST(ObjectReader, WarnsAboutUnknownFieldsOnceWithTheNearestName) {
+    auto diagnostics = std::make_shared<Diagnostics>();
+    const auto reader = readerOf(R"({"gather_radius": 1, "gather_radios": 2, "zzz": 3})", diagnostics);
+    EXPECT_EQ(reader.number("gather_radius", 0.0), 1.0);
+    reader.warnAboutUnknown();
+    reader.warnAboutUnknown();
+    ASSERT_EQ(diagnostics->warnings.size(), 2u);
+    EXPECT_NE(diagnostics->warnings[0].message.find("did you mean 'gather_radius'"), std::string::npos);
+    EXPECT_EQ(diagnostics->warnings[1].message, "unknown field, ignored");
+}
+
+TEST(ObjectReader, TransformsInBothForms) {
+    auto diagnostics = std::make_shared<Diagnostics>();
+    const auto reader = readerOf(
+        R"({"a": [1,0,0,5, 0,2,0,6, 0,0,3,7, 0,0,0,1], "b": {"position": [1,2,3], "look_at": [1,2,4]}, "c": {"position": [1,1,1], "look_at": [1,1,1]}})",
+        diagnostics);
+    EXPECT_EQ(reader.transform("a").point(Vec3f(1, 1, 1)), Vec3f(6, 8, 10));
+    EXPECT_EQ(reader.transform("b").point(Vec3f(0, 0, 2)), Vec3f(1, 2, 5));
+    EXPECT_TRUE(diagnostics->problems.empty());
+    (void)reader.transform("c");
+    EXPECT_EQ(diagnostics->problems.size(), 1u);
+}
+
+TEST(Override, SetsByIndexByNameAndNewFields) {
+    const JsonFile file(R"({"media": [{"name": "gas.a", "sigma_s": 1}], "integrator": {}, "camera": {"transform": {}}})");
+    const auto document = parseJsonFile(file.path());
+    applyOverride(*document, "media.0.type=homogeneous");
+    applyOverride(*document, "media.gas.a.sigma_s=[1,2,3]");
+    applyOverride(*document, "integrator.enable_guiding=false");
+    applyOverride(*document, "renderer.timeout=30s");
+    EXPECT_STREQ((*document)["media"][0]["type"].GetString(), "homogeneous");
+    EXPECT_EQ((*document)["media"][0]["sigma_s"][2].GetDouble(), 3.0);
+    EXPECT_FALSE((*document)["integrator"]["enable_guiding"].GetBool());
+    EXPECT_STREQ((*document)["renderer"]["timeout"].GetString(), "30s");
+}
+
+TEST(Override, PathsThatLeadNowhereNameTheNearest) {
+    const JsonFile file(R"({"media": [{"name": "gas", "sigma_s": 1}], "integrator": {}})");
+    const auto document = parseJsonFile(file.path());
+    for (const char* bad : {"media.gaz.sigma_s=1", "media.7.sigma_s=1", "nothing", "=3", "integrator.a.b=2", "media.0.sigma_s.x=1", ""})
+        EXPECT_THROW(applyOverride(*document, bad), UsageError) << bad;
+    try {
+        applyOverride(*document, "media.gaz.sigma_s=1");
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("did you mean 'gas'"), std::string::npos) << error.what();
+    }
+}
+
+} // namespace
+} // namespace tungsten
