@@ -13,27 +13,33 @@ namespace tungsten {
 
 /// 8-bit RGB, row 0 at the top.
 void writePng(const std::filesystem::path& file, const Image& image, ToneMap toneMap);
+
 /// `PF`, little-endian floats, rows bottom to top.
 void writePfm(const std::filesystem::path& file, const Image& image);
+/// `PF` or `Pf`; the scale field is ignored.
 Image readPfm(const std::filesystem::path& file);
 
-/// One part of a multi-part EXR: a frame with its standard error and the interval of time it covers.
+/// One part of an EXR file: an image with its standard error and the interval of time it covers.
 struct ExrPart {
-    std::string name;                   ///< e.g. "frame.0007"; a single part may be ""
-    const Image* colour = nullptr;      ///< channels R, G, B
-    const Image* standardError = nullptr; ///< layer stderr.R, stderr.G, stderr.B; optional
+    std::string name;      ///< such as "frame.0007"; unused for single parts
+    Image colour;          ///< channels R, G, B
+    Image standardError;   ///< layer stderr.R, stderr.G, stderr.B; may be empty
     bool hasTime = false;
-    double timeStart = 0.0, timeEnd = 0.0; ///< float attributes timeStart, timeEnd (double attributes)
+    double timeStart = 0.0, timeEnd = 0.0; ///< attributes timeStart and timeEnd
 };
-/// Float channels, ZIP, one part per frame.
+/// Float channels, ZIP compression. One part: an ordinary file; several: a multi-part file.
 void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts);
-/// All RGB(A) float images of an EXR: `part` index, channel prefix ("" or "stderr.").
-Image readExr(const std::filesystem::path& file, int part = 0, const std::string& layerPrefix = "");
+/// RGB of part `part`, layer `layer` ("" or "stderr."). Missing channels: InputError.
+Image readExr(const std::filesystem::path& file, int part = 0, const std::string& layer = "");
+int exrPartCount(const std::filesystem::path& file);
 
-/// (frames, height, width, 3) float32, C order, that numpy.load reads; frames written in order without one big copy.
+/// (frames, height, width, 3) float32 in C order, as numpy.load reads it.
 void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frames);
 
-/// Writes bytes by way of a temporary file and rename.
-void writeFileAtomically(const std::filesystem::path& file, const std::string& bytes);
+/// Writes text by way of a temporary file and rename.
+void writeTextFile(const std::filesystem::path& file, const std::string& text);
+
+/// `<folder>/<base>_<frame><extension>`, not padded: how the transient forks name per-frame files.
+std::filesystem::path framePath(const std::filesystem::path& file, int frame);
 
 } // namespace tungsten

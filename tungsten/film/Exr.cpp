@@ -1,0 +1,113 @@
+// OpenEXR files: single images that any viewer opens, multi-part files for sequences.
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/film/AtomicFile.h"
+#include "tungsten/film/ImageIo.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+
+namespace tungsten {
+
+namespace {
+
+constexpr const char* Components[3] = {"R", "G", "B"};
+constexpr int64_t LargestImage = int64_t(1) << 28;
+
+void insertLayer(Imf::FrameBuffer& buffer, const std::string& layer, const Image& image) {
+    for (int c = 0; c < 3; ++c) {
+        auto* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data())) + size_t(c) * sizeof(float);
+        buffer.insert(layer + Components[c], Imf::Slice(Imf::FLOAT, base, sizeof(Rgb), sizeof(Rgb) * size_t(image.width)));
+    }
+}
+
+bool hasError(const ExrPart& part) {
+    return !part.standardError.pixels.empty();
+}
+
+Imf::Header headerOf(const ExrPart& part, bool multiPart) {
+    Imf::Header header(part.colour.width, part.colour.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.setType(Imf::SCANLINEIMAGE);
+    if (multiPart) header.setName(part.name);
+    for (const char* component : Components) {
+        header.channels().insert(component, Imf::Channel(Imf::FLOAT));
+        if (hasError(part)) header.channels().insert(std::string("stderr.") + component, Imf::Channel(Imf::FLOAT));
+    }
+    if (part.hasTime) {
+        header.insert("timeStart", Imf::DoubleAttribute(part.timeStart));
+        header.insert("timeEnd", Imf::DoubleAttribute(part.timeEnd));
+    }
+    return header;
+}
+
+} // namespace
+
+void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
+    AtomicFile target(file);
+    try {
+        std::vector<Imf::Header> headers;
+        for (const ExrPart& part : parts) headers.push_back(headerOf(part, parts.size() > 1));
+        Imf::MultiPartOutputFile out(target.path().c_str(), headers.data(), int(headers.size()));
+        for (size_t i = 0; i < parts.size(); ++i) {
+            Imf::FrameBuffer buffer;
+            insertLayer(buffer, "", parts[i].colour);
+            if (hasError(parts[i])) insertLayer(buffer, "stderr.", parts[i].standardError);
+            Imf::OutputPart part(out, int(i));
+            part.setFrameBuffer(buffer);
+            part.writePixels(parts[i].colour.height);
+        }
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), std::string("cannot be written: ") + error.what());
+    }
+    target.commit();
+}
+
+int exrPartCount(const std::filesystem::path& file) {
+    try {
+        return Imf::MultiPartInputFile(file.c_str()).parts();
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), std::string("not a readable EXR image: ") + error.what());
+    }
+}
+
+Image readExr(const std::filesystem::path& file, int part, const std::string& layer) {
+    try {
+        Imf::MultiPartInputFile in(file.c_str());
+        Imf::InputPart input(in, part);
+        const auto window = input.header().dataWindow();
+        const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
+        if (width <= 0 || height <= 0 || width > LargestImage || height > LargestImage || width * height > LargestImage)
+            throw InputError(file.string(), "the EXR image has an absurd size");
+        const Imf::ChannelList& channels = input.header().channels();
+        const bool grey = layer.empty() && !channels.findChannel("R") && channels.findChannel("Y");
+        Image image{int(width), int(height)};
+        Imf::FrameBuffer buffer;
+        for (int c = 0; c < 3; ++c) {
+            const std::string name = grey ? "Y" : layer + Components[c];
+            if (!channels.findChannel(name)) throw InputError(file.string(), "the EXR image has no channel " + name);
+            if (grey && c > 0) continue;
+            char* base = reinterpret_cast<char*>(image.pixels.data()) + size_t(c) * sizeof(float) -
+                         (int64_t(window.min.x) + int64_t(window.min.y) * width) * int64_t(sizeof(Rgb));
+            buffer.insert(name, Imf::Slice(Imf::FLOAT, base, sizeof(Rgb), sizeof(Rgb) * size_t(width)));
+        }
+        input.setFrameBuffer(buffer);
+        input.readPixels(window.min.y, window.max.y);
+        if (grey)
+            for (Rgb& pixel : image.pixels) pixel = Rgb(pixel.x);
+        return image;
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), std::string("not a readable EXR image: ") + error.what());
+    }
+}
+
+} // namespace tungsten

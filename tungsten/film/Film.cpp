@@ -1,0 +1,167 @@
+#include "tungsten/film/Film.h"
+
+#include "tungsten/core/Errors.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cstring>
+#include <istream>
+#include <ostream>
+
+namespace tungsten {
+
+namespace {
+
+constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
+constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '1'};
+
+struct StateHeader {
+    char magic[8];
+    int32_t width, height, frames;
+    uint32_t passes;
+    double weight;
+    uint64_t nonFinite;
+};
+
+/// West's update of a weighted mean and sum of squared deviations, per channel.
+void fold(float value, double weight, double totalBefore, float& mean, float& moment2) {
+    const double delta = double(value) - double(mean);
+    const double share = delta * weight / (totalBefore + weight);
+    mean = float(double(mean) + share);
+    moment2 = float(double(moment2) + totalBefore * delta * share);
+}
+
+void fold(const Rgb& value, double weight, double totalBefore, Rgb& mean, Rgb& moment2) {
+    for (int c = 0; c < 3; ++c) fold(value[c], weight, totalBefore, mean[c], moment2[c]);
+}
+
+/// Standard error of a weighted mean whose passes have variance inversely proportional to their weight.
+Image errorImage(int width, int height, const Rgb* moment2, uint32_t passes, double weight) {
+    Image image(width, height);
+    if (passes < 2) return image;
+    const double scale = 1.0 / (double(passes - 1) * weight);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) image.pixels[i][c] = float(std::sqrt(std::max(double(moment2[i][c]), 0.0) * scale));
+    return image;
+}
+
+Image imageOf(int width, int height, const Rgb* pixels) {
+    Image image(width, height);
+    std::copy(pixels, pixels + image.pixels.size(), image.pixels.begin());
+    return image;
+}
+
+void writeArray(std::ostream& out, const std::vector<Rgb>& values) {
+    out.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(Rgb)));
+}
+
+void readArray(std::istream& in, std::vector<Rgb>& values) {
+    in.read(reinterpret_cast<char*>(values.data()), std::streamsize(values.size() * sizeof(Rgb)));
+}
+
+} // namespace
+
+Film::Film(int width, int height, int frames) : width_(width), height_(height), frames_(frames) {
+    const double bytes = double(width) * double(height) * (double(frames) * 3.0 + 2.0) * double(sizeof(Rgb));
+    if (bytes > LargestFilmBytes)
+        throw InputError("film", std::to_string(width) + "x" + std::to_string(height) + " pixels in " + std::to_string(frames) +
+                                     " frames would take " + std::to_string(int(bytes / (1024.0 * 1024 * 1024))) +
+                                     " GiB; the limit is 16 GiB: use fewer frames or a smaller --resolution");
+    const size_t pixels = size_t(width) * size_t(height);
+    mean_.assign(pixels * size_t(frames), Rgb(0.0f));
+    moment2_ = mean_;
+    pass_ = mean_;
+    if (frames > 1) {
+        totalMean_.assign(pixels, Rgb(0.0f));
+        totalMoment2_ = totalMean_;
+    }
+}
+
+void Film::beginPass() {
+    std::fill(pass_.begin(), pass_.end(), Rgb(0.0f));
+}
+
+void Film::endPass(double weight) {
+    const size_t pixels = size_t(width_) * size_t(height_);
+    const double before = weight_;
+    std::vector<uint32_t> rowNonFinite(size_t(height_), 0);
+    tbb::parallel_for(size_t(0), size_t(height_), [&](size_t row) {
+        for (size_t pixel = row * size_t(width_); pixel < (row + 1) * size_t(width_); ++pixel) {
+            Rgb sum(0.0f);
+            for (size_t frame = 0; frame < size_t(frames_); ++frame) {
+                const size_t i = frame * pixels + pixel;
+                if (!isFinite(pass_[i])) {
+                    ++rowNonFinite[row];
+                    pass_[i] = Rgb(0.0f);
+                }
+                fold(pass_[i], weight, before, mean_[i], moment2_[i]);
+                sum += pass_[i];
+            }
+            if (frames_ > 1) fold(sum / float(frames_), weight, before, totalMean_[pixel], totalMoment2_[pixel]);
+        }
+    });
+    for (const uint32_t count : rowNonFinite) nonFinite_ += count;
+    weight_ += weight;
+    ++passes_;
+}
+
+Image Film::mean(int frame) const {
+    return imageOf(width_, height_, mean_.data() + size_t(frame) * size_t(width_) * size_t(height_));
+}
+
+Image Film::standardError(int frame) const {
+    const Rgb* moments = moment2_.data() + size_t(frame) * size_t(width_) * size_t(height_);
+    return errorImage(width_, height_, moments, passes_, weight_);
+}
+
+Image Film::meanOverFrames() const {
+    return frames_ > 1 ? imageOf(width_, height_, totalMean_.data()) : mean(0);
+}
+
+Image Film::standardErrorOverFrames() const {
+    return frames_ > 1 ? errorImage(width_, height_, totalMoment2_.data(), passes_, weight_) : standardError(0);
+}
+
+double Film::relativeStandardError() const {
+    if (passes_ < 2) return 0.0;
+    double moments = 0.0, means = 0.0;
+    for (size_t i = 0; i < mean_.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            moments += double(moment2_[i][c]);
+            means += double(mean_[i][c]);
+        }
+    const double count = 3.0 * double(mean_.size());
+    const double rms = std::sqrt(moments / (double(passes_ - 1) * weight_) / count);
+    return means > 0.0 ? rms / (means / count) : 0.0;
+}
+
+size_t Film::memoryBytes() const {
+    return (mean_.size() + moment2_.size() + pass_.size() + totalMean_.size() + totalMoment2_.size()) * sizeof(Rgb);
+}
+
+void Film::write(std::ostream& out) const {
+    StateHeader header{{}, width_, height_, frames_, passes_, weight_, nonFinite_};
+    std::memcpy(header.magic, Magic, sizeof Magic);
+    out.write(reinterpret_cast<const char*>(&header), sizeof header);
+    for (const auto* values : {&mean_, &moment2_, &totalMean_, &totalMoment2_}) writeArray(out, *values);
+}
+
+void Film::read(std::istream& in, const std::string& fileName) {
+    StateHeader header{};
+    in.read(reinterpret_cast<char*>(&header), sizeof header);
+    if (!in || std::memcmp(header.magic, Magic, sizeof Magic) != 0)
+        throw InputError(fileName, "not a saved render state (or truncated)");
+    if (header.width != width_ || header.height != height_ || header.frames != frames_)
+        throw InputError(fileName, "the saved state has " + std::to_string(header.width) + "x" + std::to_string(header.height) +
+                                       " pixels in " + std::to_string(header.frames) + " frames, this render " +
+                                       std::to_string(width_) + "x" + std::to_string(height_) + " in " + std::to_string(frames_));
+    Film loaded(width_, height_, frames_);
+    for (auto* values : {&loaded.mean_, &loaded.moment2_, &loaded.totalMean_, &loaded.totalMoment2_}) readArray(in, *values);
+    if (!in) throw InputError(fileName, "the saved render state is truncated");
+    loaded.passes_ = header.passes;
+    loaded.weight_ = header.weight;
+    loaded.nonFinite_ = header.nonFinite;
+    *this = std::move(loaded);
+}
+
+} // namespace tungsten
