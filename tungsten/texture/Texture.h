@@ -49,6 +49,7 @@ struct BitmapTexture {
 /// A value over the surface, by uv.
 struct Texture {
     std::variant<ConstantTexture, CheckerTexture, BitmapTexture> model;
+    Rgb factor{1.0f}; ///< multiplies checkers and bitmaps
 
     Texture() = default;
     explicit Texture(const Rgb& constant) : model(ConstantTexture{constant}) {}
@@ -69,7 +70,7 @@ struct Texture {
     [[nodiscard]] bool isConstant() const { return std::holds_alternative<ConstantTexture>(model); }
     [[nodiscard]] Rgb maximum() const;
     [[nodiscard]] Rgb average() const;
-    /// Multiplied by a constant colour (power conversions); a bitmap is copied as floats.
+    /// Multiplied by a constant colour (power conversions).
     [[nodiscard]] Texture scaled(const Rgb& factor) const;
     /// Bump: central texel differences (dh/du, dh/dv) of the scalar, as the format defines them; zero for constants.
     [[nodiscard]] Vec2f derivatives(const Vec2f& uv) const;

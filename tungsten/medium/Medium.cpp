@@ -1,0 +1,40 @@
+#include "tungsten/medium/Medium.h"
+
+namespace tungsten {
+
+bool Medium::isGrey() const {
+    return sigmaA.x == sigmaA.y && sigmaA.y == sigmaA.z && sigmaS.x == sigmaS.y && sigmaS.y == sigmaS.z;
+}
+
+Rgb Medium::transmittance(float distance) const {
+    const auto channel = [distance](float sigma) { return sigma > 0.0f ? std::exp(-sigma * distance) : 1.0f; };
+    const Rgb sigma = sigmaT();
+    if (sigma.x == sigma.y && sigma.y == sigma.z) return Rgb(channel(sigma.x));
+    return {channel(sigma.x), channel(sigma.y), channel(sigma.z)};
+}
+
+FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler) {
+    if (!medium.scatters()) return {tMax, true, medium.transmittance(tMax), 1.0f};
+    const Rgb sigma = medium.sigmaT();
+    const int channel = std::min(int(sampler.next1D() * 3.0f), 2);
+    // u < 1 always, so the logarithm is finite.
+    const float u = sampler.next1D();
+    const float t = sigma[channel] > 0.0f ? -std::log1p(-u) / sigma[channel] : Infinity;
+    if (t >= tMax) {
+        const float probability = probabilityFlightExits(medium, tMax);
+        return {tMax, true, medium.transmittance(tMax) / probability, probability};
+    }
+    const Rgb transmittance = medium.transmittance(t);
+    const float pdf = meanComponent(sigma * transmittance);
+    return {t, false, medium.sigmaS * transmittance / pdf, pdf};
+}
+
+float pdfFlight(const Medium& medium, float distance) {
+    return medium.scatters() ? meanComponent(medium.sigmaT() * medium.transmittance(distance)) : 0.0f;
+}
+
+float probabilityFlightExits(const Medium& medium, float distance) {
+    return medium.scatters() ? meanComponent(medium.transmittance(distance)) : 1.0f;
+}
+
+} // namespace tungsten

@@ -1,0 +1,160 @@
+// Bitmaps: decoding through stb, OpenEXR and the film room's PFM reader; lookups as the scene format defines them.
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/film/ImageIo.h"
+#include "tungsten/texture/Texture.h"
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include <array>
+
+namespace tungsten {
+
+namespace {
+
+constexpr int64_t MostTexels = int64_t(1) << 28;
+
+/// 8-bit colours are linearised to 8 bits again, by truncation: a rule of the format.
+const std::array<float, 256>& linearised() {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> values{};
+        for (size_t i = 0; i < values.size(); ++i)
+            values[i] = float(std::floor(255.0 * std::pow(double(i) / 255.0, 2.2)) / 255.0);
+        return values;
+    }();
+    return table;
+}
+
+std::string lowerExtension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+int wrap(int i, int size, bool clamp) {
+    if (clamp) return std::clamp(i, 0, size - 1);
+    const int r = i % size;
+    return r < 0 ? r + size : r;
+}
+
+/// Bilinear (texel centres at half integers) or nearest blend of fetch(column, row); row 0 is the top, v = 1.
+template <typename Fetch>
+auto blend(const Bitmap& bitmap, const Vec2f& uv, Fetch fetch) {
+    // Repeating lookups are reduced first, so that far uv keep their digits; absurd ones land on texel 0.
+    const auto reduce = [&](float c) {
+        if (!std::isfinite(c)) return 0.0f;
+        return bitmap.clamp ? std::clamp(c, 0.0f, 1.0f) : c - std::floor(c);
+    };
+    const float x = reduce(uv.x) * float(bitmap.width), y = (1.0f - reduce(uv.y)) * float(bitmap.height);
+    const auto texel = [&](int column, int row) {
+        return fetch(size_t(wrap(row, bitmap.height, bitmap.clamp)) * size_t(bitmap.width) +
+                     size_t(wrap(column, bitmap.width, bitmap.clamp)));
+    };
+    if (!bitmap.interpolate) return texel(int(x), int(y));
+    const float fx = x - 0.5f, fy = y - 0.5f;
+    const int column = int(std::floor(fx)), row = int(std::floor(fy));
+    const float wx = fx - std::floor(fx), wy = fy - std::floor(fy);
+    return (texel(column, row) * (1.0f - wx) + texel(column + 1, row) * wx) * (1.0f - wy) +
+           (texel(column, row + 1) * (1.0f - wx) + texel(column + 1, row + 1) * wx) * wy;
+}
+
+Rgb texelRgb(const Bitmap& bitmap, size_t i) {
+    if (!bitmap.hdr.empty()) return {bitmap.hdr[3 * i], bitmap.hdr[3 * i + 1], bitmap.hdr[3 * i + 2]};
+    const uint8_t* texel = &bitmap.ldr[4 * i];
+    if (bitmap.gammaCorrect) return {linearised()[texel[0]], linearised()[texel[1]], linearised()[texel[2]]};
+    return Rgb(texel[0], texel[1], texel[2]) / 255.0f;
+}
+
+float texelScalar(const Bitmap& bitmap, size_t i) {
+    if (!bitmap.hdr.empty()) return meanComponent(texelRgb(bitmap, i));
+    const uint8_t* texel = &bitmap.ldr[4 * i];
+    return float((texel[0] + texel[1] + texel[2]) / 3) / 255.0f;
+}
+
+void loadThroughFilm(const std::filesystem::path& file, Bitmap& bitmap) {
+    const Image image = lowerExtension(file) == ".exr" ? readExr(file) : readPfm(file);
+    bitmap.width = image.width;
+    bitmap.height = image.height;
+    bitmap.channels = 3;
+    bitmap.hdr.reserve(image.pixels.size() * 3);
+    for (const Rgb& pixel : image.pixels) bitmap.hdr.insert(bitmap.hdr.end(), {pixel.x, pixel.y, pixel.z});
+}
+
+void loadThroughStb(const std::filesystem::path& file, Bitmap& bitmap) {
+    const auto fail = [&](const std::string& why) -> InputError { return {file.string(), "not a readable image: " + why}; };
+    if (!stbi_info(file.c_str(), &bitmap.width, &bitmap.height, &bitmap.channels)) throw fail(stbi_failure_reason());
+    if (bitmap.width <= 0 || bitmap.height <= 0 || int64_t(bitmap.width) * bitmap.height > MostTexels)
+        throw fail("absurd size " + std::to_string(bitmap.width) + "x" + std::to_string(bitmap.height));
+    const size_t texels = size_t(bitmap.width) * size_t(bitmap.height);
+    int width = 0, height = 0, channels = 0;
+    if (stbi_is_hdr(file.c_str())) {
+        const std::unique_ptr<float, void (*)(void*)> pixels(stbi_loadf(file.c_str(), &width, &height, &channels, 3),
+                                                             stbi_image_free);
+        if (!pixels || width != bitmap.width || height != bitmap.height) throw fail("corrupt or truncated");
+        bitmap.hdr.assign(pixels.get(), pixels.get() + 3 * texels);
+    } else {
+        const std::unique_ptr<uint8_t, void (*)(void*)> pixels(stbi_load(file.c_str(), &width, &height, &channels, 4),
+                                                               stbi_image_free);
+        if (!pixels || width != bitmap.width || height != bitmap.height) throw fail("corrupt or truncated");
+        bitmap.ldr.assign(pixels.get(), pixels.get() + 4 * texels);
+    }
+    const std::string extension = lowerExtension(file);
+    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") bitmap.channels = 4; // so their decoders report
+}
+
+} // namespace
+
+std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) throw InputError(file.string(), "no such image file");
+    auto bitmap = std::make_shared<Bitmap>();
+    const std::string extension = lowerExtension(file);
+    if (extension == ".exr" || extension == ".pfm") loadThroughFilm(file, *bitmap);
+    else loadThroughStb(file, *bitmap);
+    return bitmap;
+}
+
+// The format's nearest-texel lookups leave out the scale.
+Rgb Bitmap::rgb(const Vec2f& uv) const {
+    return blend(*this, uv, [this](size_t i) { return texelRgb(*this, i); }) * (interpolate ? scale : 1.0f);
+}
+
+float Bitmap::scalar(const Vec2f& uv) const {
+    return blend(*this, uv, [this](size_t i) { return texelScalar(*this, i); }) * (interpolate ? scale : 1.0f);
+}
+
+float Bitmap::alpha(const Vec2f& uv) const {
+    if (channels != 4 || ldr.empty()) return scalar(uv);
+    return blend(*this, uv, [this](size_t i) { return float(ldr[4 * i + 3]) / 255.0f; }) * (interpolate ? scale : 1.0f);
+}
+
+Rgb Bitmap::maximum() const {
+    Rgb largest(0.0f);
+    for (size_t i = 0; i < size_t(width) * size_t(height); ++i) {
+        const Rgb texel = texelRgb(*this, i);
+        for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], texel[c]);
+    }
+    return largest * (interpolate ? scale : 1.0f);
+}
+
+Rgb Bitmap::average() const {
+    Imath::Color3<double> sum(0.0);
+    const size_t texels = size_t(width) * size_t(height);
+    for (size_t i = 0; i < texels; ++i) {
+        const Rgb texel = texelRgb(*this, i);
+        sum += Imath::Color3<double>(texel.x, texel.y, texel.z);
+    }
+    sum /= double(texels);
+    return Rgb(float(sum.x), float(sum.y), float(sum.z)) * (interpolate ? scale : 1.0f);
+}
+
+} // namespace tungsten
