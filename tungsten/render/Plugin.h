@@ -9,6 +9,7 @@
 //         return &descriptor;
 //     }
 
+#include "tungsten/core/Errors.h"
 #include "tungsten/render/Integrator.h"
 
 #include <filesystem>
@@ -25,9 +26,10 @@ struct PluginDescriptor {
     void (*registerIntegrators)(IntegratorRegistry& registry);
 };
 
-/// Loads every plugin found in `directories` (in order) and registers its integrators. The libraries stay loaded for the life of the
-/// process. A file that cannot be loaded, lacks the entry point or has another ABI throws InputError saying which and why.
-void loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry);
+/// Loads every plugin found in `directories` (in order; of plugins with the same file name the first is taken) and registers its
+/// integrators. The libraries stay loaded for the life of the process. Returns what went wrong: files that cannot be loaded, lack
+/// the entry point or have another ABI.
+std::vector<Problem> loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry);
 /// TUNGSTEN_PLUGIN_PATH's directories, then those beside the executable.
 std::vector<std::filesystem::path> pluginDirectories();
 

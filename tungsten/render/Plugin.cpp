@@ -1,0 +1,86 @@
+#include "tungsten/render/Plugin.h"
+
+#include "tungsten/core/Errors.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <set>
+
+#include <dlfcn.h>
+
+namespace tungsten {
+
+namespace {
+
+std::vector<std::filesystem::path> pluginFiles(const std::filesystem::path& directory) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("libtungsten-") && name.ends_with(".so")) files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+void loadPlugin(const std::filesystem::path& file, IntegratorRegistry& registry) {
+    // Never closed: factories and vtables live in the library.
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) throw InputError(file.string(), std::string("the plugin cannot be loaded: ") + dlerror());
+    using EntryPoint = const PluginDescriptor* (*)();
+    const auto entry = reinterpret_cast<EntryPoint>(dlsym(library, "tungstenPlugin"));
+    if (!entry) throw InputError(file.string(), "not a plugin: it does not define tungstenPlugin()");
+    const PluginDescriptor* descriptor = entry();
+    if (!descriptor || !descriptor->abi || !descriptor->registerIntegrators)
+        throw InputError(file.string(), "not a plugin: tungstenPlugin() returns nothing usable");
+    if (std::strcmp(descriptor->abi, PluginAbi) != 0)
+        throw InputError(file.string(), std::string("built for another host: the plugin has ABI '") + descriptor->abi +
+                                            "', this host '" + PluginAbi + "'; rebuild it against this host's headers");
+    registry.setOrigin(file.string());
+    descriptor->registerIntegrators(registry);
+}
+
+} // namespace
+
+void IntegratorRegistry::add(const std::string& type, const std::string& description, IntegratorFactory factory) {
+    const auto [position, added] = entries_.emplace(type, Entry{std::move(factory), description, origin_});
+    if (!added)
+        throw InputError(origin_, "registers the integrator '" + type + "', which " + position->second.origin + " registers too");
+}
+
+std::vector<Problem> loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry) {
+    std::vector<Problem> problems;
+    std::set<std::string> loaded; // the first directory wins
+    for (const auto& directory : directories)
+        for (const auto& file : pluginFiles(directory)) {
+            if (!loaded.insert(file.filename().string()).second) continue;
+            try {
+                loadPlugin(file, registry);
+            } catch (const InputError& error) {
+                problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+            }
+        }
+    return problems;
+}
+
+std::vector<std::filesystem::path> pluginDirectories() {
+    std::vector<std::filesystem::path> directories;
+    if (const char* variable = std::getenv("TUNGSTEN_PLUGIN_PATH")) {
+        std::string paths = variable;
+        for (size_t start = 0; start < paths.size();) {
+            const size_t end = std::min(paths.find(':', start), paths.size());
+            if (end > start) directories.emplace_back(paths.substr(start, end - start));
+            start = end + 1;
+        }
+    }
+    std::error_code error;
+    const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe", error);
+    if (!error) {
+        directories.push_back(executable.parent_path());
+        directories.push_back(executable.parent_path() / ".." / "lib" / "tungsten");
+    }
+    return directories;
+}
+
+} // namespace tungsten
