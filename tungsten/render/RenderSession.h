@@ -2,31 +2,15 @@
 // Runs an integrator pass by pass: progress, standard error, time-outs, checkpoints, outputs.
 
 #include "tungsten/render/Integrator.h"
+#include "tungsten/render/Outputs.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <atomic>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace tungsten {
-
-/// Where results go; absolute or relative to the process directory.
-struct OutputFiles {
-    std::filesystem::path ldr;  ///< PNG
-    std::filesystem::path hdr;  ///< .exr, .pfm or .npy; empty: none
-    std::vector<TransientsBuffer> series; ///< per-frame files (resolved names)
-    std::filesystem::path state;          ///< resume state
-    std::filesystem::path statistics;     ///< JSON; empty: none
-};
-
-/// File names of a scene: -d, -o and -e against the renderer block; `overwrite_output_files` false picks free names.
-struct OutputOverrides {
-    std::optional<std::filesystem::path> directory, ldr, hdr, statistics;
-};
-OutputFiles resolveOutputs(const RendererSettings& renderer, const std::filesystem::path& sceneFile,
-                           const OutputOverrides& overrides);
 
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
@@ -41,17 +25,23 @@ struct SessionOptions {
 };
 
 enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
+std::string toString(StopReason reason);
 
 struct SessionResult {
     StopReason reason = StopReason::Finished;
     Film film;
     Statistics statistics;
-    double renderSeconds = 0.0;
+    double renderSeconds = 0.0; ///< passes of this run, not counting loading and writing
+    uint64_t samples = 0;       ///< per pixel, resumed ones included
     std::vector<std::filesystem::path> written;
 };
 
-/// Renders and writes every output. Throws InputError before the first pass when an output cannot be written.
-void runSession(const LoadedScene& loaded, Integrator& integrator, EffectPlan& plan, const OutputFiles& outputs,
+/// Renders and writes every output. `plan` is complete (Integrator::plan was called). Throws InputError before the first pass when an
+/// output cannot be written.
+void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result);
+
+/// Everything measured, as JSON text (`--stats`).
+std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result);
 
 } // namespace tungsten

@@ -1,0 +1,64 @@
+#include "tungsten/geometry/MeshFile.h"
+
+#include "tungsten/core/Errors.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace tungsten {
+
+namespace {
+
+bool isFinite3(const Vec3f& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+std::string lowerCaseExtension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
+
+} // namespace
+
+void padPositions(std::vector<Vec3f>& positions) {
+    if (positions.capacity() == positions.size() + 1) return;
+    std::vector<Vec3f> exact;
+    exact.reserve(positions.size() + 1);
+    exact.assign(positions.begin(), positions.end());
+    positions.swap(exact);
+}
+
+void finishMesh(TriangleMesh& mesh, const std::filesystem::path& file) {
+    const size_t count = mesh.positions.size();
+    const auto bad = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), isFinite3);
+    if (bad != mesh.positions.end())
+        throw InputError(file.string(), "the position of vertex " + std::to_string(bad - mesh.positions.begin()) +
+                                            " is not a finite number");
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        for (const uint32_t v : mesh.triangles[i].v)
+            if (v >= count)
+                throw InputError(file.string(), "triangle " + std::to_string(i) + " refers to vertex " +
+                                                    std::to_string(v) + ", but there are " + std::to_string(count));
+    for (Vec3f& normal : mesh.normals)
+        if (!isFinite3(normal)) normal = Vec3f(0.0f);
+    for (Vec2f& uv : mesh.uvs)
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = Vec2f(0.0f);
+    padPositions(mesh.positions);
+    mesh.normals.shrink_to_fit();
+    mesh.uvs.shrink_to_fit();
+    mesh.triangles.shrink_to_fit();
+    mesh.materials.shrink_to_fit();
+}
+
+TriangleMesh loadMesh(const std::filesystem::path& file) {
+    const std::string extension = lowerCaseExtension(file);
+    if (extension == ".wo3") return loadWo3(file);
+    if (extension == ".obj") return loadObj(file);
+    if (extension == ".ply") return loadPly(file);
+    if (extension == ".gltf" || extension == ".glb") return loadGltf(file);
+    throw InputError(file.string(), "a mesh of type '" + extension + "'; accepted: .wo3, .obj, .ply, .gltf or .glb");
+}
+
+} // namespace tungsten

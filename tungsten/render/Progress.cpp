@@ -1,0 +1,68 @@
+#include "tungsten/render/Progress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <unistd.h>
+
+namespace tungsten {
+
+namespace {
+
+std::string clockText(double seconds) {
+    const long total = std::lround(std::min(std::max(seconds, 0.0), 9e8));
+    char text[48];
+    if (total >= 3600) std::snprintf(text, sizeof text, "%ldh%02ldm", total / 3600, total / 60 % 60);
+    else std::snprintf(text, sizeof text, "%ldm%02lds", total / 60, total % 60);
+    return text;
+}
+
+std::string errorText(double relative) {
+    if (relative <= 0.0) return "standard error: two passes needed";
+    char text[48];
+    std::snprintf(text, sizeof text, "standard error %.3g %%", 100.0 * relative);
+    return text;
+}
+
+} // namespace
+
+double progressFraction(const ProgressState& state) {
+    const int64_t remaining = state.totalSamples - state.resumedSamples;
+    double fraction = remaining > 0 ? double(state.samples - state.resumedSamples) / double(remaining) : 1.0;
+    if (state.timeoutSeconds > 0.0) fraction = std::max(fraction, state.elapsedSeconds / state.timeoutSeconds);
+    // The error falls with the square root of the work.
+    if (state.targetError > 0.0 && state.relativeError > 0.0)
+        fraction = std::max(fraction, std::pow(state.targetError / state.relativeError, 2.0));
+    return std::clamp(fraction, 0.0, 1.0);
+}
+
+std::string progressLine(const ProgressState& state) {
+    constexpr int Width = 24;
+    const double fraction = progressFraction(state);
+    const int filled = int(fraction * Width);
+    std::string line = "[" + std::string(size_t(filled), '#') + std::string(size_t(Width - filled), '.') + "] ";
+    const double left = fraction > 0.0 ? state.elapsedSeconds * (1.0 - fraction) / fraction : 0.0;
+    line += std::to_string(state.passes) + (state.passes == 1 ? " pass, " : " passes, ") + std::to_string(state.samples) + " of " +
+            std::to_string(state.totalSamples) + " spp, " + clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) +
+            " left, " + errorText(state.relativeError);
+    return line;
+}
+
+ProgressReporter::ProgressReporter(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+
+ProgressReporter::~ProgressReporter() {
+    if (drawn_ && terminal_) std::fputc('\n', stderr);
+}
+
+void ProgressReporter::show(const ProgressState& state, bool last) {
+    if (quiet_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (!last && now < next_) return;
+    next_ = now + (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000));
+    std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", progressLine(state).c_str());
+    std::fflush(stderr);
+    drawn_ = true;
+}
+
+} // namespace tungsten

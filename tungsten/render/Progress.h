@@ -1,0 +1,40 @@
+#pragma once
+// What a person sees while a render runs: passes, time left, standard error.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace tungsten {
+
+/// How far a render is.
+struct ProgressState {
+    uint32_t passes = 0;
+    int64_t samples = 0, totalSamples = 0; ///< per pixel
+    double elapsedSeconds = 0.0;
+    double timeoutSeconds = 0.0;    ///< 0: none
+    double relativeError = 0.0;     ///< 0: not known yet
+    double targetError = 0.0;       ///< 0: none
+    int64_t resumedSamples = 0;     ///< taken before this run started
+};
+
+/// Fraction of the render that is done, by whichever limit comes first.
+double progressFraction(const ProgressState& state);
+/// One line: a bar, passes, elapsed and remaining time, standard error.
+std::string progressLine(const ProgressState& state);
+
+/// Prints to stderr: a bar that redraws itself on a terminal, a line every few seconds elsewhere.
+class ProgressReporter {
+  public:
+    explicit ProgressReporter(bool quiet);
+    ~ProgressReporter();
+    ProgressReporter(const ProgressReporter&) = delete;
+    ProgressReporter& operator=(const ProgressReporter&) = delete;
+    void show(const ProgressState& state, bool last);
+
+  private:
+    bool quiet_, terminal_, drawn_ = false;
+    std::chrono::steady_clock::time_point next_{};
+};
+
+} // namespace tungsten

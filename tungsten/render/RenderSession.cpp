@@ -1,0 +1,138 @@
+#include "tungsten/render/RenderSession.h"
+
+#include "tungsten/film/ImageIo.h"
+#include "tungsten/render/Checkpoint.h"
+#include "tungsten/render/Progress.h"
+
+#include <chrono>
+
+namespace tungsten {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The state of one run of passes.
+class Session {
+  public:
+    Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs, const SessionOptions& options,
+            SessionResult& result)
+        : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options), result_(result),
+          identity_{loaded.hash, options.seed, options.sppStep}, reporter_(options.quiet) {}
+
+    void run(const EffectPlan& plan) {
+        checkOutputs(outputs_);
+        const Scene& scene = *loaded_.scene;
+        result_.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
+        resume();
+        {
+            const StageTimer timer(result_.statistics, "prepare");
+            integrator_.prepare(plan, result_.statistics);
+        }
+        renderPasses();
+        finish();
+    }
+
+  private:
+    void resume() {
+        if (!options_.resumeEnabled || options_.restart) return;
+        if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film)) result_.samples = point->samples;
+        resumedSamples_ = result_.samples;
+    }
+
+    void renderPasses() {
+        start_ = lastCheckpoint_ = Clock::now();
+        bool stop = result_.samples >= uint64_t(options_.spp);
+        while (!stop) {
+            renderOnePass();
+            stop = shouldStop();
+            reporter_.show(state(), stop);
+            if (!stop) checkpointIfDue();
+        }
+        result_.renderSeconds = secondsSince(start_);
+    }
+
+    void renderOnePass() {
+        const uint64_t left = uint64_t(options_.spp) - result_.samples;
+        const auto samples = uint32_t(std::min(uint64_t(options_.sppStep), left));
+        const PassInfo pass{result_.film.passes(), result_.samples, samples, options_.seed};
+        result_.film.beginPass();
+        integrator_.renderPass(pass, result_.film, result_.statistics);
+        result_.film.endPass(double(samples));
+        result_.samples += samples;
+        if (options_.targetError > 0.0 || !options_.quiet) relativeError_ = result_.film.relativeStandardError();
+    }
+
+    bool shouldStop() {
+        const auto because = [&](StopReason reason) {
+            result_.reason = reason;
+            return true;
+        };
+        if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
+        if (result_.samples >= uint64_t(options_.spp)) return because(StopReason::Finished);
+        if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds) return because(StopReason::TimedOut);
+        const bool accurate = options_.targetError > 0.0 && relativeError_ > 0.0 && relativeError_ <= options_.targetError;
+        return accurate && because(StopReason::TargetReached);
+    }
+
+    void checkpointIfDue() {
+        if (options_.checkpointSeconds <= 0.0 || secondsSince(lastCheckpoint_) < options_.checkpointSeconds) return;
+        const StageTimer timer(result_.statistics, "checkpoint");
+        writeImages(result_.film, *loaded_.scene, outputs_, "_checkpoint");
+        saveState();
+        lastCheckpoint_ = Clock::now();
+    }
+
+    void saveState() const {
+        if (options_.resumeEnabled) writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film);
+    }
+
+    void finish() {
+        const StageTimer timer(result_.statistics, "write");
+        saveState();
+        result_.written = writeImages(result_.film, *loaded_.scene, outputs_);
+    }
+
+    [[nodiscard]] ProgressState state() const {
+        return {result_.film.passes(), int64_t(result_.samples),  options_.spp,         secondsSince(start_),
+                options_.timeoutSeconds, relativeError_, options_.targetError, int64_t(resumedSamples_)};
+    }
+
+    const LoadedScene& loaded_;
+    Integrator& integrator_;
+    const OutputFiles& outputs_;
+    const SessionOptions& options_;
+    SessionResult& result_;
+    RenderIdentity identity_;
+    ProgressReporter reporter_;
+    Clock::time_point start_, lastCheckpoint_;
+    uint64_t resumedSamples_ = 0;
+    double relativeError_ = 0.0;
+};
+
+} // namespace
+
+std::string toString(StopReason reason) {
+    switch (reason) {
+    case StopReason::Finished: return "all samples taken";
+    case StopReason::TimedOut: return "time-out";
+    case StopReason::TargetReached: return "target error reached";
+    case StopReason::Interrupted: return "interrupted";
+    }
+    return "";
+}
+
+void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
+                const SessionOptions& options, SessionResult& result) {
+    Session(loaded, integrator, outputs, options, result).run(plan);
+    if (!outputs.statistics.empty()) {
+        writeTextFile(outputs.statistics, statisticsJson(loaded, options, result));
+        result.written.push_back(outputs.statistics);
+    }
+}
+
+} // namespace tungsten

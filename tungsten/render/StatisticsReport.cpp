@@ -1,0 +1,43 @@
+// The report of `--stats`.
+
+#include "tungsten/render/RenderSession.h"
+#include "tungsten/scene/JsonWriter.h"
+
+#include <tbb/global_control.h>
+
+namespace tungsten {
+
+std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result) {
+    const Scene& scene = *loaded.scene;
+    JsonWriter json;
+    json.field("scene", scene.file.string());
+    json.field("integrator", loaded.integratorType);
+    json.field("width", uint64_t(scene.camera.resolution.x));
+    json.field("height", uint64_t(scene.camera.resolution.y));
+    json.field("frames", uint64_t(scene.transport.gate.frames));
+    json.field("seed", options.seed);
+    json.field("threads", uint64_t(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    json.field("passes", uint64_t(result.film.passes()));
+    json.field("samples per pixel", result.samples);
+    json.field("stopped because", toString(result.reason));
+    json.field("relative standard error", result.film.relativeStandardError());
+    json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
+    json.field("render wall seconds", result.renderSeconds);
+    json.field("process CPU seconds", processCpuSeconds());
+    json.field("peak memory bytes", peakMemoryBytes());
+    json.beginObject("counters");
+    for (const auto& [name, value] : result.statistics.counters()) json.field(name, value);
+    json.endObject();
+    json.beginObject("stages");
+    for (const auto& [name, stage] : result.statistics.stages()) {
+        json.beginObject(name);
+        json.field("wall seconds", stage.wallSeconds);
+        json.field("CPU seconds", stage.cpuSeconds);
+        json.field("runs", stage.runs);
+        json.endObject();
+    }
+    json.endObject();
+    return json.finish();
+}
+
+} // namespace tungsten

@@ -1,0 +1,32 @@
+#pragma once
+// Writing JSON without showing the library that does it.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace tungsten {
+
+/// Builds one JSON object, nested objects included, with two-space indentation. Numbers that are not finite become null.
+class JsonWriter {
+  public:
+    JsonWriter();
+    ~JsonWriter();
+    JsonWriter(const JsonWriter&) = delete;
+    JsonWriter& operator=(const JsonWriter&) = delete;
+
+    void field(const std::string& name, const std::string& value);
+    void field(const std::string& name, const char* value) { field(name, std::string(value)); }
+    void field(const std::string& name, double value);
+    void field(const std::string& name, uint64_t value);
+    void beginObject(const std::string& name);
+    void endObject();
+    /// Closes the outer object. Call once.
+    [[nodiscard]] std::string finish();
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace tungsten
