@@ -1,9 +1,9 @@
 #pragma once
 // Surface scattering models: a closed set of plain structs, one file each (parameters, eval, pdf, sample).
 //
-// Directions are local to the shading frame (n = +z) and point away from the surface: wi toward the previous vertex of the
-// walk, wo the sampled continuation. eval() includes |cos wo|. Values are for radiance transport unless the mode says photons
-// (no (n_i/n_t)^2 across refractions).
+// Directions are local to the shading frame (n = +z) and point away from the surface: wi toward the previous vertex of
+// the walk, wo the sampled continuation. eval() includes |cos wo|. Values are for radiance transport unless the mode
+// says photons (no (n_i/n_t)^2 across refractions).
 
 #include "tungsten/texture/Texture.h"
 
@@ -39,9 +39,9 @@ struct BsdfQuery {
 };
 
 struct BsdfSample {
-    Vec3f wo;               ///< local
-    Rgb weight;             ///< f |cos| / pdf for smooth lobes; weight / probability for specular and forward ones
-    float pdf = 0.0f;       ///< per solid angle for smooth lobes; discrete probability for specular and forward ones
+    Vec3f wo;         ///< local
+    Rgb weight;       ///< f |cos| / pdf for smooth lobes; weight / probability for specular and forward ones
+    float pdf = 0.0f; ///< per solid angle for smooth lobes; discrete probability for specular and forward ones
     LobeMask lobe = lobe::None; ///< the one lobe that was sampled
 };
 
@@ -112,8 +112,8 @@ struct Mixed {
     Texture ratio{0.5f};
 };
 
-using BsdfModel = std::variant<Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric, Plastic,
-                               RoughPlastic, PbrtPlastic, Null, Forward, Transparency, Mixed>;
+using BsdfModel = std::variant<Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric,
+                               Plastic, RoughPlastic, PbrtPlastic, Null, Forward, Transparency, Mixed>;
 
 /// One named material: a model, its albedo and an optional bump map.
 class Bsdf {
@@ -146,7 +146,7 @@ std::optional<std::pair<Rgb, Rgb>> conductorByName(const std::string& name);
 std::vector<std::string> conductorNames();
 
 Plastic makePlastic(float ior, float thickness, const Rgb& sigmaA);
-RoughPlastic makeRoughPlastic(float ior, float thickness, const Rgb& sigmaA, MicrofacetModel distribution, Texture roughness,
-                              const Rgb& ks);
+RoughPlastic makeRoughPlastic(float ior, float thickness, const Rgb& sigmaA, MicrofacetModel distribution,
+                              Texture roughness, const Rgb& ks);
 
 } // namespace tungsten

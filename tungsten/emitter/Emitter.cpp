@@ -39,8 +39,10 @@ std::optional<DirectSample> sampleDirect(const Emitter& emitter, const Vec3f& re
             using Model = std::decay_t<decltype(model)>;
             constexpr bool SingleDirection =
                 std::is_same_v<Model, DirectionalPointEmitter> || std::is_same_v<Model, CollimatedEmitter>;
-            if constexpr (SingleDirection) return std::nullopt;
-            else return sampleDirect(model, receiver, u);
+            if constexpr (SingleDirection)
+                return std::nullopt;
+            else
+                return sampleDirect(model, receiver, u);
         },
         emitter.model);
 }

@@ -7,7 +7,8 @@ Rgb pointIntensityFromPower(const Rgb& power) {
 }
 
 float spotSolidAngle(float cosInner, float cosOuter) {
-    // The smoothstep is antisymmetric about the middle of the edge, so it averages to 1/2 over equal steps of the cosine.
+    // The smoothstep is antisymmetric about the middle of the edge, so it averages to 1/2 over equal steps of the
+    // cosine.
     return 2.0f * Pi * (1.0f - 0.5f * (cosInner + cosOuter));
 }
 

@@ -24,7 +24,8 @@ constexpr int64_t LargestImage = int64_t(1) << 28;
 void insertLayer(Imf::FrameBuffer& buffer, const std::string& layer, const Image& image) {
     for (int c = 0; c < 3; ++c) {
         auto* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data())) + size_t(c) * sizeof(float);
-        buffer.insert(layer + Components[c], Imf::Slice(Imf::FLOAT, base, sizeof(Rgb), sizeof(Rgb) * size_t(image.width)));
+        buffer.insert(layer + Components[c],
+                      Imf::Slice(Imf::FLOAT, base, sizeof(Rgb), sizeof(Rgb) * size_t(image.width)));
     }
 }
 
@@ -83,7 +84,8 @@ Image readExr(const std::filesystem::path& file, int part, const std::string& la
         Imf::MultiPartInputFile in(file.c_str());
         Imf::InputPart input(in, part);
         const auto window = input.header().dataWindow();
-        const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
+        const int64_t width = int64_t(window.max.x) - window.min.x + 1,
+                      height = int64_t(window.max.y) - window.min.y + 1;
         if (width <= 0 || height <= 0 || width > LargestImage || height > LargestImage || width * height > LargestImage)
             throw InputError(file.string(), "the EXR image has an absurd size");
         const Imf::ChannelList& channels = input.header().channels();

@@ -64,8 +64,9 @@ void readArray(std::istream& in, std::vector<Rgb>& values) {
 Film::Film(int width, int height, int frames) : width_(width), height_(height), frames_(frames) {
     const double bytes = double(width) * double(height) * (double(frames) * 3.0 + 2.0) * double(sizeof(Rgb));
     if (bytes > LargestFilmBytes)
-        throw InputError("film", std::to_string(width) + "x" + std::to_string(height) + " pixels in " + std::to_string(frames) +
-                                     " frames would take " + std::to_string(int(bytes / (1024.0 * 1024 * 1024))) +
+        throw InputError("film", std::to_string(width) + "x" + std::to_string(height) + " pixels in " +
+                                     std::to_string(frames) + " frames would take " +
+                                     std::to_string(int(bytes / (1024.0 * 1024 * 1024))) +
                                      " GiB; the limit is 16 GiB: use fewer frames or a smaller --resolution");
     const size_t pixels = size_t(width) * size_t(height);
     mean_.assign(pixels * size_t(frames), Rgb(0.0f));
@@ -152,11 +153,13 @@ void Film::read(std::istream& in, const std::string& fileName) {
     if (!in || std::memcmp(header.magic, Magic, sizeof Magic) != 0)
         throw InputError(fileName, "not a saved render state (or truncated)");
     if (header.width != width_ || header.height != height_ || header.frames != frames_)
-        throw InputError(fileName, "the saved state has " + std::to_string(header.width) + "x" + std::to_string(header.height) +
-                                       " pixels in " + std::to_string(header.frames) + " frames, this render " +
-                                       std::to_string(width_) + "x" + std::to_string(height_) + " in " + std::to_string(frames_));
+        throw InputError(fileName, "the saved state has " + std::to_string(header.width) + "x" +
+                                       std::to_string(header.height) + " pixels in " + std::to_string(header.frames) +
+                                       " frames, this render " + std::to_string(width_) + "x" +
+                                       std::to_string(height_) + " in " + std::to_string(frames_));
     Film loaded(width_, height_, frames_);
-    for (auto* values : {&loaded.mean_, &loaded.moment2_, &loaded.totalMean_, &loaded.totalMoment2_}) readArray(in, *values);
+    for (auto* values : {&loaded.mean_, &loaded.moment2_, &loaded.totalMean_, &loaded.totalMoment2_})
+        readArray(in, *values);
     if (!in) throw InputError(fileName, "the saved render state is truncated");
     loaded.passes_ = header.passes;
     loaded.weight_ = header.weight;

@@ -73,7 +73,8 @@ Image readPfm(const std::filesystem::path& file) {
     double scale = 0.0;
     in >> magic >> width >> height >> scale;
     in.get();
-    if (!in || (magic != "PF" && magic != "Pf") || width <= 0 || height <= 0 || width > LargestSide || height > LargestSide)
+    if (!in || (magic != "PF" && magic != "Pf") || width <= 0 || height <= 0 || width > LargestSide ||
+        height > LargestSide)
         throw InputError(file.string(), "not a PFM image");
     const size_t channels = magic == "PF" ? 3 : 1;
     std::error_code error;

@@ -18,14 +18,18 @@ const std::map<std::string, ToneMap>& toneMaps() {
 float curve(ToneMap toneMap, float c) {
     c = std::max(c, 0.0f);
     switch (toneMap) {
-    case ToneMap::Linear: return c;
-    case ToneMap::Gamma: return std::pow(c, 1.0f / 2.2f);
-    case ToneMap::Reinhard: return std::pow(c / (1.0f + c), 1.0f / 2.2f);
+    case ToneMap::Linear:
+        return c;
+    case ToneMap::Gamma:
+        return std::pow(c, 1.0f / 2.2f);
+    case ToneMap::Reinhard:
+        return std::pow(c / (1.0f + c), 1.0f / 2.2f);
     case ToneMap::Filmic: {
         const float x = std::max(0.0f, c - 0.004f);
         return x * (6.2f * x + 0.5f) / (x * (6.2f * x + 1.7f) + 0.06f);
     }
-    case ToneMap::Pbrt: return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
+    case ToneMap::Pbrt:
+        return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;
     }
     return c;
 }

@@ -21,7 +21,8 @@ struct Header {
 
 } // namespace
 
-void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point, const Film& film) {
+void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
+                     const Film& film) {
     AtomicFile target(file);
     std::ofstream out(target.path(), std::ios::binary);
     Header header{{}, identity.sceneHash, identity.seed, identity.sppStep, point.samples};
@@ -29,11 +30,13 @@ void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& id
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
     film.write(out);
     out.close();
-    if (!out) throw InputError(file.string(), "the resume state cannot be written (no permission, or the disk is full)");
+    if (!out)
+        throw InputError(file.string(), "the resume state cannot be written (no permission, or the disk is full)");
     target.commit();
 }
 
-std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, Film& film) {
+std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,
+                                          Film& film) {
     std::error_code error;
     if (!std::filesystem::exists(file, error)) return std::nullopt;
     std::ifstream in(file, std::ios::binary);
@@ -42,7 +45,8 @@ std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, con
     if (!in || std::memcmp(header.magic, Magic, sizeof Magic) != 0)
         throw InputError(file.string(), "not a resume state, or damaged; -r starts over");
     const auto mismatch = [&](const std::string& what) {
-        return InputError(file.string(), "the saved state belongs to a render with another " + what + "; -r starts over");
+        return InputError(file.string(),
+                          "the saved state belongs to a render with another " + what + "; -r starts over");
     };
     if (header.sceneHash != identity.sceneHash) throw mismatch("scene (or a changed file or --set)");
     if (header.seed != identity.seed) throw mismatch("seed");

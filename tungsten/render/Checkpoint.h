@@ -20,8 +20,11 @@ struct ResumePoint {
     uint64_t samples = 0; ///< per pixel
 };
 
-void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point, const Film& film);
-/// Loads the film; none if there is no such file. Throws InputError if the state belongs to another render or is damaged.
-std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, Film& film);
+void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
+                     const Film& film);
+/// Loads the film; none if there is no such file. Throws InputError if the state belongs to another render or is
+/// damaged.
+std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,
+                                          Film& film);
 
 } // namespace tungsten

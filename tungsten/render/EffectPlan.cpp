@@ -19,8 +19,9 @@ std::string describeGate(const TimeGate& gate) {
     if (gate.steadyState) return "no time gate: steady state";
     if (gate.delta) return "delta gate at time " + formatted(gate.start);
     const std::string interval = "[" + formatted(gate.start) + ", " + formatted(gate.end()) + ")";
-    return gate.frames > 1 ? std::to_string(gate.frames) + " frames of width " + formatted(gate.frameWidth) + " over " + interval
-                           : "one gate " + interval;
+    return gate.frames > 1
+               ? std::to_string(gate.frames) + " frames of width " + formatted(gate.frameWidth) + " over " + interval
+               : "one gate " + interval;
 }
 
 /// "name", or "#index" for the nameless.
@@ -37,7 +38,8 @@ LobeUse usesOf(const Scene& scene, LobeMask mask) {
     LobeUse use;
     for (size_t i = 0; i < scene.primitives.size(); ++i) {
         const auto& bsdfs = scene.primitives[i].bsdfs;
-        if (!std::any_of(bsdfs.begin(), bsdfs.end(), [mask](const BsdfPtr& b) { return (b->lobes() & mask) != 0; })) continue;
+        if (!std::any_of(bsdfs.begin(), bsdfs.end(), [mask](const BsdfPtr& b) { return (b->lobes() & mask) != 0; }))
+            continue;
         if (use.count++ == 0) use.first = nameOf(scene.primitives[i].name, i);
     }
     return use;
@@ -112,15 +114,19 @@ EffectPlan analyseScene(const Scene& scene) {
     const std::set<float> speeds = speedsOf(scene);
     plan.speedsDiffer = plan.timeResolved && speeds.size() > 1;
     plan.describe("several speeds of light", plan.speedsDiffer,
-                  speeds.size() > 1 ? std::to_string(speeds.size()) + " speeds, from " + formatted(double(*speeds.begin())) + " to " +
-                                          formatted(double(*speeds.rbegin()))
-                                    : "one speed everywhere: " + formatted(double(*speeds.begin())));
-    plan.surfaceEmission = std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& e) { return e.isArea(); });
+                  speeds.size() > 1
+                      ? std::to_string(speeds.size()) + " speeds, from " + formatted(double(*speeds.begin())) + " to " +
+                            formatted(double(*speeds.rbegin()))
+                      : "one speed everywhere: " + formatted(double(*speeds.begin())));
+    plan.surfaceEmission =
+        std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& e) { return e.isArea(); });
     plan.environment = !scene.infiniteEmitters.empty();
     plan.textures = hasTextures(scene);
-    plan.describe("emission from surfaces", plan.surfaceEmission, plan.surfaceEmission ? "area emitters can be seen" : "no area emitter");
+    plan.describe("emission from surfaces", plan.surfaceEmission,
+                  plan.surfaceEmission ? "area emitters can be seen" : "no area emitter");
     plan.describe("environment", plan.environment, plan.environment ? "escaping rays see it" : "no infinite emitter");
-    plan.describe("textures", plan.textures, plan.textures ? "albedo or bump varies over some surface" : "every surface parameter is constant");
+    plan.describe("textures", plan.textures,
+                  plan.textures ? "albedo or bump varies over some surface" : "every surface parameter is constant");
     return plan;
 }
 

@@ -17,22 +17,24 @@ struct Effect {
 };
 
 struct EffectPlan {
-    bool timeResolved = false;      ///< gated or frames
+    bool timeResolved = false; ///< gated or frames
     bool multipleFrames = false;
-    bool mediumScattering = false;  ///< some medium a path can reach scatters
-    bool surfaceScattering = false; ///< some surface has a smooth lobe
+    bool mediumScattering = false;    ///< some medium a path can reach scatters
+    bool surfaceScattering = false;   ///< some surface has a smooth lobe
     bool specularSensorPaths = false; ///< mirrors or refraction exist: sensor paths can fold
-    bool speedsDiffer = false;      ///< light travels at different speeds in different regions
-    bool greyMedia = true;          ///< all media have equal coefficients in all channels
-    bool forwardBoundaries = false; ///< index-matched boundaries: shadow rays must look through them
-    bool surfaceEmission = false;   ///< emitters that camera rays can hit
+    bool speedsDiffer = false;        ///< light travels at different speeds in different regions
+    bool greyMedia = true;            ///< all media have equal coefficients in all channels
+    bool forwardBoundaries = false;   ///< index-matched boundaries: shadow rays must look through them
+    bool surfaceEmission = false;     ///< emitters that camera rays can hit
     bool environment = false;
     bool textures = false;
 
     /// Every effect with its reason, integrators' own included, in order of description.
     std::vector<Effect> effects;
 
-    void describe(const std::string& name, bool on, const std::string& reason) { effects.push_back({name, on, reason}); }
+    void describe(const std::string& name, bool on, const std::string& reason) {
+        effects.push_back({name, on, reason});
+    }
 };
 
 EffectPlan analyseScene(const Scene& scene);

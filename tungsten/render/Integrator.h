@@ -22,8 +22,8 @@ struct PassInfo {
     uint64_t seed = 0;
 };
 
-/// Renders passes. A pass must depend only on (scene, settings, pass): no state is carried from pass to pass, so a resumed render
-/// equals an uninterrupted one. Work is spread by oneTBB inside renderPass.
+/// Renders passes. A pass must depend only on (scene, settings, pass): no state is carried from pass to pass, so a
+/// resumed render equals an uninterrupted one. Work is spread by oneTBB inside renderPass.
 class Integrator {
   public:
     virtual ~Integrator() = default;
@@ -31,7 +31,8 @@ class Integrator {
     virtual void plan(EffectPlan& plan) const = 0;
     /// Called once after plan(): builds what the plan names (tables, distributions).
     virtual void prepare(const EffectPlan& plan, Statistics& statistics) = 0;
-    /// Adds the pass's image to every frame of film.passPixel(): each pixel's mean over the pass's samples, averaged over the gate.
+    /// Adds the pass's image to every frame of film.passPixel(): each pixel's mean over the pass's samples, averaged
+    /// over the gate.
     virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;
 };
 

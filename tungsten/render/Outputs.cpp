@@ -38,16 +38,19 @@ fs::path rebase(const std::string& name, const fs::path& base) {
 class ImageWriter {
   public:
     ImageWriter(const Film& film, const Scene& scene)
-        : film_(film), scene_(scene), scale_(scene.transport.integrateOverGate && !scene.transport.gate.steadyState &&
-                                                     !scene.transport.gate.delta
-                                                 ? float(scene.transport.gate.frameWidth)
-                                                 : 1.0f) {}
+        : film_(film), scene_(scene),
+          scale_(scene.transport.integrateOverGate && !scene.transport.gate.steadyState && !scene.transport.gate.delta
+                     ? float(scene.transport.gate.frameWidth)
+                     : 1.0f) {}
 
     void whole(const fs::path& file) {
         const std::string extension = file.extension().string();
-        if (extension == ".exr") exr(file);
-        else if (extension == ".npy") cube(file);
-        else single(file, wholeImage());
+        if (extension == ".exr")
+            exr(file);
+        else if (extension == ".npy")
+            cube(file);
+        else
+            single(file, wholeImage());
     }
     void series(const fs::path& file) {
         for (int frame = 0; frame < film_.frames(); ++frame) single(framePath(file, frame), scaled(film_.mean(frame)));
@@ -75,9 +78,12 @@ class ImageWriter {
     }
     void single(const fs::path& file, const Image& image) {
         const std::string extension = file.extension().string();
-        if (extension == ".pfm") writePfm(file, image);
-        else if (extension == ".exr") writeExr(file, {ExrPart{"", image, {}, false, 0, 0}});
-        else writePng(file, image, scene_.toneMap);
+        if (extension == ".pfm")
+            writePfm(file, image);
+        else if (extension == ".exr")
+            writeExr(file, {ExrPart{"", image, {}, false, 0, 0}});
+        else
+            writePng(file, image, scene_.toneMap);
         written_.push_back(file);
     }
     void exr(const fs::path& file) {
@@ -110,15 +116,21 @@ void checkFolder(const fs::path& file) {
 }
 
 void checkExtension(const fs::path& file, const std::vector<std::string>& accepted) {
-    if (file.empty() || std::find(accepted.begin(), accepted.end(), file.extension().string()) != accepted.end()) return;
-    throw InputError(file.string(), "unknown image type '" + file.extension().string() + "'; accepted: " + listOf(accepted));
+    if (file.empty() || std::find(accepted.begin(), accepted.end(), file.extension().string()) != accepted.end())
+        return;
+    throw InputError(file.string(),
+                     "unknown image type '" + file.extension().string() + "'; accepted: " + listOf(accepted));
 }
 
 } // namespace
 
-OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sceneFile, const OutputOverrides& overrides) {
-    const fs::path base = overrides.directory ? *overrides.directory : sceneFile.parent_path() / renderer.outputDirectory;
-    const auto commandLine = [&](const fs::path& file) { return overrides.directory ? *overrides.directory / file : file; };
+OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sceneFile,
+                           const OutputOverrides& overrides) {
+    const fs::path base =
+        overrides.directory ? *overrides.directory : sceneFile.parent_path() / renderer.outputDirectory;
+    const auto commandLine = [&](const fs::path& file) {
+        return overrides.directory ? *overrides.directory / file : file;
+    };
     OutputFiles outputs;
     outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile, base);
     outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile, base);
@@ -145,7 +157,8 @@ void checkOutputs(const OutputFiles& outputs) {
         if (!file.empty()) checkFolder(file);
 }
 
-std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs, const std::string& suffix) {
+std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
+                                  const std::string& suffix) {
     ImageWriter writer(film, scene);
     writer.whole(withSuffix(outputs.ldr, suffix));
     const fs::path hdr = outputs.hdr.empty() ? fs::path() : withSuffix(outputs.hdr, suffix);

@@ -12,8 +12,8 @@ namespace tungsten {
 
 /// Where results go; relative paths are relative to the process directory.
 struct OutputFiles {
-    std::filesystem::path ldr;  ///< PNG, always written
-    std::filesystem::path hdr;  ///< .exr, .pfm or .npy; empty: none
+    std::filesystem::path ldr;            ///< PNG, always written
+    std::filesystem::path hdr;            ///< .exr, .pfm or .npy; empty: none
     std::vector<TransientsBuffer> series; ///< per-frame files of sequences (resolved names)
     std::filesystem::path state;          ///< resume state
     std::filesystem::path statistics;     ///< JSON; empty: none
@@ -24,9 +24,10 @@ struct OutputOverrides {
     std::optional<std::filesystem::path> directory, ldr, hdr, statistics;
 };
 
-/// File names of a scene: the renderer block's, resolved against its output directory, unless the command line says otherwise.
-/// `overwrite_output_files` false picks names that are free.
-OutputFiles resolveOutputs(const RendererSettings& renderer, const std::filesystem::path& sceneFile, const OutputOverrides& overrides);
+/// File names of a scene: the renderer block's, resolved against its output directory, unless the command line says
+/// otherwise. `overwrite_output_files` false picks names that are free.
+OutputFiles resolveOutputs(const RendererSettings& renderer, const std::filesystem::path& sceneFile,
+                           const OutputOverrides& overrides);
 
 /// Creates missing folders and throws InputError if an output could not be written or has an unknown extension.
 void checkOutputs(const OutputFiles& outputs);

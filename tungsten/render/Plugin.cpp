@@ -46,7 +46,8 @@ void loadPlugin(const std::filesystem::path& file, IntegratorRegistry& registry)
 void IntegratorRegistry::add(const std::string& type, const std::string& description, IntegratorFactory factory) {
     const auto [position, added] = entries_.emplace(type, Entry{std::move(factory), description, origin_});
     if (!added)
-        throw InputError(origin_, "registers the integrator '" + type + "', which " + position->second.origin + " registers too");
+        throw InputError(origin_, "registers the integrator '" + type + "', which " + position->second.origin +
+                                      " registers too");
 }
 
 std::vector<Problem> loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry) {

@@ -1,8 +1,8 @@
 #pragma once
 // What a plugin exports, and how the host finds plugins.
 //
-// A plugin is a shared object libtungsten-NAME.so beside the executable (or in ../lib/tungsten) or on TUNGSTEN_PLUGIN_PATH
-// (colon separated). It defines
+// A plugin is a shared object libtungsten-NAME.so beside the executable (or in ../lib/tungsten) or on
+// TUNGSTEN_PLUGIN_PATH (colon separated). It defines
 //
 //     extern "C" const tungsten::PluginDescriptor* tungstenPlugin() {
 //         static const tungsten::PluginDescriptor descriptor{tungsten::PluginAbi, "name", registerIntegrators};
@@ -26,9 +26,9 @@ struct PluginDescriptor {
     void (*registerIntegrators)(IntegratorRegistry& registry);
 };
 
-/// Loads every plugin found in `directories` (in order; of plugins with the same file name the first is taken) and registers its
-/// integrators. The libraries stay loaded for the life of the process. Returns what went wrong: files that cannot be loaded, lack
-/// the entry point or have another ABI.
+/// Loads every plugin found in `directories` (in order; of plugins with the same file name the first is taken) and
+/// registers its integrators. The libraries stay loaded for the life of the process. Returns what went wrong: files
+/// that cannot be loaded, lack the entry point or have another ABI.
 std::vector<Problem> loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry);
 /// TUNGSTEN_PLUGIN_PATH's directories, then those beside the executable.
 std::vector<std::filesystem::path> pluginDirectories();

@@ -13,8 +13,10 @@ namespace {
 std::string clockText(double seconds) {
     const long total = std::lround(std::min(std::max(seconds, 0.0), 9e8));
     char text[48];
-    if (total >= 3600) std::snprintf(text, sizeof text, "%ldh%02ldm", total / 3600, total / 60 % 60);
-    else std::snprintf(text, sizeof text, "%ldm%02lds", total / 60, total % 60);
+    if (total >= 3600)
+        std::snprintf(text, sizeof text, "%ldh%02ldm", total / 3600, total / 60 % 60);
+    else
+        std::snprintf(text, sizeof text, "%ldm%02lds", total / 60, total % 60);
     return text;
 }
 
@@ -43,9 +45,10 @@ std::string progressLine(const ProgressState& state) {
     const int filled = int(fraction * Width);
     std::string line = "[" + std::string(size_t(filled), '#') + std::string(size_t(Width - filled), '.') + "] ";
     const double left = fraction > 0.0 ? state.elapsedSeconds * (1.0 - fraction) / fraction : 0.0;
-    line += std::to_string(state.passes) + (state.passes == 1 ? " pass, " : " passes, ") + std::to_string(state.samples) + " of " +
-            std::to_string(state.totalSamples) + " spp, " + clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) +
-            " left, " + errorText(state.relativeError);
+    line += std::to_string(state.passes) + (state.passes == 1 ? " pass, " : " passes, ") +
+            std::to_string(state.samples) + " of " + std::to_string(state.totalSamples) + " spp, " +
+            clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) + " left, " +
+            errorText(state.relativeError);
     return line;
 }
 

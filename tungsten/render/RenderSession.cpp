@@ -19,10 +19,10 @@ double secondsSince(Clock::time_point start) {
 /// The state of one run of passes.
 class Session {
   public:
-    Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs, const SessionOptions& options,
-            SessionResult& result)
-        : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options), result_(result),
-          identity_{loaded.hash, options.seed, options.sppStep}, reporter_(options.quiet) {}
+    Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs,
+            const SessionOptions& options, SessionResult& result)
+        : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options),
+          result_(result), identity_{loaded.hash, options.seed, options.sppStep}, reporter_(options.quiet) {}
 
     void run(const EffectPlan& plan) {
         checkOutputs(outputs_);
@@ -40,7 +40,8 @@ class Session {
   private:
     void resume() {
         if (!options_.resumeEnabled || options_.restart) return;
-        if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film)) result_.samples = point->samples;
+        if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film))
+            result_.samples = point->samples;
         resumedSamples_ = result_.samples;
     }
 
@@ -74,8 +75,10 @@ class Session {
         };
         if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
         if (result_.samples >= uint64_t(options_.spp)) return because(StopReason::Finished);
-        if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds) return because(StopReason::TimedOut);
-        const bool accurate = options_.targetError > 0.0 && relativeError_ > 0.0 && relativeError_ <= options_.targetError;
+        if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
+            return because(StopReason::TimedOut);
+        const bool accurate =
+            options_.targetError > 0.0 && relativeError_ > 0.0 && relativeError_ <= options_.targetError;
         return accurate && because(StopReason::TargetReached);
     }
 
@@ -98,8 +101,8 @@ class Session {
     }
 
     [[nodiscard]] ProgressState state() const {
-        return {result_.film.passes(), int64_t(result_.samples),  options_.spp,         secondsSince(start_),
-                options_.timeoutSeconds, relativeError_, options_.targetError, int64_t(resumedSamples_)};
+        return {result_.film.passes(),   int64_t(result_.samples), options_.spp,         secondsSince(start_),
+                options_.timeoutSeconds, relativeError_,           options_.targetError, int64_t(resumedSamples_)};
     }
 
     const LoadedScene& loaded_;
@@ -118,10 +121,14 @@ class Session {
 
 std::string toString(StopReason reason) {
     switch (reason) {
-    case StopReason::Finished: return "all samples taken";
-    case StopReason::TimedOut: return "time-out";
-    case StopReason::TargetReached: return "target error reached";
-    case StopReason::Interrupted: return "interrupted";
+    case StopReason::Finished:
+        return "all samples taken";
+    case StopReason::TimedOut:
+        return "time-out";
+    case StopReason::TargetReached:
+        return "target error reached";
+    case StopReason::Interrupted:
+        return "interrupted";
     }
     return "";
 }

@@ -15,12 +15,12 @@ namespace tungsten {
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
     int64_t spp = 32, sppStep = 16;
-    double timeoutSeconds = 0.0;    ///< 0: none
-    double checkpointSeconds = 0.0; ///< 0: none
-    bool resumeEnabled = false;     ///< write and read the state file
-    bool restart = false;           ///< ignore a saved state
-    double targetError = 0.0;       ///< stop when the relative standard error is below; 0: none
-    bool quiet = false;             ///< no progress bar
+    double timeoutSeconds = 0.0;                    ///< 0: none
+    double checkpointSeconds = 0.0;                 ///< 0: none
+    bool resumeEnabled = false;                     ///< write and read the state file
+    bool restart = false;                           ///< ignore a saved state
+    double targetError = 0.0;                       ///< stop when the relative standard error is below; 0: none
+    bool quiet = false;                             ///< no progress bar
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: finish the pass, write, stop
 };
 
@@ -36,8 +36,8 @@ struct SessionResult {
     std::vector<std::filesystem::path> written;
 };
 
-/// Renders and writes every output. `plan` is complete (Integrator::plan was called). Throws InputError before the first pass when an
-/// output cannot be written.
+/// Renders and writes every output. `plan` is complete (Integrator::plan was called). Throws InputError before the
+/// first pass when an output cannot be written.
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result);
 

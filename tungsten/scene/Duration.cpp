@@ -12,11 +12,16 @@ std::optional<double> unitSeconds(const std::string& unit) {
     if (unit.empty()) return 60.0;
     if (unit.starts_with("ms") || unit.starts_with("mil")) return 1e-3;
     switch (unit[0]) {
-    case 's': return 1.0;
-    case 'm': return 60.0;
-    case 'h': return 3600.0;
-    case 'd': return 86400.0;
-    default: return std::nullopt;
+    case 's':
+        return 1.0;
+    case 'm':
+        return 60.0;
+    case 'h':
+        return 3600.0;
+    case 'd':
+        return 86400.0;
+    default:
+        return std::nullopt;
     }
 }
 
@@ -38,8 +43,7 @@ std::optional<double> parseDuration(const std::string& text) {
         i = size_t(end - text.c_str());
         while (i < text.size() && space(text[i])) ++i;
         std::string unit;
-        for (; i < text.size() && letter(text[i]); ++i)
-            unit += char(std::tolower(static_cast<unsigned char>(text[i])));
+        for (; i < text.size() && letter(text[i]); ++i) unit += char(std::tolower(static_cast<unsigned char>(text[i])));
         const auto seconds = unitSeconds(unit);
         if (!seconds) return std::nullopt;
         total += number * *seconds;

@@ -44,8 +44,8 @@ Region regionBeyond(const Primitive& primitive, const SurfaceHit& hit, const Vec
     return direction.dot(hit.ng) < 0.0f ? primitive.inside : primitive.outside;
 }
 
-Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction, float distance,
-                           bool toSurface, Region region, uint64_t& rays) {
+Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
+                           float distance, bool toSurface, Region region, uint64_t& rays) {
     Visibility result;
     result.transmittance = Rgb(1.0f);
     const float end = toSurface ? distance - scene.rayEpsilon : distance;
@@ -53,7 +53,8 @@ Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSur
     Ray ray{origin, direction, fromSurface ? scene.rayEpsilon : 0.0f, end};
     const auto advance = [&](float to) {
         const float length = to - start;
-        if (const Medium* medium = scene.medium(region)) result.transmittance = result.transmittance * medium->transmittance(length);
+        if (const Medium* medium = scene.medium(region))
+            result.transmittance = result.transmittance * medium->transmittance(length);
         result.time += double(length) / double(region.speed);
         start = to;
     };

@@ -10,8 +10,8 @@ struct SurfaceInteraction {
     SurfaceHit hit;
     const Primitive* primitive = nullptr;
     const Bsdf* bsdf = nullptr;
-    Frame frame;   ///< shading frame, flipped toward the ray for two-sided models
-    Vec3f wi;      ///< local direction back along the ray
+    Frame frame;           ///< shading frame, flipped toward the ray for two-sided models
+    Vec3f wi;              ///< local direction back along the ray
     bool twoSided = false; ///< the frame was, or would be, flipped (no transmissive lobes, two-sided shading on)
 
     [[nodiscard]] BsdfQuery query(TransportMode mode, LobeMask requested = lobe::All) const {
@@ -34,9 +34,9 @@ struct Visibility {
     double time = 0.0;       ///< of flight over the whole connection, all speeds included
     int crossings = 0;       ///< forward surfaces passed: each counts as a bounce
 };
-/// From `origin` (in `region`) along the unit `direction` for `distance`; `fromSurface` and `toSurface` say whether the ends lie on
-/// surfaces (ray offsets). `distance` may be Infinity. `rays` is increased by the number of rays traced.
-Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction, float distance,
-                           bool toSurface, Region region, uint64_t& rays);
+/// From `origin` (in `region`) along the unit `direction` for `distance`; `fromSurface` and `toSurface` say whether the
+/// ends lie on surfaces (ray offsets). `distance` may be Infinity. `rays` is increased by the number of rays traced.
+Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
+                           float distance, bool toSurface, Region region, uint64_t& rays);
 
 } // namespace tungsten

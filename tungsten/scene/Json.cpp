@@ -121,7 +121,8 @@ void applyOverride(rapidjson::Document& document, const std::string& assignment)
         const std::string step = rest.substr(0, dot);
         if (!at->IsObject() || step.empty()) failOverride(assignment, step, *at);
         if (!at->HasMember(step.c_str())) {
-            // Only the last step may be new: a field the scene leaves at its default. A block (top level) may be new too.
+            // Only the last step may be new: a field the scene leaves at its default. A block (top level) may be new
+            // too.
             if (dot != std::string::npos && at != &document) failOverride(assignment, step, *at);
             rapidjson::Value name(step.c_str(), rapidjson::SizeType(step.size()), allocator);
             at->AddMember(name, rapidjson::Value(rapidjson::kObjectType), allocator);

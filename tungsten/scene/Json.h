@@ -20,12 +20,12 @@ inline const ObjectReader::Node* nodeOf(const rapidjson::Value& value) {
     return reinterpret_cast<const ObjectReader::Node*>(&value);
 }
 
-/// Parses the format's grammar: JSON with comments, trailing commas, NaN and Inf, an optional byte-order mark. Throws InputError
-/// with line and column.
+/// Parses the format's grammar: JSON with comments, trailing commas, NaN and Inf, an optional byte-order mark. Throws
+/// InputError with line and column.
 std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file);
 
-/// Applies "path.to.field=value" to the document: array elements by index or by `name`. The value is JSON, or else a string.
-/// Throws UsageError, naming the nearest member, when the path leads nowhere.
+/// Applies "path.to.field=value" to the document: array elements by index or by `name`. The value is JSON, or else a
+/// string. Throws UsageError, naming the nearest member, when the path leads nowhere.
 void applyOverride(rapidjson::Document& document, const std::string& assignment);
 
 } // namespace tungsten

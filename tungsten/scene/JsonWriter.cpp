@@ -25,8 +25,10 @@ void JsonWriter::field(const std::string& name, const std::string& value) {
 
 void JsonWriter::field(const std::string& name, double value) {
     implementation_->writer.Key(name.c_str());
-    if (std::isfinite(value)) implementation_->writer.Double(value);
-    else implementation_->writer.Null();
+    if (std::isfinite(value))
+        implementation_->writer.Double(value);
+    else
+        implementation_->writer.Null();
 }
 
 void JsonWriter::field(const std::string& name, uint64_t value) {

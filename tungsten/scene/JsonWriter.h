@@ -7,7 +7,8 @@
 
 namespace tungsten {
 
-/// Builds one JSON object, nested objects included, with two-space indentation. Numbers that are not finite become null.
+/// Builds one JSON object, nested objects included, with two-space indentation. Numbers that are not finite become
+/// null.
 class JsonWriter {
   public:
     JsonWriter();

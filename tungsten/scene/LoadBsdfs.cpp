@@ -144,7 +144,8 @@ BsdfPtr bsdfByName(LoadContext& context, const ObjectReader& owner, const std::s
     std::vector<std::string> names;
     for (const auto& [known, bsdf] : context.bsdfs) names.push_back(known);
     const std::string near = nearestName(name, names);
-    owner.problem(field, "there is no BSDF called '" + name + "' above it" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    owner.problem(field, "there is no BSDF called '" + name + "' above it" +
+                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
     return defaultBsdf();
 }
 

@@ -64,7 +64,8 @@ void readCamera(LoadContext& context, const ObjectReader& root) {
                                     : ObjectReader::empty("camera", root.diagnostics());
     Camera& camera = scene.camera;
     camera.resolution = reader.pair("resolution", {1000, 563}, {1, LargestSide});
-    camera.toWorld = cameraTransform(reader.has("transform") ? reader.transform("transform") : defaultCameraTransform());
+    camera.toWorld =
+        cameraTransform(reader.has("transform") ? reader.transform("transform") : defaultCameraTransform());
     camera.filter = ReconstructionFilter(*filterByName(reader.choice("reconstruction_filter", "tent", filterNames())));
     scene.toneMap = *toneMapByName(reader.choice("tonemap", "gamma", toneMapNames()));
     readModel(root, reader, camera);

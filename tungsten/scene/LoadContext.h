@@ -15,10 +15,10 @@ namespace tungsten {
 struct LoadContext {
     Scene& scene;
     std::filesystem::path resourceDirectory;
-    std::map<std::string, BsdfPtr> bsdfs;  ///< by name; the first definition wins
-    std::map<std::string, int> media;      ///< by name
+    std::map<std::string, BsdfPtr> bsdfs;                         ///< by name; the first definition wins
+    std::map<std::string, int> media;                             ///< by name
     std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps; ///< by file and lookup settings
-    std::vector<std::filesystem::path> resources; ///< every file read, for the hash
+    std::vector<std::filesystem::path> resources;                 ///< every file read, for the hash
 
     /// Resolves against the scene's (or the input) directory and remembers the file.
     std::filesystem::path resource(const std::string& name);

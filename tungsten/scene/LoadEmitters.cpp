@@ -46,7 +46,8 @@ void readSpot(LoadContext& context, const ObjectReader& reader, const Transform&
     spot.cosOuter = std::cos(halfAngle * radians);
     spot.cosInner = std::cos((halfAngle - edge) * radians);
     const Strength strength = readStrength(context, reader);
-    spot.intensity = strength.isPower ? spotIntensityFromPower(strength.value, spot.cosInner, spot.cosOuter) : strength.value;
+    spot.intensity =
+        strength.isPower ? spotIntensityFromPower(strength.value, spot.cosInner, spot.cosOuter) : strength.value;
     if (maxComponent(spot.intensity) > 0.0f) addEmitter(context, reader, spot);
 }
 
@@ -69,12 +70,14 @@ void readCollimated(LoadContext& context, const ObjectReader& reader, const Tran
 void readInfiniteSphere(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
     Texture radiance = readTexture(context, reader, "emission", Texture(0.0f), Range::nonNegative());
     if (reader.has("power"))
-        radiance = infiniteRadianceFromPower(readTexture(context, reader, "power", Texture(0.0f), Range::nonNegative()));
+        radiance =
+            infiniteRadianceFromPower(readTexture(context, reader, "power", Texture(0.0f), Range::nonNegative()));
     const bool samplable = reader.flag("sample", true);
     if (maxComponent(radiance.maximum()) <= 0.0f) return;
     if (!context.scene.transport.gate.steadyState)
-        reader.problem("type", "light of an infinite_sphere never arrives in a time-resolved render; remove it, or render "
-                               "steady state");
+        reader.problem("type",
+                       "light of an infinite_sphere never arrives in a time-resolved render; remove it, or render "
+                       "steady state");
     addEmitter(context, reader, makeInfiniteSphere(radiance, transform.rotation(), samplable));
 }
 
@@ -102,7 +105,8 @@ bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader
     if (found == emitterReaders().end()) return false;
     const Transform transform = reader.transform("transform");
     // Read (and so checked) even where the emitter turns out dark.
-    reader.accept({"name", "ext_medium", "int_medium", "ext_speed_of_light", "int_speed_of_light", "bsdf", "emission_time"});
+    reader.accept(
+        {"name", "ext_medium", "int_medium", "ext_speed_of_light", "int_speed_of_light", "bsdf", "emission_time"});
     found->second(context, reader, transform);
     return true;
 }
@@ -124,7 +128,8 @@ void finishEmitters(LoadContext& context, const ObjectReader& root) {
     Scene& scene = context.scene;
     if (scene.emitters.empty()) {
         if (!scene.transport.gate.steadyState) {
-            root.problem("primitives", "nothing emits light: a time-resolved render needs a primitive with `emission` or `power`");
+            root.problem("primitives",
+                         "nothing emits light: a time-resolved render needs a primitive with `emission` or `power`");
             return;
         }
         root.warn("primitives", "nothing emits light: lit by a white environment of radiance 1");

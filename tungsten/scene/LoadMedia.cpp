@@ -10,7 +10,8 @@ PhaseFunction readPhaseFunction(const ObjectReader& phase, Medium& medium) {
     PhaseFunction result{Isotropic{}};
     if (type == "rayleigh") result.model = Rayleigh{};
     const bool guided = type == "ida" || type == "integrated_da";
-    if (type == "henyey_greenstein" || guided) result.model = HenyeyGreenstein{float(phase.number("g", 0.0, {-0.999, 0.999}))};
+    if (type == "henyey_greenstein" || guided)
+        result.model = HenyeyGreenstein{float(phase.number("g", 0.0, {-0.999, 0.999}))};
     if (guided) {
         medium.guidedPhase = true;
         phase.accept({"table_path", "alpha", "dT_start", "dT_end", "max_T"});
@@ -25,8 +26,10 @@ PhaseFunction readPhaseFunction(const ObjectReader& phase, Medium& medium) {
 void requireExponentialTransmittance(const ObjectReader& medium) {
     if (!medium.has("transmittance")) return;
     std::string type;
-    if (medium.isText("transmittance")) type = medium.text("transmittance", "");
-    else if (const auto object = medium.object("transmittance")) type = object->text("type", "");
+    if (medium.isText("transmittance"))
+        type = medium.text("transmittance", "");
+    else if (const auto object = medium.object("transmittance"))
+        type = object->text("type", "");
     if (type != "exponential")
         medium.problem("transmittance", "only exponential transmittance is supported, found '" + type + "'");
 }
@@ -50,7 +53,8 @@ Medium readMedium(const ObjectReader& reader) {
         medium.phase = readPhaseFunction(*phase, medium);
     requireExponentialTransmittance(reader);
     if (medium.guided && !medium.scatters())
-        reader.problem("sigma_s", "a guided_homo medium must scatter (sigma_s > 0); use homogeneous for an absorbing one");
+        reader.problem("sigma_s",
+                       "a guided_homo medium must scatter (sigma_s > 0); use homogeneous for an absorbing one");
     reader.warnAboutUnknown();
     return medium;
 }

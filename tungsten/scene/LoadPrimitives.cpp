@@ -53,8 +53,8 @@ const std::map<std::string, SurfaceReader>& surfaceReaders() {
 }
 
 const std::vector<std::string>& unsupportedTypes() {
-    static const std::vector<std::string> types{"cylinder", "infinite_sphere_cap", "skydome", "instances", "curves",
-                                                "minecraft_map"};
+    static const std::vector<std::string> types{"cylinder", "infinite_sphere_cap", "skydome", "instances",
+                                                "curves",   "minecraft_map"};
     return types;
 }
 
@@ -69,10 +69,12 @@ Region regionOn(const LoadContext& context, int medium, double speed) {
     return {-1, speed > 0.0 ? float(speed) : context.scene.transport.vacuumSpeed};
 }
 
-/// What lies on the two sides: a surface that names any medium or speed bounds the region; what it leaves out is vacuum.
+/// What lies on the two sides: a surface that names any medium or speed bounds the region; what it leaves out is
+/// vacuum.
 void readRegions(LoadContext& context, const ObjectReader& reader, Primitive& primitive) {
     const bool hasInside = reader.has("int_medium"), hasOutside = reader.has("ext_medium");
-    const double insideSpeed = reader.number("int_speed_of_light", -1.0), outsideSpeed = reader.number("ext_speed_of_light", -1.0);
+    const double insideSpeed = reader.number("int_speed_of_light", -1.0),
+                 outsideSpeed = reader.number("ext_speed_of_light", -1.0);
     const int inside = hasInside ? readMediumReference(context, reader, "int_medium") : -1;
     const int outside = hasOutside ? readMediumReference(context, reader, "ext_medium") : -1;
     primitive.boundsMedium = hasInside || hasOutside;
@@ -122,7 +124,8 @@ void readPrimitive(LoadContext& context, const ObjectReader& reader) {
         const auto& known = unsupportedTypes();
         const std::string near = nearestName(type, primitiveTypes());
         if (std::find(known.begin(), known.end(), type) != known.end())
-            reader.problem("type", "primitives of type '" + type + "' are not supported; supported: " + listOf(primitiveTypes()));
+            reader.problem("type", "primitives of type '" + type +
+                                       "' are not supported; supported: " + listOf(primitiveTypes()));
         else
             reader.problem("type", "expected " + listOf(primitiveTypes()) + ", found '" + type + "'" +
                                        (near.empty() ? "" : "; did you mean '" + near + "'?"));

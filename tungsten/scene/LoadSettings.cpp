@@ -41,7 +41,8 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
     if (delta) {
         gate = {false, true, centre, 0.0, 1};
     } else if (frames > 0) {
-        if (width <= 0.0) reader.problem("transient_time_width", "a sequence (frame_num > 0) needs a frame width above 0");
+        if (width <= 0.0)
+            reader.problem("transient_time_width", "a sequence (frame_num > 0) needs a frame width above 0");
         gate = {false, false, start, width, frames};
     } else if (width > 0.0 && (centre >= 0.0 || isTransientType(type))) {
         gate = {false, false, centre - 0.5 * width, width, 1};

@@ -4,8 +4,8 @@ namespace tungsten {
 
 namespace {
 
-std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::string& file, bool gammaCorrect, bool interpolate,
-                                           bool clamp, float scale) {
+std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::string& file, bool gammaCorrect,
+                                           bool interpolate, bool clamp, float scale) {
     const std::filesystem::path path = context.resource(file);
     const std::string key = path.string() + '\n' + (gammaCorrect ? 'g' : '-') + (interpolate ? 'i' : '-') +
                             (clamp ? 'c' : '-') + std::to_string(scale);
@@ -20,8 +20,8 @@ std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::stri
     return entry;
 }
 
-Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const std::string& field, const std::string& file,
-                       bool gammaCorrect, bool interpolate, bool clamp, float scale) {
+Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                       const std::string& file, bool gammaCorrect, bool interpolate, bool clamp, float scale) {
     try {
         return Texture(cachedBitmap(context, file, gammaCorrect, interpolate, clamp, scale));
     } catch (const InputError& error) {

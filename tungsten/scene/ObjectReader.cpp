@@ -17,7 +17,8 @@ std::string found(const rapidjson::Value& value) {
     if (value.IsObject()) return "an object";
     const double number = value.GetDouble();
     const std::string text = std::to_string(number);
-    return "the number " + (number == std::floor(number) && std::abs(number) < 1e15 ? text.substr(0, text.find('.')) : text);
+    return "the number " +
+           (number == std::floor(number) && std::abs(number) < 1e15 ? text.substr(0, text.find('.')) : text);
 }
 
 std::string brief(double number) {
@@ -191,8 +192,8 @@ Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, Range r
     if (valueOf(node).IsArray() && valueOf(node).Size() == 2)
         for (const auto& entry : valueOf(node).GetArray())
             if (entry.IsNumber()) values.push_back(entry.GetDouble());
-    const bool valid =
-        values.size() == 2 && inside(range, values[0]) && inside(range, values[1]) && values[0] < 2e9 && values[1] < 2e9;
+    const bool valid = values.size() == 2 && inside(range, values[0]) && inside(range, values[1]) && values[0] < 2e9 &&
+                       values[1] < 2e9;
     if (valid) return {int(values[0]), int(values[1])};
     problem(name, "expected one number or an array of 2, each " + describe(range) + "; found " + found(valueOf(node)));
     return fallback;
@@ -240,7 +241,8 @@ double ObjectReader::durationSeconds(const std::string& name, double fallback) c
     if (!node) return fallback;
     if (valueOf(node).IsString())
         if (const auto seconds = parseDuration(valueOf(node).GetString())) return std::max(*seconds, 0.0);
-    problem(name, "expected a quoted duration such as \"1h 30m\", \"45s\" or \"10\" (minutes), found " + found(valueOf(node)));
+    problem(name, "expected a quoted duration such as \"1h 30m\", \"45s\" or \"10\" (minutes), found " +
+                      found(valueOf(node)));
     return fallback;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Reading one JSON object field by field, with every problem collected instead of thrown. The only door to JSON: plugins read
-// their settings through this class without seeing a JSON library.
+// Reading one JSON object field by field, with every problem collected instead of thrown. The only door to JSON:
+// plugins read their settings through this class without seeing a JSON library.
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Transform.h"
@@ -30,9 +30,9 @@ struct Range {
     static Range unit() { return {0.0, 1.0}; }
 };
 
-/// A view of a JSON object at a known path. Reading a field marks it as known; warnAboutUnknown() then names the others with the
-/// nearest known name. A missing field yields the default; a bad value records a problem and yields the default. Cheap to copy:
-/// copies share what is known. Keeps the document alive.
+/// A view of a JSON object at a known path. Reading a field marks it as known; warnAboutUnknown() then names the others
+/// with the nearest known name. A missing field yields the default; a bad value records a problem and yields the
+/// default. Cheap to copy: copies share what is known. Keeps the document alive.
 class ObjectReader {
   public:
     struct Node; ///< stands for the JSON value behind the view (see Json.h)

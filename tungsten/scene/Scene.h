@@ -28,7 +28,8 @@ struct Primitive {
     Shape shape;
     std::vector<BsdfPtr> bsdfs; ///< by triangle material (clamped); at least one
     int emitter = -1;
-    /// Whether crossing the surface changes the region; then `inside` holds behind the geometric normal, `outside` before it.
+    /// Whether crossing the surface changes the region; then `inside` holds behind the geometric normal, `outside`
+    /// before it.
     bool boundsRegion = false;
     /// The surface names a medium on some side. If it names speeds only, a path inside a medium stays in it.
     bool boundsMedium = false;
@@ -55,12 +56,12 @@ struct TimeGate {
 
 /// What every integrator's block has in common.
 struct TransportSettings {
-    int minBounces = 0;  ///< rendered iff minBounces <= interactions < maxBounces
+    int minBounces = 0; ///< rendered iff minBounces <= interactions < maxBounces
     int maxBounces = 64;
     bool twoSidedShading = true;
     bool consistencyChecks = false;
     TimeGate gate;
-    bool cameraUnwarped = false; ///< time stops at the first interaction seen: camera segments do not count
+    bool cameraUnwarped = false;    ///< time stops at the first interaction seen: camera segments do not count
     bool integrateOverGate = false; ///< output is the integral over a frame instead of its mean
     float vacuumSpeed = 1.0f;
 };

@@ -84,12 +84,8 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
 
     auto scene = std::make_shared<Scene>();
     scene->file = file;
-    LoadContext context{*scene,
-                        options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory,
-                        {},
-                        {},
-                        {},
-                        {}};
+    LoadContext context{
+        *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}};
     scene->transport = readTransport(integrator, type);
     readMedia(context, root);
     readBsdfs(context, root);

@@ -32,8 +32,8 @@ struct RendererSettings {
 };
 
 struct LoadOptions {
-    std::filesystem::path inputDirectory;       ///< base of resources; empty: the scene's directory
-    std::vector<std::string> overrides;         ///< "path.to.field=value", applied to the JSON in order
+    std::filesystem::path inputDirectory; ///< base of resources; empty: the scene's directory
+    std::vector<std::string> overrides;   ///< "path.to.field=value", applied to the JSON in order
 };
 
 struct LoadedScene {
@@ -42,10 +42,12 @@ struct LoadedScene {
     std::string integratorType;
     ObjectReader integratorSettings; ///< the integrator block, for its plugin; warns about fields nobody reads
     std::shared_ptr<Diagnostics> diagnostics;
-    uint64_t hash = 0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
+    uint64_t hash =
+        0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
 };
 
-/// Reads and checks a scene file. Throws InputError listing every problem found, UsageError for an override that names nothing.
+/// Reads and checks a scene file. Throws InputError listing every problem found, UsageError for an override that names
+/// nothing.
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// Throws InputError if any problem has been recorded.

@@ -1,0 +1,35 @@
+#include "tungsten/bsdf/Bsdf.h"
+
+#include "tungsten/bsdf/Models.h"
+
+namespace tungsten {
+
+Bsdf::Bsdf(std::string name_, BsdfModel model_, Texture albedo_)
+    : name(std::move(name_)), model(std::move(model_)), albedo(std::move(albedo_)) {
+    lobes_ = std::visit([](const auto& m) { return lobesOf(m); }, model);
+}
+
+Rgb Bsdf::eval(const BsdfQuery& query, const Vec3f& wi, const Vec3f& wo) const {
+    if ((query.requested & lobes_ & lobe::Smooth) == 0) return Rgb(0.0f);
+    const ModelPoint at{query, albedo.rgb(query.uv)};
+    return std::visit([&](const auto& m) { return evalModel(m, at, wi, wo); }, model);
+}
+
+float Bsdf::pdf(const BsdfQuery& query, const Vec3f& wi, const Vec3f& wo) const {
+    if ((query.requested & lobes_ & lobe::Smooth) == 0) return 0.0f;
+    const ModelPoint at{query, albedo.rgb(query.uv)};
+    return std::visit([&](const auto& m) { return pdfModel(m, at, wi, wo); }, model);
+}
+
+std::optional<BsdfSample> Bsdf::sample(const BsdfQuery& query, const Vec3f& wi, const BsdfRandom& u) const {
+    if ((query.requested & lobes_) == 0) return std::nullopt;
+    const ModelPoint at{query, albedo.rgb(query.uv)};
+    return std::visit([&](const auto& m) { return sampleModel(m, at, wi, u); }, model);
+}
+
+Rgb Bsdf::forwardWeight(const Vec2f& uv) const {
+    if ((lobes_ & lobe::Forward) == 0) return Rgb(0.0f);
+    return std::visit([&](const auto& m) { return forwardOf(m, uv); }, model);
+}
+
+} // namespace tungsten
