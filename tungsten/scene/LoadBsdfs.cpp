@@ -151,6 +151,12 @@ BsdfPtr bsdfByName(LoadContext& context, const ObjectReader& owner, const std::s
 
 } // namespace
 
+std::vector<std::string> bsdfTypes() {
+    std::vector<std::string> types;
+    for (const auto& [type, reader] : modelReaders()) types.push_back(type);
+    return types;
+}
+
 void readBsdfs(LoadContext& context, const ObjectReader& root) {
     for (const ObjectReader& bsdf : root.objects("bsdfs")) readBsdf(context, bsdf);
 }

@@ -34,8 +34,7 @@ void readFocusPivot(const ObjectReader& root, const ObjectReader& reader, const 
 }
 
 void readModel(const ObjectReader& root, const ObjectReader& reader, Camera& camera) {
-    static const std::vector<std::string> types{"pinhole", "thinlens", "orthographic"};
-    const std::string type = reader.choice("type", "pinhole", types);
+    const std::string type = reader.choice("type", "pinhole", cameraTypes());
     if (type == "thinlens") {
         ThinLens lens = readThinLens(reader);
         readFocusPivot(root, reader, camera.position(), lens);
@@ -56,6 +55,10 @@ Transform defaultCameraTransform() {
 }
 
 } // namespace
+
+std::vector<std::string> cameraTypes() {
+    return {"pinhole", "thinlens", "orthographic"};
+}
 
 void readCamera(LoadContext& context, const ObjectReader& root) {
     Scene& scene = context.scene;

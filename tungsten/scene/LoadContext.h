@@ -27,21 +27,27 @@ struct LoadContext {
 /// A texture field: number or RGB (constant), path string (bitmap), or object. Constant values must lie in `range`.
 Texture readTexture(LoadContext& context, const ObjectReader& owner, const std::string& field, const Texture& fallback,
                     Range range = {});
+std::vector<std::string> textureTypes();
 /// One colour out of a texture field that may not vary (point emitters).
 Rgb readConstantTexture(LoadContext& context, const ObjectReader& owner, const std::string& field);
 
 /// A medium by name or as an inline object; -1 and a problem if there is none of that name.
 int readMediumReference(LoadContext& context, const ObjectReader& owner, const std::string& field);
 void readMedia(LoadContext& context, const ObjectReader& root);
+std::vector<std::string> mediumTypes();
+std::vector<std::string> phaseFunctionTypes();
 
 /// A BSDF by name or as an inline object.
 BsdfPtr readBsdfReference(LoadContext& context, const ObjectReader& owner, const std::string& field);
 /// One BSDF, or an array indexed by the mesh's materials.
 std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owner, const std::string& field);
 void readBsdfs(LoadContext& context, const ObjectReader& root);
+std::vector<std::string> bsdfTypes();
 
 void readPrimitives(LoadContext& context, const ObjectReader& root);
+std::vector<std::string> primitiveTypes();
 void readCamera(LoadContext& context, const ObjectReader& root);
+std::vector<std::string> cameraTypes();
 RendererSettings readRenderer(const ObjectReader& root);
 /// The fields that every integrator's block shares (bounces, gate, speeds); `type` decides the defaults of the gate.
 TransportSettings readTransport(const ObjectReader& integrator, const std::string& type);

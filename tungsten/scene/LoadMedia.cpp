@@ -5,8 +5,7 @@ namespace tungsten {
 namespace {
 
 PhaseFunction readPhaseFunction(const ObjectReader& phase, Medium& medium) {
-    static const std::vector<std::string> types{"isotropic", "henyey_greenstein", "rayleigh", "ida", "integrated_da"};
-    const std::string type = phase.choice("type", "isotropic", types);
+    const std::string type = phase.choice("type", "isotropic", phaseFunctionTypes());
     PhaseFunction result{Isotropic{}};
     if (type == "rayleigh") result.model = Rayleigh{};
     const bool guided = type == "ida" || type == "integrated_da";
@@ -35,11 +34,10 @@ void requireExponentialTransmittance(const ObjectReader& medium) {
 }
 
 Medium readMedium(const ObjectReader& reader) {
-    static const std::vector<std::string> types{"homogeneous", "guided_homo"};
     Medium medium;
     medium.name = reader.text("name", "");
-    const std::string type = reader.choice("type", "homogeneous", types);
-    if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(types));
+    const std::string type = reader.choice("type", "homogeneous", mediumTypes());
+    if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(mediumTypes()));
     const float density = float(reader.number("density", 1.0, Range::nonNegative()));
     medium.sigmaA = reader.rgb("sigma_a", Rgb(0.0f), Range::nonNegative()) * density;
     medium.sigmaS = reader.rgb("sigma_s", Rgb(0.0f), Range::nonNegative()) * density;
@@ -68,6 +66,14 @@ int addMedium(LoadContext& context, const ObjectReader& reader) {
 }
 
 } // namespace
+
+std::vector<std::string> mediumTypes() {
+    return {"homogeneous", "guided_homo"};
+}
+
+std::vector<std::string> phaseFunctionTypes() {
+    return {"isotropic", "henyey_greenstein", "rayleigh", "ida", "integrated_da"};
+}
 
 void readMedia(LoadContext& context, const ObjectReader& root) {
     for (const ObjectReader& medium : root.objects("media")) addMedium(context, medium);

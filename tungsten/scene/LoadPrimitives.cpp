@@ -58,12 +58,6 @@ const std::vector<std::string>& unsupportedTypes() {
     return types;
 }
 
-std::vector<std::string> primitiveTypes() {
-    std::vector<std::string> types = emitterTypes();
-    for (const auto& [type, reader] : surfaceReaders()) types.push_back(type);
-    return types;
-}
-
 Region regionOn(const LoadContext& context, int medium, double speed) {
     if (medium >= 0) return {medium, context.scene.media[size_t(medium)].speedOfLight};
     return {-1, speed > 0.0 ? float(speed) : context.scene.transport.vacuumSpeed};
@@ -135,6 +129,12 @@ void readPrimitive(LoadContext& context, const ObjectReader& reader) {
 }
 
 } // namespace
+
+std::vector<std::string> primitiveTypes() {
+    std::vector<std::string> types = emitterTypes();
+    for (const auto& [type, reader] : surfaceReaders()) types.push_back(type);
+    return types;
+}
 
 void readPrimitives(LoadContext& context, const ObjectReader& root) {
     for (const ObjectReader& primitive : root.objects("primitives")) readPrimitive(context, primitive);

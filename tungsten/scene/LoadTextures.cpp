@@ -31,7 +31,7 @@ Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const st
 }
 
 Texture readTextureObject(LoadContext& context, const ObjectReader& texture, const Texture& fallback, Range range) {
-    static const std::vector<std::string> types{"bitmap", "checker", "constant"};
+    const std::vector<std::string> types = textureTypes();
     const std::string type = texture.choice("type", "", types);
     texture.accept({"name"});
     Texture result = fallback;
@@ -61,6 +61,10 @@ Texture readTextureObject(LoadContext& context, const ObjectReader& texture, con
 }
 
 } // namespace
+
+std::vector<std::string> textureTypes() {
+    return {"bitmap", "checker", "constant"};
+}
 
 std::filesystem::path LoadContext::resource(const std::string& name) {
     const std::filesystem::path path = resourceDirectory / std::filesystem::path(name);

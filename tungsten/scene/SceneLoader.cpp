@@ -72,6 +72,12 @@ void throwIfProblems(const Diagnostics& diagnostics) {
     if (!diagnostics.problems.empty()) throw InputError(diagnostics.problems);
 }
 
+std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes() {
+    return {{"media", mediumTypes()},     {"phase functions", phaseFunctionTypes()}, {"bsdfs", bsdfTypes()},
+            {"textures", textureTypes()}, {"primitives", primitiveTypes()},          {"cameras", cameraTypes()},
+            {"filters", filterNames()},   {"tone maps", toneMapNames()}};
+}
+
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
     const std::shared_ptr<rapidjson::Document> document = parseJsonFile(file);
     for (const std::string& assignment : options.overrides) applyOverride(*document, assignment);

@@ -50,6 +50,9 @@ struct LoadedScene {
 /// nothing.
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options = {});
 
+/// Every type name a scene can use, by kind ("media", "bsdfs", ...).
+std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes();
+
 /// Throws InputError if any problem has been recorded.
 void throwIfProblems(const Diagnostics& diagnostics);
 

@@ -1,0 +1,13 @@
+#pragma once
+// The answer to `--list`.
+
+#include "tungsten/render/Integrator.h"
+
+#include <iosfwd>
+
+namespace tungsten {
+
+/// Integrators with their origin, then every type name a scene can use.
+void printTypes(const IntegratorRegistry& registry, std::ostream& out);
+
+} // namespace tungsten

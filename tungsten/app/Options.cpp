@@ -1,0 +1,95 @@
+#include "tungsten/app/Options.h"
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/scene/Duration.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+
+namespace tungsten {
+
+namespace {
+
+constexpr const char* Version = "tungsten (darts-tungsten) 0.1.0";
+
+double durationOption(const std::string& option, const std::string& text) {
+    const auto seconds = parseDuration(text);
+    if (!seconds) throw UsageError(option + " " + text + ": expected a duration such as 90s, 5m, \"1h 30m\"; no unit means minutes");
+    return std::max(*seconds, 0.0);
+}
+
+/// "WxH" as a scene override.
+std::string resolutionOverride(const std::string& text) {
+    int width = 0, height = 0, used = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || size_t(used) != text.size() || width < 1 || height < 1)
+        throw UsageError("--resolution " + text + ": expected WIDTHxHEIGHT, such as 320x240");
+    return "camera.resolution=[" + std::to_string(width) + "," + std::to_string(height) + "]";
+}
+
+/// The parser's message for an option nobody knows, with the nearest one that exists.
+std::string explainUnknown(const CLI::App& app, const std::string& message) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    const size_t start = message.find("--");
+    if (start == std::string::npos) return message;
+    const std::string given = message.substr(start, message.find_first_of(" =,", start) - start);
+    const std::string near = nearestName(given, names);
+    return near.empty() ? message : message + "; did you mean " + near + "?";
+}
+
+} // namespace
+
+std::optional<Options> parseOptions(int argc, const char* const* argv) {
+    Options options;
+    std::string checkpoint, timeout, resolution, directory, ldr, hdr, statistics, timeCentre;
+    int64_t spp = 0;
+
+    CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
+                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice."};
+    app.add_option("scenes", options.scenes, "scene files, rendered in sequence");
+    app.set_version_flag("-v,--version", Version);
+    app.add_option("-t,--threads", options.threads, "number of threads (default: all)")->check(CLI::Range(1, 1024));
+    app.add_flag("-r,--restart", options.restart, "ignore a saved resume state");
+    app.add_option("-c,--checkpoint", checkpoint, "save images and a resume state every DURATION (no unit: minutes); resume from it");
+    app.add_option("-i,--input-directory", options.inputDirectory, "base of the scene's resources (default: the scene's folder)");
+    app.add_option("-d,--output-directory", directory, "base of every output file; created if missing");
+    app.add_option("--spp", spp, "samples per pixel in total")->check(CLI::Range(int64_t(1), int64_t(1000000000000)));
+    app.add_option("--timeout", timeout, "stop after DURATION of passes (no unit: minutes) and write what is there");
+    app.add_option("-s,--seed", options.seed, "seed of the random numbers (default 0xBA5EBA11)");
+    app.add_option("-o,--output-file", ldr, "tone-mapped image (.png)");
+    app.add_option("-e,--hdr-output-file", hdr, "linear image (.exr with standard error, .pfm, or .npy)");
+    app.add_option("--time-center", timeCentre, "centre of the time gate")->check(CLI::Number);
+    app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")->allow_extra_args(false);
+    app.add_option("--resolution", resolution, "WIDTHxHEIGHT in pixels");
+    app.add_option("--stats", statistics, "write times, counters, memory and standard error to this JSON file");
+    app.add_option("--target-error", options.targetError, "stop when the relative standard error is below this (0.01 is 1 %)")
+        ->check(CLI::PositiveNumber);
+    app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
+    app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
+    app.add_flag("--quiet", options.quiet, "print errors and warnings only");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) {
+            app.exit(error, std::cout, std::cerr);
+            return std::nullopt;
+        }
+        throw UsageError(explainUnknown(app, error.what()) + " (--help lists the options)");
+    }
+    if (!checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", checkpoint);
+    if (!timeout.empty()) options.timeoutSeconds = durationOption("--timeout", timeout);
+    if (spp > 0) options.spp = spp;
+    if (!resolution.empty()) options.overrides.push_back(resolutionOverride(resolution));
+    if (!timeCentre.empty()) options.overrides.push_back("integrator.transient_time_center=" + timeCentre);
+    if (!directory.empty()) options.outputs.directory = directory;
+    if (!ldr.empty()) options.outputs.ldr = ldr;
+    if (!hdr.empty()) options.outputs.hdr = hdr;
+    if (!statistics.empty()) options.outputs.statistics = statistics;
+    if (options.scenes.empty() && !options.list) throw UsageError("no scene file given (--help lists the options)");
+    return options;
+}
+
+} // namespace tungsten

@@ -1,0 +1,31 @@
+#pragma once
+// The command line of `tungsten`.
+
+#include "tungsten/render/Outputs.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tungsten {
+
+struct Options {
+    std::vector<std::filesystem::path> scenes;
+    std::vector<std::string> overrides; ///< --set, then what other options say about the scene
+    std::filesystem::path inputDirectory;
+    OutputOverrides outputs;
+    std::optional<double> checkpointSeconds, timeoutSeconds;
+    std::optional<int64_t> spp;
+    uint64_t seed = 0xBA5EBA11u;
+    double targetError = 0.0;
+    int threads = 0; ///< 0: all
+    bool restart = false, quiet = false;
+    bool explain = false, list = false;
+};
+
+/// Parses the command line. Throws UsageError for what it cannot accept. Returns none when the answer was printed already
+/// (--help, --version).
+std::optional<Options> parseOptions(int argc, const char* const* argv);
+
+} // namespace tungsten
