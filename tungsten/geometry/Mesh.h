@@ -14,7 +14,8 @@ struct Triangle {
     uint32_t v[3];
 };
 
-/// Triangles over shared vertices. `normals` and `uvs` are empty or one per vertex; `materials` empty (all 0) or one per triangle.
+/// Triangles over shared vertices. `normals` and `uvs` are empty or one per vertex; `materials` empty (all 0) or one
+/// per triangle.
 struct TriangleMesh {
     std::vector<Vec3f> positions;
     std::vector<Vec3f> normals;
@@ -28,10 +29,10 @@ struct TriangleMesh {
     [[nodiscard]] float faceArea(uint32_t triangle) const;
 };
 
-/// Reads .wo3, .obj, .ply, .gltf, .glb (by extension, case-insensitive; glTF node transforms applied, all nodes merged).
-/// Throws InputError naming the file for anything missing, truncated, corrupt or out of range (indices, counts against the
-/// file's size, non-finite positions). A file without triangles gives an empty mesh. Normals and uvs that are not finite
-/// become 0 (the face normal is used there).
+/// Reads .wo3, .obj, .ply, .gltf, .glb (by extension, case-insensitive; glTF node transforms applied, all nodes
+/// merged). Throws InputError naming the file for anything missing, truncated, corrupt or out of range (indices, counts
+/// against the file's size, non-finite positions). A file without triangles gives an empty mesh. Normals and uvs that
+/// are not finite become 0 (the face normal is used there).
 TriangleMesh loadMesh(const std::filesystem::path& file);
 
 TriangleMesh loadWo3(const std::filesystem::path& file);
@@ -39,7 +40,8 @@ TriangleMesh loadWo3(const std::filesystem::path& file);
 TriangleMesh loadObj(const std::filesystem::path& file);
 /// ASCII and binary, both endians; elements vertex (x y z, nx ny nz, s t or u v) and face (vertex_indices).
 TriangleMesh loadPly(const std::filesystem::path& file);
-/// Triangles of the default scene's nodes; material index = glTF material; v flipped to the convention that 1 is the top.
+/// Triangles of the default scene's nodes; material index = glTF material; v flipped to the convention that 1 is the
+/// top.
 TriangleMesh loadGltf(const std::filesystem::path& file);
 
 /// Frees what rendering will not read: the normals of a mesh that is not smooth.

@@ -9,7 +9,8 @@ namespace tungsten {
 /// Checks indices and positions (InputError), zeroes normals and uvs that are not finite, and releases spare memory.
 void finishMesh(TriangleMesh& mesh, const std::filesystem::path& file);
 
-/// Reallocates `positions` with room for exactly one element more: Embree reads 16 bytes at the last vertex of a shared buffer.
+/// Reallocates `positions` with room for exactly one element more: Embree reads 16 bytes at the last vertex of a shared
+/// buffer.
 void padPositions(std::vector<Vec3f>& positions);
 
 } // namespace tungsten

@@ -31,8 +31,8 @@ struct PositionHash {
     }
 };
 
-/// Pass 1 of the crease rule: every vertex takes the normal of its first face; faces beyond the crease get copies of their own.
-/// Returns the pass-1 normals, (0, 0, 0) for vertices without a face.
+/// Pass 1 of the crease rule: every vertex takes the normal of its first face; faces beyond the crease get copies of
+/// their own. Returns the pass-1 normals, (0, 0, 0) for vertices without a face.
 std::vector<Vec3f> splitCreases(TriangleMesh& mesh, float cosCrease) {
     std::vector<Vec3f> faceNormals(mesh.positions.size(), Vec3f(0.0f));
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -124,7 +124,7 @@ TriangleMesh makeCube(const Transform& transform) {
         const int uAxis = (axis + 1) % 3, vAxis = (axis + 2) % 3;
         for (const float side : {-0.5f, 0.5f}) {
             const auto first = uint32_t(mesh.positions.size());
-            for (const Vec2f uv : {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1)}) {
+            for (const Vec2f& uv : {Vec2f(0, 0), Vec2f(1, 0), Vec2f(1, 1), Vec2f(0, 1)}) {
                 Vec3f local;
                 local[axis] = side;
                 local[uAxis] = uv.x - 0.5f;

@@ -13,6 +13,8 @@ namespace tungsten {
 
 namespace {
 
+const Vec3f MissingNormal(0.0f, 1.0f, 0.0f);
+
 /// Zero-based indices of one corner; -1 where the file gives none.
 struct Corner {
     int32_t position = -1, uv = -1, normal = -1;
@@ -40,7 +42,6 @@ class ObjReader {
             ++line_;
             readLine(text.nextLine());
         }
-        if (normals_.empty()) mesh_.normals.assign(mesh_.positions.size(), Vec3f(0.0f, 1.0f, 0.0f));
         if (uvs_.empty()) mesh_.uvs.clear();
         finishMesh(mesh_, file_);
         return std::move(mesh_);
@@ -88,11 +89,12 @@ class ObjReader {
     /// One-based or negative (counted from the end) index into `count` elements, as zero-based.
     int32_t readIndex(std::string_view word, size_t count, const char* what) const {
         const auto index = parseNumber<int64_t>(word);
-        if (!index) fail("expected the index of a " + std::string(what) + ", found '" + std::string(word.substr(0, 32)) + "'");
+        if (!index)
+            fail("expected the index of a " + std::string(what) + ", found '" + std::string(word.substr(0, 32)) + "'");
         const int64_t zeroBased = *index < 0 ? int64_t(count) + *index : *index - 1;
         if (zeroBased < 0 || zeroBased >= int64_t(count) || zeroBased > INT32_MAX)
-            fail(std::string(what) + " " + std::string(word.substr(0, 32)) + " is out of range: " + std::to_string(count) +
-                 " defined so far");
+            fail(std::string(what) + " " + std::string(word.substr(0, 32)) +
+                 " is out of range: " + std::to_string(count) + " defined so far");
         return int32_t(zeroBased);
     }
 
@@ -103,7 +105,8 @@ class ObjReader {
         if (first == std::string_view::npos) return corner;
         word.remove_prefix(first + 1);
         const size_t second = word.find('/');
-        if (const auto uv = word.substr(0, second); !uv.empty()) corner.uv = readIndex(uv, uvs_.size(), "texture coordinate");
+        if (const auto uv = word.substr(0, second); !uv.empty())
+            corner.uv = readIndex(uv, uvs_.size(), "texture coordinate");
         if (second == std::string_view::npos) return corner;
         if (const auto normal = word.substr(second + 1); !normal.empty())
             corner.normal = readIndex(normal, normals_.size(), "normal");
@@ -115,11 +118,7 @@ class ObjReader {
         if (isNew) {
             mesh_.positions.push_back(positions_[size_t(corner.position)]);
             mesh_.uvs.push_back(corner.uv < 0 ? Vec2f(0.0f) : uvs_[size_t(corner.uv)]);
-            if (!normals_.empty()) {
-                // Corners read before the file's first normal have none.
-                mesh_.normals.resize(mesh_.positions.size() - 1, Vec3f(0.0f, 1.0f, 0.0f));
-                mesh_.normals.push_back(corner.normal < 0 ? Vec3f(0.0f, 1.0f, 0.0f) : normals_[size_t(corner.normal)]);
-            }
+            mesh_.normals.push_back(corner.normal < 0 ? MissingNormal : normals_[size_t(corner.normal)]);
         }
         return entry->second;
     }

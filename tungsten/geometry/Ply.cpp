@@ -4,7 +4,6 @@
 #include "tungsten/geometry/MeshFile.h"
 #include "tungsten/geometry/TextCursor.h"
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -25,11 +24,11 @@ struct ScalarType {
 const std::map<std::string_view, ScalarType>& scalarTypes() {
     using Kind = ScalarType::Kind;
     static const std::map<std::string_view, ScalarType> types{
-        {"char", {Kind::Signed, 1}},    {"int8", {Kind::Signed, 1}},     {"uchar", {Kind::Unsigned, 1}},
-        {"uint8", {Kind::Unsigned, 1}}, {"short", {Kind::Signed, 2}},    {"int16", {Kind::Signed, 2}},
+        {"char", {Kind::Signed, 1}},     {"int8", {Kind::Signed, 1}},     {"uchar", {Kind::Unsigned, 1}},
+        {"uint8", {Kind::Unsigned, 1}},  {"short", {Kind::Signed, 2}},    {"int16", {Kind::Signed, 2}},
         {"ushort", {Kind::Unsigned, 2}}, {"uint16", {Kind::Unsigned, 2}}, {"int", {Kind::Signed, 4}},
-        {"int32", {Kind::Signed, 4}},   {"uint", {Kind::Unsigned, 4}},   {"uint32", {Kind::Unsigned, 4}},
-        {"float", {Kind::Real, 4}},     {"float32", {Kind::Real, 4}},    {"double", {Kind::Real, 8}},
+        {"int32", {Kind::Signed, 4}},    {"uint", {Kind::Unsigned, 4}},   {"uint32", {Kind::Unsigned, 4}},
+        {"float", {Kind::Real, 4}},      {"float32", {Kind::Real, 4}},    {"double", {Kind::Real, 8}},
         {"float64", {Kind::Real, 8}}};
     return types;
 }
@@ -128,11 +127,11 @@ class BodyReader {
             return *number;
         }
         if (remaining() < type.bytes) fail(file_, "ends before all elements are read");
+        const bool swapped = (encoding_ == Encoding::BigEndian) != (std::endian::native == std::endian::big);
         std::array<unsigned char, 8> raw{};
-        std::memcpy(raw.data(), body_.data() + position_, type.bytes);
+        for (size_t i = 0; i < raw.size() && i < type.bytes; ++i)
+            raw[i] = static_cast<unsigned char>(body_[position_ + (swapped ? type.bytes - 1 - i : i)]);
         position_ += type.bytes;
-        if ((encoding_ == Encoding::BigEndian) != (std::endian::native == std::endian::big))
-            std::reverse(raw.begin(), raw.begin() + std::ptrdiff_t(type.bytes));
         return decode(raw.data(), type);
     }
 
@@ -159,7 +158,9 @@ class BodyReader {
         // The last number of a text needs no blank behind it.
         return encoding_ == Encoding::Ascii ? body_.size() + 1 - text_.position() : body_.size() - position_;
     }
-    [[nodiscard]] size_t smallestSize(const ScalarType& type) const { return encoding_ == Encoding::Ascii ? 2 : type.bytes; }
+    [[nodiscard]] size_t smallestSize(const ScalarType& type) const {
+        return encoding_ == Encoding::Ascii ? 2 : type.bytes;
+    }
 
     template <typename Value>
     static double as(const unsigned char* raw) {
@@ -169,10 +170,12 @@ class BodyReader {
     }
     static double decode(const unsigned char* raw, const ScalarType& type) {
         switch (type.kind) {
-        case ScalarType::Kind::Real: return type.bytes == 4 ? as<float>(raw) : as<double>(raw);
+        case ScalarType::Kind::Real:
+            return type.bytes == 4 ? as<float>(raw) : as<double>(raw);
         case ScalarType::Kind::Signed:
             return type.bytes == 1 ? as<int8_t>(raw) : type.bytes == 2 ? as<int16_t>(raw) : as<int32_t>(raw);
-        case ScalarType::Kind::Unsigned: break;
+        case ScalarType::Kind::Unsigned:
+            break;
         }
         return type.bytes == 1 ? as<uint8_t>(raw) : type.bytes == 2 ? as<uint16_t>(raw) : as<uint32_t>(raw);
     }
@@ -188,8 +191,8 @@ class BodyReader {
 constexpr size_t Quantities = 8;
 size_t quantityOf(const std::string& name) {
     static const std::map<std::string, size_t> quantities{
-        {"x", 0},  {"y", 1},  {"z", 2},  {"nx", 3}, {"ny", 4},        {"nz", 5},       {"u", 6},
-        {"v", 7},  {"s", 6},  {"t", 7},  {"texture_u", 6}, {"texture_v", 7}, {"texture_s", 6}, {"texture_t", 7}};
+        {"x", 0}, {"y", 1}, {"z", 2}, {"nx", 3},        {"ny", 4},        {"nz", 5},        {"u", 6},
+        {"v", 7}, {"s", 6}, {"t", 7}, {"texture_u", 6}, {"texture_v", 7}, {"texture_s", 6}, {"texture_t", 7}};
     const auto found = quantities.find(name);
     return found == quantities.end() ? Quantities : found->second;
 }

@@ -15,13 +15,13 @@ namespace tungsten {
 /// Closest intersection: which primitive, where, with its geometric and shading normals.
 struct SurfaceHit {
     float t = Infinity;
-    uint32_t shape = 0;    ///< index of the shape given to SceneGeometry
-    uint32_t face = 0;     ///< triangle index (meshes)
-    int32_t material = 0;  ///< material index of the face, not yet clamped
+    uint32_t shape = 0;   ///< index of the shape given to SceneGeometry
+    uint32_t face = 0;    ///< triangle index (meshes)
+    int32_t material = 0; ///< material index of the face, not yet clamped
     Vec3f position;
-    Vec3f ng;              ///< geometric normal (by winding), unit; not flipped
-    Vec3f ns;              ///< shading normal, unit; not flipped
-    Vec3f dpdu, dpdv;      ///< parametrisation tangents (for bump and anisotropy)
+    Vec3f ng;         ///< geometric normal (by winding), unit; not flipped
+    Vec3f ns;         ///< shading normal, unit; not flipped
+    Vec3f dpdu, dpdv; ///< parametrisation tangents (for bump and anisotropy)
     Vec2f uv;
 };
 

@@ -1,69 +1,76 @@
+// Spheres and disks from transforms; areas; uniform points on surfaces.
+
 #include "tungsten/geometry/Shape.h"
 
 #include "tungsten/core/Warp.h"
+#include "tungsten/geometry/AnalyticShape.h"
 
 namespace tungsten {
 
 namespace {
 
-Vec2f sphereUv(const Sphere& sphere, const Vec3f& normal) {
-    const Vec3f local = sphere.frame.toLocal(normal);
-    return {std::atan2(local.y, local.x) * 0.5f * InvPi + 0.5f, std::acos(std::clamp(local.z, -1.0f, 1.0f)) * InvPi};
+std::vector<float> faceAreas(const Shape& shape) {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape);
+    if (!mesh) return {};
+    std::vector<float> areas(mesh->triangles.size());
+    for (size_t i = 0; i < areas.size(); ++i) areas[i] = mesh->faceArea(uint32_t(i));
+    return areas;
 }
 
-SurfaceSample sampleSurface(const TriangleMesh& mesh, const Distribution1D& triangles, const Vec2f& u) {
+SurfaceSample sampleOn(const TriangleMesh& mesh, const Distribution1D& triangles, const Vec2f& u) {
+    if (mesh.triangles.empty()) return {};
     const auto chosen = triangles.sample(u.x);
-    const Vec2f b = warp::squareToTriangle({chosen.remapped, u.y});
     const Triangle& triangle = mesh.triangles[chosen.index];
+    const Vec2f b = warp::squareToTriangle({chosen.remapped, u.y});
+    const float b0 = 1.0f - b.x - b.y;
     const auto blend = [&](const auto& values) {
-        return values[triangle.v[0]] * (1.0f - b.x - b.y) + values[triangle.v[1]] * b.x + values[triangle.v[2]] * b.y;
+        return values[triangle.v[0]] * b0 + values[triangle.v[1]] * b.x + values[triangle.v[2]] * b.y;
     };
-    return {blend(mesh.positions), mesh.faceNormal(uint32_t(chosen.index)), mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs)};
+    return {blend(mesh.positions), mesh.faceNormal(uint32_t(chosen.index)),
+            mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs)};
 }
 
-SurfaceSample sampleSurface(const Sphere& sphere, const Distribution1D&, const Vec2f& u) {
-    const Vec3f normal = sphere.frame.toWorld(warp::squareToSphere(u));
-    return {sphere.centre + normal * sphere.radius, normal, sphereUv(sphere, normal)};
+SurfaceSample sampleOn(const Sphere& sphere, const Vec2f& u) {
+    const Vec3f local = warp::squareToSphere(u);
+    const Vec3f normal = sphere.frame.toWorld(local).normalized();
+    return {sphere.centre + normal * sphere.radius, normal, sphereUv(local)};
 }
 
-SurfaceSample sampleSurface(const Disk& disk, const Distribution1D&, const Vec2f& u) {
-    const Vec2f p = warp::squareToDisk(u);
-    const Vec2f uv(std::atan2(p.y, p.x) * 0.5f * InvPi + 0.5f, p.length());
-    return {disk.centre + (disk.frame.s * p.x + disk.frame.t * p.y) * disk.radius, disk.frame.n, uv};
+SurfaceSample sampleOn(const Disk& disk, const Vec2f& u) {
+    const Vec2f local = warp::squareToDisk(u);
+    return {disk.centre + (disk.frame.s * local.x + disk.frame.t * local.y) * disk.radius, disk.frame.n, diskUv(local)};
 }
 
 } // namespace
 
 Sphere makeSphere(const Transform& transform) {
     const Vec3f scale = transform.scale();
-    return {transform.translation, std::max({scale.x, scale.y, scale.z}), transform.rotation()};
+    return {transform.translation, std::max(scale.x, std::max(scale.y, scale.z)), transform.rotation()};
 }
 
 Disk makeDisk(const Transform& transform, float coneAngleDegrees) {
     const Vec3f scale = transform.scale();
-    return {transform.translation, std::max(scale.x, scale.z), Frame(transform.y.normalized()),
-            std::cos(std::min(coneAngleDegrees, 90.0f) * Pi / 180.0f) * (coneAngleDegrees < 90.0f ? 1.0f : 0.0f)};
+    // A flattened y axis still has a normal: the one perpendicular to the other two.
+    const Vec3f up = scale.y > 0.0f ? transform.y.normalized() : transform.z.cross(transform.x).normalized();
+    const Vec3f normal = up.length2() > 0.0f ? up : Vec3f(0.0f, 1.0f, 0.0f);
+    return {transform.translation, std::max(scale.x, scale.z), Frame(normal),
+            coneAngleDegrees < 90.0f ? std::cos(coneAngleDegrees * (Pi / 180.0f)) : 0.0f};
 }
 
 float surfaceArea(const Shape& shape) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return 4.0f * Pi * sqr(sphere->radius);
     if (const auto* disk = std::get_if<Disk>(&shape)) return Pi * sqr(disk->radius);
-    const auto& mesh = std::get<TriangleMesh>(shape);
     double area = 0.0;
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) area += double(mesh.faceArea(i));
+    for (const float face : faceAreas(shape)) area += double(face);
     return float(area);
 }
 
-AreaSampler::AreaSampler(const Shape& shape) : area_(surfaceArea(shape)) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape);
-    if (!mesh) return;
-    std::vector<float> areas;
-    for (uint32_t i = 0; i < mesh->triangles.size(); ++i) areas.push_back(mesh->faceArea(i));
-    triangles_ = Distribution1D(areas);
-}
+AreaSampler::AreaSampler(const Shape& shape) : area_(surfaceArea(shape)), triangles_(faceAreas(shape)) {}
 
 SurfaceSample AreaSampler::sample(const Shape& shape, const Vec2f& u) const {
-    return std::visit([&](const auto& model) { return sampleSurface(model, triangles_, u); }, shape);
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) return sampleOn(*sphere, u);
+    if (const auto* disk = std::get_if<Disk>(&shape)) return sampleOn(*disk, u);
+    return sampleOn(std::get<TriangleMesh>(shape), triangles_, u);
 }
 
 } // namespace tungsten

@@ -18,7 +18,7 @@ struct Sphere {
 struct Disk {
     Vec3f centre{0, 0, 0};
     float radius = 1.0f;
-    Frame frame; ///< n is the emitting, front side
+    Frame frame;               ///< n is the emitting, front side
     float cosConeAngle = 0.0f; ///< emission is seen only inside the cone about n
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 // Reading words and numbers out of text in memory.
 
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <optional>

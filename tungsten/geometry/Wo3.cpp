@@ -20,8 +20,8 @@ uint64_t readCount(const std::vector<char>& bytes, uint64_t offset, uint64_t rec
     std::memcpy(&count, bytes.data() + offset, CountBytes);
     const uint64_t room = (bytes.size() - offset - CountBytes) / recordBytes;
     if (count > room || count > UINT32_MAX)
-        throw InputError(file.string(), "claims " + std::to_string(count) + " " + what + ", but has room for " +
-                                            std::to_string(room));
+        throw InputError(file.string(),
+                         "claims " + std::to_string(count) + " " + what + ", but has room for " + std::to_string(room));
     return count;
 }
 
@@ -34,8 +34,8 @@ TriangleMesh loadWo3(const std::filesystem::path& file) {
     const uint64_t triangles = readCount(bytes, trianglesAt, TriangleBytes, "triangles", file);
     const uint64_t expected = trianglesAt + CountBytes + triangles * TriangleBytes;
     if (expected != bytes.size())
-        throw InputError(file.string(), "has " + std::to_string(bytes.size()) + " bytes; its counts make " +
-                                            std::to_string(expected));
+        throw InputError(file.string(),
+                         "has " + std::to_string(bytes.size()) + " bytes; its counts make " + std::to_string(expected));
     TriangleMesh mesh;
     mesh.positions.reserve(vertices + 1); // see padPositions
     mesh.positions.resize(vertices);
@@ -43,9 +43,9 @@ TriangleMesh loadWo3(const std::filesystem::path& file) {
     mesh.uvs.resize(vertices);
     const char* record = bytes.data() + CountBytes;
     for (uint64_t i = 0; i < vertices; ++i, record += VertexBytes) {
-        std::memcpy(&mesh.positions[i], record, 12);
-        std::memcpy(&mesh.normals[i], record + 12, 12);
-        std::memcpy(&mesh.uvs[i], record + 24, 8);
+        std::memcpy(mesh.positions[i].getValue(), record, 12);
+        std::memcpy(mesh.normals[i].getValue(), record + 12, 12);
+        std::memcpy(mesh.uvs[i].getValue(), record + 24, 8);
     }
     mesh.triangles.resize(triangles);
     mesh.materials.resize(triangles);

@@ -1,0 +1,227 @@
+#include "tungsten/geometry/SceneGeometry.h"
+
+#include "tungsten/geometry/AnalyticShape.h"
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace tungsten {
+
+namespace {
+
+void requireNoError(RTCDevice device) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    throw std::runtime_error("Embree: " + std::string(error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error ") +
+                             (error == RTC_ERROR_OUT_OF_MEMORY ? "" : std::to_string(int(error))));
+}
+
+// --- triangles
+
+void setPositions(RTCGeometry geometry, const TriangleMesh& mesh) {
+    const std::vector<Vec3f>& positions = mesh.positions;
+    // Embree reads 16 bytes at the last vertex: share the buffer only where that stays inside the allocation.
+    if (positions.capacity() > positions.size()) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions.data(), 0,
+                                   sizeof(Vec3f), positions.size());
+        return;
+    }
+    void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
+                                         positions.size());
+    if (copy) std::memcpy(copy, positions.data(), positions.size() * sizeof(Vec3f));
+}
+
+RTCGeometry makeTriangles(RTCDevice device, const TriangleMesh& mesh) {
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    setPositions(geometry, mesh);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.triangles.data(), 0,
+                               sizeof(Triangle), mesh.triangles.size());
+    return geometry;
+}
+
+/// Tangents from the uvs; any frame about the normal where they are degenerate.
+void setTangents(const TriangleMesh& mesh, const Triangle& triangle, SurfaceHit& hit) {
+    if (!mesh.uvs.empty()) {
+        const Vec2f duv1 = mesh.uvs[triangle.v[1]] - mesh.uvs[triangle.v[0]];
+        const Vec2f duv2 = mesh.uvs[triangle.v[2]] - mesh.uvs[triangle.v[0]];
+        const Vec3f dp1 = mesh.positions[triangle.v[1]] - mesh.positions[triangle.v[0]];
+        const Vec3f dp2 = mesh.positions[triangle.v[2]] - mesh.positions[triangle.v[0]];
+        const float inverse = 1.0f / (duv1.x * duv2.y - duv1.y * duv2.x);
+        hit.dpdu = (dp1 * duv2.y - dp2 * duv1.y) * inverse;
+        hit.dpdv = (dp2 * duv1.x - dp1 * duv2.x) * inverse;
+        const float u2 = hit.dpdu.length2(), v2 = hit.dpdv.length2();
+        if (std::isfinite(u2) && std::isfinite(v2) && u2 > 0.0f && v2 > 0.0f) return;
+    }
+    const Frame frame(hit.ng);
+    hit.dpdu = frame.s;
+    hit.dpdv = frame.t;
+}
+
+/// `b1`, `b2` are the barycentric weights of the second and third corner.
+void completeHit(const TriangleMesh& mesh, float b1, float b2, SurfaceHit& hit) {
+    const Triangle& triangle = mesh.triangles[hit.face];
+    const float b0 = 1.0f - b1 - b2;
+    const auto blend = [&](const auto& values) {
+        return values[triangle.v[0]] * b0 + values[triangle.v[1]] * b1 + values[triangle.v[2]] * b2;
+    };
+    hit.material = mesh.materials.empty() ? 0 : mesh.materials[hit.face];
+    hit.position = blend(mesh.positions);
+    hit.ng = mesh.faceNormal(hit.face);
+    hit.ns = hit.ng;
+    hit.uv = mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs);
+    setTangents(mesh, triangle, hit);
+    if (!mesh.smooth || mesh.normals.empty()) return;
+    const Vec3f normal = blend(mesh.normals);
+    const float length = normal.length();
+    if (length > 0.0f && std::isfinite(length)) hit.ns = normal / length;
+}
+
+// --- spheres and disks: Embree calls back for each candidate
+
+RTCBounds boundsAround(const Vec3f& centre, const Vec3f& extent) {
+    Vec3f lower, upper;
+    for (int axis = 0; axis < 3; ++axis) {
+        lower[axis] = std::nextafter(centre[axis] - extent[axis], -Infinity);
+        upper[axis] = std::nextafter(centre[axis] + extent[axis], Infinity);
+    }
+    return {lower.x, lower.y, lower.z, 0.0f, upper.x, upper.y, upper.z, 0.0f};
+}
+
+RTCBounds boundsOf(const Sphere& sphere) {
+    return boundsAround(sphere.centre, Vec3f(sphere.radius));
+}
+
+RTCBounds boundsOf(const Disk& disk) {
+    const Vec3f& n = disk.frame.n;
+    // Half extents R sqrt(1 - n_k^2), a little larger for rounding.
+    const auto half = [&](float c) { return disk.radius * (std::sqrt(std::max(1.0f - c * c, 0.0f)) + 1e-5f); };
+    return boundsAround(disk.centre, {half(n.x), half(n.y), half(n.z)});
+}
+
+template <typename Analytic>
+void boundsCallback(const RTCBoundsFunctionArguments* args) {
+    *args->bounds_o = boundsOf(*static_cast<const Analytic*>(args->geometryUserPtr));
+}
+
+float intersectRay(const auto& shape, const RTCRay& ray) {
+    return intersectShape(shape, {ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tnear,
+                          ray.tfar);
+}
+
+// Only single rays are traced (N = 1), so the packets are plain structs.
+template <typename Analytic>
+void intersectCallback(const RTCIntersectFunctionNArguments* args) {
+    if (args->N != 1 || !args->valid[0]) return;
+    auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const float t = intersectRay(*static_cast<const Analytic*>(args->geometryUserPtr), query.ray);
+    if (t < 0.0f) return;
+    query.ray.tfar = t;
+    query.hit.geomID = args->geomID;
+    query.hit.primID = args->primID;
+    query.hit.instID[0] = args->context->instID[0];
+}
+
+template <typename Analytic>
+void occludedCallback(const RTCOccludedFunctionNArguments* args) {
+    if (args->N != 1 || !args->valid[0]) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    if (intersectRay(*static_cast<const Analytic*>(args->geometryUserPtr), ray) >= 0.0f) ray.tfar = -Infinity;
+}
+
+template <typename Analytic>
+RTCGeometry makeAnalytic(RTCDevice device, const Analytic& shape) {
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, const_cast<Analytic*>(&shape));
+    rtcSetGeometryBoundsFunction(
+        geometry, [](const RTCBoundsFunctionArguments* args) { boundsCallback<Analytic>(args); }, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, intersectCallback<Analytic>);
+    rtcSetGeometryOccludedFunction(geometry, occludedCallback<Analytic>);
+    return geometry;
+}
+
+RTCGeometry makeGeometry(RTCDevice device, const Shape& shape) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape))
+        return mesh->triangles.empty() || mesh->positions.empty() ? nullptr : makeTriangles(device, *mesh);
+    if (const auto* sphere = std::get_if<Sphere>(&shape))
+        return sphere->radius > 0.0f ? makeAnalytic(device, *sphere) : nullptr;
+    const Disk& disk = std::get<Disk>(shape);
+    return disk.radius > 0.0f ? makeAnalytic(device, disk) : nullptr;
+}
+
+/// The open interval (tMin, tMax) as the closest closed one; Embree needs tnear >= 0, and denormals may be flushed.
+RTCRay embreeRay(const Ray& ray) {
+    RTCRay out{};
+    out.org_x = ray.origin.x;
+    out.org_y = ray.origin.y;
+    out.org_z = ray.origin.z;
+    out.dir_x = ray.direction.x;
+    out.dir_y = ray.direction.y;
+    out.dir_z = ray.direction.z;
+    out.tnear = std::max(std::nextafter(ray.tMin, Infinity), std::numeric_limits<float>::min());
+    out.tfar = std::nextafter(ray.tMax, -Infinity);
+    out.mask = ~0u;
+    return out;
+}
+
+} // namespace
+
+SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes) : shapes_(shapes) {
+    device_ = rtcNewDevice(nullptr);
+    if (!device_) throw std::runtime_error("Embree: no device");
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+        const RTCGeometry geometry = makeGeometry(device_, *shapes_[i]);
+        if (!geometry) continue;
+        if (const auto* mesh = std::get_if<TriangleMesh>(shapes_[i])) triangleCount_ += mesh->triangles.size();
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene_, geometry, unsigned(i));
+        rtcReleaseGeometry(geometry);
+    }
+    rtcCommitScene(scene_);
+    requireNoError(device_);
+    RTCBounds bounds{};
+    rtcGetSceneBounds(scene_, &bounds);
+    if (bounds.lower_x > bounds.upper_x) return; // nothing in it
+    boundsMin_ = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
+    boundsMax_ = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
+}
+
+SceneGeometry::~SceneGeometry() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+}
+
+std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
+    RTCRayHit query{};
+    query.ray = embreeRay(ray);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    SurfaceHit hit;
+    hit.t = query.ray.tfar;
+    hit.shape = query.hit.geomID;
+    hit.face = query.hit.primID;
+    const Shape& shape = *shapes_[hit.shape];
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape))
+        completeHit(*mesh, query.hit.u, query.hit.v, hit);
+    else if (const auto* sphere = std::get_if<Sphere>(&shape))
+        completeHit(*sphere, ray, hit);
+    else
+        completeHit(std::get<Disk>(shape), ray, hit);
+    return hit;
+}
+
+bool SceneGeometry::occluded(const Ray& ray) const {
+    RTCRay query = embreeRay(ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_, &context, &query);
+    return query.tfar < 0.0f;
+}
+
+} // namespace tungsten
