@@ -1,27 +1,12 @@
-// Bitmaps: decoding through stb, OpenEXR and the film room's PFM reader; lookups as the scene format defines them.
+// Lookups in bitmaps, as the scene format defines them.
 
-#include "tungsten/core/Errors.h"
-#include "tungsten/film/ImageIo.h"
 #include "tungsten/texture/Texture.h"
-
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
 
 #include <array>
 
 namespace tungsten {
 
 namespace {
-
-constexpr int64_t MostTexels = int64_t(1) << 28;
 
 /// 8-bit colours are linearised to 8 bits again, by truncation: a rule of the format.
 const std::array<float, 256>& linearised() {
@@ -32,12 +17,6 @@ const std::array<float, 256>& linearised() {
         return values;
     }();
     return table;
-}
-
-std::string lowerExtension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
 }
 
 int wrap(int i, int size, bool clamp) {
@@ -59,7 +38,7 @@ auto blend(const Bitmap& bitmap, const Vec2f& uv, Fetch fetch) {
         return fetch(size_t(wrap(row, bitmap.height, bitmap.clamp)) * size_t(bitmap.width) +
                      size_t(wrap(column, bitmap.width, bitmap.clamp)));
     };
-    if (!bitmap.interpolate) return texel(int(x), int(y));
+    if (!bitmap.interpolates()) return texel(int(x), int(y));
     const float fx = x - 0.5f, fy = y - 0.5f;
     const int column = int(std::floor(fx)), row = int(std::floor(fy));
     const float wx = fx - std::floor(fx), wy = fy - std::floor(fy);
@@ -80,61 +59,19 @@ float texelScalar(const Bitmap& bitmap, size_t i) {
     return float((texel[0] + texel[1] + texel[2]) / 3) / 255.0f;
 }
 
-void loadThroughFilm(const std::filesystem::path& file, Bitmap& bitmap) {
-    const Image image = lowerExtension(file) == ".exr" ? readExr(file) : readPfm(file);
-    bitmap.width = image.width;
-    bitmap.height = image.height;
-    bitmap.channels = 3;
-    bitmap.hdr.reserve(image.pixels.size() * 3);
-    for (const Rgb& pixel : image.pixels) bitmap.hdr.insert(bitmap.hdr.end(), {pixel.x, pixel.y, pixel.z});
-}
-
-void loadThroughStb(const std::filesystem::path& file, Bitmap& bitmap) {
-    const auto fail = [&](const std::string& why) -> InputError { return {file.string(), "not a readable image: " + why}; };
-    if (!stbi_info(file.c_str(), &bitmap.width, &bitmap.height, &bitmap.channels)) throw fail(stbi_failure_reason());
-    if (bitmap.width <= 0 || bitmap.height <= 0 || int64_t(bitmap.width) * bitmap.height > MostTexels)
-        throw fail("absurd size " + std::to_string(bitmap.width) + "x" + std::to_string(bitmap.height));
-    const size_t texels = size_t(bitmap.width) * size_t(bitmap.height);
-    int width = 0, height = 0, channels = 0;
-    if (stbi_is_hdr(file.c_str())) {
-        const std::unique_ptr<float, void (*)(void*)> pixels(stbi_loadf(file.c_str(), &width, &height, &channels, 3),
-                                                             stbi_image_free);
-        if (!pixels || width != bitmap.width || height != bitmap.height) throw fail("corrupt or truncated");
-        bitmap.hdr.assign(pixels.get(), pixels.get() + 3 * texels);
-    } else {
-        const std::unique_ptr<uint8_t, void (*)(void*)> pixels(stbi_load(file.c_str(), &width, &height, &channels, 4),
-                                                               stbi_image_free);
-        if (!pixels || width != bitmap.width || height != bitmap.height) throw fail("corrupt or truncated");
-        bitmap.ldr.assign(pixels.get(), pixels.get() + 4 * texels);
-    }
-    const std::string extension = lowerExtension(file);
-    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") bitmap.channels = 4; // so their decoders report
-}
-
 } // namespace
 
-std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) throw InputError(file.string(), "no such image file");
-    auto bitmap = std::make_shared<Bitmap>();
-    const std::string extension = lowerExtension(file);
-    if (extension == ".exr" || extension == ".pfm") loadThroughFilm(file, *bitmap);
-    else loadThroughStb(file, *bitmap);
-    return bitmap;
-}
-
-// The format's nearest-texel lookups leave out the scale.
 Rgb Bitmap::rgb(const Vec2f& uv) const {
-    return blend(*this, uv, [this](size_t i) { return texelRgb(*this, i); }) * (interpolate ? scale : 1.0f);
+    return blend(*this, uv, [this](size_t i) { return texelRgb(*this, i); }) * appliedScale();
 }
 
 float Bitmap::scalar(const Vec2f& uv) const {
-    return blend(*this, uv, [this](size_t i) { return texelScalar(*this, i); }) * (interpolate ? scale : 1.0f);
+    return blend(*this, uv, [this](size_t i) { return texelScalar(*this, i); }) * appliedScale();
 }
 
 float Bitmap::alpha(const Vec2f& uv) const {
     if (channels != 4 || ldr.empty()) return scalar(uv);
-    return blend(*this, uv, [this](size_t i) { return float(ldr[4 * i + 3]) / 255.0f; }) * (interpolate ? scale : 1.0f);
+    return blend(*this, uv, [this](size_t i) { return float(ldr[4 * i + 3]) / 255.0f; }) * appliedScale();
 }
 
 Rgb Bitmap::maximum() const {
@@ -143,7 +80,7 @@ Rgb Bitmap::maximum() const {
         const Rgb texel = texelRgb(*this, i);
         for (int c = 0; c < 3; ++c) largest[c] = std::max(largest[c], texel[c]);
     }
-    return largest * (interpolate ? scale : 1.0f);
+    return largest * appliedScale();
 }
 
 Rgb Bitmap::average() const {
@@ -154,7 +91,7 @@ Rgb Bitmap::average() const {
         sum += Imath::Color3<double>(texel.x, texel.y, texel.z);
     }
     sum /= double(texels);
-    return Rgb(float(sum.x), float(sum.y), float(sum.z)) * (interpolate ? scale : 1.0f);
+    return Rgb(float(sum.x), float(sum.y), float(sum.z)) * appliedScale();
 }
 
 } // namespace tungsten

@@ -5,9 +5,10 @@ namespace tungsten {
 namespace {
 
 const Rgb& checkerColor(const CheckerTexture& checker, const Vec2f& uv) {
-    const auto cell = [](float coordinate, int count) { return int64_t(std::floor(coordinate * float(count))); };
-    const bool on = ((cell(uv.x, checker.resU) ^ cell(uv.y, checker.resV)) & 1) != 0;
-    return on ? checker.onColor : checker.offColor;
+    const auto isOdd = [](float coordinate, int count) {
+        return std::fmod(std::floor(coordinate * float(count)), 2.0f) != 0.0f;
+    };
+    return isOdd(uv.x, checker.resU) != isOdd(uv.y, checker.resV) ? checker.onColor : checker.offColor;
 }
 
 } // namespace
@@ -18,7 +19,8 @@ Rgb Texture::lookupRgb(const Vec2f& uv) const {
 }
 
 float Texture::lookupScalar(const Vec2f& uv) const {
-    if (const auto* checker = std::get_if<CheckerTexture>(&model)) return meanComponent(checkerColor(*checker, uv) * factor);
+    if (const auto* checker = std::get_if<CheckerTexture>(&model))
+        return meanComponent(checkerColor(*checker, uv) * factor);
     return std::get<BitmapTexture>(model).bitmap->scalar(uv) * meanComponent(factor);
 }
 
@@ -39,7 +41,10 @@ Rgb Texture::average() const {
     if (const auto* constant = std::get_if<ConstantTexture>(&model)) return constant->value;
     if (const auto* bitmap = std::get_if<BitmapTexture>(&model)) return bitmap->bitmap->average() * factor;
     const auto& checker = std::get<CheckerTexture>(model);
-    return (checker.onColor + checker.offColor) * 0.5f * factor;
+    // Cells are on where column + row is odd: half of them, rounded down.
+    const int64_t cells = int64_t(checker.resU) * checker.resV;
+    const float on = cells > 0 ? float(double(cells / 2) / double(cells)) : 0.0f;
+    return (checker.onColor * on + checker.offColor * (1.0f - on)) * factor;
 }
 
 Texture Texture::scaled(const Rgb& by) const {
