@@ -18,7 +18,7 @@ std::vector<float> faceAreas(const Shape& shape) {
 }
 
 SurfaceSample sampleOn(const TriangleMesh& mesh, const Distribution1D& triangles, const Vec2f& u) {
-    if (mesh.triangles.empty()) return {};
+    if (mesh.triangles.empty()) return {Vec3f(0.0f), Vec3f(0.0f, 1.0f, 0.0f), Vec2f(0.0f)};
     const auto chosen = triangles.sample(u.x);
     const Triangle& triangle = mesh.triangles[chosen.index];
     const Vec2f b = warp::squareToTriangle({chosen.remapped, u.y});

@@ -41,10 +41,12 @@ void requirePlausibleSize(int64_t width, int64_t height, size_t fileBytes, const
                                             " bytes can hold, or than the " + std::to_string(MostTexels) + " accepted");
 }
 
-float finiteOrLargest(float value) {
-    constexpr float LargestHalf = 65504.0f;
+/// Keeps sums and squares of texels finite.
+float finiteTexel(float value) {
+    constexpr float LargestHalf = 65504.0f, LargestTexel = 1e18f;
     if (std::isnan(value)) return 0.0f;
-    return std::isinf(value) ? std::copysign(LargestHalf, value) : value;
+    if (std::isinf(value)) return std::copysign(LargestHalf, value);
+    return std::clamp(value, -LargestTexel, LargestTexel);
 }
 
 /// Bytes for stb. Remembers whether the decoder wanted more than there are: stb itself accepts many truncated files.
@@ -111,11 +113,43 @@ void loadThroughStb(std::string_view bytes, const std::filesystem::path& file, B
     }
 }
 
-void requirePlausibleExr(size_t fileBytes, const std::filesystem::path& file) {
+/// Walks over the attributes of an EXR file's headers: OpenEXR allocates what their sizes claim before it reads them.
+void requireSaneExrAttributes(std::string_view bytes, const std::filesystem::path& file) {
+    constexpr size_t HeaderStart = 8;
+    const auto fail = [&]() -> InputError {
+        return {file.string(), "not a readable EXR image: corrupt or truncated header"};
+    };
+    if (bytes.size() < HeaderStart) throw fail();
+    const bool multiPart = (static_cast<unsigned char>(bytes[5]) & 0x10) != 0;
+    size_t position = HeaderStart;
+    const auto skipName = [&] {
+        const size_t end = bytes.find('\0', position);
+        if (end == std::string_view::npos) throw fail();
+        const size_t length = end - position;
+        position = end + 1;
+        return length;
+    };
+    for (bool inHeaders = true; inHeaders;) {
+        size_t attributes = 0;
+        for (; skipName() > 0; ++attributes) {
+            skipName(); // the type
+            uint32_t size = 0;
+            if (bytes.size() - position < sizeof(size)) throw fail();
+            std::memcpy(&size, bytes.data() + position, sizeof(size));
+            position += sizeof(size);
+            if (size > bytes.size() - position) throw fail();
+            position += size;
+        }
+        inHeaders = multiPart && attributes > 0; // an empty header ends the list of parts
+    }
+}
+
+void requirePlausibleExr(std::string_view bytes, const std::filesystem::path& file) {
+    requireSaneExrAttributes(bytes, file);
     try {
         const auto window = Imf::MultiPartInputFile(file.c_str()).header(0).dataWindow();
         requirePlausibleSize(int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1,
-                             fileBytes, file);
+                             bytes.size(), file);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
@@ -151,14 +185,14 @@ std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file) {
                bytes.starts_with("Pf\r")) {
         copyImage(readPfm(file), *bitmap);
     } else if (bytes.starts_with("\x76\x2f\x31\x01")) {
-        requirePlausibleExr(bytes.size(), file);
+        requirePlausibleExr(bytes, file);
         copyImage(readExr(file), *bitmap);
     } else {
         loadThroughStb(bytes, file, *bitmap);
     }
     // The decoders of the format always deliver alpha for these two.
     if (bytes.starts_with("\x89PNG") || bytes.starts_with("\xff\xd8")) bitmap->channels = 4;
-    for (float& value : bitmap->hdr) value = finiteOrLargest(value);
+    for (float& value : bitmap->hdr) value = finiteTexel(value);
     return bitmap;
 }
 

@@ -1,0 +1,86 @@
+// Damaged mesh files: each loads or is an InputError; nothing crashes, hangs or allocates absurd sizes.
+
+#include "mesh_files.h"
+#include "support/LargestAllocation.h"
+#include "support/Mutations.h"
+#include "tungsten/core/Errors.h"
+#include "tungsten/geometry/SceneGeometry.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <sstream>
+
+namespace tungsten {
+namespace {
+
+using test::MeshFolder;
+
+constexpr unsigned MutationsPerFile = 300;
+
+std::string sampleObj() {
+    std::ostringstream out;
+    out << "# sample\nmtllib a.mtl\n";
+    for (int i = 0; i < 12; ++i) out << "v " << i % 3 << " " << 0.5 * i << " -1e" << i % 4 << "\n";
+    out << "vt 0.5 0.25\nvt 1 0 0\nvn 0 0 1\nvn 0 1 0\n";
+    for (int i = 1; i < 10; ++i) out << "f " << i << "/1/2 " << i + 1 << "//1 -1 " << i + 2 << "/2\n";
+    return out.str();
+}
+
+/// What rendering would do with a mesh, whatever is in it.
+void useMesh(TriangleMesh mesh) {
+    mesh.smooth = true;
+    TriangleMesh recomputed = mesh;
+    recomputeNormals(recomputed);
+    const std::vector<Shape> shapes{std::move(mesh), std::move(recomputed)};
+    const SceneGeometry geometry({&shapes[0], &shapes[1]});
+    for (const Vec3f& direction : {Vec3f(0, 0, 1), Vec3f(0.6f, 0.8f, 0)}) {
+        const auto hit = geometry.intersect({{0.25f, 0.25f, -10}, direction});
+        EXPECT_NEAR(hit ? hit->ng.length() : 1.0f, 1.0f, 1e-4f);
+    }
+    const SurfaceSample sample = AreaSampler(shapes[0]).sample(shapes[0], {0.3f, 0.7f});
+    EXPECT_FALSE(std::isnan(sample.normal.length()));
+}
+
+/// Loads all mutations of a file; returns how many were accepted.
+int fuzz(const MeshFolder& folder, const std::string& name, const std::string& original) {
+    useMesh(loadMesh(folder.write(name, original)));
+    int accepted = 0;
+    for (unsigned i = 0; i < MutationsPerFile; ++i) {
+        const auto file = folder.write(name, test::mutate(original, i));
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            useMesh(loadMesh(file));
+            ++accepted;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.problems().front().file, file.string());
+            EXPECT_FALSE(error.problems().front().message.empty());
+        } catch (const std::exception& error) {
+            ADD_FAILURE() << name << ", mutation " << i << ": " << error.what();
+        }
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << name << ", mutation " << i;
+    }
+    return accepted;
+}
+
+TEST(MeshFuzz, DamagedFilesLoadOrAreInputErrors) {
+    const MeshFolder folder;
+    const TriangleMesh pyramid = test::samplePyramid();
+    folder.write("beside.bin", test::gltfBuffer());
+    test::largestAllocation = 0;
+    int accepted = 0;
+    accepted += fuzz(folder, "a.wo3", test::wo3(pyramid));
+    accepted += fuzz(folder, "a.obj", sampleObj());
+    accepted += fuzz(folder, "ascii.ply", test::ply(pyramid, test::PlyEncoding::Ascii));
+    accepted += fuzz(folder, "little.ply", test::ply(pyramid, test::PlyEncoding::Little));
+    accepted += fuzz(folder, "big.ply", test::ply(pyramid, test::PlyEncoding::Big));
+    accepted += fuzz(folder, "a.glb", test::glb(test::gltfJson(), test::gltfBuffer()));
+    accepted += fuzz(folder, "a.gltf", test::gltfJson("beside.bin"));
+    // Both outcomes happen: the mutations are neither harmless nor all fatal.
+    EXPECT_GT(accepted, 50);
+    EXPECT_LT(accepted, int(7 * MutationsPerFile) - 500);
+    EXPECT_LT(test::largestAllocation, size_t(1) << 26); // bytes; the files have some hundred
+}
+
+} // namespace
+} // namespace tungsten

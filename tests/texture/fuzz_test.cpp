@@ -1,0 +1,88 @@
+// Damaged image files: each loads or is an InputError; nothing crashes, hangs or allocates absurd sizes.
+
+#include "image_files.h"
+#include "support/LargestAllocation.h"
+#include "support/Mutations.h"
+#include "tungsten/core/Errors.h"
+#include "tungsten/film/ImageIo.h"
+#include "tungsten/texture/Texture.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <iterator>
+
+namespace tungsten {
+namespace {
+
+using test::ImageFolder;
+using test::Texel;
+
+constexpr unsigned MutationsPerFile = 300;
+
+long peakKilobytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
+void useBitmap(const std::shared_ptr<Bitmap>& bitmap) {
+    const Texture texture{std::shared_ptr<const Bitmap>(bitmap)};
+    for (const Vec2f& uv : {Vec2f(0.1f, 0.9f), Vec2f(1.0f, 1.0f), Vec2f(0.0f, 0.0f)}) {
+        EXPECT_TRUE(isFinite(texture.rgb(uv)));
+        EXPECT_TRUE(std::isfinite(texture.alpha(uv) + texture.scalar(uv) + texture.derivatives(uv).length()));
+    }
+}
+
+int fuzz(const ImageFolder& folder, const std::string& name, const std::string& original) {
+    useBitmap(loadBitmap(folder.write(name, original)));
+    int accepted = 0;
+    for (unsigned i = 0; i < MutationsPerFile; ++i) {
+        const auto file = folder.write(name, test::mutate(original, i));
+        const auto start = std::chrono::steady_clock::now();
+        try {
+            useBitmap(loadBitmap(file));
+            ++accepted;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.problems().front().file, file.string());
+        } catch (const std::exception& error) {
+            ADD_FAILURE() << name << ", mutation " << i << ": " << error.what();
+        }
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << name << ", mutation " << i;
+    }
+    return accepted;
+}
+
+TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
+    const ImageFolder folder;
+    std::vector<Texel> texels;
+    std::vector<float> values;
+    Image image(16, 8);
+    for (int i = 0; i < 128; ++i) {
+        texels.push_back({uint8_t(2 * i), uint8_t(255 - i), uint8_t(i * i), uint8_t(128 + i / 8)});
+        image.pixels[size_t(i)] = Rgb(float(i), 0.5f, 1.0f / float(i + 1));
+        for (int c = 0; c < 3; ++c) values.push_back(image.pixels[size_t(i)][c]);
+    }
+    writeExr(folder.path("sample.exr"), {{"", image, {}, false, 0, 0}});
+    std::ifstream in(folder.path("sample.exr"), std::ios::binary);
+    const std::string exr((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    test::largestAllocation = 0;
+    int accepted = 0;
+    accepted += fuzz(folder, "a.png", test::png(16, 8, texels, 4));
+    accepted += fuzz(folder, "b.png", test::png(16, 8, texels, 3));
+    accepted += fuzz(folder, "a.tga", test::tga(16, 8, texels, true));
+    accepted += fuzz(folder, "rle.tga", test::tgaRle(16, {texels.begin(), texels.begin() + 8}));
+    accepted += fuzz(folder, "a.pfm", test::pfm(16, 8, values));
+    accepted += fuzz(folder, "a.hdr", test::radiance(16, 8, texels));
+    accepted += fuzz(folder, "a.exr", exr);
+    EXPECT_GT(accepted, 50);
+    EXPECT_LT(accepted, int(7 * MutationsPerFile) - 500);
+    EXPECT_LT(test::largestAllocation, size_t(1) << 28); // bytes
+#ifndef __SANITIZE_ADDRESS__
+    EXPECT_LT(peakKilobytes(), 1L << 20);
+#endif
+}
+
+} // namespace
+} // namespace tungsten
