@@ -11,13 +11,15 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     settings.includeSurfaces = block.flag("include_surfaces", true);
     settings.russianRoulette = block.flag("enable_rr", !timeResolved);
     if (scene.transport.gate.delta)
-        block.problem("delta_time_gate", "a path tracer meets a delta gate with probability zero; give the gate a width");
+        block.problem("delta_time_gate",
+                      "a path tracer meets a delta gate with probability zero; give the gate a width");
     for (const char* guided : {"enable_guiding", "enable_elliptical"})
         if (block.flag(guided, false)) block.warn(guided, "the path tracer samples distances and directions plainly");
     for (const Emitter& emitter : scene.emitters)
         if (emitter.isDelta())
-            block.warn("type", "the emitter '" + emitter.name +
-                                   "' shines in a single direction, which a path tracer cannot find: it lights nothing");
+            block.warn("type",
+                       "the emitter '" + emitter.name +
+                           "' shines in a single direction, which a path tracer cannot find: it lights nothing");
     return settings;
 }
 

@@ -7,10 +7,10 @@
 namespace tungsten::path {
 
 struct PathSettings {
-    bool lightSampling = true;        ///< connect surface vertices to emitters
-    bool volumeLightSampling = true;  ///< connect medium vertices to emitters
-    bool lowOrderScattering = true;   ///< false: nothing from paths with exactly one medium scatter
-    bool includeSurfaces = true;      ///< false: nothing that reaches surfaces without a medium scatter
+    bool lightSampling = true;       ///< connect surface vertices to emitters
+    bool volumeLightSampling = true; ///< connect medium vertices to emitters
+    bool lowOrderScattering = true;  ///< false: nothing from paths with exactly one medium scatter
+    bool includeSurfaces = true;     ///< false: nothing that reaches surfaces without a medium scatter
     bool russianRoulette = true;
 };
 

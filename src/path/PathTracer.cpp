@@ -27,7 +27,8 @@ PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& s
 
 void PathTracer::plan(EffectPlan& plan) const {
     plan.describe("Russian roulette", settings_.russianRoulette,
-                  settings_.russianRoulette ? "enable_rr, or its default in steady state" : "off by default in time-resolved renders");
+                  settings_.russianRoulette ? "enable_rr, or its default in steady state"
+                                            : "off by default in time-resolved renders");
 }
 
 void PathTracer::prepare(const EffectPlan& plan, Statistics&) {
@@ -53,7 +54,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
         PixelSink sink(film, scene_->transport.gate, x, y, pass.samples, counters);
         for (uint32_t s = 0; s < pass.samples; ++s) {
             // Keyed by the absolute sample: the image does not depend on how samples are cut into passes.
-            Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample + s), size_t(y) * width + size_t(x));
+            Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample + s),
+                            size_t(y) * width + size_t(x));
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = camera.generateRay({x, y}, uFilter, uLens);
             PathWalk<TimeResolved, Media>(context, sink, counters, sampler).run(ray);

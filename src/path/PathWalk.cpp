@@ -165,15 +165,16 @@ void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction&
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addConnection(const Emitter& emitter, const DirectSample& light, float lightProbability,
-                                                  const Rgb& scattering, float directionPdf, const Vec3f& origin,
-                                                  bool fromSurface, const Region& region) {
-    const Visibility visibility = traceVisibility(scene_, origin, fromSurface, light.direction, light.distance, emitter.isArea(),
-                                                  region, counters_.shadowRays);
+void PathWalk<TimeResolved, Media>::addConnection(const Emitter& emitter, const DirectSample& light,
+                                                  float lightProbability, const Rgb& scattering, float directionPdf,
+                                                  const Vec3f& origin, bool fromSurface, const Region& region) {
+    const Visibility visibility = traceVisibility(scene_, origin, fromSurface, light.direction, light.distance,
+                                                  emitter.isArea(), region, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !rendered(interactions_ + visibility.crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
     const float weight = light.pdf > 0.0f ? powerHeuristic(light.pdf * lightProbability, directionPdf) : 1.0f;
-    const Rgb radiance = throughput_ * scattering * light.weight * visibility.transmittance * (weight / lightProbability);
+    const Rgb radiance =
+        throughput_ * scattering * light.weight * visibility.transmittance * (weight / lightProbability);
     sink_.add(radiance, time_ + visibility.time + emitter.emissionTime);
 }
 

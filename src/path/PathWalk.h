@@ -16,8 +16,8 @@ struct WalkContext {
     const LightChoice& lights;
 };
 
-/// Traces one camera path and adds what it finds to the sink. The two flags choose a specialised loop: `TimeResolved` off leaves out
-/// every clock, `Media` off every free flight.
+/// Traces one camera path and adds what it finds to the sink. The two flags choose a specialised loop: `TimeResolved`
+/// off leaves out every clock, `Media` off every free flight.
 template <bool TimeResolved, bool Media>
 class PathWalk {
   public:
@@ -35,7 +35,8 @@ class PathWalk {
     void addEnvironment();
     void connectFromMedium(const Medium& medium);
     void connectFromSurface(const SurfaceInteraction& surface);
-    /// Adds light through a connection whose scattering value (cosine included) and density of the walk's own sampling are given.
+    /// Adds light through a connection whose scattering value (cosine included) and density of the walk's own sampling
+    /// are given.
     void addConnection(const Emitter& emitter, const DirectSample& light, float lightProbability, const Rgb& scattering,
                        float directionPdf, const Vec3f& origin, bool fromSurface, const Region& region);
     bool continueRoulette();
@@ -60,12 +61,13 @@ class PathWalk {
     Ray ray_;
     Region region_;
     Rgb throughput_{1.0f};
-    double time_ = 0.0;      ///< from the sensor so far
+    double time_ = 0.0; ///< from the sensor so far
     int interactions_ = 0;
-    int flights_ = 0;        ///< distances sampled in media since the last surface
+    int flights_ = 0; ///< distances sampled in media since the last surface
     int mediumScatters_ = 0;
     bool scattered_ = false; ///< a smooth vertex exists: the camera side of the path is over
-    /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while specular.
+    /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while
+    /// specular.
     bool weighted_ = false;
     float directionPdf_ = 0.0f;
     Vec3f vertex_;

@@ -23,7 +23,10 @@ std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::stri
 Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const std::string& field,
                        const std::string& file, bool gammaCorrect, bool interpolate, bool clamp, float scale) {
     try {
-        return Texture(cachedBitmap(context, file, gammaCorrect, interpolate, clamp, scale));
+        const auto bitmap = cachedBitmap(context, file, gammaCorrect, interpolate, clamp, scale);
+        if (bitmap->placeholder)
+            owner.warn(field, "'" + file + "' is a git-lfs placeholder: the picture was not fetched, a checker stands for it");
+        return Texture(bitmap);
     } catch (const InputError& error) {
         owner.problem(field, error.what());
         return Texture(0.5f);

@@ -1,0 +1,32 @@
+#pragma once
+// Which photons can still be seen inside the time gate.
+
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/scene/Scene.h"
+
+namespace tungsten::photon {
+
+/// Exact tests by time of flight: what they reject can contribute to no pixel of any frame.
+class ArrivalTest {
+  public:
+    ArrivalTest(const Scene& scene, const EffectPlan& plan);
+
+    /// A deposit at `position` and `time` may be gathered. In direct view (one straight segment chain at one speed from
+    /// one point) its arrival is known exactly; otherwise only what arrives too late can be dropped.
+    [[nodiscard]] bool mayCount(const Vec3f& position, double time) const;
+    /// A light path that has got to `position` at `time` may still contribute.
+    [[nodiscard]] bool mayContinue(const Vec3f& position, double time) const;
+    [[nodiscard]] bool directView() const { return directView_; }
+
+  private:
+    [[nodiscard]] double soonestArrival(const Vec3f& position, double time) const;
+
+    TimeGate gate_;
+    bool directView_ = false;
+    bool unwarped_ = false;
+    Vec3d camera_{0, 0, 0};
+    double slack_ = 0.0; ///< distance by which sensor rays can start nearer than the camera's position
+    double highestSpeed_ = 1.0;
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,63 @@
+#include "photon/PhotonIntegrator.h"
+
+#include "photon/ProgressiveSchedule.h"
+#include "photon/SensorPass.h"
+
+namespace tungsten::photon {
+
+PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
+    : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
+
+void PhotonIntegrator::plan(EffectPlan& plan) const {
+    const bool surfaces = settings_.includeSurfaces && plan.surfaceScattering;
+    plan.describe("volume photon points", plan.mediumScattering,
+                  plan.mediumScattering ? "a medium scatters"
+                                        : "no medium scatters: no volume photon is stored or gathered");
+    plan.describe("surface photons", surfaces,
+                  surfaces
+                      ? "smooth surfaces are gathered"
+                      : (settings_.includeSurfaces ? "no surface has a smooth lobe" : "include_surfaces is false"));
+    const bool direct = ArrivalTest(*scene_, plan).directView();
+    plan.describe(
+        "exact arrival culling", direct && plan.timeResolved,
+        !plan.timeResolved ? "steady state: every photon counts"
+        : direct           ? "direct view: photons that arrive outside the gate are not stored"
+                 : "sensor paths can fold, change speed or start at many points: photons are tested when gathered");
+}
+
+void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
+    photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
+}
+
+std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
+    const float factor = pointRadiusFactor(pass, settings_.volumeAlpha);
+    if (settings_.fixedVolumeRadius) return {settings_.volumeRadius * factor};
+    std::vector<float> radii = adaptiveRadii(store.photons);
+    // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
+    for (float& radius : radii) radius *= std::sqrt(factor);
+    return radii;
+}
+
+void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
+    // Without progression every pass looks at the photons of the first.
+    PassInfo photons = pass;
+    if (!settings_.progressive) photons.index = 0;
+    PhotonMaps maps;
+    {
+        const StageTimer timer(statistics, "photon pass");
+        maps = photonPass_->trace(photons, statistics);
+    }
+    GatherStructures structures{maps, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces};
+    {
+        const StageTimer timer(statistics, "build");
+        if (!maps.volume.photons.empty())
+            structures.points =
+                std::make_unique<PointGather>(*scene_, maps.volume, volumeRadii(maps.volume, photons.index));
+        if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
+        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
+    }
+    const StageTimer timer(statistics, "sensor pass");
+    renderSensorPass(*scene_, structures, pass, film, statistics);
+}
+
+} // namespace tungsten::photon

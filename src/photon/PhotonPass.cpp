@@ -1,0 +1,81 @@
+#include "photon/PhotonPass.h"
+
+#include "photon/PhotonWalk.h"
+
+#include <tbb/parallel_for.h>
+
+namespace tungsten::photon {
+
+namespace {
+
+constexpr uint64_t PathsPerBatch = 1024;
+constexpr uint64_t BatchesPerWave = 32; ///< traced in parallel, then appended in order
+
+/// What one batch of consecutive paths deposits, with each path's share.
+struct Batch {
+    DepositList surface, volume;
+    WalkCounters counters;
+};
+
+Distribution1D powerDistribution(const Scene& scene) {
+    std::vector<float> powers;
+    for (const Emitter& emitter : scene.emitters) powers.push_back(meanComponent(emitterPower(emitter)));
+    return Distribution1D(powers);
+}
+
+/// Appends the batch path by path until the store is full.
+void append(PhotonStore& store, const DepositList& deposits, uint64_t capacity) {
+    if (store.full) return;
+    size_t start = 0;
+    for (const uint32_t end : deposits.pathEnds) {
+        if (store.photons.size() + (end - start) > capacity) {
+            store.full = true;
+            return;
+        }
+        store.photons.insert(store.photons.end(), deposits.photons.begin() + ptrdiff_t(start),
+                             deposits.photons.begin() + ptrdiff_t(end));
+        ++store.paths;
+        start = end;
+    }
+}
+
+} // namespace
+
+PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
+    : scene_(scene), settings_(settings), arrival_(scene, plan), emitters_(powerDistribution(scene)),
+      storeVolume_(plan.mediumScattering), storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {}
+
+PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const {
+    PhotonMaps maps;
+    maps.surface.full = !storeSurface_;
+    maps.volume.full = !storeVolume_;
+    uint64_t traced = 0;
+    while (traced < settings_.photonCount && !(maps.surface.full && maps.volume.full)) {
+        const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
+        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
+        const WalkContext context{scene_, settings_, arrival_, emitters_, !maps.surface.full, !maps.volume.full};
+        tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
+            Batch& batch = batches[b];
+            for (uint64_t path = first; path < last; ++path) {
+                PhotonWalk(context, {pass.seed, RandomStream::Photon, pass.index, path}, batch.surface, batch.volume,
+                           batch.counters)
+                    .run();
+                batch.surface.endPath();
+                batch.volume.endPath();
+            }
+        });
+        for (const Batch& batch : batches) {
+            append(maps.surface, batch.surface, settings_.photonCount);
+            append(maps.volume, batch.volume, settings_.volumePhotonCount);
+            statistics.add("rays", batch.counters.rays);
+        }
+        traced += wave;
+    }
+    statistics.add("photons", traced);
+    statistics.add("stored surface photons", maps.surface.photons.size());
+    statistics.add("stored volume photons", maps.volume.photons.size());
+    return maps;
+}
+
+} // namespace tungsten::photon

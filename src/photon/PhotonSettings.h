@@ -1,0 +1,26 @@
+#pragma once
+// Settings of the photon-map integrators' block (scene format, section 10.2).
+
+#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/scene/Scene.h"
+
+namespace tungsten::photon {
+
+struct PhotonSettings {
+    uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
+    uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store
+    uint32_t gatherCount = 20;            ///< nearest surface photons used
+    float gatherRadius = 1e30f;           ///< largest distance of a gathered surface photon
+    float volumeRadius = 1e30f;           ///< radius of the point kernel, when fixed
+    bool fixedVolumeRadius = false;       ///< false: the radius follows the photons' density
+    bool lowOrderScattering = true;       ///< false: no photon on the first medium vertex after a light or surface
+    bool includeSurfaces = true;          ///< false: no surface photons, no visible emission
+    bool progressive = true;
+    float alpha = 0.3f;       ///< surface radius reduction
+    float volumeAlpha = 0.3f; ///< volume radius reduction
+};
+
+/// Reads the block; problems and warnings go to the reader's diagnostics.
+PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene, bool progressive);
+
+} // namespace tungsten::photon

@@ -1,0 +1,31 @@
+#pragma once
+// Photons of one pass, and how many light paths they stand for.
+
+#include "tungsten/core/Types.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace tungsten::photon {
+
+/// A photon deposited in a medium (power after the collision, albedo included) or on a surface.
+struct Photon {
+    Vec3f position;
+    Vec3f direction; ///< of propagation, before the deposit
+    Rgb power;       ///< of one path; the store's `scale` still divides it by the number of paths
+    double time;     ///< since the clock's zero: emission time plus time of flight
+    int32_t bounce;  ///< interactions from the light up to and including this one
+    int32_t medium;  ///< index of the medium (volume photons), -1 on surfaces
+};
+
+/// Photons in path order, so the content does not depend on the number of threads. A store takes whole paths: it is
+/// full when the next path no longer fits, and that path is neither kept nor counted.
+struct PhotonStore {
+    std::vector<Photon> photons;
+    uint64_t paths = 0; ///< light paths that the content stands for
+    bool full = false;
+
+    [[nodiscard]] float scale() const { return paths > 0 ? float(1.0 / double(paths)) : 0.0f; }
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,82 @@
+#include "photon/PhotonWalk.h"
+
+namespace tungsten::photon {
+
+void PhotonWalk::run() {
+    if (!emit()) return;
+    // A photon with bounce b takes part in paths of at least b interactions.
+    while (bounce_ + 1 < scene_.transport.maxBounces) {
+        ++counters_.rays;
+        const auto hit = scene_.geometry->intersect(ray_);
+        if (const Medium* medium = scene_.medium(region_)) {
+            const float reach = hit ? hit->t : Infinity;
+            const FlightSample flight = sampleFlight(*medium, reach, sampler_);
+            power_ = power_ * flight.weight;
+            if (medium->scatters() && ++flights_ > medium->maxBounces) return;
+            if (!flight.exited) {
+                if (!scatterInMedium(*medium, flight.distance)) return;
+                continue;
+            }
+        }
+        if (!hit || !scatterOnSurface(*hit)) return;
+    }
+}
+
+bool PhotonWalk::emit() {
+    const auto chosen = context_.emitters.sample(sampler_.next1D());
+    const Emitter& emitter = scene_.emitters[chosen.index];
+    const Vec2f uPosition = sampler_.next2D();
+    const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());
+    power_ = emission.power / chosen.probability;
+    time_ = emitter.emissionTime;
+    region_ = scene_.regionOf(emitter);
+    ray_ = emission.ray;
+    ray_.tMin = emitter.isArea() ? scene_.rayEpsilon : 0.0f;
+    return !isBlack(power_) && context_.arrival.mayContinue(ray_.origin, time_);
+}
+
+void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
+    if (context_.arrival.mayCount(position, time_))
+        list.photons.push_back({position, ray_.direction, power, time_, bounce_, medium});
+}
+
+bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
+    const Vec3f position = ray_.at(distance);
+    time_ += double(distance) / double(region_.speed);
+    ++bounce_;
+    ++consecutiveMedium_;
+    if (!context_.arrival.mayContinue(position, time_)) return false;
+    const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
+    if (context_.storeVolume && orderCounts) deposit(volume_, position, power_, region_.medium);
+    ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
+    return true;
+}
+
+bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
+    time_ += double(hit.t) / double(region_.speed);
+    ++bounce_;
+    flights_ = 0;
+    consecutiveMedium_ = 0;
+    if (!context_.arrival.mayContinue(hit.position, time_)) return false;
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
+    if (context_.storeSurface && (surface.bsdf->lobes() & lobe::Smooth) != 0) {
+        const float shading = std::abs(ray_.direction.dot(surface.frame.n)),
+                    geometric = std::abs(ray_.direction.dot(hit.ng));
+        if (geometric > 0.0f) deposit(surface_, hit.position, power_ * (shading / geometric), -1);
+    }
+    const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
+    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Photons), surface.wi, random);
+    if (!sample) return false;
+    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
+    if (sample->lobe != lobe::Forward) {
+        if (!surface.consistent(direction, scene_.transport.consistencyChecks)) return false;
+        power_ = power_ * surface.photonShadingFactor(-ray_.direction, direction);
+    }
+    power_ = power_ * sample->weight;
+    if (isBlack(power_)) return false;
+    region_ = regionBeyond(*surface.primitive, hit, direction, region_);
+    ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
+    return true;
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,24 @@
+#pragma once
+// How gather radii shrink from pass to pass.
+
+#include <cmath>
+#include <cstdint>
+
+namespace tungsten::photon {
+
+/// gamma_i = prod_{k=1..i} (k + alpha) / (k + 1), pass i from 0: = Gamma(i+1+alpha) / (Gamma(1+alpha) Gamma(i+2)).
+inline double radiusScale(uint32_t pass, double alpha) {
+    const double i = double(pass);
+    return std::exp(std::lgamma(i + 1.0 + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(i + 2.0));
+}
+
+/// Surface radii shrink with the square root of gamma(alpha).
+inline float surfaceRadiusFactor(uint32_t pass, float alpha) {
+    return float(std::sqrt(radiusScale(pass, double(alpha))));
+}
+/// Volume point radii shrink with the cube root of gamma(volume_alpha): the published schedule, kept for its images.
+inline float pointRadiusFactor(uint32_t pass, float volumeAlpha) {
+    return float(std::cbrt(radiusScale(pass, double(volumeAlpha))));
+}
+
+} // namespace tungsten::photon

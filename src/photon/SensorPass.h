@@ -1,0 +1,24 @@
+#pragma once
+// The sensor pass: camera rays gather what the photon pass has left.
+
+#include "photon/NearestPhotons.h"
+#include "photon/PhotonPass.h"
+#include "photon/PointGather.h"
+
+namespace tungsten::photon {
+
+/// Structures over one pass's photons, and the pass's radii.
+struct GatherStructures {
+    const PhotonMaps& maps;
+    std::unique_ptr<PointGather> points;      ///< null when there is no volume photon
+    std::unique_ptr<NearestPhotons> surfaces; ///< null when there is no surface photon
+    float surfaceRadius = 0.0f;
+    uint32_t gatherCount = 0;
+    bool includeSurfaces = true;
+};
+
+/// Adds the image of every frame to the film's pass image.
+void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
+                      Statistics& statistics);
+
+} // namespace tungsten::photon
