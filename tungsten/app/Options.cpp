@@ -5,26 +5,43 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <iostream>
 
 namespace tungsten {
 
 namespace {
 
-constexpr const char* Version = "tungsten (darts-tungsten) 0.1.0";
+constexpr const char* Version = "tungsten (darts-tungsten) " TUNGSTEN_VERSION;
 
 double durationOption(const std::string& option, const std::string& text) {
     const auto seconds = parseDuration(text);
-    if (!seconds) throw UsageError(option + " " + text + ": expected a duration such as 90s, 5m, \"1h 30m\"; no unit means minutes");
+    if (!seconds)
+        throw UsageError(option + " " + text +
+                         ": expected a duration such as 90s, 5m, \"1h 30m\"; no unit means minutes");
     return std::max(*seconds, 0.0);
 }
 
 /// "WxH" as a scene override.
 std::string resolutionOverride(const std::string& text) {
     int width = 0, height = 0, used = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || size_t(used) != text.size() || width < 1 || height < 1)
+    if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || size_t(used) != text.size() || width < 1 ||
+        height < 1)
         throw UsageError("--resolution " + text + ": expected WIDTHxHEIGHT, such as 320x240");
     return "camera.resolution=[" + std::to_string(width) + "," + std::to_string(height) + "]";
+}
+
+/// Decimal, or hexadecimal after 0x.
+uint64_t seedOption(const std::string& text) {
+    const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+    const char *first = text.data() + (hexadecimal ? 2 : 0), *last = text.data() + text.size();
+    uint64_t seed = 0;
+    const auto [end, error] = std::from_chars(first, last, seed, hexadecimal ? 16 : 10);
+    if (error != std::errc() || end != last || first == last)
+        throw UsageError("--seed " + text + ": expected a whole number from 0 to 2^64 - 1, decimal or 0x...");
+    return seed;
 }
 
 /// The parser's message for an option nobody knows, with the nearest one that exists.
@@ -39,46 +56,73 @@ std::string explainUnknown(const CLI::App& app, const std::string& message) {
     return near.empty() ? message : message + "; did you mean " + near + "?";
 }
 
+/// The arguments, last first, as the parser takes them; "-t=4" becomes "-t" "4".
+std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
+    std::vector<std::string> arguments;
+    bool optionsEnded = false;
+    for (int i = 1; i < argc; ++i) {
+        const std::string argument = argv[i];
+        optionsEnded = optionsEnded || argument == "--";
+        if (!optionsEnded && argument.size() > 2 && argument[0] == '-' && std::isalpha(argument[1]) &&
+            argument[2] == '=') {
+            arguments.push_back(argument.substr(0, 2));
+            arguments.push_back(argument.substr(3));
+        } else {
+            arguments.push_back(argument);
+        }
+    }
+    std::reverse(arguments.begin(), arguments.end());
+    return arguments;
+}
+
 } // namespace
 
 std::optional<Options> parseOptions(int argc, const char* const* argv) {
     Options options;
-    std::string checkpoint, timeout, resolution, directory, ldr, hdr, statistics, timeCentre;
+    std::string checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre;
     int64_t spp = 0;
 
     CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
-                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice."};
+                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice.",
+                 "tungsten"};
     app.add_option("scenes", options.scenes, "scene files, rendered in sequence");
     app.set_version_flag("-v,--version", Version);
     app.add_option("-t,--threads", options.threads, "number of threads (default: all)")->check(CLI::Range(1, 1024));
     app.add_flag("-r,--restart", options.restart, "ignore a saved resume state");
-    app.add_option("-c,--checkpoint", checkpoint, "save images and a resume state every DURATION (no unit: minutes); resume from it");
-    app.add_option("-i,--input-directory", options.inputDirectory, "base of the scene's resources (default: the scene's folder)");
+    app.add_option("-c,--checkpoint", checkpoint,
+                   "save images and a resume state every DURATION (no unit: minutes); resume from it");
+    app.add_option("-i,--input-directory", options.inputDirectory,
+                   "base of the scene's resources (default: the scene's folder)");
     app.add_option("-d,--output-directory", directory, "base of every output file; created if missing");
     app.add_option("--spp", spp, "samples per pixel in total")->check(CLI::Range(int64_t(1), int64_t(1000000000000)));
     app.add_option("--timeout", timeout, "stop after DURATION of passes (no unit: minutes) and write what is there");
-    app.add_option("-s,--seed", options.seed, "seed of the random numbers (default 0xBA5EBA11)");
+    app.add_option("-s,--seed", seed, "seed of the random numbers (default 0xBA5EBA11)");
     app.add_option("-o,--output-file", ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", hdr, "linear image (.exr with standard error, .pfm, or .npy)");
     app.add_option("--time-center", timeCentre, "centre of the time gate")->check(CLI::Number);
-    app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")->allow_extra_args(false);
+    app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
+        ->allow_extra_args(false);
     app.add_option("--resolution", resolution, "WIDTHxHEIGHT in pixels");
     app.add_option("--stats", statistics, "write times, counters, memory and standard error to this JSON file");
-    app.add_option("--target-error", options.targetError, "stop when the relative standard error is below this (0.01 is 1 %)")
+    app.add_option("--target-error", options.targetError,
+                   "stop when the relative standard error is below this (0.01 is 1 %)")
         ->check(CLI::PositiveNumber);
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
 
     try {
-        app.parse(argc, argv);
+        app.parse(reversedArguments(argc, argv));
+    } catch (const CLI::ExtrasError& error) {
+        throw UsageError(explainUnknown(app, error.what()) + " (--help lists the options)");
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) {
             app.exit(error, std::cout, std::cerr);
             return std::nullopt;
         }
-        throw UsageError(explainUnknown(app, error.what()) + " (--help lists the options)");
+        throw UsageError(std::string(error.what()) + " (--help lists the options)");
     }
+    if (!seed.empty()) options.seed = seedOption(seed);
     if (!checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", checkpoint);
     if (!timeout.empty()) options.timeoutSeconds = durationOption("--timeout", timeout);
     if (spp > 0) options.spp = spp;

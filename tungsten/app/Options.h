@@ -24,7 +24,8 @@ struct Options {
     bool explain = false, list = false;
 };
 
-/// Parses the command line. Throws UsageError for what it cannot accept. Returns none when the answer was printed already
+/// Parses the command line. Throws UsageError for what it cannot accept. Returns none when the answer was printed
+/// already
 /// (--help, --version).
 std::optional<Options> parseOptions(int argc, const char* const* argv);
 

@@ -8,10 +8,12 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <optional>
 
 #include <unistd.h>
 
@@ -28,23 +30,33 @@ void onInterrupt(int) {
     if (interrupted.exchange(true)) _exit(ExitInterrupted);
 }
 
-void printWarnings(const Diagnostics& diagnostics) {
-    for (const Problem& warning : diagnostics.warnings) std::cerr << "warning: " << warning.text() << '\n';
+/// Integrators, what went wrong while loading them, and where they were looked for.
+struct Plugins {
+    IntegratorRegistry registry;
+    std::vector<std::filesystem::path> directories = pluginDirectories();
+    std::vector<Problem> problems = loadPlugins(directories, registry);
+};
+
+void printWarnings(const std::vector<Problem>& warnings) {
+    for (const Problem& warning : warnings) std::cerr << "warning: " << warning.text() << '\n';
 }
 
-std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const IntegratorRegistry& registry,
-                                           const std::vector<Problem>& pluginProblems) {
-    const auto found = registry.entries().find(loaded.integratorType);
-    if (found == registry.entries().end()) {
-        std::vector<std::string> types;
-        for (const auto& [type, entry] : registry.entries()) types.push_back(type);
-        const std::string near = nearestName(loaded.integratorType, types);
-        std::vector<Problem> problems = pluginProblems;
-        problems.push_back({loaded.diagnostics->file, "integrator.type",
-                            "expected " + (types.empty() ? "a type from a plugin, but no plugin was found" : listOf(types)) + ", found '" +
-                                loaded.integratorType + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")});
-        throw InputError(problems);
-    }
+[[noreturn]] void failUnknownIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
+    std::vector<std::string> types;
+    for (const auto& [type, entry] : plugins.registry.entries()) types.push_back(type);
+    std::string message = types.empty() ? "no integrator is known" : "expected " + listOf(types);
+    message += ", found '" + loaded.integratorType + "'";
+    const std::string near = nearestName(loaded.integratorType, types);
+    if (!near.empty()) message += "; did you mean '" + near + "'?";
+    message += " (plugins were looked for in";
+    for (size_t i = 0; i < plugins.directories.size(); ++i)
+        message += (i > 0 ? ", " : " ") + plugins.directories[i].string();
+    throw InputError({{loaded.diagnostics->file, "integrator.type", message + ")"}});
+}
+
+std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
+    const auto found = plugins.registry.entries().find(loaded.integratorType);
+    if (found == plugins.registry.entries().end()) failUnknownIntegrator(loaded, plugins);
     auto integrator = found->second.factory(loaded.scene, loaded.integratorSettings);
     throwIfProblems(*loaded.diagnostics);
     loaded.integratorSettings.warnAboutUnknown();
@@ -67,55 +79,78 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
 }
 
 void printSummary(const SessionResult& result) {
-    std::printf("%u passes, %llu samples per pixel in %.1f s (%s), standard error %.3g %%\n", result.film.passes(),
-                static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str(),
-                100.0 * result.film.relativeStandardError());
+    if (result.film.passes() == 0) {
+        std::printf("interrupted before the first pass: nothing was written\n");
+        return;
+    }
+    std::printf("%u passes, %llu samples per pixel in %.1f s (%s)", result.film.passes(),
+                static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str());
+    const double error = result.film.relativeStandardError();
+    if (error > 0.0) std::printf(", standard error %.3g %%", 100.0 * error);
+    std::printf("\n");
     constexpr size_t MostListed = 12;
     for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)
         std::printf("wrote %s\n", result.written[i].c_str());
     if (result.written.size() > MostListed) std::printf("and %zu more files\n", result.written.size() - MostListed);
+    std::fflush(stdout);
 }
 
-void renderScene(const std::filesystem::path& file, const Options& options, const IntegratorRegistry& registry,
-                 const std::vector<Problem>& pluginProblems) {
+void renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+    SessionResult result;
+    std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
     const LoadedScene loaded = loadScene(file, {options.inputDirectory, options.overrides});
-    const auto integrator = makeIntegrator(loaded, registry, pluginProblems);
-    printWarnings(*loaded.diagnostics);
+    const auto integrator = makeIntegrator(loaded, plugins);
+    printWarnings(loaded.diagnostics->warnings);
     EffectPlan plan = analyseScene(*loaded.scene);
     integrator->plan(plan);
+    loading.reset();
     if (options.explain) {
         std::cout << file.string() << " (" << loaded.integratorType << ")\n";
         printPlan(plan, std::cout);
         return;
     }
     const OutputFiles outputs = resolveOutputs(loaded.renderer, file, options.outputs);
-    SessionResult result;
     runSession(loaded, *integrator, plan, outputs, sessionOptions(options, loaded.renderer), result);
     if (!options.quiet) printSummary(result);
 }
 
+/// Exit code of one scene; reports what went wrong.
+int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+    try {
+        renderScene(file, options, plugins);
+        return 0;
+    } catch (const InputError& error) {
+        for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
+    } catch (const UsageError& error) {
+        std::cerr << "error: " << error.what() << '\n';
+        return ExitBadUsage;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "error: " << file.string()
+                  << ": out of memory; try a smaller --resolution, fewer frames or fewer photons\n";
+    } catch (const std::exception& error) {
+        std::cerr << "error: " << file.string() << ": " << error.what() << '\n';
+    }
+    return ExitBadInput;
+}
+
 int run(const Options& options) {
-    IntegratorRegistry registry;
-    const std::vector<Problem> pluginProblems = loadPlugins(pluginDirectories(), registry);
+    const Plugins plugins;
     if (options.list) {
-        printTypes(registry, std::cout);
-        for (const Problem& problem : pluginProblems) std::cerr << "warning: " << problem.text() << '\n';
+        printTypes(plugins.registry, std::cout);
+        printWarnings(plugins.problems);
         return 0;
     }
-    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                      options.threads > 0 ? size_t(options.threads)
-                                                          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    printWarnings(plugins.problems);
+    using tbb::global_control;
+    const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
+    const global_control threads(global_control::max_allowed_parallelism,
+                                 options.threads > 0 ? size_t(options.threads) : all);
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     int code = 0;
     for (const auto& scene : options.scenes) {
         if (interrupted) break;
-        try {
-            renderScene(scene, options, registry, pluginProblems);
-        } catch (const InputError& error) {
-            for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
-            code = ExitBadInput;
-        }
+        code = std::max(code, tryScene(scene, options, plugins));
     }
     return code;
 }
@@ -132,10 +167,8 @@ int main(int argc, char** argv) {
     } catch (const UsageError& error) {
         std::cerr << "error: " << error.what() << '\n';
         return ExitBadUsage;
-    } catch (const std::bad_alloc&) {
-        std::cerr << "error: out of memory; try a smaller --resolution or fewer photons\n";
     } catch (const std::exception& error) {
         std::cerr << "error: " << error.what() << '\n';
+        return ExitBadInput;
     }
-    return ExitBadInput;
 }

@@ -83,6 +83,24 @@ void planMedia(const Scene& scene, EffectPlan& plan) {
                   coloured.empty() ? "every medium has the same coefficients in R, G and B" : "coloured: " + coloured);
 }
 
+void planEmission(const Scene& scene, EffectPlan& plan) {
+    std::string areas, skies;
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const Emitter& emitter = scene.emitters[i];
+        if (!emitter.isArea() && !emitter.isInfinite()) continue;
+        std::string& names = emitter.isArea() ? areas : skies;
+        const auto* area = std::get_if<AreaEmitter>(&emitter.model);
+        const std::string name = area ? scene.primitives[area->primitive].name : emitter.name;
+        names += (names.empty() ? "" : ", ") + nameOf(name, area ? area->primitive : i);
+    }
+    plan.surfaceEmission = !areas.empty();
+    plan.environment = !skies.empty();
+    plan.describe("emission from surfaces", plan.surfaceEmission,
+                  areas.empty() ? "no area emitter: emission is never seen" : "area emitters: " + areas);
+    plan.describe("environment", plan.environment,
+                  skies.empty() ? "no infinite emitter: escaping rays end" : "escaping rays see " + skies);
+}
+
 bool hasTextures(const Scene& scene) {
     for (const Primitive& primitive : scene.primitives)
         for (const BsdfPtr& bsdf : primitive.bsdfs)
@@ -118,13 +136,8 @@ EffectPlan analyseScene(const Scene& scene) {
                       ? std::to_string(speeds.size()) + " speeds, from " + formatted(double(*speeds.begin())) + " to " +
                             formatted(double(*speeds.rbegin()))
                       : "one speed everywhere: " + formatted(double(*speeds.begin())));
-    plan.surfaceEmission =
-        std::any_of(scene.emitters.begin(), scene.emitters.end(), [](const Emitter& e) { return e.isArea(); });
-    plan.environment = !scene.infiniteEmitters.empty();
+    planEmission(scene, plan);
     plan.textures = hasTextures(scene);
-    plan.describe("emission from surfaces", plan.surfaceEmission,
-                  plan.surfaceEmission ? "area emitters can be seen" : "no area emitter");
-    plan.describe("environment", plan.environment, plan.environment ? "escaping rays see it" : "no infinite emitter");
     plan.describe("textures", plan.textures,
                   plan.textures ? "albedo or bump varies over some surface" : "every surface parameter is constant");
     return plan;

@@ -3,7 +3,8 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
 
-#include <set>
+#include <algorithm>
+#include <cctype>
 
 #include <unistd.h>
 
@@ -35,6 +36,14 @@ fs::path rebase(const std::string& name, const fs::path& base) {
     return name.empty() ? fs::path() : (base / name).lexically_normal();
 }
 
+/// Lower case, dot included.
+std::string extensionOf(const fs::path& file) {
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+/// Writes what it can: a file that fails does not keep the others from being written.
 class ImageWriter {
   public:
     ImageWriter(const Film& film, const Scene& scene)
@@ -43,81 +52,103 @@ class ImageWriter {
                      ? float(scene.transport.gate.frameWidth)
                      : 1.0f) {}
 
+    /// The image of the whole gate; formats that hold several frames get all of them.
     void whole(const fs::path& file) {
-        const std::string extension = file.extension().string();
-        if (extension == ".exr")
-            exr(file);
-        else if (extension == ".npy")
-            cube(file);
-        else
-            single(file, wholeImage());
+        attempt(file, [&] {
+            const std::string extension = extensionOf(file);
+            if (extension == ".exr")
+                writeExr(file, allFrames());
+            else if (extension == ".npy")
+                writeCube(file);
+            else if (extension == ".pfm")
+                writePfm(file, wholeImage());
+            else
+                writePng(file, wholeImage(), scene_.toneMap);
+        });
     }
+    /// One file per frame.
     void series(const fs::path& file) {
-        for (int frame = 0; frame < film_.frames(); ++frame) single(framePath(file, frame), scaled(film_.mean(frame)));
+        const std::string extension = extensionOf(file);
+        for (int frame = 0; frame < film_.frames(); ++frame)
+            attempt(framePath(file, frame), [&] {
+                if (extension == ".exr")
+                    writeExr(framePath(file, frame), {exrPart(frame)});
+                else if (extension == ".pfm")
+                    writePfm(framePath(file, frame), scaled(film_.mean(frame)));
+                else
+                    writePng(framePath(file, frame), scaled(film_.mean(frame)), scene_.toneMap);
+            });
     }
     void cube(const fs::path& file) {
+        attempt(file, [&] { writeCube(file); });
+    }
+    /// Throws if any file failed.
+    [[nodiscard]] std::vector<fs::path> finish() const {
+        if (!problems_.empty()) throw InputError(problems_);
+        return written_;
+    }
+
+  private:
+    template <typename Write>
+    void attempt(const fs::path& file, Write write) {
+        try {
+            write();
+            written_.push_back(file);
+        } catch (const InputError& error) {
+            problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
+        }
+    }
+    [[nodiscard]] Image scaled(Image image, float factor = 1.0f) const {
+        if (scale_ * factor != 1.0f)
+            for (Rgb& pixel : image.pixels) pixel *= scale_ * factor;
+        return image;
+    }
+    /// Mean over the frames; the sum of the frames' integrals when integrals are asked for.
+    [[nodiscard]] Image wholeImage() const {
+        return scaled(film_.meanOverFrames(), scale_ != 1.0f ? float(film_.frames()) : 1.0f);
+    }
+    [[nodiscard]] ExrPart exrPart(int frame) const {
+        const TimeGate& gate = scene_.transport.gate;
+        char name[32];
+        std::snprintf(name, sizeof name, "frame.%04d", frame);
+        return {name,
+                scaled(film_.mean(frame)),
+                scaled(film_.standardError(frame)),
+                !gate.steadyState,
+                gate.frameStart(frame),
+                gate.frameStart(frame + 1)};
+    }
+    [[nodiscard]] std::vector<ExrPart> allFrames() const {
+        std::vector<ExrPart> parts;
+        for (int frame = 0; frame < film_.frames(); ++frame) parts.push_back(exrPart(frame));
+        return parts;
+    }
+    void writeCube(const fs::path& file) const {
         std::vector<Image> frames;
         for (int frame = 0; frame < film_.frames(); ++frame) frames.push_back(scaled(film_.mean(frame)));
         writeNpy(file, frames);
-        written_.push_back(file);
-    }
-    [[nodiscard]] std::vector<fs::path> written() const { return written_; }
-
-  private:
-    Image scaled(Image image) const {
-        if (scale_ != 1.0f)
-            for (Rgb& pixel : image.pixels) pixel *= scale_;
-        return image;
-    }
-    /// Mean over the frames; integrated over the whole gate when integrals are asked for.
-    Image wholeImage() const {
-        Image image = scaled(film_.meanOverFrames());
-        if (scale_ != 1.0f)
-            for (Rgb& pixel : image.pixels) pixel *= float(film_.frames());
-        return image;
-    }
-    void single(const fs::path& file, const Image& image) {
-        const std::string extension = file.extension().string();
-        if (extension == ".pfm")
-            writePfm(file, image);
-        else if (extension == ".exr")
-            writeExr(file, {ExrPart{"", image, {}, false, 0, 0}});
-        else
-            writePng(file, image, scene_.toneMap);
-        written_.push_back(file);
-    }
-    void exr(const fs::path& file) {
-        const TimeGate& gate = scene_.transport.gate;
-        std::vector<ExrPart> parts;
-        for (int frame = 0; frame < film_.frames(); ++frame) {
-            char name[32];
-            std::snprintf(name, sizeof name, "frame.%04d", frame);
-            parts.push_back({name, scaled(film_.mean(frame)), scaled(film_.standardError(frame)), !gate.steadyState,
-                             gate.frameStart(frame), gate.frameStart(frame + 1)});
-        }
-        writeExr(file, parts);
-        written_.push_back(file);
     }
 
     const Film& film_;
     const Scene& scene_;
-    float scale_;
+    float scale_; ///< frame width when integrals over a frame are asked for
     std::vector<fs::path> written_;
+    std::vector<Problem> problems_;
 };
 
 void checkFolder(const fs::path& file) {
     const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
     std::error_code error;
     fs::create_directories(folder, error);
-    if (!fs::is_directory(folder) || ::access(folder.c_str(), W_OK) != 0)
+    if (!fs::is_directory(folder, error) || ::access(folder.c_str(), W_OK) != 0)
         throw InputError(file.string(), "cannot be written: the folder '" + folder.string() +
-                                            "' is missing or not writable; choose another with -d DIRECTORY");
-    if (fs::is_directory(file)) throw InputError(file.string(), "cannot be written: it is a folder");
+                                            "' cannot be created or written to; choose another with -d DIRECTORY");
+    if (fs::is_directory(file, error))
+        throw InputError(file.string(), "cannot be written: a folder has this name; choose another with -d, -o or -e");
 }
 
 void checkExtension(const fs::path& file, const std::vector<std::string>& accepted) {
-    if (file.empty() || std::find(accepted.begin(), accepted.end(), file.extension().string()) != accepted.end())
-        return;
+    if (file.empty() || std::find(accepted.begin(), accepted.end(), extensionOf(file)) != accepted.end()) return;
     throw InputError(file.string(),
                      "unknown image type '" + file.extension().string() + "'; accepted: " + listOf(accepted));
 }
@@ -144,10 +175,11 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
     return outputs;
 }
 
-void checkOutputs(const OutputFiles& outputs) {
+void checkOutputs(const OutputFiles& outputs, bool withState) {
     checkExtension(outputs.ldr, {".png"});
     checkExtension(outputs.hdr, HdrExtensions);
     std::vector<fs::path> files{outputs.ldr, outputs.hdr, outputs.statistics};
+    if (withState) files.push_back(outputs.state);
     for (const TransientsBuffer& buffer : outputs.series) {
         checkExtension(buffer.ldrFile, {".png"});
         checkExtension(buffer.hdrFile, {".exr", ".pfm"});
@@ -163,18 +195,18 @@ std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const Ou
     writer.whole(withSuffix(outputs.ldr, suffix));
     const fs::path hdr = outputs.hdr.empty() ? fs::path() : withSuffix(outputs.hdr, suffix);
     if (!hdr.empty()) writer.whole(hdr);
-    if (film.frames() <= 1 || !suffix.empty()) return writer.written();
+    if (film.frames() <= 1 || !suffix.empty()) return writer.finish();
 
-    if (!hdr.empty() && hdr.extension() != ".npy") writer.cube(fs::path(hdr).replace_extension(".npy"));
+    if (!hdr.empty() && extensionOf(hdr) != ".npy") writer.cube(fs::path(hdr).replace_extension(".npy"));
     if (outputs.series.empty()) {
         writer.series(outputs.ldr);
-        if (hdr.extension() == ".pfm") writer.series(hdr);
+        if (extensionOf(hdr) == ".pfm") writer.series(hdr);
     }
     for (const TransientsBuffer& buffer : outputs.series) {
         if (!buffer.ldrFile.empty()) writer.series(buffer.ldrFile);
         if (!buffer.hdrFile.empty()) writer.series(buffer.hdrFile);
     }
-    return writer.written();
+    return writer.finish();
 }
 
 } // namespace tungsten

@@ -29,10 +29,12 @@ struct OutputOverrides {
 OutputFiles resolveOutputs(const RendererSettings& renderer, const std::filesystem::path& sceneFile,
                            const OutputOverrides& overrides);
 
-/// Creates missing folders and throws InputError if an output could not be written or has an unknown extension.
-void checkOutputs(const OutputFiles& outputs);
+/// Creates missing folders and throws InputError if an output (with `withState` the resume state too) could not be
+/// written or has an unknown extension.
+void checkOutputs(const OutputFiles& outputs, bool withState = false);
 
-/// Writes every image of the film and returns the files' names. `suffix` goes before the extension (checkpoints).
+/// Writes every image of the film and returns the files' names; with a `suffix` (which goes before the extension:
+/// checkpoints) only the main ones. Throws InputError after trying all of them if any failed.
 std::vector<std::filesystem::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
                                                const std::string& suffix = "");
 

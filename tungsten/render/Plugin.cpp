@@ -37,6 +37,8 @@ void loadPlugin(const std::filesystem::path& file, IntegratorRegistry& registry)
     if (std::strcmp(descriptor->abi, PluginAbi) != 0)
         throw InputError(file.string(), std::string("built for another host: the plugin has ABI '") + descriptor->abi +
                                             "', this host '" + PluginAbi + "'; rebuild it against this host's headers");
+    if (descriptor->layout != pluginLayout())
+        throw InputError(file.string(), "built against other headers than this host; rebuild the plugin");
     registry.setOrigin(file.string());
     descriptor->registerIntegrators(registry);
 }
@@ -60,6 +62,8 @@ std::vector<Problem> loadPlugins(const std::vector<std::filesystem::path>& direc
                 loadPlugin(file, registry);
             } catch (const InputError& error) {
                 problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+            } catch (const std::exception& error) {
+                problems.push_back({file.string(), "", std::string("the plugin failed to register: ") + error.what()});
             }
         }
     return problems;
@@ -79,7 +83,7 @@ std::vector<std::filesystem::path> pluginDirectories() {
     const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe", error);
     if (!error) {
         directories.push_back(executable.parent_path());
-        directories.push_back(executable.parent_path() / ".." / "lib" / "tungsten");
+        directories.push_back(executable.parent_path().parent_path() / "lib" / "tungsten");
     }
     return directories;
 }

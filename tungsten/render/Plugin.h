@@ -18,12 +18,24 @@
 namespace tungsten {
 
 /// Increases whenever a header that plugins include changes incompatibly; the compiler's ABI is part of it.
-inline constexpr const char* PluginAbi = "tungsten-plugin-1/" __VERSION__;
+inline constexpr const char* PluginAbi = "tungsten-plugin-2/" __VERSION__;
+
+/// Fingerprint of the sizes of what host and plugins share: catches a plugin that was not rebuilt after a header
+/// changed.
+constexpr uint64_t pluginLayout() {
+    uint64_t hash = 0xCBF29CE484222325ull;
+    for (const size_t size : {sizeof(Scene), sizeof(Primitive), sizeof(Medium), sizeof(Emitter), sizeof(Bsdf),
+                              sizeof(Camera), sizeof(TransportSettings), sizeof(SurfaceHit), sizeof(Film),
+                              sizeof(Statistics), sizeof(EffectPlan), sizeof(PassInfo), sizeof(ObjectReader)})
+        hash = (hash ^ size) * 0x100000001B3ull;
+    return hash;
+}
 
 struct PluginDescriptor {
     const char* abi;
     const char* name;
     void (*registerIntegrators)(IntegratorRegistry& registry);
+    uint64_t layout = pluginLayout();
 };
 
 /// Loads every plugin found in `directories` (in order; of plugins with the same file name the first is taken) and

@@ -45,8 +45,8 @@ std::string progressLine(const ProgressState& state) {
     const int filled = int(fraction * Width);
     std::string line = "[" + std::string(size_t(filled), '#') + std::string(size_t(Width - filled), '.') + "] ";
     const double left = fraction > 0.0 ? state.elapsedSeconds * (1.0 - fraction) / fraction : 0.0;
-    line += std::to_string(state.passes) + (state.passes == 1 ? " pass, " : " passes, ") +
-            std::to_string(state.samples) + " of " + std::to_string(state.totalSamples) + " spp, " +
+    line += "pass " + std::to_string(state.passes) + "/" + std::to_string(state.totalPasses) + ", " +
+            std::to_string(state.samples) + "/" + std::to_string(state.totalSamples) + " spp, " +
             clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) + " left, " +
             errorText(state.relativeError);
     return line;

@@ -9,7 +9,7 @@ namespace tungsten {
 
 /// How far a render is.
 struct ProgressState {
-    uint32_t passes = 0;
+    uint32_t passes = 0, totalPasses = 0;
     int64_t samples = 0, totalSamples = 0; ///< per pixel
     double elapsedSeconds = 0.0;
     double timeoutSeconds = 0.0; ///< 0: none

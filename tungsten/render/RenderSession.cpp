@@ -5,6 +5,7 @@
 #include "tungsten/render/Progress.h"
 
 #include <chrono>
+#include <cstdio>
 
 namespace tungsten {
 
@@ -25,7 +26,7 @@ class Session {
           result_(result), identity_{loaded.hash, options.seed, options.sppStep}, reporter_(options.quiet) {}
 
     void run(const EffectPlan& plan) {
-        checkOutputs(outputs_);
+        checkOutputs(outputs_, options_.resumeEnabled);
         const Scene& scene = *loaded_.scene;
         result_.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
         resume();
@@ -33,6 +34,7 @@ class Session {
             const StageTimer timer(result_.statistics, "prepare");
             integrator_.prepare(plan, result_.statistics);
         }
+        if (stopBeforeFirstPass()) return;
         renderPasses();
         finish();
     }
@@ -42,10 +44,21 @@ class Session {
         if (!options_.resumeEnabled || options_.restart) return;
         if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film))
             result_.samples = point->samples;
-        resumedSamples_ = result_.samples;
+        result_.resumedSamples = result_.samples;
+        if (result_.samples > 0 && !options_.quiet)
+            std::fprintf(stderr, "resuming after %llu samples per pixel from %s\n",
+                         static_cast<unsigned long long>(result_.samples), outputs_.state.c_str());
+    }
+
+    /// Interrupted while loading: there is nothing to write.
+    bool stopBeforeFirstPass() {
+        const bool stop = options_.interrupted && options_.interrupted->load();
+        if (stop) result_.reason = StopReason::Interrupted;
+        return stop;
     }
 
     void renderPasses() {
+        const StageTimer timer(result_.statistics, "passes");
         start_ = lastCheckpoint_ = Clock::now();
         bool stop = result_.samples >= uint64_t(options_.spp);
         while (!stop) {
@@ -73,8 +86,8 @@ class Session {
             result_.reason = reason;
             return true;
         };
-        if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
         if (result_.samples >= uint64_t(options_.spp)) return because(StopReason::Finished);
+        if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
         if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
         const bool accurate =
@@ -85,24 +98,51 @@ class Session {
     void checkpointIfDue() {
         if (options_.checkpointSeconds <= 0.0 || secondsSince(lastCheckpoint_) < options_.checkpointSeconds) return;
         const StageTimer timer(result_.statistics, "checkpoint");
-        writeImages(result_.film, *loaded_.scene, outputs_, "_checkpoint");
-        saveState();
+        // The images so far are worth more than the checkpoint: the render goes on.
+        for (const Problem& problem : write("_checkpoint"))
+            std::fprintf(stderr, "warning: checkpoint: %s\n", problem.text().c_str());
         lastCheckpoint_ = Clock::now();
-    }
-
-    void saveState() const {
-        if (options_.resumeEnabled) writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film);
     }
 
     void finish() {
         const StageTimer timer(result_.statistics, "write");
-        saveState();
-        result_.written = writeImages(result_.film, *loaded_.scene, outputs_);
+        const std::vector<Problem> problems = write("");
+        if (!problems.empty()) throw InputError(problems);
+    }
+
+    /// Images and state; a failure of one does not keep the other from being written.
+    std::vector<Problem> write(const std::string& suffix) {
+        std::vector<Problem> problems;
+        const auto attempt = [&](const auto& action) {
+            try {
+                action();
+            } catch (const InputError& error) {
+                problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+            }
+        };
+        attempt([&] {
+            auto files = writeImages(result_.film, *loaded_.scene, outputs_, suffix);
+            if (suffix.empty()) result_.written = std::move(files);
+        });
+        if (options_.resumeEnabled)
+            attempt([&] { writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film); });
+        return problems;
     }
 
     [[nodiscard]] ProgressState state() const {
-        return {result_.film.passes(),   int64_t(result_.samples), options_.spp,         secondsSince(start_),
-                options_.timeoutSeconds, relativeError_,           options_.targetError, int64_t(resumedSamples_)};
+        const uint64_t left = uint64_t(options_.spp) - std::min(result_.samples, uint64_t(options_.spp));
+        const uint64_t step = uint64_t(options_.sppStep);
+        ProgressState progress;
+        progress.passes = result_.film.passes();
+        progress.totalPasses = progress.passes + uint32_t((left + step - 1) / step);
+        progress.samples = int64_t(result_.samples);
+        progress.totalSamples = options_.spp;
+        progress.elapsedSeconds = secondsSince(start_);
+        progress.timeoutSeconds = options_.timeoutSeconds;
+        progress.relativeError = relativeError_;
+        progress.targetError = options_.targetError;
+        progress.resumedSamples = int64_t(result_.resumedSamples);
+        return progress;
     }
 
     const LoadedScene& loaded_;
@@ -113,7 +153,6 @@ class Session {
     RenderIdentity identity_;
     ProgressReporter reporter_;
     Clock::time_point start_, lastCheckpoint_;
-    uint64_t resumedSamples_ = 0;
     double relativeError_ = 0.0;
 };
 
@@ -136,6 +175,7 @@ std::string toString(StopReason reason) {
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result) {
     Session(loaded, integrator, outputs, options, result).run(plan);
+    if (result.film.passes() == 0) return;
     if (!outputs.statistics.empty()) {
         writeTextFile(outputs.statistics, statisticsJson(loaded, options, result));
         result.written.push_back(outputs.statistics);

@@ -31,13 +31,14 @@ struct SessionResult {
     StopReason reason = StopReason::Finished;
     Film film;
     Statistics statistics;
-    double renderSeconds = 0.0; ///< passes of this run, not counting loading and writing
-    uint64_t samples = 0;       ///< per pixel, resumed ones included
+    double renderSeconds = 0.0;  ///< passes of this run, not counting loading and writing
+    uint64_t samples = 0;        ///< per pixel, resumed ones included
+    uint64_t resumedSamples = 0; ///< of them, taken by earlier runs
     std::vector<std::filesystem::path> written;
 };
 
 /// Renders and writes every output. `plan` is complete (Integrator::plan was called). Throws InputError before the
-/// first pass when an output cannot be written.
+/// first pass when an output cannot be written. Interrupted before the first pass, it writes nothing.
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result);
 

@@ -19,6 +19,7 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     json.field("threads", uint64_t(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
     json.field("passes", uint64_t(result.film.passes()));
     json.field("samples per pixel", result.samples);
+    json.field("resumed samples per pixel", result.resumedSamples);
     json.field("stopped because", toString(result.reason));
     json.field("relative standard error", result.film.relativeStandardError());
     json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
