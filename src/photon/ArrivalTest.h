@@ -17,11 +17,17 @@ class ArrivalTest {
     /// A light path that has got to `position` at `time` may still contribute.
     [[nodiscard]] bool mayContinue(const Vec3f& position, double time) const;
     [[nodiscard]] bool directView() const { return directView_; }
+    /// Sensor paths start at one point and run at one speed, so that a straight one's time is known; some may fold.
+    [[nodiscard]] bool straightTimesKnown() const { return straightTimesKnown_; }
+    /// With straightTimesKnown: a sensor path without mirror or refraction can see this deposit inside the gate.
+    [[nodiscard]] bool seenStraight(const Vec3f& position, double time) const;
 
   private:
+    [[nodiscard]] bool insideGate(double arrival, bool testStart) const;
     [[nodiscard]] double soonestArrival(const Vec3f& position, double time) const;
 
     TimeGate gate_;
+    bool straightTimesKnown_ = false;
     bool directView_ = false;
     bool unwarped_ = false;
     Vec3d camera_{0, 0, 0};

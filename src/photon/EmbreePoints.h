@@ -1,7 +1,7 @@
 #pragma once
 // An Embree structure over points with radii, owned.
 
-#include "tungsten/core/Types.h"
+#include "photon/PhotonStore.h"
 
 #include <embree3/rtcore.h>
 
@@ -15,13 +15,13 @@ struct PointWithRadius {
     float radius;
 };
 
-/// What the points are for: rays that meet ray-facing discs (RTC_GEOMETRY_TYPE_DISC_POINT, exactly the support of the
-/// two-dimensional point-beam kernel), or point queries, which Embree answers for user geometry but not for discs.
-enum class PointUse { Rays, PointQueries };
-
 class EmbreePoints {
   public:
-    EmbreePoints(std::vector<PointWithRadius> points, PointUse use);
+    /// For rays: ray-facing discs (RTC_GEOMETRY_TYPE_DISC_POINT), exactly the support of the two-dimensional point-beam
+    /// kernel.
+    explicit EmbreePoints(const std::vector<PointWithRadius>& discs);
+    /// For point queries, which Embree answers for user geometry but not for discs. `photons` must stay alive.
+    explicit EmbreePoints(const std::vector<Photon>& photons);
     ~EmbreePoints();
     EmbreePoints(const EmbreePoints&) = delete;
     EmbreePoints& operator=(const EmbreePoints&) = delete;
@@ -29,7 +29,8 @@ class EmbreePoints {
     [[nodiscard]] float largestRadius() const { return largestRadius_; }
 
   private:
-    std::vector<PointWithRadius> points_; ///< what user geometry's bounds are read from; empty for discs
+    void commit(RTCGeometry geometry);
+
     RTCDevice device_;
     RTCScene scene_;
     float largestRadius_ = 0.0f;

@@ -36,12 +36,8 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
 
 } // namespace
 
-NearestPhotons::NearestPhotons(const std::vector<Photon>& photons) : photons_(photons) {
-    std::vector<PointWithRadius> points;
-    points.reserve(photons.size());
-    for (const Photon& photon : photons) points.push_back({photon.position, 0.0f});
-    points_ = std::make_unique<EmbreePoints>(std::move(points), PointUse::PointQueries);
-}
+NearestPhotons::NearestPhotons(const std::vector<Photon>& photons)
+    : photons_(photons), points_(std::make_unique<EmbreePoints>(photons)) {}
 
 float NearestPhotons::find(const Vec3f& position, float radius, uint32_t count, std::vector<Neighbour>& found) const {
     found.clear();

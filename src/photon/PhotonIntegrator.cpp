@@ -5,6 +5,24 @@
 
 namespace tungsten::photon {
 
+namespace {
+
+/// Copies the photons that straight sensor paths see inside the gate. Leaves `straight` alone where that would be all
+/// or unknown.
+void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const std::vector<float>& radii,
+                    PhotonStore& straight, std::vector<float>& straightRadii) {
+    if (arrival.directView() || !arrival.straightTimesKnown()) return;
+    straight.paths = store.paths;
+    if (radii.size() == 1) straightRadii = radii;
+    for (size_t i = 0; i < store.photons.size(); ++i) {
+        if (!arrival.seenStraight(store.photons[i].position, store.photons[i].time)) continue;
+        straight.photons.push_back(store.photons[i]);
+        if (radii.size() > 1) straightRadii.push_back(radii[i]);
+    }
+}
+
+} // namespace
+
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
@@ -47,12 +65,19 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         const StageTimer timer(statistics, "photon pass");
         maps = photonPass_->trace(photons, statistics);
     }
-    GatherStructures structures{maps, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces};
+    PhotonStore straight;
+    std::vector<float> straightRadii;
+    GatherStructures structures{
+        maps, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces};
     {
         const StageTimer timer(statistics, "build");
-        if (!maps.volume.photons.empty())
-            structures.points =
-                std::make_unique<PointGather>(*scene_, maps.volume, volumeRadii(maps.volume, photons.index));
+        if (!maps.volume.photons.empty()) {
+            const std::vector<float> radii = volumeRadii(maps.volume, photons.index);
+            structures.points = std::make_unique<PointGather>(*scene_, maps.volume, radii);
+            selectStraight(photonPass_->arrival(), maps.volume, radii, straight, straightRadii);
+            if (straight.paths > 0)
+                structures.straightPoints = std::make_unique<PointGather>(*scene_, straight, straightRadii);
+        }
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
         structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
     }

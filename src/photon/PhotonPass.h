@@ -21,6 +21,7 @@ class PhotonPass {
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, Statistics& statistics) const;
+    [[nodiscard]] const ArrivalTest& arrival() const { return arrival_; }
     [[nodiscard]] bool storesVolume() const { return storeVolume_; }
     [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 

@@ -10,13 +10,16 @@ namespace tungsten::photon {
 
 /// A photon deposited in a medium (power after the collision, albedo included) or on a surface.
 struct Photon {
+    double time; ///< since the clock's zero: emission time plus time of flight
     Vec3f position;
     Vec3f direction; ///< of propagation, before the deposit
     Rgb power;       ///< of one path; the store's `scale` still divides it by the number of paths
-    double time;     ///< since the clock's zero: emission time plus time of flight
-    int32_t bounce;  ///< interactions from the light up to and including this one
-    int32_t medium;  ///< index of the medium (volume photons), -1 on surfaces
+    uint16_t bounce; ///< interactions from the light up to and including this one
+    int16_t medium;  ///< index of the medium (volume photons), -1 on surfaces
 };
+static_assert(sizeof(Photon) == 48, "millions are stored: no padding");
+/// Longest light path that a photon's bounce can tell.
+inline constexpr int MostPhotonBounces = 65535;
 
 /// Photons in path order, so the content does not depend on the number of threads. A store takes whole paths: it is
 /// full when the next path no longer fits, and that path is neither kept nor counted.

@@ -5,7 +5,8 @@ namespace tungsten::photon {
 void PhotonWalk::run() {
     if (!emit()) return;
     // A photon with bounce b takes part in paths of at least b interactions.
-    while (bounce_ + 1 < scene_.transport.maxBounces) {
+    const int mostBounces = std::min(scene_.transport.maxBounces - 1, MostPhotonBounces);
+    while (bounce_ < mostBounces) {
         ++counters_.rays;
         const auto hit = scene_.geometry->intersect(ray_);
         if (const Medium* medium = scene_.medium(region_)) {
@@ -37,7 +38,7 @@ bool PhotonWalk::emit() {
 
 void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
     if (context_.arrival.mayCount(position, time_))
-        list.photons.push_back({position, ray_.direction, power, time_, bounce_, medium});
+        list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
 }
 
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {

@@ -64,10 +64,11 @@ PointGather::PointGather(const Scene& scene, const PhotonStore& store, const std
     for (size_t i = 0; i < store.photons.size(); ++i)
         points.push_back({store.photons[i].position, radii[radii.size() == 1 ? 0 : i]});
     for (const float radius : radii) squaredRadii_.push_back(radius * radius);
-    points_ = std::make_unique<EmbreePoints>(std::move(points), PointUse::Rays);
+    points_ = std::make_unique<EmbreePoints>(points);
 }
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
+    if (store_.photons.empty()) return 0;
     Query query{{}, &scene_, &store_.photons, &squaredRadii_, &segment, &sums, 0};
     rtcInitIntersectContext(&query.context);
     query.context.filter = filter;

@@ -52,7 +52,9 @@ class SensorPath {
         std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
         const CameraSegment segment{ray_.origin,   ray_.direction, length, time_, 1.0 / double(region_.speed),
                                     interactions_, region_.medium};
-        const uint64_t gathered = structures_.points->gather(segment, workspace_.volume);
+        const bool straight = !folded_ && structures_.straightPoints;
+        const PointGather& points = straight ? *structures_.straightPoints : *structures_.points;
+        const uint64_t gathered = points.gather(segment, workspace_.volume);
         if (gathered == 0) return;
         counters_.gathered += gathered;
         const double scale = double(structures_.maps.volume.scale());
@@ -77,6 +79,7 @@ class SensorPath {
         const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
         if (sample->lobe != lobe::Forward && !surface.consistent(direction, scene_.transport.consistencyChecks))
             return false;
+        folded_ = folded_ || sample->lobe != lobe::Forward;
         throughput_ = throughput_ * sample->weight;
         region_ = regionBeyond(*surface.primitive, hit, direction, region_);
         ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
@@ -142,6 +145,7 @@ class SensorPath {
     Rgb throughput_{1.0f};
     double time_ = 0.0;
     int interactions_ = 0;
+    bool folded_ = false; ///< a mirror or refraction lies behind
 };
 
 } // namespace

@@ -10,7 +10,10 @@ namespace tungsten::photon {
 /// Structures over one pass's photons, and the pass's radii.
 struct GatherStructures {
     const PhotonMaps& maps;
-    std::unique_ptr<PointGather> points;      ///< null when there is no volume photon
+    std::unique_ptr<PointGather> points; ///< null when there is no volume photon
+    /// Those that a straight sensor path can see inside the gate, where sensor paths can also fold; null: `points`
+    /// serves both.
+    std::unique_ptr<PointGather> straightPoints;
     std::unique_ptr<NearestPhotons> surfaces; ///< null when there is no surface photon
     float surfaceRadius = 0.0f;
     uint32_t gatherCount = 0;
