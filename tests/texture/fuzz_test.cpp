@@ -7,6 +7,18 @@
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/texture/Texture.h"
 
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -35,6 +47,32 @@ void useBitmap(const std::shared_ptr<Bitmap>& bitmap) {
     }
 }
 
+void appendBytes(void* out, void* bytes, int size) {
+    static_cast<std::string*>(out)->append(static_cast<const char*>(bytes), size_t(size));
+}
+
+std::string jpeg(int width, int height, const std::vector<Texel>& texels) {
+    std::string out;
+    stbi_write_jpg_to_func(appendBytes, &out, width, height, 4, texels.data(), 80);
+    return out;
+}
+
+std::string bmp(int width, int height, const std::vector<Texel>& texels) {
+    std::string out;
+    stbi_write_bmp_to_func(appendBytes, &out, width, height, 4, texels.data());
+    return out;
+}
+
+/// 10 x 10, four colours: the palette, an extension block and one LZW-coded frame.
+std::string gif() {
+    const unsigned char bytes[] = {0x47, 0x49, 0x46, 0x38, 0x39, 0x61, 0x0A, 0x00, 0x0A, 0x00, 0x91, 0x00, 0x00, 0xFF,
+                                   0xFF, 0xFF, 0xFF, 0x00, 0x00, 0x00, 0x00, 0xFF, 0x00, 0x00, 0x00, 0x21, 0xF9, 0x04,
+                                   0x00, 0x00, 0x00, 0x00, 0x00, 0x2C, 0x00, 0x00, 0x00, 0x00, 0x0A, 0x00, 0x0A, 0x00,
+                                   0x00, 0x02, 0x16, 0x8C, 0x2D, 0x99, 0x87, 0x2A, 0x1C, 0xDC, 0x33, 0xA0, 0x02, 0x75,
+                                   0xEC, 0x95, 0xFA, 0xA8, 0xDE, 0x60, 0x8C, 0x04, 0x91, 0x4C, 0x01, 0x00, 0x3B};
+    return {reinterpret_cast<const char*>(bytes), sizeof(bytes)};
+}
+
 int fuzz(const ImageFolder& folder, const std::string& name, const std::string& original) {
     useBitmap(loadBitmap(folder.write(name, original)));
     int accepted = 0;
@@ -49,7 +87,7 @@ int fuzz(const ImageFolder& folder, const std::string& name, const std::string& 
         } catch (const std::exception& error) {
             ADD_FAILURE() << name << ", mutation " << i << ": " << error.what();
         }
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2)) << name << ", mutation " << i;
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << name << ", mutation " << i;
     }
     return accepted;
 }
@@ -76,8 +114,11 @@ TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
     accepted += fuzz(folder, "a.pfm", test::pfm(16, 8, values));
     accepted += fuzz(folder, "a.hdr", test::radiance(16, 8, texels));
     accepted += fuzz(folder, "a.exr", exr);
+    accepted += fuzz(folder, "a.jpg", jpeg(16, 8, texels));
+    accepted += fuzz(folder, "a.bmp", bmp(16, 8, texels));
+    accepted += fuzz(folder, "a.gif", gif());
     EXPECT_GT(accepted, 50);
-    EXPECT_LT(accepted, int(7 * MutationsPerFile) - 500);
+    EXPECT_LT(accepted, int(10 * MutationsPerFile) - 500);
     EXPECT_LT(test::largestAllocation, size_t(1) << 28); // bytes
 #ifndef __SANITIZE_ADDRESS__
     EXPECT_LT(peakKilobytes(), 1L << 20);

@@ -162,7 +162,15 @@ TEST(Bitmap, BadFilesAreInputErrorsThatNameThem) {
     absurd[12] = absurd[13] = absurd[14] = absurd[15] = char(0xff);
     const std::string good = test::tga(2, 2, Corners, false);
     const std::string goodPng = test::png(2, 2, Corners, 4);
+    std::string greedyPng = goodPng;
+    greedyPng[33] = 0x3f; // the length of the IDAT chunk
+    // A Huffman table of 16 x 16 + 1 codes, once behind a filling byte.
+    const std::string table =
+        std::string("\xff\xc4\x01\x14\x00", 5) + '\x11' + std::string(15, '\x10') + std::string(257, 'c');
     const std::vector<std::filesystem::path> files{
+        folder.write("greedy.png", greedyPng),
+        folder.write("tables.jpg", "\xff\xd8" + table),
+        folder.write("filled.jpg", "\xff\xff\xd8" + table),
         folder.path("missing.png"),
         folder.path(""),
         folder.write("empty.png", ""),

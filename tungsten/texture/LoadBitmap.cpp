@@ -3,6 +3,7 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/texture/ImageGuards.h"
 #include "tungsten/texture/Texture.h"
 
 #define STB_IMAGE_STATIC
@@ -29,18 +30,6 @@ namespace tungsten {
 
 namespace {
 
-constexpr int64_t MostTexels = int64_t(1) << 27;
-/// No format packs more texels into a byte (a one-bit PNG of one colour reaches half of it).
-constexpr int64_t MostTexelsPerByte = 1 << 14;
-
-void requirePlausibleSize(int64_t width, int64_t height, size_t fileBytes, const std::filesystem::path& file) {
-    const int64_t largest = std::min(MostTexels, int64_t(fileBytes) * MostTexelsPerByte);
-    if (width <= 0 || height <= 0 || width > largest / height)
-        throw InputError(file.string(), "claims to be " + std::to_string(width) + "x" + std::to_string(height) +
-                                            " texels, more than a file of " + std::to_string(fileBytes) +
-                                            " bytes can hold, or than the " + std::to_string(MostTexels) + " accepted");
-}
-
 /// Keeps sums and squares of texels finite.
 float finiteTexel(float value) {
     constexpr float LargestHalf = 65504.0f, LargestTexel = 1e18f;
@@ -59,8 +48,8 @@ struct ByteStream {
         constexpr int RefillSize = 128; // stb's buffer: a refill may come back short at the end of a good file
         const size_t count = std::min(size_t(std::max(size, 0)), bytes.size() - position);
         if (count == 0 || (int(count) < size && size != RefillSize)) ranOut = true;
-        std::memset(out, 0, size_t(std::max(size, 0)));
-        std::memcpy(out, bytes.data() + position, count);
+        std::fill_n(out, std::max(size, 0), '\0');
+        std::copy_n(bytes.begin() + std::ptrdiff_t(position), count, out);
         position += count;
         return int(count);
     }
@@ -89,10 +78,13 @@ void loadThroughStb(std::string_view bytes, const std::filesystem::path& file, B
     };
     const auto reason = [] { return std::string(stbi_failure_reason() ? stbi_failure_reason() : "corrupt"); };
     const stbi_io_callbacks& callbacks = streamCallbacks();
+    if (isPng(bytes)) requireSanePngChunks(bytes, file);
+    if (isJpeg(bytes)) requireSaneJpegTables(bytes, file);
     ByteStream header{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &header, &bitmap.width, &bitmap.height, &bitmap.channels))
         throw fail(reason() + "; accepted: png, jpg, tga, bmp, gif, psd, hdr, pfm and exr");
-    requirePlausibleSize(bitmap.width, bitmap.height, bytes.size(), file);
+    requirePlausibleSize(bitmap.width, bitmap.height, bytes.size(), file,
+                         isPng(bytes) ? pngTexelsPerByte(bytes) : MostTexelsPerByte);
     const size_t texels = size_t(bitmap.width) * size_t(bitmap.height);
     ByteStream probe{bytes}, stream{bytes};
     int width = 0, height = 0, channels = 0;
@@ -110,37 +102,6 @@ void loadThroughStb(std::string_view bytes, const std::filesystem::path& file, B
             stbi_load_from_callbacks(&callbacks, &stream, &width, &height, &channels, 4), stbi_image_free);
         requireComplete(pixels.get());
         bitmap.ldr.assign(pixels.get(), pixels.get() + 4 * texels);
-    }
-}
-
-/// Walks over the attributes of an EXR file's headers: OpenEXR allocates what their sizes claim before it reads them.
-void requireSaneExrAttributes(std::string_view bytes, const std::filesystem::path& file) {
-    constexpr size_t HeaderStart = 8;
-    const auto fail = [&]() -> InputError {
-        return {file.string(), "not a readable EXR image: corrupt or truncated header"};
-    };
-    if (bytes.size() < HeaderStart) throw fail();
-    const bool multiPart = (static_cast<unsigned char>(bytes[5]) & 0x10) != 0;
-    size_t position = HeaderStart;
-    const auto skipName = [&] {
-        const size_t end = bytes.find('\0', position);
-        if (end == std::string_view::npos) throw fail();
-        const size_t length = end - position;
-        position = end + 1;
-        return length;
-    };
-    for (bool inHeaders = true; inHeaders;) {
-        size_t attributes = 0;
-        for (; skipName() > 0; ++attributes) {
-            skipName(); // the type
-            uint32_t size = 0;
-            if (bytes.size() - position < sizeof(size)) throw fail();
-            std::memcpy(&size, bytes.data() + position, sizeof(size));
-            position += sizeof(size);
-            if (size > bytes.size() - position) throw fail();
-            position += size;
-        }
-        inHeaders = multiPart && attributes > 0; // an empty header ends the list of parts
     }
 }
 
@@ -191,7 +152,7 @@ std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file) {
         loadThroughStb(bytes, file, *bitmap);
     }
     // The decoders of the format always deliver alpha for these two.
-    if (bytes.starts_with("\x89PNG") || bytes.starts_with("\xff\xd8")) bitmap->channels = 4;
+    if (isPng(bytes) || isJpeg(bytes)) bitmap->channels = 4;
     for (float& value : bitmap->hdr) value = finiteTexel(value);
     return bitmap;
 }

@@ -1,0 +1,123 @@
+#include "tungsten/texture/ImageGuards.h"
+
+#include "tungsten/core/Errors.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace tungsten {
+
+namespace {
+
+constexpr int64_t MostTexels = int64_t(1) << 27;
+
+uint8_t byteAt(std::string_view bytes, size_t position) {
+    return static_cast<uint8_t>(bytes[position]);
+}
+
+/// Throws if a table definition (the content of a DHT segment) holds a table of more than 256 codes.
+void requireSaneTables(std::string_view content, const std::filesystem::path& file) {
+    constexpr size_t Lengths = 16, TableHeader = 1 + Lengths, MostCodes = 256;
+    while (content.size() >= TableHeader) {
+        size_t codes = 0;
+        for (size_t i = 1; i <= Lengths; ++i) codes += byteAt(content, i);
+        if (codes > MostCodes) throw InputError(file.string(), "not a readable image: a corrupt Huffman table");
+        content.remove_prefix(std::min(content.size(), TableHeader + codes));
+    }
+    // A rest too short to be a table: stb would read it from what follows.
+    if (!content.empty()) throw InputError(file.string(), "not a readable image: a truncated Huffman table");
+}
+
+} // namespace
+
+void requirePlausibleSize(int64_t width, int64_t height, size_t fileBytes, const std::filesystem::path& file,
+                          int64_t texelsPerByte) {
+    const int64_t largest = std::min(MostTexels, int64_t(fileBytes) * texelsPerByte);
+    if (width <= 0 || height <= 0 || width > largest / height)
+        throw InputError(file.string(), "claims to be " + std::to_string(width) + "x" + std::to_string(height) +
+                                            " texels, more than a file of " + std::to_string(fileBytes) +
+                                            " bytes can hold, or than the " + std::to_string(MostTexels) + " accepted");
+}
+
+bool isPng(std::string_view bytes) {
+    return bytes.starts_with("\x89PNG");
+}
+
+void requireSanePngChunks(std::string_view bytes, const std::filesystem::path& file) {
+    constexpr size_t Signature = 8, Overhead = 12; // length, type and checksum of a chunk
+    for (size_t position = Signature; position < bytes.size();) {
+        if (bytes.size() - position < Overhead) throw InputError(file.string(), "not a readable image: truncated");
+        uint32_t length = 0;
+        for (size_t i = 0; i < 4; ++i) length = (length << 8) | static_cast<unsigned char>(bytes[position + i]);
+        if (length > bytes.size() - position - Overhead)
+            throw InputError(file.string(), "not a readable image: a chunk claims more bytes than there are");
+        if (bytes.substr(position + 4, 4) == "IEND") return;
+        position += Overhead + length;
+    }
+}
+
+int64_t pngTexelsPerByte(std::string_view bytes) {
+    constexpr size_t DepthAt = 24, ColourTypeAt = 25;
+    constexpr int64_t MostDeflated = 1032;
+    if (bytes.size() <= ColourTypeAt) return MostDeflated;
+    const int channels[] = {1, 1, 3, 1, 2, 1, 4, 1}; // by colour type
+    const int bits = std::clamp(int(bytes[DepthAt]), 1, 16) * channels[bytes[ColourTypeAt] & 7];
+    return std::max(MostDeflated * 8 / bits, int64_t(1));
+}
+
+bool isJpeg(std::string_view bytes) {
+    // Filling bytes before the start marker are allowed.
+    const size_t marker = bytes.find_first_not_of('\xff');
+    return marker != std::string_view::npos && marker > 0 && bytes[marker] == '\xd8';
+}
+
+void requireSaneJpegTables(std::string_view bytes, const std::filesystem::path& file) {
+    constexpr uint8_t DefineTables = 0xC4, EndOfImage = 0xD9;
+    // Markers without content: stuffed bytes, TEM, restarts and the start of the image.
+    const auto standsAlone = [](uint8_t marker) { return marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD8); };
+    size_t position = 0;
+    while ((position = bytes.find('\xff', position)) != std::string_view::npos) {
+        position = bytes.find_first_not_of('\xff', position);
+        if (position == std::string_view::npos) return;
+        const uint8_t marker = byteAt(bytes, position++);
+        if (marker == EndOfImage) return;
+        if (standsAlone(marker)) continue;
+        if (bytes.size() - position < 2) return;
+        const size_t length = size_t(byteAt(bytes, position)) << 8 | byteAt(bytes, position + 1);
+        const size_t end = std::min(position + std::max<size_t>(length, 2), bytes.size());
+        if (marker == DefineTables) requireSaneTables(bytes.substr(position + 2, end - position - 2), file);
+        position = end;
+    }
+}
+
+void requireSaneExrAttributes(std::string_view bytes, const std::filesystem::path& file) {
+    constexpr size_t HeaderStart = 8;
+    const auto fail = [&]() -> InputError {
+        return {file.string(), "not a readable EXR image: corrupt or truncated header"};
+    };
+    if (bytes.size() < HeaderStart) throw fail();
+    const bool multiPart = (static_cast<unsigned char>(bytes[5]) & 0x10) != 0;
+    size_t position = HeaderStart;
+    const auto skipName = [&] {
+        const size_t end = bytes.find('\0', position);
+        if (end == std::string_view::npos) throw fail();
+        const size_t length = end - position;
+        position = end + 1;
+        return length;
+    };
+    for (bool inHeaders = true; inHeaders;) {
+        size_t attributes = 0;
+        for (; skipName() > 0; ++attributes) {
+            skipName(); // the type
+            uint32_t size = 0;
+            if (bytes.size() - position < sizeof(size)) throw fail();
+            std::memcpy(&size, bytes.data() + position, sizeof(size));
+            position += sizeof(size);
+            if (size > bytes.size() - position) throw fail();
+            position += size;
+        }
+        inHeaders = multiPart && attributes > 0; // an empty header ends the list of parts
+    }
+}
+
+} // namespace tungsten
