@@ -83,7 +83,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     int64_t spp = 0;
 
     CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
-                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice.",
+                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice, or before the first pass.",
                  "tungsten"};
     app.add_option("scenes", options.scenes, "scene files, rendered in sequence");
     app.set_version_flag("-v,--version", Version);

@@ -95,7 +95,8 @@ void printSummary(const SessionResult& result) {
     std::fflush(stdout);
 }
 
-void renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+/// Exit code: 0, or 130 when interrupted before there was anything to write.
+int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
     const LoadedScene loaded = loadScene(file, {options.inputDirectory, options.overrides});
@@ -107,18 +108,18 @@ void renderScene(const std::filesystem::path& file, const Options& options, cons
     if (options.explain) {
         std::cout << file.string() << " (" << loaded.integratorType << ")\n";
         printPlan(plan, std::cout);
-        return;
+        return 0;
     }
     const OutputFiles outputs = resolveOutputs(loaded.renderer, file, options.outputs);
     runSession(loaded, *integrator, plan, outputs, sessionOptions(options, loaded.renderer), result);
     if (!options.quiet) printSummary(result);
+    return result.film.passes() == 0 ? ExitInterrupted : 0;
 }
 
 /// Exit code of one scene; reports what went wrong.
 int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     try {
-        renderScene(file, options, plugins);
-        return 0;
+        return renderScene(file, options, plugins);
     } catch (const InputError& error) {
         for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
     } catch (const UsageError& error) {

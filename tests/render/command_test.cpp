@@ -1,0 +1,220 @@
+// The `tungsten` command from outside: exit codes, messages, files.
+
+#include "render/command.h"
+
+#include "tungsten/film/ImageIo.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Command;
+using test::CommandResult;
+using test::contentOf;
+using test::foggyBox;
+using test::SceneFile;
+
+const int BadInput = 1, BadUsage = 2, InterruptedTwice = 130;
+
+struct Mistake {
+    std::vector<std::string> arguments;
+    std::vector<std::string> expected; ///< parts of the message
+};
+
+/// One line starting with "error:" that has every expected part.
+void expectMistake(const Mistake& mistake, int exitCode) {
+    const CommandResult result = test::tungsten(mistake.arguments);
+    EXPECT_EQ(result.exitCode, exitCode) << result.all();
+    EXPECT_EQ(result.err.rfind("error: ", 0), 0u) << result.err;
+    for (const std::string& part : mistake.expected)
+        EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+}
+
+TEST(Command, BadUsageIsExitCodeTwo) {
+    const SceneFile scene(foggyBox(test::Paths));
+    const std::string file = scene.path().string();
+    const std::vector<Mistake> mistakes{
+        {{}, {"no scene file", "--help"}},
+        {{"--sppp", "4", file}, {"--sppp", "did you mean --spp?"}},
+        {{"--treads=2", file}, {"did you mean --threads?"}},
+        {{"-x", file}, {"-x"}},
+        {{"--spp", "many", file}, {"--spp", "many"}},
+        {{"--spp", "0", file}, {"--spp"}},
+        {{"--spp", "1", "--spp", "2", file}, {"--spp"}},
+        {{"-t", "0", file}, {"--threads"}},
+        {{"-s", "-1", file}, {"--seed", "0x"}},
+        {{"-s", "0xZZ", file}, {"--seed"}},
+        {{"--resolution", "12", file}, {"--resolution", "320x240"}},
+        {{"--resolution", "0x4", file}, {"--resolution"}},
+        {{"--timeout", "soon", file}, {"--timeout", "minutes"}},
+        {{"-c", "often", file}, {"--checkpoint"}},
+        {{"--target-error", "-1", file}, {"--target-error"}},
+        {{"--time-center", "noon", file}, {"--time-center"}},
+        {{"--set", "camera", file}, {"path.to.field=value"}},
+        {{"--set", "primitives.7.bsdf=3", file}, {"3 elements"}},
+        {{"--set", "media.fgo.sigma_s=3", file}, {"did you mean 'fog'?"}},
+        {{"--spp"}, {"--spp"}},
+    };
+    for (const Mistake& mistake : mistakes) expectMistake(mistake, BadUsage);
+}
+
+TEST(Command, BadInputIsExitCodeOne) {
+    const SceneFile scene(foggyBox(test::Paths));
+    const std::string file = scene.path().string();
+    const std::vector<Mistake> mistakes{
+        {{"/nowhere/scene.json"}, {"/nowhere/scene.json", "no such scene file"}},
+        {{"--set", "integrator.type=path_trace", file},
+         {file, "integrator.type", "did you mean 'path_tracer'?", "progressive_photon_map", PLUGIN_DIR}},
+        {{"--set", "integrator.max_bounces=\"x\"", file}, {file, "integrator.max_bounces"}},
+        {{"--set", "primitives.block.bsdf=gray", file}, {file, "primitives[1].bsdf", "grey"}},
+        {{"--set", "camera.type=pinhol", file}, {"camera.type", "pinhole"}},
+        {{"-o", "x.jpg", file}, {"x.jpg", "accepted: .png"}},
+        {{"-e", "x.tiff", file}, {"x.tiff", ".exr, .pfm or .npy"}},
+        {{"-d", file, file}, {"cannot be created or written to", "-d DIRECTORY"}},
+        {{"--resolution", "1000000x1000000", file}, {"resolution"}},
+    };
+    for (const Mistake& mistake : mistakes) expectMistake(mistake, BadInput);
+}
+
+TEST(Command, AJsonErrorHasLineAndColumn) {
+    const SceneFile scene("{\n  \"camera\": {\"type\" \"pinhole\"}}");
+    expectMistake({{scene.path().string()}, {scene.path().string(), "line 2, column"}}, BadInput);
+}
+
+TEST(Command, HelpAndVersionAnswerAndStop) {
+    const CommandResult help = test::tungsten({"--help"});
+    EXPECT_EQ(help.exitCode, 0);
+    for (const char* option : {"--help",
+                               "--version",
+                               "--threads",
+                               "--restart",
+                               "--checkpoint",
+                               "--input-directory",
+                               "--output-directory",
+                               "--spp",
+                               "--timeout",
+                               "--seed",
+                               "--output-file",
+                               "--hdr-output-file",
+                               "--time-center",
+                               "--set",
+                               "--resolution",
+                               "--stats",
+                               "--target-error",
+                               "--explain",
+                               "--list",
+                               "--quiet"})
+        EXPECT_NE(help.out.find(option), std::string::npos) << option;
+    EXPECT_EQ(test::tungsten({"-h"}).out, help.out);
+    const CommandResult version = test::tungsten({"-v"});
+    EXPECT_EQ(version.exitCode, 0);
+    EXPECT_EQ(version.out.rfind("tungsten (darts-tungsten) ", 0), 0u) << version.out;
+}
+
+TEST(Command, ListShowsIntegratorsWithTheirFilesAndEveryKindOfType) {
+    const CommandResult result = test::tungsten({"--list"});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.err, "");
+    for (const char* part : {"path_tracer", "libtungsten-path.so", "progressive_photon_map", "libtungsten-photon.so",
+                             "rough_dielectric", "guided_homo", "henyey_greenstein", "directional_point",
+                             "orthographic", "mitchell_netravali", "filmic", "checker"})
+        EXPECT_NE(result.out.find(part), std::string::npos) << part;
+}
+
+TEST(Command, ListReportsABrokenPluginAndListsTheOthers) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.path() / "libtungsten-broken.so") << "garbage";
+    ::setenv("TUNGSTEN_PLUGIN_PATH", folder.path().c_str(), 1);
+    const CommandResult result = test::tungsten({"--list"});
+    ::unsetenv("TUNGSTEN_PLUGIN_PATH");
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_NE(result.err.find("libtungsten-broken.so: the plugin cannot be loaded"), std::string::npos) << result.err;
+    EXPECT_NE(result.out.find("path_tracer"), std::string::npos);
+}
+
+TEST(Command, ExplainPrintsThePlanAndRendersNothing) {
+    const SceneFile scene(foggyBox(test::Photons));
+    const CommandResult result = test::tungsten({"--explain", "--time-center", "7", scene.path().string()});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    for (const char* part : {"one gate [6, 8)", "scattering media: 'fog'", "'floor'"})
+        EXPECT_NE(result.out.find(part), std::string::npos) << part << " in\n" << result.out;
+    EXPECT_FALSE(fs::exists(scene.path().parent_path() / "box.png"));
+}
+
+TEST(Command, ASceneRendersAndSaysWhereTheImagesAre) {
+    const SceneFile scene(foggyBox(test::Paths));
+    const fs::path folder = scene.path().parent_path() / "new" / "folder";
+    const CommandResult result = test::tungsten({"-d", folder.string(), "--resolution", "12x10", "--stats",
+                                                 (folder / "stats.json").string(), "-t=1", scene.path().string()});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    for (const char* name : {"box.png", "box.pfm", "stats.json"}) {
+        EXPECT_TRUE(fs::exists(folder / name));
+        EXPECT_NE(result.out.find("wrote " + (folder / name).string()), std::string::npos) << result.out;
+    }
+    EXPECT_NE(result.out.find("4 passes, 8 samples per pixel"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("standard error"), std::string::npos) << result.out;
+    EXPECT_NE(result.err.find("pass 4/4"), std::string::npos) << result.err;
+    EXPECT_EQ(readPfm(folder / "box.pfm").width, 12);
+    const std::string stats = contentOf(folder / "stats.json");
+    for (const char* part : {"\"threads\": 1", "\"rays\"", "\"load\"", "\"integrator\": \"path_tracer\""})
+        EXPECT_NE(stats.find(part), std::string::npos) << part;
+}
+
+TEST(Command, QuietIsQuiet) {
+    const SceneFile scene(foggyBox(test::Paths));
+    const CommandResult result = test::tungsten({"--quiet", "--spp", "2", scene.path().string()});
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.all(), "");
+}
+
+TEST(Command, UnknownFieldsAreWarnedAboutOnce) {
+    const SceneFile scene(foggyBox(std::string(test::Paths) + ", \"max_bouncse\": 3"));
+    const CommandResult result = test::tungsten({"--quiet", "--spp", "2", scene.path().string()});
+    EXPECT_EQ(result.exitCode, 0);
+    const size_t first = result.err.find("integrator.max_bouncse: unknown field");
+    EXPECT_NE(first, std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("max_bouncse", first + 25), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("did you mean 'max_bounces'?"), std::string::npos);
+}
+
+TEST(Command, ABadSceneDoesNotKeepTheNextFromRendering) {
+    const SceneFile bad("{ nonsense"), good(foggyBox(test::Paths));
+    const CommandResult result = test::tungsten({"--spp", "2", bad.path().string(), good.path().string()});
+    EXPECT_EQ(result.exitCode, BadInput);
+    EXPECT_NE(result.err.find(bad.path().string()), std::string::npos);
+    EXPECT_TRUE(fs::exists(good.path().parent_path() / "box.png"));
+}
+
+TEST(Command, AnInterruptWritesWhatIsThere) {
+    const SceneFile scene(foggyBox(test::Paths));
+    const fs::path folder = scene.path().parent_path();
+    Command command(
+        {"--spp", "100000000", "-c", "1ms", "--stats", (folder / "stats.json").string(), scene.path().string()});
+    ASSERT_TRUE(command.writes(folder / "box_checkpoint.pfm"));
+    command.send(SIGINT);
+    const CommandResult result = command.wait();
+    EXPECT_EQ(result.exitCode, 0) << result.all();
+    EXPECT_TRUE(fs::exists(folder / "box.png"));
+    EXPECT_TRUE(fs::exists(folder / "TungstenRenderState.dat"));
+    EXPECT_NE(contentOf(folder / "stats.json").find("\"stopped because\": \"interrupted\""), std::string::npos);
+}
+
+TEST(Command, ASecondInterruptLeavesAtOnce) {
+    const SceneFile scene(foggyBox(test::Paths));
+    // One pass that would take hours.
+    Command command(
+        {"--spp", "1000000", "--set", "renderer.spp_step=1000000", "--resolution", "512x512", scene.path().string()});
+    ASSERT_TRUE(command.handles(SIGTERM));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300)); // loading takes less
+    command.send(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_TRUE(command.running()) << "the first interrupt lets the pass finish";
+    command.send(SIGINT);
+    EXPECT_EQ(command.wait().exitCode, InterruptedTwice);
+    EXPECT_FALSE(fs::exists(scene.path().parent_path() / "box.png"));
+}
+
+} // namespace
+} // namespace tungsten

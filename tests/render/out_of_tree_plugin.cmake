@@ -1,0 +1,36 @@
+# Installs the host to a temporary folder, builds the example plugin against it, lists it and renders with it.
+#   cmake -DHOST_BUILD=... -DEXAMPLE=... -DSCENE=... -DWORK=... -P out_of_tree_plugin.cmake
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT code EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${code}): ${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+run(${CMAKE_COMMAND} --install ${HOST_BUILD} --prefix ${WORK}/host)
+run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/plugin -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+  -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS=-Wall -Wextra" -DCMAKE_PREFIX_PATH=${WORK}/host)
+run(${CMAKE_COMMAND} --build ${WORK}/plugin)
+
+set(ENV{TUNGSTEN_PLUGIN_PATH} ${WORK}/plugin)
+set(tungsten ${WORK}/host/bin/tungsten)
+run(${tungsten} --list)
+if(NOT output MATCHES "ambient_occlusion" OR NOT output MATCHES "${WORK}/plugin/libtungsten-example.so")
+  message(FATAL_ERROR "--list does not show the plugin and its file:\n${output}")
+endif()
+if(NOT output MATCHES "path_tracer")
+  message(FATAL_ERROR "--list lost the installed integrators:\n${output}")
+endif()
+
+run(${tungsten} ${SCENE} --set integrator.type=ambient_occlusion --set integrator.distance=0.5 --resolution 32x32
+  --spp 4 -d ${WORK}/out -o ao.png -e ao.pfm --stats ${WORK}/out/ao.json)
+file(READ ${WORK}/out/ao.json stats)
+string(JSON rays GET "${stats}" counters "occlusion rays")
+if(NOT rays EQUAL 4096 OR NOT EXISTS ${WORK}/out/ao.png OR NOT EXISTS ${WORK}/out/ao.pfm)
+  message(FATAL_ERROR "the example did not render: ${rays} rays\n${output}")
+endif()
+file(REMOVE_RECURSE ${WORK})

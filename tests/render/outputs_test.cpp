@@ -1,0 +1,164 @@
+// Names of the files a render writes, and what is in them.
+
+#include "render/fake_integrator.h"
+
+#include "tungsten/film/ImageIo.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten {
+namespace {
+
+namespace fs = std::filesystem;
+using test::SessionFixture;
+using test::ThreeFrames;
+using test::tinyScene;
+
+RendererSettings settings(const std::string& ldr, const std::string& hdr = "") {
+    RendererSettings renderer;
+    renderer.outputFile = ldr;
+    renderer.hdrOutputFile = hdr;
+    return renderer;
+}
+
+std::string errorOf(const OutputFiles& outputs) {
+    try {
+        checkOutputs(outputs);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Outputs, NamesAreRelativeToTheOutputDirectoryOfTheScene) {
+    RendererSettings renderer = settings("a.png", "sub/b.exr");
+    renderer.outputDirectory = "out";
+    renderer.transients.push_back({"frames/f.png", ""});
+    const OutputFiles outputs = resolveOutputs(renderer, "scenes/box/scene.json", {});
+    EXPECT_EQ(outputs.ldr, "scenes/box/out/a.png");
+    EXPECT_EQ(outputs.hdr, "scenes/box/out/sub/b.exr");
+    EXPECT_EQ(outputs.state, "scenes/box/out/TungstenRenderState.dat");
+    ASSERT_EQ(outputs.series.size(), 1u);
+    EXPECT_EQ(outputs.series[0].ldrFile, "scenes/box/out/frames/f.png");
+    EXPECT_EQ(outputs.series[0].hdrFile, "");
+    EXPECT_TRUE(outputs.statistics.empty());
+}
+
+TEST(Outputs, TheCommandLineWins) {
+    OutputOverrides overrides;
+    overrides.ldr = "mine.png";
+    EXPECT_EQ(resolveOutputs(settings("a.png"), "scenes/s.json", overrides).ldr, "mine.png")
+        << "-o is relative to the process";
+    overrides.directory = "there";
+    const OutputFiles outputs = resolveOutputs(settings("a.png", "b.pfm"), "scenes/s.json", overrides);
+    EXPECT_EQ(outputs.ldr, "there/mine.png") << "-d rebases -o";
+    EXPECT_EQ(outputs.hdr, "there/b.pfm") << "and the scene's names";
+    EXPECT_EQ(outputs.state, "there/TungstenRenderState.dat");
+}
+
+TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {
+    const test::TemporaryFolder folder;
+    RendererSettings renderer = settings("a.png", "b.pfm");
+    renderer.overwriteOutputFiles = false;
+    const fs::path scene = folder.path() / "scene.json";
+    EXPECT_EQ(resolveOutputs(renderer, scene, {}).ldr, folder.path() / "a.png");
+    std::ofstream(folder.path() / "a.png") << "old";
+    EXPECT_EQ(resolveOutputs(renderer, scene, {}).ldr, folder.path() / "a001.png");
+    std::ofstream(folder.path() / "a001.png") << "old";
+    const OutputFiles outputs = resolveOutputs(renderer, scene, {});
+    EXPECT_EQ(outputs.ldr, folder.path() / "a002.png");
+    EXPECT_EQ(outputs.hdr, folder.path() / "b.pfm");
+}
+
+TEST(Outputs, UnknownExtensionsNameTheAcceptedOnes) {
+    const test::TemporaryFolder folder;
+    EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
+    EXPECT_NE(
+        errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}}).find("accepted: .exr, .pfm or .npy"),
+        std::string::npos);
+    EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}}), "");
+}
+
+TEST(Outputs, MissingFoldersAreCreatedAndImpossibleOnesReported) {
+    const test::TemporaryFolder folder;
+    EXPECT_EQ(errorOf({folder.path() / "x" / "y" / "a.png", {}, {}, {}, {}}), "");
+    EXPECT_TRUE(fs::is_directory(folder.path() / "x" / "y"));
+    std::ofstream(folder.path() / "file") << "not a folder";
+    const std::string text = errorOf({folder.path() / "file" / "a.png", {}, {}, {}, {}});
+    EXPECT_NE(text.find("cannot be created or written to"), std::string::npos) << text;
+    EXPECT_NE(text.find("-d DIRECTORY"), std::string::npos) << text;
+    EXPECT_NE(errorOf({folder.path() / "x", {}, {}, {}, {}}), "") << "no extension";
+}
+
+TEST(Outputs, AFolderInTheWayIsReported) {
+    const test::TemporaryFolder folder;
+    fs::create_directories(folder.path() / "a.png");
+    EXPECT_NE(errorOf({folder.path() / "a.png", {}, {}, {}, {}}).find("a folder has this name"), std::string::npos);
+}
+
+TEST(Outputs, ASteadyStateExrHoldsTheImageAndItsStandardError) {
+    SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2, "hdr_output_file": "image.exr")"));
+    const SessionResult& result = session.run();
+    EXPECT_EQ(exrPartCount(session.outputs.hdr), 1);
+    const Image colour = readExr(session.outputs.hdr), error = readExr(session.outputs.hdr, 0, "stderr.");
+    EXPECT_EQ(colour.pixels, result.film.mean(0).pixels);
+    EXPECT_EQ(error.pixels, result.film.standardError(0).pixels);
+    EXPECT_GT(error.at(3, 2).x, 0.0f);
+    EXPECT_FALSE(session.has("image.npy")) << "cubes are for sequences";
+}
+
+TEST(Outputs, ASequenceBecomesAMultiPartExrACubeAndASeries) {
+    SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.exr")"));
+    const SessionResult& result = session.run();
+    ASSERT_EQ(exrPartCount(session.outputs.hdr), 3);
+    for (int frame = 0; frame < 3; ++frame)
+        EXPECT_EQ(readExr(session.outputs.hdr, frame).pixels, result.film.mean(frame).pixels);
+    for (const char* name : {"TungstenRender.png", "TungstenRender_0.png", "TungstenRender_2.png", "image.npy"})
+        EXPECT_TRUE(session.has(name)) << name;
+    EXPECT_FALSE(session.has("TungstenRender_3.png"));
+    EXPECT_FALSE(session.has("image_0.exr")) << "the EXR file holds every frame";
+    EXPECT_EQ(result.written.size(), 6u);
+    // 128 bytes of header at most, then 3 frames of 4 x 6 pixels of 3 floats.
+    EXPECT_EQ(fs::file_size(session.folder() / "image.npy") % 64, (3 * 4 * 6 * 3 * 4) % 64);
+}
+
+TEST(Outputs, APfmSequenceIsASeriesAndTheMeanOverTheGate) {
+    SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.pfm")"));
+    const SessionResult& result = session.run();
+    EXPECT_EQ(readPfm(session.folder() / "image.pfm").pixels, result.film.meanOverFrames().pixels);
+    EXPECT_EQ(readPfm(session.folder() / "image_1.pfm").pixels, result.film.mean(1).pixels);
+    EXPECT_TRUE(session.has("image.npy"));
+}
+
+TEST(Outputs, TransientsBuffersNameTheSeries) {
+    SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "output_buffers": [{"type": "transients",
+        "ldr_output_file": "t/ldr.png", "hdr_output_file": "t/hdr.exr"}])"));
+    const SessionResult& result = session.run();
+    EXPECT_TRUE(session.has("t/ldr_2.png"));
+    EXPECT_EQ(readExr(session.folder() / "t" / "hdr_2.exr").pixels, result.film.mean(2).pixels);
+    EXPECT_EQ(readExr(session.folder() / "t" / "hdr_2.exr", 0, "stderr.").pixels, result.film.standardError(2).pixels);
+    EXPECT_FALSE(session.has("TungstenRender_0.png"));
+}
+
+TEST(Outputs, IntegralsAreMeansTimesTheFrameWidth) {
+    const std::string renderer = R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.pfm")";
+    SessionFixture session(tinyScene(std::string(ThreeFrames) + R"(, "time_normalization": "integral")", renderer));
+    const SessionResult& result = session.run();
+    const Image frame = readPfm(session.folder() / "image_1.pfm"), whole = readPfm(session.folder() / "image.pfm");
+    for (size_t i = 0; i < frame.pixels.size(); ++i) {
+        EXPECT_FLOAT_EQ(frame.pixels[i].x, 0.5f * result.film.mean(1).pixels[i].x);
+        EXPECT_FLOAT_EQ(whole.pixels[i].x, 3 * 0.5f * result.film.meanOverFrames().pixels[i].x);
+    }
+}
+
+TEST(Outputs, AnImageThatFailsDoesNotKeepTheOthersFromBeingWritten) {
+    SessionFixture session(tinyScene("", R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.pfm")"));
+    session.integrator.afterPass = [&](const PassInfo&) {
+        fs::create_directories(session.folder() / "TungstenRender.png" / "in the way");
+    };
+    EXPECT_THROW(session.run(), InputError);
+    EXPECT_TRUE(session.has("image.pfm"));
+}
+
+} // namespace
+} // namespace tungsten

@@ -1,0 +1,115 @@
+// Finding and loading plugins: what works, and what a broken one says.
+
+#include "support/SceneFile.h"
+
+#include "tungsten/render/Plugin.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace tungsten {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path Faulty = fs::path(PLUGIN_DIR).parent_path() / "faulty_plugins";
+
+std::string problemsOf(const fs::path& directory, IntegratorRegistry& registry) {
+    std::string text;
+    for (const Problem& problem : loadPlugins({directory}, registry)) text += problem.text() + "\n";
+    return text;
+}
+
+/// A folder that holds one file under a plugin's name.
+class PluginFolder {
+  public:
+    explicit PluginFolder(const fs::path& original) : PluginFolder() { fs::copy_file(original, file()); }
+    explicit PluginFolder(const std::string& content) : PluginFolder() { std::ofstream(file()) << content; }
+    [[nodiscard]] const fs::path& path() const { return folder_.path(); }
+    [[nodiscard]] fs::path file() const { return folder_.path() / "libtungsten-odd.so"; }
+
+  private:
+    PluginFolder() = default;
+    test::TemporaryFolder folder_;
+};
+
+TEST(Plugin, TheShippedOnesLoadAndSayWhereTheyComeFrom) {
+    IntegratorRegistry registry;
+    EXPECT_EQ(problemsOf(PLUGIN_DIR, registry), "");
+    for (const char* type : {"path_tracer", "progressive_photon_map", "progressive_transient_photon_map"}) {
+        ASSERT_EQ(registry.entries().count(type), 1u) << type;
+        EXPECT_NE(registry.entries().at(type).origin.find("libtungsten-"), std::string::npos);
+        EXPECT_FALSE(registry.entries().at(type).description.empty());
+    }
+}
+
+TEST(Plugin, OfEqualFileNamesTheFirstDirectoryWins) {
+    const test::TemporaryFolder folder;
+    fs::copy_file(fs::path(PLUGIN_DIR) / "libtungsten-path.so", folder.path() / "libtungsten-path.so");
+    IntegratorRegistry registry;
+    EXPECT_TRUE(loadPlugins({folder.path(), PLUGIN_DIR}, registry).empty());
+    EXPECT_EQ(fs::path(registry.entries().at("path_tracer").origin).parent_path(), folder.path());
+}
+
+TEST(Plugin, MissingDirectoriesAndOtherFilesAreNoProblem) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.path() / "libother.so") << "not ours";
+    std::ofstream(folder.path() / "libtungsten-notes.txt") << "not ours either";
+    IntegratorRegistry registry;
+    EXPECT_EQ(problemsOf(folder.path(), registry), "");
+    EXPECT_EQ(problemsOf(folder.path() / "nowhere", registry), "");
+    EXPECT_TRUE(registry.entries().empty());
+}
+
+TEST(Plugin, ABrokenFileIsNamedAndTheOthersStillLoad) {
+    const PluginFolder garbage(std::string("this is no shared object"));
+    IntegratorRegistry registry;
+    const std::vector<Problem> problems = loadPlugins({garbage.path(), PLUGIN_DIR}, registry);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].file, garbage.file().string());
+    EXPECT_NE(problems[0].message.find("cannot be loaded"), std::string::npos) << problems[0].message;
+    EXPECT_EQ(registry.entries().count("path_tracer"), 1u);
+}
+
+TEST(Plugin, AMissingEntryPointIsNamed) {
+    const PluginFolder host(fs::path(PLUGIN_DIR) / "libtungsten.so");
+    IntegratorRegistry registry;
+    EXPECT_NE(problemsOf(host.path(), registry).find("does not define tungstenPlugin()"), std::string::npos);
+}
+
+TEST(Plugin, AnotherAbiIsRefusedWithBothAbisInTheMessage) {
+    const PluginFolder folder(Faulty / "libtungsten-wrong_abi.so");
+    IntegratorRegistry registry;
+    const std::string text = problemsOf(folder.path(), registry);
+    EXPECT_NE(text.find("tungsten-plugin-0/unknown"), std::string::npos) << text;
+    EXPECT_NE(text.find(PluginAbi), std::string::npos) << text;
+}
+
+TEST(Plugin, OneBuiltAgainstOtherHeadersIsRefused) {
+    const PluginFolder folder(Faulty / "libtungsten-stale_layout.so");
+    IntegratorRegistry registry;
+    EXPECT_NE(problemsOf(folder.path(), registry).find("other headers"), std::string::npos);
+}
+
+TEST(Plugin, AnIntegratorNameHasOneOwner) {
+    const PluginFolder folder(Faulty / "libtungsten-registers_twice.so");
+    IntegratorRegistry registry;
+    const std::string text = problemsOf(folder.path(), registry);
+    EXPECT_NE(text.find("registers the integrator 'twin'"), std::string::npos) << text;
+    EXPECT_EQ(registry.entries().at("twin").description, "the first");
+}
+
+TEST(Plugin, DirectoriesComeFromTheVariableAndTheExecutable) {
+    ::setenv("TUNGSTEN_PLUGIN_PATH", "/first::/second", 1);
+    const std::vector<fs::path> directories = pluginDirectories();
+    ::unsetenv("TUNGSTEN_PLUGIN_PATH");
+    ASSERT_EQ(directories.size(), 4u);
+    EXPECT_EQ(directories[0], "/first");
+    EXPECT_EQ(directories[1], "/second");
+    EXPECT_EQ(directories[2], fs::read_symlink("/proc/self/exe").parent_path());
+    EXPECT_EQ(directories[3].filename(), "tungsten");
+}
+
+} // namespace
+} // namespace tungsten

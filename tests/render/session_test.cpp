@@ -1,0 +1,219 @@
+// Passes, stopping, checkpoints and resuming, with an integrator whose image is known.
+
+#include "render/fake_integrator.h"
+
+#include "tungsten/render/Checkpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace tungsten {
+namespace {
+
+using test::bitsOf;
+using test::SessionFixture;
+using test::ThreeFrames;
+using test::tinyScene;
+
+const char* const TenByFour = R"("spp": 10, "spp_step": 4)";
+
+std::string errorOf(SessionFixture& session) {
+    try {
+        session.run();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Session, TheLastPassTakesWhatIsLeft) {
+    SessionFixture session(tinyScene("", TenByFour));
+    const SessionResult& result = session.run();
+    const auto& passes = session.integrator.passes;
+    ASSERT_EQ(passes.size(), 3u);
+    EXPECT_EQ(passes[0].samples, 4u);
+    EXPECT_EQ(passes[1].firstSample, 4u);
+    EXPECT_EQ(passes[2].samples, 2u);
+    EXPECT_EQ(passes[2].firstSample, 8u);
+    EXPECT_EQ(passes[2].index, 2u);
+    EXPECT_EQ(passes[2].seed, session.options.seed);
+    EXPECT_TRUE(session.integrator.prepared);
+    EXPECT_EQ(result.samples, 10u);
+    EXPECT_EQ(result.reason, StopReason::Finished);
+    EXPECT_DOUBLE_EQ(result.film.totalWeight(), 10.0);
+}
+
+TEST(Session, ATimeOutStopsAfterThePassInProgressAndWrites) {
+    SessionFixture session(tinyScene("", TenByFour));
+    session.options.timeoutSeconds = 0.01;
+    session.integrator.afterPass = [](const PassInfo&) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+    const SessionResult& result = session.run();
+    EXPECT_EQ(result.reason, StopReason::TimedOut);
+    EXPECT_EQ(result.film.passes(), 1u);
+    EXPECT_TRUE(session.has("TungstenRender.png"));
+}
+
+TEST(Session, AnInterruptFinishesThePassAndWrites) {
+    std::atomic<bool> interrupted{false};
+    SessionFixture session(tinyScene("", TenByFour));
+    session.options.interrupted = &interrupted;
+    session.integrator.afterPass = [&](const PassInfo& pass) { interrupted = pass.index == 1; };
+    const SessionResult& result = session.run();
+    EXPECT_EQ(result.reason, StopReason::Interrupted);
+    EXPECT_EQ(result.film.passes(), 2u);
+    EXPECT_TRUE(session.has("TungstenRender.png"));
+}
+
+TEST(Session, AnInterruptBeforeTheFirstPassWritesNothing) {
+    const std::atomic<bool> interrupted{true};
+    SessionFixture session(tinyScene("", TenByFour));
+    session.options.interrupted = &interrupted;
+    EXPECT_EQ(session.run().reason, StopReason::Interrupted);
+    EXPECT_TRUE(session.integrator.passes.empty());
+    EXPECT_FALSE(session.has("TungstenRender.png"));
+}
+
+TEST(Session, ATargetErrorStopsAsSoonAsItIsReached) {
+    SessionFixture session(tinyScene("", R"("spp": 100000, "spp_step": 1)"));
+    session.options.targetError = 0.05;
+    const SessionResult& result = session.run();
+    EXPECT_EQ(result.reason, StopReason::TargetReached);
+    EXPECT_LE(result.film.relativeStandardError(), 0.05);
+    // Uniform on (0, 1]: relative standard error sqrt(1/12) / (0.5 sqrt(n)), so n = 133.
+    EXPECT_NEAR(double(result.film.passes()), 133.0, 30.0);
+}
+
+TEST(Session, OutputsAreCheckedBeforeTheFirstPass) {
+    SessionFixture session(tinyScene(""));
+    session.outputs.ldr = session.folder() / "scene.json" / "image.png";
+    EXPECT_NE(errorOf(session).find("-d DIRECTORY"), std::string::npos);
+    EXPECT_TRUE(session.integrator.passes.empty());
+}
+
+TEST(Session, CheckpointsAreWrittenOnTheWay) {
+    SessionFixture session(tinyScene("", R"("spp": 3, "spp_step": 1, "hdr_output_file": "image.pfm")"));
+    session.options.checkpointSeconds = 1e-9;
+    bool seen = false;
+    session.integrator.afterPass = [&](const PassInfo& pass) {
+        if (pass.index == 1) seen = session.has("TungstenRender_checkpoint.png") && session.has("image_checkpoint.pfm");
+    };
+    session.run();
+    EXPECT_TRUE(seen);
+    EXPECT_FALSE(session.has("TungstenRenderState.dat")) << "resuming is not enabled";
+}
+
+TEST(Session, AFailingCheckpointDoesNotLoseTheRender) {
+    SessionFixture session(tinyScene("", R"("spp": 3, "spp_step": 1)"));
+    session.options.checkpointSeconds = 1e-9;
+    // A folder where the checkpoint's image should go.
+    std::filesystem::create_directories(session.folder() / "TungstenRender_checkpoint.png" / "x");
+    EXPECT_EQ(session.run().film.passes(), 3u);
+    EXPECT_TRUE(session.has("TungstenRender.png"));
+}
+
+/// Interrupts after every pass and resumes until the render is done: exact equality with one that ran through.
+TEST(Session, AResumedRenderEqualsAnUninterruptedOneBitForBit) {
+    for (const char* const gate : {"", ThreeFrames}) {
+        SessionFixture whole(tinyScene(gate, TenByFour));
+        const std::string expected = bitsOf(whole.run().film);
+
+        SessionFixture pieces(tinyScene(gate, TenByFour));
+        pieces.options.resumeEnabled = true;
+        pieces.options.timeoutSeconds = 1e-9;
+        uint64_t resumed = 0;
+        for (const uint64_t expectedSamples : {4u, 8u, 10u}) {
+            const SessionResult& result = pieces.run();
+            EXPECT_EQ(result.samples, expectedSamples);
+            EXPECT_EQ(result.resumedSamples, resumed);
+            resumed = result.samples;
+        }
+        EXPECT_EQ(pieces.integrator.passes.size(), 3u);
+        EXPECT_EQ(bitsOf(pieces.run().film), expected);
+        EXPECT_EQ(pieces.integrator.passes.size(), 3u) << "nothing is left to do";
+    }
+}
+
+TEST(Session, RestartIgnoresTheState) {
+    SessionFixture session(tinyScene("", TenByFour));
+    session.options.resumeEnabled = true;
+    session.run();
+    session.options.restart = true;
+    EXPECT_EQ(session.run().resumedSamples, 0u);
+    EXPECT_EQ(session.integrator.passes.size(), 6u);
+}
+
+TEST(Session, AStateOfAnotherRenderIsRefusedAndKept) {
+    SessionFixture session(tinyScene("", TenByFour));
+    session.options.resumeEnabled = true;
+    session.run();
+    const auto stamp = std::filesystem::last_write_time(session.outputs.state);
+    const auto refuses = [&](const std::string& what) {
+        const std::string text = errorOf(session);
+        EXPECT_NE(text.find(what), std::string::npos) << text;
+        EXPECT_NE(text.find("-r"), std::string::npos) << text;
+        EXPECT_EQ(std::filesystem::last_write_time(session.outputs.state), stamp);
+    };
+    ++session.options.seed;
+    refuses("another seed");
+    --session.options.seed;
+    session.options.sppStep = 5;
+    refuses("another spp_step");
+    session.options.sppStep = 4;
+    session.loaded.hash ^= 1;
+    refuses("another scene");
+}
+
+TEST(Session, ADamagedStateIsAnErrorNotACrash) {
+    SessionFixture session(tinyScene(ThreeFrames, TenByFour));
+    session.options.resumeEnabled = true;
+    session.run();
+    const auto size = std::filesystem::file_size(session.outputs.state);
+    for (std::uintmax_t length = size; length-- > 0; length -= std::min<std::uintmax_t>(length, 37)) {
+        std::filesystem::resize_file(session.outputs.state, length);
+        EXPECT_NE(errorOf(session), "") << length;
+    }
+}
+
+TEST(Session, StatisticsSayWhatHappened) {
+    SessionFixture session(tinyScene("", TenByFour));
+    session.outputs.statistics = session.folder() / "stats" / "run.json";
+    const SessionResult& result = session.run();
+    ASSERT_TRUE(session.has("stats/run.json"));
+    EXPECT_EQ(result.statistics.counter("fake passes"), 3u);
+    const std::string json = statisticsJson(session.loaded, session.options, result);
+    for (const char* expected :
+         {"\"passes\": 3", "\"samples per pixel\": 10", "\"fake passes\": 3",
+          "\"stopped because\": \"all samples taken\"", "\"width\": 6", "\"height\": 4", "\"frames\": 1",
+          "\"peak memory bytes\": ", "\"relative standard error\": 0.", "\"non-finite samples\": 0", "\"prepare\": {",
+          "\"passes\": {", "\"write\": {", "\"CPU seconds\": "})
+        EXPECT_NE(json.find(expected), std::string::npos) << expected << " in\n" << json;
+}
+
+TEST(Statistics, ThreadsMayAddAtOnce) {
+    Statistics statistics;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i)
+        threads.emplace_back([&] {
+            for (int k = 0; k < 1000; ++k) statistics.add("events", 3);
+        });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(statistics.counter("events"), 12000u);
+    EXPECT_EQ(statistics.counter("none"), 0u);
+}
+
+TEST(Statistics, StagesAddUp) {
+    Statistics statistics;
+    for (int i = 0; i < 2; ++i) {
+        const StageTimer timer(statistics, "sleep");
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    const Statistics::Stage stage = statistics.stages().at("sleep");
+    EXPECT_EQ(stage.runs, 2u);
+    EXPECT_GE(stage.wallSeconds, 0.02);
+    EXPECT_LT(stage.cpuSeconds, stage.wallSeconds);
+    EXPECT_GT(peakMemoryBytes(), 1u << 20);
+}
+
+} // namespace
+} // namespace tungsten
