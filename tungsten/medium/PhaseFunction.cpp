@@ -14,8 +14,10 @@ float Isotropic::sampleCosine(float u) const {
 }
 
 float HenyeyGreenstein::eval(float cosTheta) const {
-    // (1 - g)^2 + 2 g (1 - cos) instead of 1 + g^2 - 2 g cos: no cancellation at forward peaks.
-    const float denominator = sqr(1.0f - g) + 2.0f * g * (1.0f - cosTheta);
+    // 1 + g^2 - 2 g cos written about the peak, so that nothing cancels there: forward for g > 0, backward for g < 0.
+    const float magnitude = std::abs(g);
+    const float fromPeak = g >= 0.0f ? 1.0f - cosTheta : 1.0f + cosTheta;
+    const float denominator = sqr(1.0f - magnitude) + 2.0f * magnitude * fromPeak;
     return InvFourPi * (1.0f - g * g) / (denominator * std::sqrt(denominator));
 }
 

@@ -1,0 +1,228 @@
+// Every surface model: samples follow densities, weights are value over density, energy is kept, Fresnel terms are
+// right.
+
+#include "support/ChiSquare.h"
+
+#include "tungsten/bsdf/Bsdf.h"
+#include "tungsten/bsdf/Fresnel.h"
+#include "tungsten/core/Warp.h"
+
+#include <gtest/gtest.h>
+
+#include <complex>
+
+namespace tungsten {
+namespace {
+
+struct Named {
+    std::string name;
+    Bsdf bsdf;
+};
+
+const Rgb GoldEta{0.143f, 0.375f, 1.44f}, GoldK{3.98f, 2.39f, 1.60f};
+
+std::vector<Named> smoothModels() {
+    std::vector<Named> models;
+    const auto add = [&](const std::string& name, BsdfModel model) {
+        models.push_back({name, Bsdf(name, std::move(model), Texture(0.8f))});
+    };
+    add("lambert", Lambert{});
+    add("oren_nayar", OrenNayar{Texture(0.7f)});
+    for (const auto& [name, distribution] : {std::pair{"beckmann", MicrofacetModel::Beckmann},
+                                             {"ggx", MicrofacetModel::Ggx},
+                                             {"phong", MicrofacetModel::Phong},
+                                             {"pbrt-ggx", MicrofacetModel::PbrtGgx}}) {
+        for (const float roughness : {0.15f, 0.5f}) {
+            const std::string suffix = std::string(" ") + name + " " + std::to_string(roughness);
+            add("rough_conductor" + suffix, RoughConductor{GoldEta, GoldK, distribution, Texture(roughness)});
+            add("rough_dielectric" + suffix, RoughDielectric{1.5f, distribution, Texture(roughness), true});
+        }
+    }
+    add("rough_plastic", makeRoughPlastic(1.5f, 1.0f, Rgb(0.2f), MicrofacetModel::Ggx, Texture(0.3f), Rgb(1.0f)));
+    add("pbrt_plastic", PbrtPlastic{1.5f, MicrofacetModel::PbrtGgx, Texture(0.3f), Rgb(0.25f)});
+    const auto part = [](BsdfModel model) { return std::make_shared<const Bsdf>("", std::move(model), Texture(0.6f)); };
+    add("mixed", Mixed{part(Lambert{}), part(RoughConductor{GoldEta, GoldK, MicrofacetModel::Ggx, Texture(0.4f)}),
+                       Texture(0.3f)});
+    return models;
+}
+
+std::vector<Vec3f> viewDirections(bool below) {
+    std::vector<Vec3f> views;
+    for (const float z : {0.95f, 0.6f, 0.2f}) {
+        views.push_back(Vec3f(std::sqrt(1.0f - z * z), 0.0f, z));
+        if (below) views.push_back(Vec3f(0.0f, std::sqrt(1.0f - z * z), -z));
+    }
+    return views;
+}
+
+bool transmits(const Bsdf& bsdf) {
+    return (bsdf.lobes() & lobe::Transmissive) != 0;
+}
+
+TEST(Bsdf, SamplesFollowDensitiesAndWeightsAreValueOverDensity) {
+    for (const Named& model : smoothModels())
+        for (const Vec3f& wi : viewDirections(transmits(model.bsdf))) {
+            SCOPED_TRACE(model.name + " at z = " + std::to_string(wi.z));
+            const BsdfQuery query;
+            int failures = 0;
+            const auto sample = [&](Sampler& s) -> std::optional<Vec3f> {
+                const auto drawn = model.bsdf.sample(query, wi, {s.next2D(), s.next1D()});
+                if (!drawn) return std::nullopt;
+                const Rgb value = model.bsdf.eval(query, wi, drawn->wo);
+                const float pdf = model.bsdf.pdf(query, wi, drawn->wo);
+                // Compared loosely where the direction's rounding moves a sharp lobe.
+                if (std::abs(pdf - drawn->pdf) > 2e-2f * drawn->pdf ||
+                    std::abs(value.x / pdf - drawn->weight.x) > 2e-2f * (drawn->weight.x + 1e-3f))
+                    ++failures;
+                return drawn->wo;
+            };
+            const double p = test::chiSquareSphere(
+                sample, [&](const Vec3f& wo) { return double(model.bsdf.pdf(query, wi, wo)); }, 7, 60000);
+            EXPECT_GT(p, test::SmallestPValue);
+            EXPECT_EQ(failures, 0);
+        }
+}
+
+TEST(Bsdf, NothingGainsEnergy) {
+    for (const Named& model : smoothModels())
+        for (const Vec3f& wi : viewDirections(transmits(model.bsdf))) {
+            const BsdfQuery query{{0, 0}, TransportMode::Photons, lobe::All};
+            double sum = 0.0;
+            constexpr int Count = 20000;
+            for (uint64_t i = 0; i < Count; ++i) {
+                Sampler s(5, RandomStream::Test, 0, i);
+                if (const auto drawn = model.bsdf.sample(query, wi, {s.next2D(), s.next1D()}))
+                    sum += double(maxComponent(drawn->weight));
+            }
+            // pbrt_plastic takes its Fresnel term from the inside, which reflects more than it should.
+            const double limit = model.name == "pbrt_plastic" ? 1.25 : 1.01;
+            EXPECT_LT(sum / Count, limit) << model.name << " " << wi.z;
+            EXPECT_GT(sum / Count, 0.1) << model.name << " " << wi.z;
+        }
+}
+
+TEST(Bsdf, ReflectionIsReciprocal) {
+    for (const Named& model : smoothModels()) {
+        if (transmits(model.bsdf)) continue;
+        const BsdfQuery query;
+        for (uint64_t i = 0; i < 200; ++i) {
+            Sampler s(6, RandomStream::Test, 0, i);
+            const Vec3f a = warp::squareToCosineHemisphere(s.next2D()), b = warp::squareToCosineHemisphere(s.next2D());
+            const float forth = model.bsdf.eval(query, a, b).x / b.z, back = model.bsdf.eval(query, b, a).x / a.z;
+            // Written so that both exchanges see the same Fresnel angle, the microfacet models are exactly symmetric.
+            EXPECT_NEAR(forth, back, 2e-3f * (forth + back)) << model.name;
+        }
+    }
+}
+
+TEST(Bsdf, RefractionSqueezesRadianceByTheSquaredIndexRatio) {
+    const Bsdf glass("", RoughDielectric{1.5f, MicrofacetModel::Ggx, Texture(0.4f), true});
+    const Vec3f wi = Vec3f(0.3f, 0.1f, 0.9f).normalized(), wo = Vec3f(-0.1f, 0.05f, -0.9f).normalized();
+    const float radiance = glass.eval({{0, 0}, TransportMode::Radiance, lobe::All}, wi, wo).x;
+    const float photons = glass.eval({{0, 0}, TransportMode::Photons, lobe::All}, wi, wo).x;
+    EXPECT_GT(photons, 0.0f);
+    EXPECT_NEAR(radiance / photons, 1.0f / 2.25f, 1e-5f);
+    // f_radiance(i, o) n_i^-2 = f_radiance(o, i) n_o^-2 (per cosine).
+    const float back = glass.eval({{0, 0}, TransportMode::Radiance, lobe::All}, wo, wi).x;
+    EXPECT_NEAR(radiance / std::abs(wo.z) * 2.25f, back / wi.z, 2e-3f * back / wi.z);
+}
+
+TEST(Bsdf, SpecularModelsReflectAndRefract) {
+    const BsdfQuery query;
+    const Vec3f wi = Vec3f(0.6f, 0.0f, 0.8f);
+    const auto mirror = Bsdf("", Mirror{}, Texture(0.9f)).sample(query, wi, {{0.5f, 0.5f}, 0.5f});
+    ASSERT_TRUE(mirror);
+    EXPECT_EQ(mirror->wo, Vec3f(-0.6f, 0.0f, 0.8f));
+    EXPECT_FLOAT_EQ(mirror->weight.x, 0.9f);
+    const Bsdf glass("", Dielectric{1.5f, true});
+    const auto refracted = glass.sample(query, wi, {{0.5f, 0.5f}, 0.99f});
+    ASSERT_TRUE(refracted);
+    EXPECT_NEAR(refracted->wo.x, -0.4f, 1e-6f); // Snell
+    EXPECT_NEAR(refracted->weight.x, 1.0f / 2.25f, 1e-5f);
+    EXPECT_NEAR(glass.sample({{0, 0}, TransportMode::Photons, lobe::All}, wi, {{0.5f, 0.5f}, 0.99f})->weight.x, 1.0f,
+                1e-5f);
+    // From inside beyond the critical angle: everything is reflected.
+    const auto total = glass.sample(query, Vec3f(0.8f, 0.0f, -0.6f), {{0.5f, 0.5f}, 0.999f});
+    ASSERT_TRUE(total);
+    EXPECT_EQ(total->lobe, lobe::SpecularReflection);
+    EXPECT_FLOAT_EQ(total->weight.x, 1.0f);
+}
+
+TEST(Bsdf, LobeMasksSelect) {
+    const Bsdf plastic("", makePlastic(1.5f, 1.0f, Rgb(0.0f)), Texture(0.5f));
+    const Vec3f wi = Vec3f(0.6f, 0.0f, 0.8f);
+    const float fresnel = fresnelDielectric(1.0f / 1.5f, 0.8f);
+    const auto specular = plastic.sample({{0, 0}, TransportMode::Radiance, lobe::Specular}, wi, {{0.5f, 0.5f}, 0.999f});
+    ASSERT_TRUE(specular);
+    EXPECT_NEAR(specular->weight.x, fresnel, 1e-6f);
+    EXPECT_FALSE(
+        Bsdf("", Lambert{}).sample({{0, 0}, TransportMode::Radiance, lobe::Specular}, wi, {{0.5f, 0.5f}, 0.5f}));
+    EXPECT_EQ(plastic.eval({{0, 0}, TransportMode::Radiance, lobe::Specular}, wi, wi), Rgb(0.0f));
+    const Bsdf veil("", Transparency{std::make_shared<const Bsdf>("", BsdfModel(Lambert{})), Texture(0.25f)});
+    EXPECT_NEAR(veil.forwardWeight({0, 0}).x, 0.75f, 1e-6f);
+    EXPECT_NEAR(veil.eval({}, wi, wi).x, 0.25f * 0.8f / 3.14159265f, 1e-6f);
+    const auto straight = veil.sample({{0, 0}, TransportMode::Radiance, lobe::Forward}, wi, {{0.5f, 0.5f}, 0.9f});
+    ASSERT_TRUE(straight);
+    EXPECT_EQ(straight->wo, -wi);
+    EXPECT_NEAR(straight->weight.x, 0.75f, 1e-6f);
+}
+
+TEST(Bsdf, BacksOfReflectiveModelsAreBlack) {
+    const Vec3f behind = Vec3f(0.0f, 0.6f, -0.8f);
+    for (const Named& model : smoothModels()) {
+        if (transmits(model.bsdf)) continue;
+        EXPECT_FALSE(model.bsdf.sample({}, behind, {{0.3f, 0.4f}, 0.5f})) << model.name;
+        EXPECT_EQ(model.bsdf.eval({}, behind, -behind), Rgb(0.0f)) << model.name;
+    }
+}
+
+TEST(Bsdf, GrazingAndDegenerateDirectionsStayFinite) {
+    for (const Named& model : smoothModels())
+        for (const float z : {1.0f, 1e-4f, 1e-7f, -1e-7f}) {
+            const Vec3f wi = Vec3f(std::sqrt(1.0f - z * z), 0.0f, z);
+            for (uint64_t i = 0; i < 500; ++i) {
+                Sampler s(8, RandomStream::Test, 0, i);
+                const auto drawn = model.bsdf.sample({}, wi, {s.next2D(), s.next1D()});
+                if (drawn) {
+                    EXPECT_TRUE(isFinite(drawn->weight) && drawn->weight.x >= 0.0f && std::isfinite(drawn->pdf))
+                        << model.name << z;
+                }
+            }
+        }
+}
+
+TEST(Fresnel, DielectricAtNormalIncidenceBrewsterAndCritical) {
+    EXPECT_NEAR(fresnelDielectric(1.0f / 1.5f, 1.0f), 0.04f, 1e-6f);
+    EXPECT_NEAR(fresnelDielectric(1.0f / 1.5f, -1.0f), 0.04f, 1e-6f);
+    EXPECT_EQ(fresnelDielectric(1.5f, 0.5f), 1.0f);
+    EXPECT_NEAR(averageFresnel(1.5f), 0.59635f, 2e-5f);
+}
+
+TEST(Fresnel, ConductorAgreesWithComplexArithmetic) {
+    for (const double cosTheta : {1.0, 0.7, 0.2, 0.01}) {
+        const std::complex<double> n(0.2, 3.9), one(1.0, 0.0);
+        const std::complex<double> cosT = std::sqrt(one - (1.0 - cosTheta * cosTheta) / (n * n));
+        const auto rs = (cosTheta - n * cosT) / (cosTheta + n * cosT),
+                   rp = (n * cosTheta - cosT) / (n * cosTheta + cosT);
+        const double expected = 0.5 * (std::norm(rs) + std::norm(rp));
+        EXPECT_NEAR(double(fresnelConductor(Rgb(0.2f), Rgb(3.9f), float(cosTheta)).x), expected, 1e-4);
+    }
+}
+
+TEST(Bsdf, PlasticFollowsItsFormula) {
+    const Bsdf plastic("", makePlastic(1.5f, 2.0f, Rgb(0.1f)), Texture(0.5f));
+    const Vec3f wi = Vec3f(0.6f, 0.0f, 0.8f), wo = Vec3f(0.0f, 0.8f, 0.6f);
+    const double fi = double(fresnelDielectric(1.0f / 1.5f, 0.8f)), fo = double(fresnelDielectric(1.0f / 1.5f, 0.6f));
+    const double expected = (1 - fi) * (1 - fo) / 2.25 / 3.14159265358979 * 0.5 / (1 - 0.5 * 0.59635) *
+                            std::exp(-2.0 * 0.1 * (1 / 0.8 + 1 / 0.6)) * 0.6;
+    EXPECT_NEAR(double(plastic.eval({}, wi, wo).x), expected, 1e-4 * expected);
+}
+
+TEST(Conductors, KnownByName) {
+    EXPECT_EQ(conductorNames().size(), 7u);
+    EXPECT_FALSE(conductorByName("Unobtainium"));
+    EXPECT_FLOAT_EQ(conductorByName("Ag")->second.x, 4.8283433224f);
+}
+
+} // namespace
+} // namespace tungsten

@@ -1,0 +1,160 @@
+// Light sources: power, intensity, connections.
+
+#include "support/ChiSquare.h"
+
+#include "tungsten/emitter/Power.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten {
+namespace {
+
+Emitter withModel(EmitterModel model) {
+    Emitter emitter;
+    emitter.model = std::move(model);
+    return emitter;
+}
+
+/// A quad of side 2 at height 3 that shines downward with radiance 5.
+struct QuadLamp {
+    Shape shape;
+    Emitter emitter;
+
+    QuadLamp() {
+        Transform transform;
+        transform.x = Vec3f(2, 0, 0);
+        transform.y = Vec3f(0, -1, 0);
+        transform.z = Vec3f(0, 0, -2);
+        transform.translation = Vec3f(0, 3, 0);
+        shape = makeQuad(transform);
+        emitter = withModel(AreaEmitter{&shape, 0, Texture(5.0f), std::make_shared<const AreaSampler>(shape)});
+    }
+};
+
+SpotEmitter spot() {
+    SpotEmitter lamp;
+    lamp.position = Vec3f(0, 0, 0);
+    lamp.direction = Vec3f(0, 0, 1);
+    lamp.intensity = Rgb(2.0f);
+    lamp.cosInner = 0.75f;
+    lamp.cosOuter = 0.5f;
+    return lamp;
+}
+
+TEST(Emitter, PhotonsCarryTheEmittersPower) {
+    const QuadLamp quad;
+    CollimatedEmitter beam;
+    beam.position = Vec3f(1, 2, 3);
+    beam.radius = 0.5f;
+    beam.power = Rgb(7.0f);
+    const std::vector<std::pair<Emitter, double>> cases{
+        {withModel(PointEmitter{Vec3f(0.0f), Rgb(3.0f)}), 12.0 * 3.14159265358979},
+        {withModel(spot()), 2.0 * 2.0 * 3.14159265358979 * (1.0 - 0.625)},
+        {withModel(beam), 7.0},
+        {quad.emitter, 5.0 * 4.0 * 3.14159265358979}};
+    for (const auto& [emitter, power] : cases) {
+        EXPECT_NEAR(double(emitterPower(emitter).x), power, 1e-4 * power);
+        double sum = 0.0, squared = 0.0;
+        constexpr int Count = 100000;
+        for (uint64_t i = 0; i < Count; ++i) {
+            Sampler s(2, RandomStream::Test, 0, i);
+            const Vec2f uPosition = s.next2D();
+            const double p = double(sampleEmission(emitter, uPosition, s.next2D()).power.x);
+            sum += p;
+            squared += p * p;
+        }
+        const double mean = sum / Count, error = std::sqrt(std::max(squared / Count - mean * mean, 0.0) / Count);
+        EXPECT_NEAR(mean, power, 4.5 * error + 1e-4 * power);
+    }
+}
+
+TEST(Emitter, DirectionsFollowTheirDensities) {
+    const QuadLamp quad;
+    const auto direction = [](const Emitter& emitter) {
+        return [&emitter](Sampler& s) -> std::optional<Vec3f> {
+            const Vec2f uPosition = s.next2D();
+            return sampleEmission(emitter, uPosition, s.next2D()).ray.direction;
+        };
+    };
+    const Emitter point = withModel(PointEmitter{Vec3f(0.0f), Rgb(1.0f)}), cone = withModel(spot());
+    EXPECT_GT(test::chiSquareSphere(direction(point), [](const Vec3f&) { return 0.25 / 3.14159265358979; }),
+              test::SmallestPValue);
+    EXPECT_GT(test::chiSquareSphere(direction(cone),
+                                    [](const Vec3f& w) { return w.z >= 0.5f ? 1.0 / 3.14159265358979 : 0.0; }),
+              test::SmallestPValue);
+    EXPECT_GT(test::chiSquareSphere(direction(quad.emitter),
+                                    [](const Vec3f& w) { return double(std::max(-w.y, 0.0f)) / 3.14159265358979; }),
+              test::SmallestPValue);
+}
+
+TEST(Emitter, ConnectionsGiveTheIrradianceOfClosedForms) {
+    const auto point = sampleDirect(withModel(PointEmitter{Vec3f(0, 2, 0), Rgb(3.0f)}), Vec3f(0.0f), {0.5f, 0.5f});
+    ASSERT_TRUE(point);
+    EXPECT_FLOAT_EQ(point->weight.x, 0.75f);
+    EXPECT_FLOAT_EQ(point->distance, 2.0f);
+    EXPECT_EQ(point->pdf, 0.0f);
+    EXPECT_FALSE(sampleDirect(withModel(spot()), Vec3f(0, 0, -1), {0.5f, 0.5f}));
+
+    // Irradiance under a disk of radius R at height h: pi L R^2 / (R^2 + h^2).
+    Shape disk = Disk{Vec3f(0, 2, 0), 1.5f, Frame(Vec3f(0, -1, 0)), 0.0f};
+    const Emitter lamp = withModel(AreaEmitter{&disk, 0, Texture(4.0f), std::make_shared<const AreaSampler>(disk)});
+    double sum = 0.0, squared = 0.0;
+    constexpr int Count = 200000;
+    for (uint64_t i = 0; i < Count; ++i) {
+        Sampler s(3, RandomStream::Test, 0, i);
+        const auto light = sampleDirect(lamp, Vec3f(0.0f), s.next2D());
+        if (!light) continue;
+        EXPECT_NEAR(light->pdf, pdfDirect(lamp, Vec3f(0.0f), light->position, Vec3f(0, -1, 0)), 1e-4f * light->pdf);
+        const double e = double(light->weight.x * light->direction.y);
+        sum += e;
+        squared += e * e;
+    }
+    const double expected = 3.14159265358979 * 4.0 * 2.25 / (2.25 + 4.0), mean = sum / Count;
+    EXPECT_NEAR(mean, expected, 4.5 * std::sqrt((squared / Count - mean * mean) / Count));
+}
+
+TEST(Emitter, AreaLightsAreOneSided) {
+    const QuadLamp quad;
+    EXPECT_EQ(emittedRadiance(quad.emitter, {0, 0}, Vec3f(0, -1, 0), Vec3f(0, -1, 0)), Rgb(5.0f));
+    EXPECT_EQ(emittedRadiance(quad.emitter, {0, 0}, Vec3f(0, -1, 0), Vec3f(0, 1, 0)), Rgb(0.0f));
+    EXPECT_FALSE(sampleDirect(quad.emitter, Vec3f(0, 5, 0), {0.5f, 0.5f}));
+    const SurfaceSample start = sampleEmissionPoint(quad.emitter, {0.2f, 0.7f});
+    EXPECT_FLOAT_EQ(start.position.y, 3.0f);
+    EXPECT_FLOAT_EQ(emittedIntensity(quad.emitter, start, Vec3f(0, -1, 0)).x, 20.0f);
+}
+
+TEST(Emitter, EnvironmentMapsAreImportanceSampled) {
+    auto bitmap = std::make_shared<Bitmap>();
+    bitmap->width = 8;
+    bitmap->height = 4;
+    bitmap->channels = 3;
+    for (int i = 0; i < 32 * 3; ++i) bitmap->hdr.push_back(i < 12 ? 20.0f : 0.5f);
+    const Emitter sky = withModel(makeInfiniteSphere(Texture(std::shared_ptr<const Bitmap>(bitmap)), Frame(), true));
+    const auto sample = [&](Sampler& s) -> std::optional<Vec3f> {
+        return sampleDirect(sky, Vec3f(0.0f), s.next2D())->direction;
+    };
+    EXPECT_GT(test::chiSquareSphere(
+                  [&](Sampler& s) {
+                      // The test's pole is z, the map's is y.
+                      const Vec3f w = *sample(s);
+                      return std::optional(Vec3f(w.z, w.x, w.y));
+                  },
+                  [&](const Vec3f& w) { return double(pdfDirectInfinite(sky, Vec3f(w.y, w.z, w.x))); }),
+              test::SmallestPValue);
+    Sampler s(1, RandomStream::Test, 0, 0);
+    const auto light = sampleDirect(sky, Vec3f(0.0f), s.next2D());
+    EXPECT_NEAR(light->weight.x * light->pdf, environmentRadiance(sky, light->direction).x,
+                1e-3f * light->weight.x * light->pdf);
+}
+
+TEST(Power, ConversionsOfTheFormat) {
+    EXPECT_FLOAT_EQ(pointIntensityFromPower(Rgb(4.0f * Pi)).x, 1.0f);
+    EXPECT_FLOAT_EQ(directionalPointPower(Rgb(1.0f)).x, 4.0f * Pi);
+    EXPECT_FLOAT_EQ(collimatedPowerFromEmission(Rgb(3.0f), 0.0f).x, 3.0f);
+    EXPECT_FLOAT_EQ(collimatedPowerFromEmission(Rgb(3.0f), 2.0f).x, 12.0f * Pi);
+    EXPECT_FLOAT_EQ(collimatedPowerFromPower(Rgb(3.0f), 2.0f).x, 3.0f);
+    EXPECT_FLOAT_EQ(areaRadianceFromPower(Texture(Pi), 2.0f).rgb({0, 0}).x, 0.5f);
+}
+
+} // namespace
+} // namespace tungsten

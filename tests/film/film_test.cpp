@@ -1,0 +1,198 @@
+// The film's moments, image files, tone maps.
+
+#include "support/SceneFile.h"
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/core/Random.h"
+#include "tungsten/film/Film.h"
+#include "tungsten/film/ImageIo.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <sstream>
+
+namespace tungsten {
+namespace {
+
+using test::TemporaryFolder;
+
+Image gradient(int width, int height) {
+    Image image(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) image.at(x, y) = Rgb(float(x) + 0.25f, float(y) * 0.5f, 1e-3f * float(x * y));
+    return image;
+}
+
+Film randomFilm(int passes, int frames) {
+    Film film(3, 2, frames);
+    for (int pass = 0; pass < passes; ++pass) {
+        Sampler s(4, RandomStream::Test, uint32_t(pass), 0);
+        film.beginPass();
+        for (int frame = 0; frame < frames; ++frame)
+            for (int y = 0; y < 2; ++y)
+                for (int x = 0; x < 3; ++x) film.passPixel(frame, x, y) = Rgb(s.next1D(), s.next1D() * 2.0f, 1.0f);
+        film.endPass(pass % 3 == 0 ? 2.0 : 1.0);
+    }
+    return film;
+}
+
+TEST(Film, MomentsMatchDirectFormulas) {
+    Film film(1, 1, 1);
+    const std::vector<std::pair<double, double>> passes{{1.0, 2.0}, {3.0, 1.0}, {2.5, 4.0}, {0.5, 1.0}};
+    double weight = 0.0, mean = 0.0, moment = 0.0;
+    for (const auto& [value, w] : passes) {
+        film.beginPass();
+        film.passPixel(0, 0, 0) = Rgb(float(value));
+        film.endPass(w);
+        weight += w;
+        mean += value * w;
+    }
+    mean /= weight;
+    for (const auto& [value, w] : passes) moment += w * (value - mean) * (value - mean);
+    EXPECT_NEAR(double(film.mean(0).at(0, 0).x), mean, 1e-6);
+    EXPECT_NEAR(double(film.standardError(0).at(0, 0).y), std::sqrt(moment / 3.0 / weight), 1e-6);
+    EXPECT_NEAR(film.relativeStandardError(), std::sqrt(moment / 3.0 / weight) / mean, 1e-6);
+}
+
+TEST(Film, StandardErrorPredictsTheSpreadOfMeans) {
+    // 400 films of 25 passes: the spread of their means against their own claims.
+    double sum = 0.0, squared = 0.0, claimed = 0.0;
+    constexpr int Films = 400;
+    for (uint32_t f = 0; f < Films; ++f) {
+        Film film(1, 1, 1);
+        for (uint32_t pass = 0; pass < 25; ++pass) {
+            Sampler s(6, RandomStream::Test, pass, f);
+            film.beginPass();
+            film.passPixel(0, 0, 0) = Rgb(s.next1D() * s.next1D());
+            film.endPass(1.0);
+        }
+        const double mean = double(film.mean(0).at(0, 0).x);
+        sum += mean;
+        squared += mean * mean;
+        claimed += std::pow(double(film.standardError(0).at(0, 0).x), 2.0);
+    }
+    const double variance = squared / Films - (sum / Films) * (sum / Films);
+    EXPECT_NEAR(claimed / Films / variance, 1.0, 5.0 * std::sqrt(2.0 / Films));
+    EXPECT_NEAR(sum / Films, 0.25, 5.0 * std::sqrt(variance / Films));
+}
+
+TEST(Film, WholeGateIsTheMeanOverFrames) {
+    const Film film = randomFilm(5, 4);
+    double sum = 0.0;
+    for (int frame = 0; frame < 4; ++frame) sum += double(film.mean(frame).at(1, 1).y) / 4.0;
+    EXPECT_NEAR(double(film.meanOverFrames().at(1, 1).y), sum, 1e-6);
+    // Frames vary independently here, so the whole varies less than any of them.
+    EXPECT_LT(film.standardErrorOverFrames().at(1, 1).y, film.standardError(0).at(1, 1).y);
+}
+
+TEST(Film, NonFiniteSamplesAreCountedAndLeaveNoTrace) {
+    Film film(1, 1, 1);
+    film.beginPass();
+    film.passPixel(0, 0, 0) = Rgb(std::numeric_limits<float>::quiet_NaN());
+    film.endPass(1.0);
+    film.beginPass();
+    film.passPixel(0, 0, 0) = Rgb(2.0f);
+    film.endPass(1.0);
+    EXPECT_EQ(film.nonFiniteSamples(), 1u);
+    EXPECT_EQ(film.mean(0).at(0, 0), Rgb(1.0f));
+}
+
+TEST(Film, StateRoundTripsBitForBitAndRefusesDamage) {
+    const Film film = randomFilm(4, 3);
+    std::stringstream stream;
+    film.write(stream);
+    Film loaded(3, 2, 3);
+    std::stringstream whole(stream.str());
+    loaded.read(whole, "state");
+    EXPECT_EQ(loaded.passes(), 4u);
+    for (int frame = 0; frame < 3; ++frame) {
+        EXPECT_EQ(loaded.mean(frame).pixels, film.mean(frame).pixels);
+        EXPECT_EQ(loaded.standardError(frame).pixels, film.standardError(frame).pixels);
+    }
+    EXPECT_EQ(loaded.standardErrorOverFrames().pixels, film.standardErrorOverFrames().pixels);
+    std::stringstream cut(stream.str().substr(0, stream.str().size() - 5));
+    EXPECT_THROW(loaded.read(cut, "state"), InputError);
+    EXPECT_EQ(loaded.passes(), 4u) << "a failed read must leave the film alone";
+    std::stringstream foreign("not a state at all, but long enough to look like one ..........................");
+    EXPECT_THROW(loaded.read(foreign, "state"), InputError);
+    Film other(4, 2, 3);
+    std::stringstream again(stream.str());
+    EXPECT_THROW(other.read(again, "state"), InputError);
+}
+
+TEST(Film, AbsurdSizesAreRefused) {
+    EXPECT_THROW(Film(60000, 60000, 1000), InputError);
+}
+
+TEST(ImageIo, PfmRoundTripsAndNamesDamage) {
+    const TemporaryFolder folder;
+    const Image image = gradient(5, 3);
+    writePfm(folder.path() / "a.pfm", image);
+    EXPECT_EQ(readPfm(folder.path() / "a.pfm").pixels, image.pixels);
+    std::filesystem::resize_file(folder.path() / "a.pfm", 100);
+    EXPECT_THROW(readPfm(folder.path() / "a.pfm"), InputError);
+    EXPECT_THROW(readPfm(folder.path() / "none.pfm"), InputError);
+}
+
+TEST(ImageIo, ExrKeepsLayersAndParts) {
+    const TemporaryFolder folder;
+    const Image image = gradient(7, 4), error = gradient(7, 4);
+    writeExr(folder.path() / "one.exr", {ExrPart{"", image, error, true, 1.5, 2.0}});
+    EXPECT_EQ(exrPartCount(folder.path() / "one.exr"), 1);
+    EXPECT_EQ(readExr(folder.path() / "one.exr").pixels, image.pixels);
+    EXPECT_EQ(readExr(folder.path() / "one.exr", 0, "stderr.").pixels, error.pixels);
+    std::vector<ExrPart> parts;
+    for (int i = 0; i < 3; ++i)
+        parts.push_back({"frame." + std::to_string(i), image, error, true, double(i), double(i) + 1.0});
+    parts[2].colour.at(0, 0) = Rgb(42.0f);
+    writeExr(folder.path() / "many.exr", parts);
+    EXPECT_EQ(exrPartCount(folder.path() / "many.exr"), 3);
+    EXPECT_EQ(readExr(folder.path() / "many.exr", 2).at(0, 0), Rgb(42.0f));
+    EXPECT_THROW(readExr(folder.path() / "one.exr", 0, "nothing."), InputError);
+}
+
+TEST(ImageIo, NumpyReadsTheCube) {
+    if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
+        GTEST_SKIP() << "python3-numpy is not installed";
+    const TemporaryFolder folder;
+    writeNpy(folder.path() / "cube.npy", {gradient(5, 3), gradient(5, 3), gradient(5, 3), gradient(5, 3)});
+    const std::string script = "import numpy as n; a = n.load('" + (folder.path() / "cube.npy").string() +
+                               "'); assert a.shape == (4, 3, 5, 3) and a.dtype == n.float32, a.shape; "
+                               "assert a[2, 1, 4, 0] == 4.25 and a[3, 2, 0, 1] == 1.0";
+    EXPECT_EQ(std::system(("/usr/bin/python3 -c \"" + script + "\"").c_str()), 0);
+}
+
+TEST(ImageIo, FailedWritesKeepTheOldFile) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "image.pfm";
+    writePfm(file, gradient(2, 2));
+    EXPECT_THROW(writePfm(folder.path() / "missing" / "image.pfm", gradient(2, 2)), InputError);
+    // An EXR that cannot be made (parts of one name twice) leaves neither a new file nor a temporary one.
+    EXPECT_THROW(writeExr(file, {ExrPart{"same", gradient(2, 2), {}, false, 0, 0},
+                                 ExrPart{"same", gradient(2, 2), {}, false, 0, 0}}),
+                 InputError);
+    EXPECT_EQ(readPfm(file).pixels, gradient(2, 2).pixels);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(ImageIo, FrameNamesAreNotPadded) {
+    EXPECT_EQ(framePath("out/result.pfm", 7), std::filesystem::path("out/result_7.pfm"));
+}
+
+TEST(ToneMap, Values) {
+    EXPECT_FLOAT_EQ(applyToneMap(ToneMap::Linear, Rgb(-1.0f)).x, 0.0f);
+    EXPECT_NEAR(applyToneMap(ToneMap::Gamma, Rgb(0.5f)).x, 0.72974f, 1e-5f);
+    EXPECT_NEAR(applyToneMap(ToneMap::Reinhard, Rgb(1.0f)).x, 0.72974f, 1e-5f);
+    EXPECT_NEAR(applyToneMap(ToneMap::Pbrt, Rgb(0.002f)).x, 0.02584f, 1e-5f);
+    EXPECT_NEAR(applyToneMap(ToneMap::Pbrt, Rgb(0.5f)).x, 0.735357f, 1e-5f);
+    const double x = 0.496;
+    EXPECT_NEAR(double(applyToneMap(ToneMap::Filmic, Rgb(0.5f)).x), x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06),
+                1e-5);
+    EXPECT_EQ(toLdr(Rgb(0.999f, 1.0f, 3.0f)), (std::array<uint8_t, 3>{254, 255, 255}));
+    EXPECT_EQ(toneMapNames().size(), 5u);
+}
+
+} // namespace
+} // namespace tungsten

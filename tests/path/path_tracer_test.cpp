@@ -1,0 +1,128 @@
+// The path tracer against closed forms and verified values.
+
+#include "path/PathTracer.h"
+
+#include "support/GroundTruthScenes.h"
+#include "support/Render.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::path {
+namespace {
+
+using test::Rendered;
+using test::RenderOptions;
+
+std::unique_ptr<Rendered> renderPaths(const std::string& json, RenderOptions options) {
+    options.overrides.emplace_back("integrator.type=path_tracer");
+    const test::SceneFile file(json);
+    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
+        return std::make_unique<PathTracer>(std::move(scene), settings);
+    });
+}
+
+struct OrderCase {
+    int order;
+    bool unwarped;
+    double g;
+    double expected; ///< radiance per unit path length, averaged over the gate (verified values, section 6)
+    double slack;    ///< relative allowance for the heavy tail of next-event estimation near the light (order 2 and up)
+};
+
+class PathOrders : public testing::TestWithParam<OrderCase> {};
+
+TEST_P(PathOrders, MatchVerifiedValues) {
+    const OrderCase& c = GetParam();
+    const auto rendered = renderPaths(test::configurationA(c.order, c.unwarped, c.g), {{}, 100, 20000});
+    const double error = rendered->pixelError();
+    EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + c.slack * c.expected) << "standard error " << error;
+    EXPECT_LT(error, 0.04 * c.expected) << "the test would not see a wrong value";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ConfigurationsAAndB, PathOrders,
+    testing::Values(OrderCase{1, false, 0.0, 2.22436e-4, 0.0}, OrderCase{1, true, 0.0, 11.1009e-4, 0.0},
+                    OrderCase{2, false, 0.0, 5.97962e-4, 0.02}, OrderCase{2, true, 0.0, 29.4416e-4, 0.02},
+                    OrderCase{3, false, 0.0, 7.81135e-4, 0.03}, OrderCase{2, false, 0.6, 1.28207e-4, 0.03}));
+
+TEST(PathTracer, DirectLightingAndItsArrivalTime) {
+    const auto rendered = renderPaths(test::litFloor(20), {{}, 4, 16});
+    // Light to floor 1.25, floor to camera 2, pulse at 0.6: time 3.85, in frame 15 of width 0.25.
+    const double expected = 0.5 / 3.14159265358979 * 3.0 * (1.0 / 1.25) / (1.25 * 1.25) / 0.25;
+    for (int frame = 0; frame < 20; ++frame)
+        EXPECT_NEAR(rendered->mean(frame), frame == 15 ? expected : 0.0, 2e-3 * expected) << frame;
+}
+
+TEST(PathTracer, UnwarpedTimeLeavesOutTheCameraSegment) {
+    const auto rendered = renderPaths(test::litFloor(20), {{"integrator.camera_unwarped=true"}, 4, 16});
+    for (int frame = 0; frame < 20; ++frame) EXPECT_EQ(rendered->mean(frame) > 0.0, frame == 7) << frame; // 0.6 + 1.25
+}
+
+TEST(PathTracer, ConvexLambertInAUniformEnvironment) {
+    const auto rendered = renderPaths(test::furnace(false), {{}, 8, 256});
+    for (const Rgb& pixel : rendered->film.mean(0).pixels) EXPECT_NEAR(pixel.x, 0.3f, 0.003f);
+}
+
+TEST(PathTracer, CloudWithoutAbsorptionVanishesInAUniformEnvironment) {
+    const auto rendered = renderPaths(test::furnace(true), {{}, 32, 512});
+    const Image mean = rendered->film.mean(0), error = rendered->film.standardError(0);
+    for (size_t i = 0; i < mean.pixels.size(); ++i) EXPECT_NEAR(mean.pixels[i].y, 1.0f, 5.0f * error.pixels[i].y);
+    EXPECT_LT(error.pixels[5].y, 0.02f);
+}
+
+TEST(PathTracer, FramesSumToTheSteadyState) {
+    const RenderOptions options{{}, 4, 64};
+    const auto steady = renderPaths(test::fogOverFloor(test::SteadyState), options);
+    const auto frames =
+        renderPaths(test::fogOverFloor(R"("start_time": 0, "transient_time_width": 5, "frame_num": 30)"), options);
+    // The same random numbers, so the same paths: equal but for rounding.
+    const Image whole = steady->film.mean(0), mean = frames->film.meanOverFrames();
+    for (size_t i = 0; i < whole.pixels.size(); ++i)
+        EXPECT_NEAR(mean.pixels[i].y * 150.0f, whole.pixels[i].y, 1e-4f * whole.pixels[i].y + 1e-6f);
+    EXPECT_GT(frames->mean(1), 0.0);
+    EXPECT_GT(frames->mean(2), 0.0);
+}
+
+TEST(PathTracer, SameImageOnOneAndTwoThreadsBitForBit) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4)");
+    const auto one = renderPaths(json, {{}, 3, 16, 7, 1}), two = renderPaths(json, {{}, 3, 16, 7, 2});
+    EXPECT_EQ(one->film.mean(0).pixels, two->film.mean(0).pixels);
+    EXPECT_GT(one->mean(), 0.0);
+    EXPECT_NE(one->film.mean(0).pixels, renderPaths(json, {{}, 3, 16, 8, 2})->film.mean(0).pixels);
+}
+
+TEST(PathTracer, SamplesDoNotDependOnHowPassesAreCut) {
+    const std::string json = test::fogOverFloor(test::SteadyState);
+    const auto a = renderPaths(json, {{}, 8, 4}), b = renderPaths(json, {{}, 2, 16});
+    EXPECT_NEAR(a->mean(), b->mean(), 1e-5 * a->mean());
+}
+
+TEST(PathTracer, IndexMatchedBoundariesCountAsBounces) {
+    // Into the cube, one scattering, out again: three interactions at least.
+    const std::string json = test::fogOverFloor(test::SteadyState);
+    const auto cut = [&](int maxBounces) {
+        return renderPaths(json, {{"integrator.max_bounces=" + std::to_string(maxBounces),
+                                   "primitives.1.bsdf={\"type\": \"null\"}"},
+                                  2,
+                                  64})
+            ->mean();
+    };
+    EXPECT_EQ(cut(3), 0.0);
+    EXPECT_GT(cut(4), 0.0);
+}
+
+TEST(PathTracer, CountersSayWhatHappened) {
+    const auto rendered = renderPaths(test::fogOverFloor(test::SteadyState), {{}, 1, 4});
+    EXPECT_EQ(rendered->statistics.counter("camera paths"), 16u * 16u * 4u);
+    EXPECT_GT(rendered->statistics.counter("medium events"), 0u);
+    EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
+    const auto clear = renderPaths(test::litFloor(1), {{}, 1, 4});
+    EXPECT_EQ(clear->statistics.counter("medium events"), 0u);
+}
+
+TEST(PathTracer, DeltaGatesAreRefused) {
+    EXPECT_THROW(renderPaths(test::litFloor(1), {{"integrator.delta_time_gate=true"}, 1, 1}), InputError);
+}
+
+} // namespace
+} // namespace tungsten::path

@@ -1,0 +1,153 @@
+// Photon points and surface photons against closed forms, verified values and the path tracer.
+
+#include "path/PathTracer.h"
+#include "photon/PhotonIntegrator.h"
+#include "photon/ProgressiveSchedule.h"
+
+#include "support/GroundTruthScenes.h"
+#include "support/Render.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+using test::Rendered;
+using test::RenderOptions;
+
+std::unique_ptr<Rendered> renderPhotons(const std::string& json, const RenderOptions& options) {
+    const test::SceneFile file(json);
+    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
+        return std::make_unique<PhotonIntegrator>(std::move(scene), settings, true);
+    });
+}
+
+std::unique_ptr<Rendered> renderPaths(const std::string& json, RenderOptions options) {
+    options.overrides.emplace_back("integrator.type=path_tracer");
+    const test::SceneFile file(json);
+    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
+        return std::make_unique<path::PathTracer>(std::move(scene), settings);
+    });
+}
+
+const std::string SteadyMap = "integrator.type=progressive_photon_map";
+
+TEST(ProgressiveSchedule, FollowsItsProduct) {
+    double product = 1.0;
+    for (uint32_t pass = 0; pass < 200; ++pass) {
+        EXPECT_NEAR(radiusScale(pass, 0.7), product, 1e-12 * product + 1e-13);
+        product *= (double(pass) + 1.0 + 0.7) / (double(pass) + 2.0);
+    }
+    EXPECT_EQ(radiusScale(0, 0.3), 1.0);
+    EXPECT_NEAR(radiusScale(1000, 1.0), 1.0, 1e-10);
+}
+
+struct OrderCase {
+    int order;
+    bool unwarped;
+    double g, expected; ///< verified values, section 6
+};
+class PointOrders : public testing::TestWithParam<OrderCase> {};
+
+TEST_P(PointOrders, MatchVerifiedValues) {
+    const OrderCase& c = GetParam();
+    const auto rendered = renderPhotons(test::configurationA(c.order, c.unwarped, c.g), {{}, 40, 1});
+    const double error = rendered->pixelError();
+    constexpr double KernelBias = 0.01;
+    EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + KernelBias * c.expected) << "standard error " << error;
+    EXPECT_LT(error, 0.13 * c.expected) << "the test would not see a wrong value";
+}
+
+INSTANTIATE_TEST_SUITE_P(ConfigurationsAAndB, PointOrders,
+                         testing::Values(OrderCase{1, false, 0.0, 2.22436e-4}, OrderCase{1, true, 0.0, 11.1009e-4},
+                                         OrderCase{2, false, 0.0, 5.97962e-4}, OrderCase{2, true, 0.0, 29.4416e-4},
+                                         OrderCase{3, false, 0.0, 7.81135e-4}, OrderCase{2, false, 0.6, 1.28207e-4}));
+
+TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
+    const auto rendered = renderPhotons(test::litFloor(20), {{}, 40, 1});
+    const double expected = 0.5 / 3.14159265358979 * 3.0 * (1.0 / 1.25) / (1.25 * 1.25) / 0.25;
+    EXPECT_NEAR(rendered->mean(15), expected, 4.0 * rendered->pixelError(15) + 0.01 * expected);
+    EXPECT_LT(rendered->pixelError(15), 0.05 * expected);
+    for (int frame = 0; frame < 20; ++frame) EXPECT_EQ(rendered->mean(frame) > 0.0, frame == 15) << frame;
+}
+
+TEST(PhotonMap, AgreesWithPathsInEveryFrame) {
+    const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
+    const auto points = renderPhotons(json, {{}, 30, 1});
+    const auto paths = renderPaths(json, {{}, 30, 128});
+    for (int frame = 0; frame < 3; ++frame) {
+        SCOPED_TRACE(frame);
+        // Quarters of the image: block means whose errors follow from the pixels' (points: fully correlated at worst).
+        const Image a = points->film.mean(frame), b = paths->film.mean(frame);
+        const Image ea = points->film.standardError(frame), eb = paths->film.standardError(frame);
+        const double average = std::max(paths->mean(frame), 1e-12);
+        for (int block = 0; block < 4; ++block) {
+            double difference = 0.0, correlated = 0.0, independent = 0.0;
+            for (int i = 0; i < 64; ++i) {
+                const int x = 8 * (block % 2) + i % 8, y = 8 * (block / 2) + i / 8;
+                difference += double(a.at(x, y).y - b.at(x, y).y) / 64.0;
+                correlated += double(ea.at(x, y).y) / 64.0;
+                independent += double(eb.at(x, y).y * eb.at(x, y).y) / (64.0 * 64.0);
+            }
+            constexpr double KernelBias = 0.05; // radius 0.15 on surfaces, edges of the floor and cube in view
+            EXPECT_LT(std::abs(difference),
+                      4.0 * std::sqrt(correlated * correlated + independent) + KernelBias * average)
+                << block;
+            EXPECT_LT(correlated, 0.3 * average);
+        }
+    }
+}
+
+TEST(PhotonMap, FramesSumToTheSteadyState) {
+    const auto steady = renderPhotons(test::fogOverFloor(test::SteadyState), {{SteadyMap}, 3, 1});
+    const auto frames =
+        renderPhotons(test::fogOverFloor(R"("start_time": 0, "transient_time_width": 5, "frame_num": 30)"), {{}, 3, 1});
+    const Image whole = steady->film.mean(0), mean = frames->film.meanOverFrames();
+    for (size_t i = 0; i < whole.pixels.size(); ++i)
+        EXPECT_NEAR(mean.pixels[i].y * 150.0f, whole.pixels[i].y, 1e-4f * whole.pixels[i].y + 1e-6f);
+    EXPECT_GT(steady->mean(), 0.0);
+}
+
+TEST(PhotonMap, SameImageOnOneAndTwoThreadsWithinAMillionth) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4)");
+    const auto one = renderPhotons(json, {{}, 3, 2, 7, 1}), two = renderPhotons(json, {{}, 3, 2, 7, 2});
+    const Image a = one->film.mean(0), b = two->film.mean(0);
+    for (size_t i = 0; i < a.pixels.size(); ++i) EXPECT_NEAR(a.pixels[i].y, b.pixels[i].y, 1e-6f * a.pixels[i].y);
+    EXPECT_EQ(one->statistics.counter("stored volume photons"), two->statistics.counter("stored volume photons"));
+    EXPECT_GT(one->mean(), 0.0);
+}
+
+TEST(PhotonMap, FullStoresStayUnbiased) {
+    const std::string json = test::configurationA(2, false);
+    const auto big = renderPhotons(json, {{}, 20, 1});
+    const auto small = renderPhotons(json, {{"integrator.volume_photon_count=4000"}, 400, 1});
+    EXPECT_LE(small->statistics.counter("stored volume photons"), 400u * 4000u);
+    EXPECT_GT(small->statistics.counter("stored volume photons"), 400u * 3900u);
+    EXPECT_NEAR(small->mean(), big->mean(), 4.0 * std::hypot(small->pixelError(), big->pixelError()));
+    EXPECT_LT(small->pixelError(), 0.1 * small->mean());
+}
+
+TEST(PhotonMap, UnusedStagesCostNothing) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4)");
+    const auto noSurfaces = renderPhotons(json, {{"integrator.include_surfaces=false"}, 1, 1});
+    EXPECT_EQ(noSurfaces->statistics.counter("stored surface photons"), 0u);
+    EXPECT_GT(noSurfaces->statistics.counter("stored volume photons"), 0u);
+    const auto noMedium = renderPhotons(test::litFloor(1), {{"integrator.transient_time_width=5"}, 1, 1});
+    EXPECT_EQ(noMedium->statistics.counter("stored volume photons"), 0u);
+    EXPECT_GT(noMedium->statistics.counter("stored surface photons"), 0u);
+}
+
+TEST(PhotonMap, AdaptiveRadiiEstimateTheSameRadiance) {
+    const std::string json = test::configurationA(1, false);
+    const auto adaptive = renderPhotons(json, {{"integrator.fixed_volume_radius=false"}, 40, 1});
+    EXPECT_NEAR(adaptive->mean(), 2.22436e-4, 4.0 * adaptive->pixelError() + 0.05 * 2.22436e-4);
+}
+
+TEST(PhotonMap, WrongSettingsAreExplained) {
+    for (const char* bad : {"integrator.volume_photon_type=beans", "integrator.volume_photon_type=planes",
+                            "integrator.delta_time_gate=true", "integrator.photon_count=0", "integrator.alpha=2"})
+        EXPECT_THROW(renderPhotons(test::litFloor(1), {{bad}, 1, 1}), InputError) << bad;
+}
+
+} // namespace
+} // namespace tungsten::photon
