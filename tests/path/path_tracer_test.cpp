@@ -45,6 +45,13 @@ INSTANTIATE_TEST_SUITE_P(
                     OrderCase{2, false, 0.0, 5.97962e-4, 0.02}, OrderCase{2, true, 0.0, 29.4416e-4, 0.02},
                     OrderCase{3, false, 0.0, 7.81135e-4, 0.03}, OrderCase{2, false, 0.6, 1.28207e-4, 0.03}));
 
+TEST(PathTracer, SingleScatteringInAFoggedBox) {
+    const auto rendered = renderPaths(test::foggedBox(), {{}, 40, 20000});
+    const double expected = test::foggedBoxSingleScattering();
+    EXPECT_NEAR(rendered->mean(), expected, 4.5 * rendered->pixelError());
+    EXPECT_LT(rendered->pixelError(), 0.02 * expected);
+}
+
 TEST(PathTracer, DirectLightingAndItsArrivalTime) {
     const auto rendered = renderPaths(test::litFloor(20), {{}, 4, 16});
     // Light to floor 1.25, floor to camera 2, pulse at 0.6: time 3.85, in frame 15 of width 0.25.

@@ -63,6 +63,13 @@ INSTANTIATE_TEST_SUITE_P(ConfigurationsAAndB, PointOrders,
                                          OrderCase{2, false, 0.0, 5.97962e-4}, OrderCase{2, true, 0.0, 29.4416e-4},
                                          OrderCase{3, false, 0.0, 7.81135e-4}, OrderCase{2, false, 0.6, 1.28207e-4}));
 
+TEST(PhotonMap, SingleScatteringInAFoggedBox) {
+    const auto rendered = renderPhotons(test::foggedBox(), {{}, 60, 1});
+    const double expected = test::foggedBoxSingleScattering();
+    EXPECT_NEAR(rendered->mean(), expected, 4.0 * rendered->pixelError() + 0.01 * expected);
+    EXPECT_LT(rendered->pixelError(), 0.05 * expected);
+}
+
 TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
     const auto rendered = renderPhotons(test::litFloor(20), {{}, 40, 1});
     const double expected = 0.5 / 3.14159265358979 * 3.0 * (1.0 / 1.25) / (1.25 * 1.25) / 0.25;
@@ -73,7 +80,7 @@ TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
 
 TEST(PhotonMap, AgreesWithPathsInEveryFrame) {
     const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
-    const auto points = renderPhotons(json, {{}, 30, 1});
+    const auto points = renderPhotons(json, {{}, 80, 1});
     const auto paths = renderPaths(json, {{}, 30, 128});
     for (int frame = 0; frame < 3; ++frame) {
         SCOPED_TRACE(frame);

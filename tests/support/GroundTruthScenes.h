@@ -1,6 +1,9 @@
 #pragma once
 // Scenes with known answers, as JSON, for the tests of every integrator.
 
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+
+#include <cmath>
 #include <string>
 
 namespace tungsten::test {
@@ -22,6 +25,37 @@ inline std::string configurationA(int order, bool unwarped, double g = 0.0) {
            std::to_string(order) + R"(, "max_bounces": )" + std::to_string(order + 1) + R"(, "camera_unwarped": )" +
            (unwarped ? "true" : "false") + R"(, "transient_time_width": 1, "transient_time_center": )" +
            std::to_string(centre) + "}}";
+}
+
+/// A box of fog (sigma_a 0.05, sigma_s 0.4, speed of light 0.8) with absorbing walls, 4 wide; a point of intensity 2 at
+/// (0.7, 0.6, 0.3), seen along +z from (0, 0, -1.5); single scattering in the gate [3.2, 4.2).
+inline std::string foggedBox() {
+    return R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.05, "sigma_s": 0.4, "speed_of_light": 0.8}],
+     "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "null"}, "transform": {"scale": 4}},
+                    {"type": "point", "emission": 2, "ext_medium": "fog", "transform": {"position": [0.7, 0.6, 0.3]}}],
+     "camera": {"type": "pinhole", "resolution": [1, 1], "fov": 0.001, "medium": "fog", "reconstruction_filter": "dirac",
+                "transform": {"position": [0, 0, -1.5], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+     "integrator": {"type": "progressive_transient_photon_map", "photon_count": 100000, "volume_photon_count": 2000000,
+                    "fixed_volume_radius": true, "volume_gather_radius": 0.1, "alpha": 1, "volume_alpha": 1,
+                    "min_bounces": 1, "max_bounces": 2, "transient_time_width": 1, "transient_time_center": 3.7}})";
+}
+
+/// Its closed form: sigma_s / (4 pi) e^{-sigma_t S} I / r^2 along the ray (method, section 8.1), over the part of the
+/// ray whose time lies in the gate, by quadrature; averaged over the gate.
+inline double foggedBoxSingleScattering() {
+    const auto distance = [](double t) { return std::sqrt(0.7 * 0.7 + 0.6 * 0.6 + (t - 1.8) * (t - 1.8)); };
+    const auto length = [&](double t) { return t + distance(t); };
+    // The length grows with t: bisect for the gate's ends, v T.
+    const auto inverse = [&](double target) {
+        double low = 0.0, high = 3.5; // the wall
+        for (int i = 0; i < 200; ++i) (length(0.5 * (low + high)) < target ? low : high) = 0.5 * (low + high);
+        return low;
+    };
+    const auto radiance = [&](double t) {
+        return 0.4 / (4.0 * 3.14159265358979323846) * std::exp(-0.45 * length(t)) * 2.0 / (distance(t) * distance(t));
+    };
+    return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(radiance, inverse(0.8 * 3.2),
+                                                                         inverse(0.8 * 4.2), 10, 1e-10);
 }
 
 /// A Lambert floor (albedo 0.5) at y = 0 seen straight from above through an orthographic camera at y = 2 over (0.75,
