@@ -5,14 +5,12 @@ namespace tungsten::path {
 LightChoice::LightChoice(const Scene& scene) : scene_(scene), probabilities_(scene.emitters.size(), 0.0f) {
     std::vector<float> powers;
     float total = 0.0f, count = 0.0f;
-    earliest_ = std::numeric_limits<double>::infinity();
     for (const Emitter& emitter : scene.emitters) {
         const auto* sky = std::get_if<InfiniteSphereEmitter>(&emitter.model);
         const bool connectable = !emitter.isDelta() && !(sky && !sky->samplable);
         powers.push_back(connectable ? meanComponent(emitterPower(emitter)) : 0.0f);
         total += powers.back();
         count += connectable ? 1.0f : 0.0f;
-        earliest_ = std::min(earliest_, emitter.emissionTime);
     }
     any_ = total > 0.0f;
     if (!any_) return;

@@ -20,14 +20,11 @@ class LightChoice {
     [[nodiscard]] std::optional<Choice> sample(float u) const;
     /// Probability of choosing the emitter with this index (0 for those that cannot be connected to).
     [[nodiscard]] float probability(int emitter) const { return probabilities_[size_t(emitter)]; }
-    /// When the earliest pulse starts.
-    [[nodiscard]] double earliestEmission() const { return earliest_; }
 
   private:
     const Scene& scene_;
     Distribution1D distribution_;
     std::vector<float> probabilities_;
-    double earliest_ = 0.0;
     bool any_ = false;
 };
 

@@ -20,6 +20,10 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
             block.warn("type",
                        "the emitter '" + emitter.name +
                            "' shines in a single direction, which a path tracer cannot find: it lights nothing");
+    // Settings of the photon integrators: a scene may switch between them and this one by its type alone.
+    block.accept({"photon_count", "volume_photon_count", "gather_photon_count", "gather_radius", "volume_gather_radius",
+                  "volume_photon_type", "fixed_volume_radius", "alpha", "volume_alpha", "use_grid", "grid_memory",
+                  "use_frustum_grid", "exclude_non_mis", "strict_time_width", "frustum_culling", "reuse_path_dir"});
     return settings;
 }
 

@@ -23,7 +23,7 @@ void report(const PathCounters& counters, Statistics& statistics) {
 } // namespace
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
-    : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)), lights_(*scene_) {}
+    : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)), lights_(*scene_), arrival_(*scene_) {}
 
 void PathTracer::plan(EffectPlan& plan) const {
     plan.describe("Russian roulette", settings_.russianRoulette,
@@ -33,6 +33,7 @@ void PathTracer::plan(EffectPlan& plan) const {
 
 void PathTracer::prepare(const EffectPlan& plan, Statistics&) {
     timeResolved_ = plan.timeResolved;
+    forwardBoundaries_ = plan.forwardBoundaries;
     // Absorption alone needs free flights too: they carry the transmittance.
     media_ = !scene_->media.empty();
 }
@@ -47,7 +48,7 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{*scene_, settings_, lights_};
+    const WalkContext context{*scene_, settings_, lights_, arrival_, forwardBoundaries_};
     const Camera& camera = scene_->camera;
     const auto width = size_t(camera.resolution.x), height = size_t(camera.resolution.y);
     const auto renderPixel = [&](int x, int y, PathCounters& counters) {

@@ -1,6 +1,7 @@
 #pragma once
 // The integrator `path_tracer`: unbiased, steady state or time-resolved.
 
+#include "path/ArrivalBound.h"
 #include "path/LightChoice.h"
 #include "path/PathSettings.h"
 
@@ -22,7 +23,8 @@ class PathTracer : public Integrator {
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
     LightChoice lights_;
-    bool timeResolved_ = false, media_ = false;
+    ArrivalBound arrival_;
+    bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true;
 };
 
 } // namespace tungsten::path

@@ -13,6 +13,16 @@ float powerHeuristic(float a, float b) {
 constexpr float RouletteThreshold = 0.1f;
 constexpr int RouletteFirstVertex = 3;
 
+/// A connection where every surface is opaque: one ray, one region.
+Visibility traceOpaque(const Scene& scene, Ray ray, float distance, bool toSurface, const Region& region,
+                       uint64_t& rays) {
+    ray.tMax = toSurface ? distance - scene.rayEpsilon : distance;
+    ++rays;
+    if (scene.geometry->occluded(ray)) return {};
+    const Medium* medium = scene.medium(region);
+    return {medium ? medium->transmittance(distance) : Rgb(1.0f), double(distance) / double(region.speed), 0};
+}
+
 } // namespace
 
 template <bool TimeResolved, bool Media>
@@ -21,23 +31,39 @@ void PathWalk<TimeResolved, Media>::run(Ray ray) {
     region_ = scene_.cameraRegion;
     ++counters_.paths;
     while (interactions_ < scene_.transport.maxBounces) {
-        ++counters_.rays;
-        const auto hit = scene_.geometry->intersect(ray_);
         if constexpr (Media) {
             if (const Medium* medium = scene_.medium(region_)) {
-                const float reach = hit ? hit->t : Infinity;
-                const FlightSample flight = sampleFlight(*medium, reach, sampler_);
-                throughput_ = throughput_ * flight.weight;
-                if (medium->scatters() && ++flights_ > medium->maxBounces) return;
-                if (!flight.exited) {
-                    if (!scatterInMedium(*medium, flight.distance)) return;
-                    continue;
-                }
+                if (!crossMedium(*medium)) return;
+                continue;
             }
         }
-        if (!hit) return addEnvironment();
-        if (isBlack(throughput_) || !scatterOnSurface(*hit)) return;
+        ++counters_.rays;
+        if (!arriveAt(scene_.geometry->intersect(ray_))) return;
     }
+}
+
+template <bool TimeResolved, bool Media>
+bool PathWalk<TimeResolved, Media>::crossMedium(const Medium& medium) {
+    if (medium.scatters() && ++flights_ > medium.maxBounces) return false;
+    // The free flight comes first: the ray need not look beyond its collision.
+    const FlightSample flight = sampleFlight(medium, Infinity, sampler_);
+    ray_.tMax = flight.distance;
+    ++counters_.rays;
+    const auto hit = scene_.geometry->intersect(ray_);
+    if (!hit && !flight.exited) {
+        throughput_ = throughput_ * flight.weight;
+        return scatterInMedium(medium, flight.distance);
+    }
+    const float reach = hit ? hit->t : Infinity;
+    throughput_ = throughput_ * (medium.transmittance(reach) / probabilityFlightExits(medium, reach));
+    return arriveAt(hit);
+}
+
+template <bool TimeResolved, bool Media>
+bool PathWalk<TimeResolved, Media>::arriveAt(const std::optional<SurfaceHit>& hit) {
+    if (hit) return !isBlack(throughput_) && scatterOnSurface(*hit);
+    addEnvironment();
+    return false;
 }
 
 template <bool TimeResolved, bool Media>
@@ -47,8 +73,10 @@ void PathWalk<TimeResolved, Media>::advanceClock(float length) {
 }
 
 template <bool TimeResolved, bool Media>
-bool PathWalk<TimeResolved, Media>::tooLate() const {
-    if constexpr (TimeResolved) return time_ + lights_.earliestEmission() >= scene_.transport.gate.end();
+bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
+    // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
+    if constexpr (TimeResolved)
+        if (scattered_ || !scene_.transport.cameraUnwarped) return !arrival_.mayArrive(position, time_);
     return false;
 }
 
@@ -69,9 +97,9 @@ bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float 
     ++interactions_;
     ++mediumScatters_;
     scattered_ = true;
-    if (tooLate() || interactions_ >= scene_.transport.maxBounces) return false;
-    const Vec3f before = ray_.direction;
     vertex_ = ray_.at(distance);
+    if (tooLate(vertex_) || interactions_ >= scene_.transport.maxBounces) return false;
+    const Vec3f before = ray_.direction;
     if (settings_.volumeLightSampling && orderCounts()) connectFromMedium(medium);
     ray_ = Ray{vertex_, medium.phase.sample(before, sampler_.next2D())};
     directionPdf_ = medium.phase.pdf(before, ray_.direction);
@@ -84,14 +112,15 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     ++counters_.surfaceEvents;
     advanceClock(hit.t);
     flights_ = 0;
-    if (tooLate()) return false;
+    if (tooLate(hit.position)) return false;
     if (hit.shape < scene_.primitives.size() && scene_.primitives[hit.shape].emitter >= 0) addEmission(hit);
     if (++interactions_ >= scene_.transport.maxBounces) return false;
+    // The format ends such a path at any surface, index-matched ones included.
+    if (mediumScatters_ == 1 && !settings_.lowOrderScattering) return false;
 
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
     const LobeMask lobes = surface.bsdf->lobes();
     const bool smooth = (lobes & lobe::Smooth) != 0;
-    if (smooth && mediumScatters_ == 1 && !settings_.lowOrderScattering) return false;
     if (smooth && settings_.lightSampling && orderCounts()) connectFromSurface(surface);
     const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
     const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance), surface.wi, random);
@@ -140,42 +169,52 @@ void PathWalk<TimeResolved, Media>::addEnvironment() {
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectFromMedium(const Medium& medium) {
+auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::optional<LightSample> {
     const auto choice = lights_.sample(sampler_.next1D());
-    if (!choice) return;
-    const auto light = sampleDirect(*choice->emitter, vertex_, sampler_.next2D());
+    if (!choice) return std::nullopt;
+    const auto direct = sampleDirect(*choice->emitter, position, sampler_.next2D());
+    if (!direct) return std::nullopt;
+    if constexpr (TimeResolved)
+        if (!arrival_.mayConnect(time_, direct->distance, choice->emitter->emissionTime)) return std::nullopt;
+    return LightSample{*choice->emitter, *direct, choice->probability};
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::connectFromMedium(const Medium& medium) {
+    const auto light = sampleLight(vertex_);
     if (!light) return;
-    const float phase = medium.phase.eval(ray_.direction, light->direction);
-    addConnection(*choice->emitter, *light, choice->probability, Rgb(phase), phase, vertex_, false, region_);
+    const float phase = medium.phase.eval(ray_.direction, light->direct.direction);
+    addConnection(*light, Rgb(phase), phase, {vertex_, light->direct.direction}, region_);
 }
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction& surface) {
-    const auto choice = lights_.sample(sampler_.next1D());
-    if (!choice) return;
-    const auto light = sampleDirect(*choice->emitter, surface.hit.position, sampler_.next2D());
-    if (!light || !surface.consistent(light->direction, scene_.transport.consistencyChecks)) return;
-    const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
-    const Vec3f wo = surface.frame.toLocal(light->direction);
-    const Rgb scattering = surface.bsdf->eval(query, surface.wi, wo);
+    const auto light = sampleLight(surface.hit.position);
+    if (!light || !surface.consistent(light->direct.direction, scene_.transport.consistencyChecks)) return;
+    const Vec3f wo = surface.frame.toLocal(light->direct.direction);
+    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi, wo);
     if (isBlack(scattering)) return;
     const float pdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
-    const Region region = regionBeyond(*surface.primitive, surface.hit, light->direction, region_);
-    addConnection(*choice->emitter, *light, choice->probability, scattering, pdf, surface.hit.position, true, region);
+    const Region region = regionBeyond(*surface.primitive, surface.hit, light->direct.direction, region_);
+    addConnection(*light, scattering, pdf, {surface.hit.position, light->direct.direction, scene_.rayEpsilon}, region);
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addConnection(const Emitter& emitter, const DirectSample& light,
-                                                  float lightProbability, const Rgb& scattering, float directionPdf,
-                                                  const Vec3f& origin, bool fromSurface, const Region& region) {
-    const Visibility visibility = traceVisibility(scene_, origin, fromSurface, light.direction, light.distance,
-                                                  emitter.isArea(), region, counters_.shadowRays);
+void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, const Rgb& scattering, float directionPdf,
+                                                  const Ray& ray, const Region& region) {
+    const bool toSurface = light.emitter.isArea();
+    const float distance = light.direct.distance;
+    const Visibility visibility = forwardBoundaries_
+                                      ? traceVisibility(scene_, ray.origin, ray.tMin > 0.0f, ray.direction, distance,
+                                                        toSurface, region, counters_.shadowRays)
+                                      : traceOpaque(scene_, ray, distance, toSurface, region, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !rendered(interactions_ + visibility.crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
-    const float weight = light.pdf > 0.0f ? powerHeuristic(light.pdf * lightProbability, directionPdf) : 1.0f;
+    const float pdf = light.direct.pdf;
+    const float weight = pdf > 0.0f ? powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
     const Rgb radiance =
-        throughput_ * scattering * light.weight * visibility.transmittance * (weight / lightProbability);
-    sink_.add(radiance, time_ + visibility.time + emitter.emissionTime);
+        throughput_ * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
+    sink_.add(radiance, time_ + visibility.time + light.emitter.emissionTime);
 }
 
 template class PathWalk<false, false>;

@@ -1,6 +1,7 @@
 #pragma once
 // One path from the camera: plain free flights and directions, connected to an emitter at every vertex.
 
+#include "path/ArrivalBound.h"
 #include "path/LightChoice.h"
 #include "path/PathSettings.h"
 #include "path/PixelSink.h"
@@ -14,6 +15,8 @@ struct WalkContext {
     const Scene& scene;
     const PathSettings& settings;
     const LightChoice& lights;
+    const ArrivalBound& arrival;
+    bool forwardBoundaries; ///< connections must look through index-matched surfaces
 };
 
 /// Traces one camera path and adds what it finds to the sink. The two flags choose a specialised loop: `TimeResolved`
@@ -22,26 +25,38 @@ template <bool TimeResolved, bool Media>
 class PathWalk {
   public:
     PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler)
-        : scene_(context.scene), settings_(context.settings), lights_(context.lights), sink_(sink), counters_(counters),
-          sampler_(sampler) {}
+        : scene_(context.scene), settings_(context.settings), lights_(context.lights), arrival_(context.arrival),
+          forwardBoundaries_(context.forwardBoundaries), sink_(sink), counters_(counters), sampler_(sampler) {}
 
     void run(Ray ray);
 
   private:
-    /// False ends the path.
+    /// A connection to an emitter, before visibility.
+    struct LightSample {
+        const Emitter& emitter;
+        DirectSample direct;
+        float probability; ///< of choosing the emitter
+    };
+
+    // False ends the path.
+    bool crossMedium(const Medium& medium);
+    bool arriveAt(const std::optional<SurfaceHit>& hit);
     bool scatterInMedium(const Medium& medium, float distance);
     bool scatterOnSurface(const SurfaceHit& hit);
     void addEmission(const SurfaceHit& hit);
     void addEnvironment();
+    /// None when the emitter cannot light the position, or not inside the gate.
+    std::optional<LightSample> sampleLight(const Vec3f& position);
     void connectFromMedium(const Medium& medium);
     void connectFromSurface(const SurfaceInteraction& surface);
     /// Adds light through a connection whose scattering value (cosine included) and density of the walk's own sampling
-    /// are given.
-    void addConnection(const Emitter& emitter, const DirectSample& light, float lightProbability, const Rgb& scattering,
-                       float directionPdf, const Vec3f& origin, bool fromSurface, const Region& region);
+    /// are given. The ray starts in `region`; its tMin is above 0 when it leaves a surface.
+    void addConnection(const LightSample& light, const Rgb& scattering, float directionPdf, const Ray& ray,
+                       const Region& region);
     bool continueRoulette();
     void advanceClock(float length);
-    [[nodiscard]] bool tooLate() const;
+    /// Whether light found from `position` on can still arrive inside the gate.
+    [[nodiscard]] bool tooLate(const Vec3f& position) const;
     [[nodiscard]] bool rendered(int interactions) const {
         return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
     }
@@ -54,6 +69,8 @@ class PathWalk {
     const Scene& scene_;
     const PathSettings& settings_;
     const LightChoice& lights_;
+    const ArrivalBound& arrival_;
+    bool forwardBoundaries_;
     PixelSink& sink_;
     PathCounters& counters_;
     Sampler sampler_;

@@ -1,0 +1,89 @@
+#include "path/ArrivalBound.h"
+
+namespace tungsten::path {
+
+namespace {
+
+constexpr size_t MostSources = 8;
+/// Relative to the time: rounding of lengths in float.
+constexpr double Slack = 1e-6;
+
+struct Ball {
+    Vec3f centre;
+    float radius;
+};
+
+Ball ballAround(const Shape& shape) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) return {sphere->centre, sphere->radius};
+    if (const auto* disk = std::get_if<Disk>(&shape)) return {disk->centre, disk->radius};
+    Vec3f low(Infinity), high(-Infinity);
+    for (const Vec3f& p : std::get<TriangleMesh>(shape).positions)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    return {(low + high) * 0.5f, 0.5f * (high - low).length()};
+}
+
+Vec3f positionOf(const EmitterModel& model) {
+    if (const auto* spot = std::get_if<SpotEmitter>(&model)) return spot->position;
+    return std::get<PointEmitter>(model).position;
+}
+
+/// Every speed a path can travel at: that of the camera's region and of those that surfaces bound.
+std::vector<float> speedsOf(const Scene& scene) {
+    std::vector<float> speeds{scene.cameraRegion.speed};
+    for (const Primitive& primitive : scene.primitives)
+        if (primitive.boundsRegion) speeds.insert(speeds.end(), {primitive.inside.speed, primitive.outside.speed});
+    return speeds;
+}
+
+} // namespace
+
+ArrivalBound::Source ArrivalBound::sourceOf(const Emitter& emitter) {
+    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) {
+        const Ball ball = ballAround(*area->shape);
+        return {ball.centre, ball.radius, emitter.emissionTime};
+    }
+    return {positionOf(emitter.model), 0.0f, emitter.emissionTime};
+}
+
+ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
+    Source all{Vec3f(0.0f), 0.0f, std::numeric_limits<double>::infinity()};
+    for (const Source& source : sources) {
+        all.centre += source.centre / float(sources.size());
+        all.emissionTime = std::min(all.emissionTime, source.emissionTime);
+    }
+    for (const Source& source : sources)
+        all.radius = std::max(all.radius, (source.centre - all.centre).length() + source.radius);
+    return all;
+}
+
+ArrivalBound::ArrivalBound(const Scene& scene) : start_(scene.transport.gate.start), end_(scene.transport.gate.end()) {
+    // Environments never arrive; single directions are never found.
+    for (const Emitter& emitter : scene.emitters)
+        if (!emitter.isInfinite() && !emitter.isDelta()) sources_.push_back(sourceOf(emitter));
+    if (sources_.size() > MostSources) sources_ = {merged(sources_)};
+    for (Source& source : sources_) source.radius += 1e-6f * (source.centre.length() + source.radius);
+    const std::vector<float> speeds = speedsOf(scene);
+    const auto [slowest, fastest] = std::minmax_element(speeds.begin(), speeds.end());
+    oneSpeed_ = *slowest == *fastest;
+    slowness_ = 1.0 / double(*fastest);
+}
+
+bool ArrivalBound::mayArrive(const Vec3f& position, double time) const {
+    for (const Source& source : sources_) {
+        const float gap = std::max((position - source.centre).length() - source.radius, 0.0f);
+        const double arrival = time + double(gap) * slowness_ + source.emissionTime;
+        if (arrival < end_ + Slack * std::abs(arrival)) return true;
+    }
+    return false;
+}
+
+bool ArrivalBound::mayConnect(double time, float distance, double emissionTime) const {
+    const double arrival = time + double(distance) * slowness_ + emissionTime;
+    const double slack = Slack * std::abs(arrival);
+    return arrival < end_ + slack && (!oneSpeed_ || arrival >= start_ - slack);
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,37 @@
+#pragma once
+// Bounds on when light can arrive: what they reject contributes to no frame.
+
+#include "tungsten/scene/Scene.h"
+
+#include <vector>
+
+namespace tungsten::path {
+
+/// Exact culling by time of flight in a time-resolved render; the tests leave room for rounding at the gate's ends.
+class ArrivalBound {
+  public:
+    explicit ArrivalBound(const Scene& scene);
+
+    /// A camera path that took `time` from the sensor to `position` may still meet light inside the gate.
+    [[nodiscard]] bool mayArrive(const Vec3f& position, double time) const;
+    /// A straight connection of this length to an emitter whose pulse starts at `emissionTime` may fall into the gate.
+    /// Where all speeds are equal its time is known, so that one that comes too early is rejected too.
+    [[nodiscard]] bool mayConnect(double time, float distance, double emissionTime) const;
+
+  private:
+    /// Emitters within `radius` of `centre` (rounding of coordinates included), the first pulse at `emissionTime`.
+    struct Source {
+        Vec3f centre;
+        float radius;
+        double emissionTime;
+    };
+    static Source sourceOf(const Emitter& emitter);
+    static Source merged(const std::vector<Source>& sources);
+
+    std::vector<Source> sources_; ///< a few: many emitters are merged into one
+    double start_ = 0.0, end_ = 0.0;
+    double slowness_ = 1.0; ///< 1 / highest speed
+    bool oneSpeed_ = true;
+};
+
+} // namespace tungsten::path
