@@ -32,6 +32,7 @@ EmbreePoints::EmbreePoints(const std::vector<PointWithRadius>& discs)
 
 EmbreePoints::EmbreePoints(const std::vector<Photon>& photons)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_COMPACT);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, unsigned(photons.size()));
     rtcSetGeometryUserData(geometry, const_cast<Photon*>(photons.data()));

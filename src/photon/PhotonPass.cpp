@@ -39,6 +39,20 @@ void append(PhotonStore& store, const DepositList& deposits, uint64_t capacity) 
     }
 }
 
+/// Room for what the first wave lets expect, so that growing does not hold the photons twice.
+void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const PhotonSettings& settings) {
+    uint64_t surface = 0, volume = 0, paths = 0;
+    for (const Batch& batch : wave) {
+        surface += batch.surface.photons.size();
+        volume += batch.volume.photons.size();
+        paths += batch.surface.pathEnds.size();
+    }
+    constexpr double Margin = 1.02;
+    const double scale = Margin * double(settings.photonCount) / double(std::max<uint64_t>(paths, 1));
+    maps.surface.photons.reserve(std::min(settings.photonCount, uint64_t(double(surface) * scale)));
+    maps.volume.photons.reserve(std::min(settings.volumePhotonCount, uint64_t(double(volume) * scale)));
+}
+
 } // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
@@ -65,6 +79,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const
                 batch.volume.endPath();
             }
         });
+        if (traced == 0) reserveStores(maps, batches, settings_);
         for (const Batch& batch : batches) {
             append(maps.surface, batch.surface, settings_.photonCount);
             append(maps.volume, batch.volume, settings_.volumePhotonCount);
