@@ -59,10 +59,9 @@ ProgressReporter::~ProgressReporter() {
 }
 
 void ProgressReporter::show(const ProgressState& state, bool last) {
-    if (quiet_) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (!last && now < next_) return;
-    next_ = now + (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000));
+    if (quiet_ || (!last && !due())) return;
+    next_ = std::chrono::steady_clock::now() +
+            (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000));
     std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", progressLine(state).c_str());
     std::fflush(stderr);
     drawn_ = true;

@@ -30,6 +30,8 @@ class ProgressReporter {
     ~ProgressReporter();
     ProgressReporter(const ProgressReporter&) = delete;
     ProgressReporter& operator=(const ProgressReporter&) = delete;
+    /// Whether it is time to show something again.
+    [[nodiscard]] bool due() const { return !quiet_ && std::chrono::steady_clock::now() >= next_; }
     void show(const ProgressState& state, bool last);
 
   private:

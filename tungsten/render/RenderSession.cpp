@@ -64,7 +64,7 @@ class Session {
         while (!stop) {
             renderOnePass();
             stop = shouldStop();
-            reporter_.show(state(), stop);
+            if (stop || reporter_.due()) reporter_.show(state(), stop);
             if (!stop) checkpointIfDue();
         }
         result_.renderSeconds = secondsSince(start_);
@@ -78,7 +78,6 @@ class Session {
         integrator_.renderPass(pass, result_.film, result_.statistics);
         result_.film.endPass(double(samples));
         result_.samples += samples;
-        if (options_.targetError > 0.0 || !options_.quiet) relativeError_ = result_.film.relativeStandardError();
     }
 
     bool shouldStop() {
@@ -90,9 +89,9 @@ class Session {
         if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
         if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
-        const bool accurate =
-            options_.targetError > 0.0 && relativeError_ > 0.0 && relativeError_ <= options_.targetError;
-        return accurate && because(StopReason::TargetReached);
+        if (options_.targetError <= 0.0) return false;
+        const double error = result_.film.relativeStandardError();
+        return error > 0.0 && error <= options_.targetError && because(StopReason::TargetReached);
     }
 
     void checkpointIfDue() {
@@ -129,6 +128,7 @@ class Session {
         return problems;
     }
 
+    /// Costs a sweep over the film (the standard error): made only when it is shown.
     [[nodiscard]] ProgressState state() const {
         const uint64_t left = uint64_t(options_.spp) - std::min(result_.samples, uint64_t(options_.spp));
         const uint64_t step = uint64_t(options_.sppStep);
@@ -139,7 +139,7 @@ class Session {
         progress.totalSamples = options_.spp;
         progress.elapsedSeconds = secondsSince(start_);
         progress.timeoutSeconds = options_.timeoutSeconds;
-        progress.relativeError = relativeError_;
+        progress.relativeError = result_.film.relativeStandardError();
         progress.targetError = options_.targetError;
         progress.resumedSamples = int64_t(result_.resumedSamples);
         return progress;
@@ -153,7 +153,6 @@ class Session {
     RenderIdentity identity_;
     ProgressReporter reporter_;
     Clock::time_point start_, lastCheckpoint_;
-    double relativeError_ = 0.0;
 };
 
 } // namespace
