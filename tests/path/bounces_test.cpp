@@ -1,0 +1,135 @@
+// Which paths are rendered: bounce limits, low orders, medium limits; and what time bounds may not change.
+
+#include "path/render_paths.h"
+#include "support/GroundTruthScenes.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::path {
+namespace {
+
+using test::renderWithPathTracer;
+
+/// A floor seen through two sheets of `sheet` (heights 1.9 and 1.8), its light 1.25 away behind a third; a glowing quad
+/// instead of the floor's reflection when `glowing`.
+std::string sheets(const std::string& sheet, bool glowing, int onlyBounce) {
+    const std::string floor =
+        glowing ? R"("emission": 2, "bsdf": {"type": "null"})" : R"("bsdf": {"type": "lambert", "albedo": 0.5})";
+    const std::string part = R"({"type": "quad", "bsdf": )" + sheet + R"(, "transform": {"scale": 0.1, "position": )";
+    return R"({"primitives": [{"type": "quad", )" + floor + R"(, "transform": {"scale": [20, 1, 20]}},)" + part +
+           "[0.75, 1.9, 0]}}," + part + "[0.75, 1.8, 0]}}," + part + R"([0.375, 0.5, 0]}},
+            {"type": "point", "emission": 3, "transform": {"position": [0, 1, 0]}}],)" +
+           test::lookAlong("[0.75, 2, 0]", "[0.75, 0, 0]", "[1, 0, 0]") +
+           R"(, "integrator": {"type": "path_tracer", "start_time": 0, "transient_time_width": 100, "frame_num": 1,
+                "enable_rr": false, "min_bounces": )" +
+           std::to_string(onlyBounce) + R"(, "max_bounces": )" + std::to_string(onlyBounce + 1) + "}}";
+}
+double litFloorValue() {
+    return 0.5 / M_PI * 3.0 * 0.8 / (1.25 * 1.25) / 100.0;
+}
+
+TEST(Bounces, ForwardSheetsCountOnCameraAndShadowRays) {
+    for (int bounce = 0; bounce < 7; ++bounce) {
+        const double expected = bounce == 4 ? litFloorValue() : 0.0; // two sheets, the floor, one sheet
+        EXPECT_NEAR(renderWithPathTracer(sheets(R"({"type": "forward"})", false, bounce), {{}, 1, 8})->mean(), expected,
+                    1e-3 * litFloorValue())
+            << bounce;
+    }
+}
+
+TEST(Bounces, EmissionThroughForwardSheets) {
+    for (int bounce = 0; bounce < 4; ++bounce)
+        EXPECT_NEAR(renderWithPathTracer(sheets(R"({"type": "forward"})", true, bounce), {{}, 1, 8})->mean(),
+                    bounce == 2 ? 2.0 / 100.0 : 0.0, 1e-6)
+            << bounce;
+}
+
+TEST(Bounces, TransparencyWeighsEveryPassage) {
+    const std::string sheet = R"({"type": "transparency", "alpha": 0.3, "base": {"type": "null"}})";
+    const auto rendered = renderWithPathTracer(sheets(sheet, false, 4), {{}, 50, 200});
+    EXPECT_NEAR(rendered->mean(), 0.7 * 0.7 * 0.7 * litFloorValue(),
+                4.5 * rendered->pixelError() + 1e-5 * litFloorValue());
+    EXPECT_LT(rendered->pixelError(), 0.02 * rendered->mean());
+}
+
+TEST(Bounces, MediumLimitsCountDistancesSinceTheLastSurface) {
+    const auto value = [](int limit) {
+        return renderWithPathTracer(
+                   test::configurationA(3, false),
+                   {{"integrator.type=path_tracer", "media.0.max_bounces=" + std::to_string(limit)}, 1, 5000})
+            ->mean();
+    };
+    EXPECT_EQ(value(2), 0.0);
+    EXPECT_GT(value(3), 0.0);
+    EXPECT_EQ(value(3), value(1024));
+}
+
+TEST(Bounces, LowOrdersCanBeLeftOut) {
+    const auto value = [](int order, bool lowOrder) {
+        return renderWithPathTracer(test::configurationA(order, false),
+                                    {{"integrator.type=path_tracer",
+                                      std::string("integrator.low_order_scattering=") + (lowOrder ? "true" : "false")},
+                                     1,
+                                     5000})
+            ->mean();
+    };
+    EXPECT_GT(value(1, true), 0.0);
+    EXPECT_EQ(value(1, false), 0.0);
+    EXPECT_GT(value(2, false), 0.0);
+}
+
+TEST(Bounces, SurfacesCanBeLeftOut) {
+    const auto value = [](const std::string& json, bool surfaces) {
+        return renderWithPathTracer(json, {{"integrator.type=path_tracer", std::string("integrator.include_surfaces=") +
+                                                                               (surfaces ? "true" : "false")},
+                                           1,
+                                           200})
+            ->mean();
+    };
+    EXPECT_EQ(value(test::litFloor(20), false), 0.0);
+    const double fogOnly = value(test::fogOverFloor(test::SteadyState), false);
+    EXPECT_GT(fogOnly, 0.0);
+    EXPECT_LT(fogOnly, value(test::fogOverFloor(test::SteadyState), true));
+}
+
+/// Connections and paths are dropped by when they can arrive at the earliest: a narrow gate must show what the same
+/// frame of a long sequence shows, with the same random numbers.
+TEST(TimeBounds, NarrowGatesShowTheSameFrameOfASequence) {
+    for (const std::string unwarped : {"false", "true"})
+        for (const std::string glass : {"forward", "dielectric"}) {
+            const std::vector<std::string> overrides{
+                "integrator.type=path_tracer", "integrator.camera_unwarped=" + unwarped,
+                "primitives.0.bsdf={\"type\": \"" + glass + "\"}", "primitives.0.int_speed_of_light=0.7"};
+            const auto sequence = renderWithPathTracer(
+                test::fogOverFloor(R"("start_time": 2, "transient_time_width": 0.5, "frame_num": 40)"),
+                {overrides, 1, 32});
+            int lit = 0;
+            for (int frame = 0; frame < 24; frame += 3) {
+                const auto gate =
+                    renderWithPathTracer(test::fogOverFloor(R"("start_time": )" + std::to_string(2.0 + 0.5 * frame) +
+                                                            R"(, "transient_time_width": 0.5, "frame_num": 1)"),
+                                         {overrides, 1, 32});
+                EXPECT_EQ(gate->film.mean(0).pixels, sequence->film.mean(frame).pixels) << glass << frame;
+                EXPECT_LE(gate->statistics.counter("shadow rays"), sequence->statistics.counter("shadow rays"));
+                lit += gate->mean() > 0.0;
+            }
+            EXPECT_GE(lit, 3);
+        }
+}
+
+TEST(TimeBounds, PathsEndWhenNothingCanArrive) {
+    const std::string fog = test::configurationA(1, false);
+    const auto gated = renderWithPathTracer(
+        fog, {{"integrator.type=path_tracer", "integrator.min_bounces=0", "integrator.max_bounces=1000"}, 1, 2000});
+    const auto late = renderWithPathTracer(fog, {{"integrator.type=path_tracer", "integrator.min_bounces=0",
+                                                  "integrator.max_bounces=1000", "integrator.transient_time_center=50"},
+                                                 1,
+                                                 2000});
+    EXPECT_LT(2 * gated->statistics.counter("medium events"), late->statistics.counter("medium events"));
+    // One speed: a connection's time is known before it is traced, so most of the early ones are never traced.
+    EXPECT_LT(late->statistics.counter("shadow rays"), late->statistics.counter("medium events") / 4);
+    EXPECT_GT(gated->mean(), 0.0);
+}
+
+} // namespace
+} // namespace tungsten::path

@@ -1,0 +1,107 @@
+// Closed rooms that glow: a wall of emission E and albedo rho is seen with radiance E sum rho^k, fog without absorption
+// or not.
+
+#include "path/render_paths.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::path {
+namespace {
+
+using test::renderWithPathTracer;
+
+/// Six glowing walls (emission 0.5) of one BSDF around [-1, 1] x [0, 2] x [-1, 1]; the camera is in the middle, in
+/// `medium`.
+std::string glowingRoom(const std::string& bsdf, const std::string& medium, const std::string& integrator) {
+    std::string walls;
+    for (const char* placed :
+         {R"("position": [0, 0, 0])", R"("position": [0, 2, 0], "rotation": [180, 0, 0])",
+          R"("position": [0, 1, -1], "rotation": [90, 0, 0])", R"("position": [0, 1, 1], "rotation": [-90, 0, 0])",
+          R"("position": [-1, 1, 0], "rotation": [0, 0, -90])", R"("position": [1, 1, 0], "rotation": [0, 0, 90])"})
+        walls += std::string(walls.empty() ? "" : ", ") + R"({"type": "quad", "emission": 0.5, "bsdf": )" + bsdf +
+                 R"(, "transform": {"scale": 2, )" + placed + "}}";
+    return R"({"media": [{"name": "cloud", "type": "homogeneous", "sigma_s": 1},
+                         {"name": "smoke", "type": "homogeneous", "sigma_a": [0.5, 1, 2]}],
+     "primitives": [)" +
+           walls + R"(], "camera": {"type": "pinhole", "resolution": [2, 2], "fov": 80, )" +
+           (medium.empty() ? "" : R"("medium": ")" + medium + R"(", )") +
+           R"("transform": {"position": [0, 1, 0], "look_at": [0.3, 0.8, -1]}},
+     "integrator": {"type": "path_tracer", )" +
+           integrator + "}}";
+}
+
+void expectUniform(const test::Rendered& rendered, double expected, double largestError) {
+    const Image mean = rendered.film.mean(0), error = rendered.film.standardError(0);
+    for (size_t i = 0; i < mean.pixels.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel) {
+            EXPECT_NEAR(double(mean.pixels[i][channel]), expected, 4.5 * double(error.pixels[i][channel]) + 1e-4);
+            EXPECT_LT(double(error.pixels[i][channel]), largestError * expected);
+        }
+}
+
+TEST(Energy, RoomWithAFixedNumberOfBounces) {
+    const std::string lambert = R"({"type": "lambert", "albedo": 0.6})";
+    for (const std::string sampling : {"true", "false"}) {
+        const std::string integrator = R"("enable_rr": false, "max_bounces": 5, "enable_light_sampling": )" + sampling;
+        expectUniform(*renderWithPathTracer(glowingRoom(lambert, "", integrator), {{}, 50, 100}),
+                      0.5 * (1.0 - std::pow(0.6, 5)) / 0.4, 0.01);
+    }
+}
+
+TEST(Energy, RoomWithRussianRoulette) {
+    expectUniform(
+        *renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "", R"("max_bounces": 1000)"),
+                              {{}, 50, 100}),
+        0.5 / 0.4, 0.01);
+}
+
+TEST(Energy, NonAbsorbingFogChangesNothing) {
+    for (const std::string sampling : {"true", "false"}) {
+        const std::string integrator =
+            R"("max_bounces": 1000, "enable_light_sampling": true, "enable_volume_light_sampling": )" + sampling;
+        expectUniform(*renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.5})", "cloud", integrator),
+                                            {{}, 50, 100}),
+                      0.5 / 0.5, 0.02);
+    }
+}
+
+TEST(Energy, SmokeOnlyAttenuates) {
+    const auto rendered =
+        renderWithPathTracer(glowingRoom(R"({"type": "null"})", "smoke", R"("max_bounces": 1)"),
+                             {{"camera.resolution=[1, 1]", "camera.fov=0.01",
+                               "camera.transform={\"position\": [0, 1, 0.5], \"look_at\": [0, 1, -1]}"},
+                              1,
+                              4});
+    const Rgb mean = rendered->film.mean(0).at(0, 0);
+    for (int channel = 0; channel < 3; ++channel)
+        EXPECT_NEAR(mean[channel], 0.5f * std::exp(-1.5f * (channel == 0 ? 0.5f : float(channel))), 1e-4f);
+}
+
+/// Whatever a surface is made of, connections change the noise and not the mean.
+TEST(Energy, ConnectionsDoNotChangeTheMean) {
+    for (
+        const std::string bsdf :
+        {R"({"type": "plastic", "albedo": 0.5})", R"({"type": "rough_conductor", "material": "Al", "roughness": 0.3})",
+         R"({"type": "rough_plastic", "albedo": 0.5, "roughness": 0.2})",
+         R"({"type": "rough_dielectric", "roughness": 0.3})",
+         R"({"type": "mixed", "bsdf0": {"type": "mirror"}, "bsdf1": {"type": "lambert", "albedo": 0.5}, "ratio": 0.4})",
+         R"({"type": "transparency", "alpha": 0.6, "base": {"type": "lambert", "albedo": 0.7}})"}) {
+        const auto value = [&](const std::string& sampling) {
+            return renderWithPathTracer(R"({"primitives": [{"type": "cube", "bsdf": )" + bsdf +
+                                            R"(, "transform": {"rotation": [30, 20, 0]}},
+                     {"type": "sphere", "emission": [20, 10, 5], "bsdf": {"type": "null"}, "transform": {"position": [1, 2, 1], "scale": 0.6}},
+                     {"type": "infinite_sphere", "emission": 0.3}],
+                    "camera": {"type": "pinhole", "resolution": [1, 1], "fov": 10, "transform": {"position": [0, 0, 4], "look_at": [0, 0, 0]}},
+                    "integrator": {"type": "path_tracer", "max_bounces": 6, "enable_light_sampling": )" +
+                                            sampling + "}}",
+                                        {{}, 100, 300});
+        };
+        const auto with = value("true"), without = value("false");
+        const double error = std::hypot(with->pixelError(), without->pixelError());
+        EXPECT_NEAR(with->mean(), without->mean(), 4.5 * error) << bsdf;
+        EXPECT_LT(error, 0.04 * with->mean()) << bsdf;
+    }
+}
+
+} // namespace
+} // namespace tungsten::path

@@ -1,0 +1,81 @@
+// Times and values along specular camera paths: mirrors fold them, glass slows them.
+
+#include "path/render_paths.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace tungsten::path {
+namespace {
+
+using test::renderWithPathTracer;
+
+/// Frames of one render that hold light, with their values times the frame width.
+std::map<int, double> litFrames(const test::Rendered& rendered, double width) {
+    std::map<int, double> lit;
+    for (int frame = 0; frame < rendered.film.frames(); ++frame)
+        if (rendered.mean(frame) > 0.0) lit[frame] = rendered.mean(frame) * width;
+    return lit;
+}
+
+/// The camera looks along +x into a mirror that turns the ray down onto the floor: 3, then 1, then 1 to the light.
+std::string periscope(bool unwarped) {
+    return R"({"primitives": [
+        {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"scale": [20, 1, 20]}},
+        {"type": "quad", "bsdf": {"type": "mirror", "albedo": 0.9},
+         "transform": {"position": [0, 1, 0], "scale": 0.2, "rotation": [0, 0, -45]}},
+        {"type": "point", "emission": 3, "emission_time": 0.05, "transform": {"position": [0.6, 0.8, 0]}}],)" +
+           test::lookAlong("[-3, 1, 0]", "[0, 1, 0]", "[0, 1, 0]") +
+           R"(, "integrator": {"type": "path_tracer", "min_bounces": 2, "max_bounces": 3, "start_time": 0,
+                "transient_time_width": 0.1, "frame_num": 60, "camera_unwarped": )" +
+           (unwarped ? "true" : "false") + "}}";
+}
+
+TEST(SpecularTime, MirrorPathsCountEverySegment) {
+    const double expected = 0.9 * 0.5 / M_PI * 3.0 * 0.8;
+    const auto warped = litFrames(*renderWithPathTracer(periscope(false), {{}, 1, 4}), 0.1);
+    ASSERT_EQ(warped.size(), 1u);
+    EXPECT_EQ(warped.begin()->first, 50); // 0.05 + 3 + 1 + 1
+    EXPECT_NEAR(warped.begin()->second, expected, 1e-3 * expected);
+    const auto unwarped = litFrames(*renderWithPathTracer(periscope(true), {{}, 1, 4}), 0.1);
+    ASSERT_EQ(unwarped.size(), 1u);
+    EXPECT_EQ(unwarped.begin()->first, 10); // the mirror and its segments belong to the camera: 0.05 + 1
+    EXPECT_NEAR(unwarped.begin()->second, expected, 1e-3 * expected);
+}
+
+/// Straight down through the middle of a glass ball (radius 0.1, light at 2/3 inside) onto a floor lit from the side.
+TEST(SpecularTime, GlassBallDelaysAndEchoes) {
+    const std::string scene = R"({"primitives": [
+        {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"scale": [20, 1, 20]}},
+        {"type": "sphere", "bsdf": {"type": "dielectric", "ior": 1.5}, "int_speed_of_light": 0.6666667,
+         "transform": {"position": [0.75, 1, 0], "scale": 0.1}},
+        {"type": "point", "emission": 3, "transform": {"position": [0, 1, 0]}}],)" +
+                              test::lookAlong("[0.75, 2, 0]", "[0.75, 0, 0]", "[1, 0, 0]") +
+                              R"(, "integrator": {"type": "path_tracer", "max_bounces": 6, "start_time": 0,
+                                   "transient_time_width": 0.02, "frame_num": 400}})";
+    const auto rendered = renderWithPathTracer(scene, {{}, 100, 1000});
+    const double floor = 0.5 / M_PI * 3.0 * 0.8 / (1.25 * 1.25);
+    // 1.8 in air, 0.2 at speed 2/3, 1.25 to the light: 3.35. Two reflections inside add 0.6. Each end transmits 0.96.
+    const int direct = int(3.35 / 0.02), echo = int(3.95 / 0.02);
+    double directSum = 0.0, echoSum = 0.0, elsewhere = 0.0, directError = 0.0, echoError = 0.0;
+    for (int frame = 0; frame < 400; ++frame) {
+        const double value = rendered->mean(frame) * 0.02, error = rendered->pixelError(frame) * 0.02;
+        if (std::abs(frame - direct) <= 1) {
+            directSum += value;
+            directError += error;
+        } else if (std::abs(frame - echo) <= 1) {
+            echoSum += value;
+            echoError += error;
+        } else if (frame < direct) {
+            elsewhere += value;
+        }
+    }
+    EXPECT_NEAR(directSum, 0.96 * 0.96 * floor, 4.5 * directError + 1e-3 * floor);
+    EXPECT_NEAR(echoSum, 0.96 * 0.96 * 0.04 * 0.04 * floor, 4.5 * echoError);
+    EXPECT_LT(echoError, 0.2 * echoSum);
+    EXPECT_EQ(elsewhere, 0.0) << "nothing arrives before the direct view";
+}
+
+} // namespace
+} // namespace tungsten::path
