@@ -1,0 +1,171 @@
+// Elliptical connections, control vertices, lobes and Green's functions against extended precision and their own
+// definitions.
+
+#include "support/ChiSquare.h"
+
+#include "darts/ConnectionLobe.h"
+#include "darts/ControlVertex.h"
+#include "darts/GreensFunction.h"
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <gtest/gtest.h>
+
+namespace darts {
+namespace {
+
+using tungsten::RandomStream;
+using tungsten::Sampler;
+
+TEST(Ellipse, MatchesTheVerifiedVector) {
+    // From (1.2, 0.5, 2) along (-1, 1, 1) toward the origin, total length 4.
+    const double C = std::sqrt(1.44 + 0.25 + 4.0), cosC = (1.2 - 0.5 - 2.0) / std::sqrt(3.0);
+    const Ellipse<double> e{C, 4.0 - C, 1.0 - cosC / C};
+    EXPECT_NEAR(C, 2.3853720884, 1e-9);
+    EXPECT_NEAR(e.firstLeg(), 1.0851362883, 1e-9);
+    EXPECT_NEAR(e.secondLeg(), 2.9148637117, 1e-9);
+    EXPECT_NEAR(controlVertexPdf(e, 1.0), 1.6297692859, 1e-9);
+}
+
+TEST(Ellipse, FloatAgreesWithExtendedPrecisionAtTheHardCases) {
+    for (const float C : {0.0f, 1e-4f, 1.0f, 1e5f})
+        for (const float excess : {1e-7f, 1e-3f, 0.5f, 100.0f})
+            for (const float h : {0.0f, 1e-12f, 1e-4f, 1.0f, 2.0f}) {
+                const float delta = excess * std::max(C, 1.0f);
+                const Ellipse<float> e{C, delta, h};
+                const Ellipse<long double> exact{C, delta, h};
+                const auto near = [&](float value, long double expected) {
+                    EXPECT_TRUE(std::isfinite(value) && value >= 0.0f);
+                    EXPECT_NEAR(double(value / float(expected)), 1.0, 1e-6) << C << " " << delta << " " << h;
+                };
+                near(e.firstLeg(), exact.firstLeg());
+                near(e.secondLeg(), exact.secondLeg());
+                near(e.firstLegPerLength(), exact.firstLegPerLength());
+                // The definition, with its subtractions, in extended precision.
+                const long double S = exact.length(), t = exact.firstLeg();
+                EXPECT_NEAR(double(exact.lengthThrough(t) / S), 1.0, 1e-9);
+                EXPECT_NEAR(double(exact.secondLeg() / S), double((S - t) / S), 1e-12);
+            }
+}
+
+TEST(Ellipse, InverseRoundTripsAndGrowsWithT) {
+    for (uint64_t i = 0; i < 100000; ++i) {
+        Sampler s(1, RandomStream::Test, 0, i);
+        const Ellipse<double> e{std::exp(10.0 * (s.nextDouble() - 0.5)), std::exp(12.0 * (s.nextDouble() - 0.7)),
+                                2.0 * s.nextDouble()};
+        const double t = e.firstLeg();
+        ASSERT_NEAR(e.lengthThrough(t), e.length(), 1e-12 * e.length());
+        ASSERT_GT(e.lengthThrough(1.001 * t), e.lengthThrough(t));
+    }
+}
+
+TEST(Ellipse, ExcessCarriedAlongAWalkKeepsItsDigits) {
+    for (uint64_t i = 0; i < 2000; ++i) {
+        Sampler s(2, RandomStream::Test, 0, i);
+        Ellipse<float> e{1.0f, 1e-3f, 2.0f * s.next1D() * s.next1D()};
+        Ellipse<long double> exact{e.C, e.delta, e.h};
+        for (int step = 0; step < 20; ++step) {
+            const float distance = e.firstLeg() * s.next1D();
+            e = e.advance(distance);
+            exact = exact.advance((long double)distance);
+            ASSERT_GE(e.delta, 0.0f);
+            if (exact.delta > 1e-5L * exact.C) {
+                ASSERT_NEAR(double(e.delta / float(exact.delta)), 1.0, 0.02) << step;
+            }
+            if (!(e.delta > 1e-6f * e.C)) break;
+            e.h = 2.0f * s.next1D();
+            exact.h = e.h;
+        }
+    }
+}
+
+TEST(ConnectionLength, SamplesFollowTheDensity) {
+    for (const double depth : {0.0, 1e-9, 0.3, 5.0, 1e4}) {
+        const ConnectionLength<double> length{2.0, 0.5, depth / 0.5};
+        const auto cumulative = [&](double x) {
+            return depth < 1e-6 ? x / 0.5 : -std::expm1(-length.sigmaT * x) / -std::expm1(-depth);
+        };
+        EXPECT_GT(tungsten::test::chiSquareUniform(
+                      [&](Sampler& s) { return cumulative(length.sampleOffset(s.nextDouble())); }),
+                  tungsten::test::SmallestPValue)
+            << depth;
+        const double scale = depth > 1.0 ? 0.5 / depth : 0.5;
+        const double integral = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+            [&](double x) { return length.pdfOffset(x); }, 0.0, std::min(40.0 * scale, 0.5), 15, 1e-10);
+        EXPECT_NEAR(integral, 1.0, 1e-6) << depth;
+    }
+}
+
+template <typename Lobe>
+void testLobe() {
+    for (const double C : {1e-9, 0.5, 1.0, 1e4})
+        for (const double delta : {1e-6, 1e-2, 1.0, 1e3}) {
+            const Lobe lobe(C, delta);
+            // Uniform after mapping by the density's own integral over h (2 pi per unit of h).
+            const auto cumulative = [&](double h) {
+                const auto integrand = [&](double x) { return TwoPi * lobe.pdf(std::exp(x)) * std::exp(x); };
+                const double low = std::log(1e-32);
+                return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, low, std::log(h), 12,
+                                                                                     1e-9);
+            };
+            EXPECT_NEAR(cumulative(2.0), 1.0, 1e-6) << C << " " << delta;
+            const double p = tungsten::test::chiSquareUniform(
+                [&](Sampler& s) {
+                    const double h = lobe.sample(s.nextDouble());
+                    return h > 0.0 ? cumulative(h) : 0.0;
+                },
+                12, 3000);
+            EXPECT_GT(p, tungsten::test::SmallestPValue) << C << " " << delta;
+        }
+}
+
+TEST(ConnectionLobe, PathLobeSamplesItsDensity) {
+    testLobe<PathConnectionLobe<double>>();
+}
+TEST(ConnectionLobe, PhotonLobeSamplesItsDensity) {
+    testLobe<PhotonConnectionLobe<double>>();
+}
+
+TEST(ConnectionLobe, PathLobeCancelsTheConnectionWeight) {
+    // 1 / (r (delta + C h)) over the lobe's density does not depend on the direction.
+    const double C = 1.3, delta = 0.01;
+    const PathConnectionLobe<double> lobe(C, delta);
+    double first = 0.0;
+    for (const double h : {1e-8, 1e-3, 0.4, 1.9}) {
+        const Ellipse<double> e{C, delta, h};
+        const double ratio = 1.0 / (e.secondLeg() * e.denominator()) / lobe.pdf(h);
+        if (first == 0.0) first = ratio;
+        EXPECT_NEAR(ratio / first, 1.0, 1e-9);
+    }
+}
+
+TEST(GreensFunction, DiffusionIntegratesToTheSurvivingEnergy) {
+    const DiffusionGreensFunction<double> phi{0.02, 3.0, 0.4};
+    const double s = 40.0; // deep: the causal bound cuts off nothing that counts
+    const double total = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+        [&](double rho) { return 2.0 * TwoPi * rho * rho * std::exp(phi.log(rho, s)); }, 0.0, s, 15, 1e-10);
+    EXPECT_NEAR(total, std::exp(-0.02 * s), 1e-6);
+}
+
+TEST(GreensFunction, CausalConservesEnergyWithinItsAccuracy) {
+    const CausalGreensFunction<double> phi{0.0, 1.0};
+    for (const double s : {1.0, 3.0, 10.0, 30.0}) {
+        const double scattered = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+            [&](double rho) { return 2.0 * TwoPi * rho * rho * std::exp(phi.log(1.0 - rho * rho / (s * s), s)); }, 0.0,
+            s, 15, 1e-9);
+        EXPECT_NEAR(scattered / -std::expm1(-s), 1.0, 0.05) << s;
+    }
+}
+
+TEST(GreensFunction, FloatStaysFiniteFromThinToDeep) {
+    for (const float depth : {1e-6f, 1.0f, 79.0f, 1e4f})
+        for (const float u : {1e-7f, 1e-3f, 0.5f, 1.0f}) {
+            const float value = CausalGreensFunction<float>{0.01f, 1.0f}.log(u, depth);
+            const long double exact = CausalGreensFunction<long double>{0.01f, 1.0f}.log(u, depth);
+            EXPECT_TRUE(std::isfinite(value));
+            EXPECT_NEAR(double(value), double(exact), 2e-6 * std::max(std::abs(double(exact)), 10.0));
+        }
+    EXPECT_EQ(std::exp(DiffusionGreensFunction<float>{}.log(2.0f, 2.0f)), 0.0f);
+}
+
+} // namespace
+} // namespace darts
