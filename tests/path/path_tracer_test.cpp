@@ -29,6 +29,12 @@ struct OrderCase {
     double slack;    ///< relative allowance for the heavy tail of next-event estimation near the light (order 2 and up)
 };
 
+/// Test names such as Order2UnwarpedG60.
+std::string nameOf(const testing::TestParamInfo<OrderCase>& info) {
+    return "Order" + std::to_string(info.param.order) + (info.param.unwarped ? "Unwarped" : "Warped") + "G" +
+           std::to_string(int(100.0 * info.param.g));
+}
+
 class PathOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(PathOrders, MatchVerifiedValues) {
@@ -44,7 +50,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(OrderCase{1, false, 0.0, 2.22436e-4, 0.0}, OrderCase{1, true, 0.0, 11.1009e-4, 0.0},
                     OrderCase{2, false, 0.0, 5.97962e-4, 0.02}, OrderCase{2, true, 0.0, 29.4416e-4, 0.02},
                     OrderCase{3, false, 0.0, 7.81135e-4, 0.03}, OrderCase{3, true, 0.0, 22.1036e-4, 0.03},
-                    OrderCase{2, false, 0.6, 1.28207e-4, 0.03}));
+                    OrderCase{2, false, 0.6, 1.28207e-4, 0.03}),
+    nameOf);
 
 TEST(PathTracer, SingleScatteringInAFoggedBox) {
     const auto rendered = renderPaths(test::foggedBox(), {{}, 40, 20000});

@@ -47,6 +47,13 @@ struct OrderCase {
     bool unwarped;
     double g, expected; ///< verified values, section 6
 };
+
+/// Test names such as Order2UnwarpedG60.
+std::string nameOf(const testing::TestParamInfo<OrderCase>& info) {
+    return "Order" + std::to_string(info.param.order) + (info.param.unwarped ? "Unwarped" : "Warped") + "G" +
+           std::to_string(int(100.0 * info.param.g));
+}
+
 class PointOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(PointOrders, MatchVerifiedValues) {
@@ -61,7 +68,8 @@ TEST_P(PointOrders, MatchVerifiedValues) {
 INSTANTIATE_TEST_SUITE_P(ConfigurationsAAndB, PointOrders,
                          testing::Values(OrderCase{1, false, 0.0, 2.22436e-4}, OrderCase{1, true, 0.0, 11.1009e-4},
                                          OrderCase{2, false, 0.0, 5.97962e-4}, OrderCase{2, true, 0.0, 29.4416e-4},
-                                         OrderCase{3, false, 0.0, 7.81135e-4}, OrderCase{2, false, 0.6, 1.28207e-4}));
+                                         OrderCase{3, false, 0.0, 7.81135e-4}, OrderCase{2, false, 0.6, 1.28207e-4}),
+                         nameOf);
 
 TEST(PhotonMap, SingleScatteringInAFoggedBox) {
     const auto rendered = renderPhotons(test::foggedBox(), {{}, 60, 1});
