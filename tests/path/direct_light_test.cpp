@@ -112,7 +112,8 @@ TEST(DirectLight, QuadOverheadWithAndWithoutLightSampling) {
 
 TEST(DirectLight, EscapingRaysSeeTheLastEnvironmentOutsideMediaOnly) {
     const auto view = [](const std::string& medium) {
-        return renderWithPathTracer(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_a": 1e-3}],
+        return renderWithPathTracer(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_a": 1e-3},
+                                                  {"name": "tint", "type": "homogeneous", "sigma_a": [1, 0, 0]}],
             "primitives": [{"type": "infinite_sphere", "emission": 5}, {"type": "infinite_sphere", "emission": [1, 2, 3]}],)" +
                                         test::lookAlong("[0, 0, 0]", "[0, 0, 1]", "[0, 1, 0]", medium) +
                                         R"(, "integrator": {"type": "path_tracer"}})",
@@ -122,6 +123,7 @@ TEST(DirectLight, EscapingRaysSeeTheLastEnvironmentOutsideMediaOnly) {
     };
     EXPECT_EQ(view(""), Rgb(1.0f, 2.0f, 3.0f));
     EXPECT_EQ(view("haze"), Rgb(0.0f));
+    EXPECT_EQ(view("tint"), Rgb(0.0f)) << "nothing comes through an endless medium, not even its clear channels";
 }
 
 } // namespace

@@ -48,6 +48,23 @@ TEST(Energy, RoomWithAFixedNumberOfBounces) {
     }
 }
 
+/// Emitters seen in a mirror cannot be connected to: what the walk finds there counts in full.
+TEST(Energy, RoomOfHalfMirrors) {
+    const std::string mixed = R"({"type": "mixed", "ratio": 0.5, "bsdf0": {"type": "mirror", "albedo": 0.6},
+                                  "bsdf1": {"type": "lambert", "albedo": 0.6}})";
+    expectUniform(
+        *renderWithPathTracer(glowingRoom(mixed, "", R"("enable_rr": false, "max_bounces": 5)"), {{}, 50, 200}),
+        0.5 * (1.0 - std::pow(0.6, 5)) / 0.4, 0.01);
+}
+
+/// Two distances per surface are enough in thin fog, however many surfaces a path meets.
+TEST(Energy, MediumLimitsStartAnewAtSurfaces) {
+    expectUniform(*renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "cloud",
+                                                    R"("enable_rr": false, "max_bounces": 6)"),
+                                        {{"media.0.max_bounces=2", "media.0.sigma_s=1e-7"}, 50, 100}),
+                  0.5 * (1.0 - std::pow(0.6, 6)) / 0.4, 0.01);
+}
+
 TEST(Energy, RoomWithRussianRoulette) {
     expectUniform(
         *renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "", R"("max_bounces": 1000)"),
