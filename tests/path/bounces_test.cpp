@@ -117,6 +117,28 @@ TEST(TimeBounds, NarrowGatesShowTheSameFrameOfASequence) {
         }
 }
 
+TEST(TimeBounds, ManyLightsShareOneBound) {
+    std::string lights;
+    for (int i = 0; i < 12; ++i)
+        lights += R"(, {"type": "point", "emission": 1, "emission_time": )" + std::to_string(0.3 * (i % 4)) +
+                  R"(, "transform": {"position": [)" + std::to_string(i - 6) + ", 1, " + std::to_string(i % 3) + "]}}";
+    const auto scene = [&](const std::string& gate) {
+        return R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3}],
+            "primitives": [{"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"scale": [20, 1, 20]}})" +
+               lights + R"(], "camera": {"type": "pinhole", "resolution": [6, 6], "medium": "fog",
+                "transform": {"position": [0, 2, 6], "look_at": [0, 0, 0]}},
+            "integrator": {"type": "path_tracer", "max_bounces": 6, "transient_time_width": 0.4, )" +
+               gate + "}}";
+    };
+    const auto sequence = renderWithPathTracer(scene(R"("start_time": 7, "frame_num": 20)"), {{}, 1, 32});
+    for (const int frame : {0, 5, 10, 15}) {
+        const auto gate = renderWithPathTracer(
+            scene(R"("start_time": )" + std::to_string(7.0 + 0.4 * frame) + R"(, "frame_num": 1)"), {{}, 1, 32});
+        EXPECT_EQ(gate->film.mean(0).pixels, sequence->film.mean(frame).pixels) << frame;
+        EXPECT_GT(gate->mean(), 0.0);
+    }
+}
+
 TEST(TimeBounds, PathsEndWhenNothingCanArrive) {
     const std::string fog = test::configurationA(1, false);
     const auto gated = renderWithPathTracer(
