@@ -105,6 +105,10 @@ TEST(Medium, AbsorptionAloneAndEmptinessAreCrossedAnalytically) {
     EXPECT_FLOAT_EQ(flight.weight.x, std::exp(-1.4f));
     EXPECT_EQ(smoke.transmittance(Infinity), Rgb(0.0f));
     EXPECT_EQ(Medium{}.transmittance(Infinity), Rgb(1.0f));
+    Medium red;
+    red.sigmaA = Rgb(1.0f, 0.0f, 0.0f);
+    EXPECT_EQ(red.transmittance(Infinity), Rgb(0.0f));
+    EXPECT_EQ(red.transmittance(2.0f).y, 1.0f);
 }
 
 TEST(Medium, OpticalDepthsFromTinyToHuge) {
