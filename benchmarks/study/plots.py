@@ -86,8 +86,8 @@ def _gains(study, scene, seconds, summaries, folder):
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     plain_ticks(axes.xaxis)
-    axes.set(xlabel=f"MSE of {baseline.method.name} / MSE (solid: as rendered, pale: per CPU second)",
-             title=f"{scene.name}: gain in {seconds:g} s")
+    axes.set(xlabel=f"MSE of {baseline.method.name} / MSE (solid: at equal wall time, pale: at equal CPU time)",
+             title=f"{scene.name}: gain, {seconds:g} s")
     return [(f"Gain in {seconds:g} seconds", _save(figure, folder, f"{scene.name}-gain-{seconds:g}s.png"))]
 
 

@@ -21,9 +21,9 @@ def _legend(study):
   of renders and reference; "< x" where it does not stand out of that noise (2 standard errors).
 - **mean ratio**: mean of the image over that of the reference, with its standard error over seeds.
 - **MSE** = std² + bias². **gain**: MSE of the baseline ({study.baseline}; in scenes without it, the first method) over the
-  method's, as rendered. **gain per CPU s**: the same after bringing the baseline's variance to the method's CPU time, which
-  is firmer on a shared machine. **over published**: the same over the published implementation's figures, measured
-  elsewhere: a yardstick only.
+  method's, after bringing the baseline's variance to the method's wall time, since the last pass ends late by different amounts.
+  **gain per CPU s**: the same at equal CPU time, which is firmer on a shared machine. **over published**: the same at equal CPU
+  time over the published implementation's figures, measured elsewhere: a yardstick only.
 - **wall s, CPU s**: of the passes, without loading and preparation. **processor share**: CPU time over wall time and threads.
 """
 

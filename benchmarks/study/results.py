@@ -92,10 +92,11 @@ class Summary:
         return None if self.noise is None else measures.mean_squared_error(self.noise, self.bias_squared)
 
     def gain_over(self, other, at_equal_cpu=False):
-        """How many times smaller the MSE is than another summary's; None where one of them has none."""
+        """How many times smaller the MSE is than another summary's, whose variance is brought to this one's time: passes
+        end late by different amounts. None where one of them has no noise figure."""
         if other is None or self.noise is None or other.noise is None:
             return None
-        ratio = other.cpu / self.cpu if at_equal_cpu else 1.0
+        ratio = other.cpu / self.cpu if at_equal_cpu else other.wall / self.wall
         return measures.gain(other.noise, other.bias_squared, self.noise, self.bias_squared, ratio)
 
     def gain_over_published(self):

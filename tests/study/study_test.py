@@ -20,8 +20,9 @@ sys.path.insert(0, str(STUDY.parent))
 
 import measures  # noqa: E402
 from images import read_exr, read_pfm  # noqa: E402
+from results import Summary  # noqa: E402
 from runs import call, plan  # noqa: E402
-from study_file import StudyError, load_study  # noqa: E402
+from study_file import Method, PublishedFigures, Scene, StudyError, load_study  # noqa: E402
 
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
 SIZE = 32
@@ -136,6 +137,21 @@ class TinyStudy(unittest.TestCase):
         render(self.folder, "two.exr", "--spp", "2")
         render(self.folder, "two.pfm", "--spp", "2")
         np.testing.assert_array_equal(read_exr(self.folder / "two.exr")[""], read_pfm(self.folder / "two.pfm"))
+
+
+class Summaries(unittest.TestCase):
+    def test_gain_is_at_equal_time(self):
+        """A method that ran four times as long and has half the noise is as good as the other."""
+        scene = Scene("s", Path(), (1, 1), Path(), published=PublishedFigures("invented", 5, 2, [{"method": "m", "std": 0.6}]))
+        long = Summary(scene, Method("m", published="m"), 1, wall=8.0, cpu=10.0, std=0.5)
+        short = Summary(scene, Method("n", published="n"), 1, wall=2.0, cpu=5.0, std=1.0)
+        self.assertAlmostEqual(long.gain_over(short), 1)
+        self.assertAlmostEqual(short.gain_over(long), 1)
+        self.assertAlmostEqual(long.gain_over(short, at_equal_cpu=True), 2)
+        self.assertAlmostEqual(long.gain_over_published(), 1.44)
+        self.assertIsNone(short.gain_over_published())
+        short.std, short.std_spread = None, 2.0  # one pass only: the seeds' spread stands in
+        self.assertAlmostEqual(long.gain_over(short), 4)
 
 
 class StudyFiles(unittest.TestCase):
