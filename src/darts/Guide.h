@@ -77,6 +77,20 @@ class Guide {
         return ControlVertex{t, e.secondLeg(), e.firstLegPerLength() * connection.inversePdf};
     }
 
+    /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a
+    /// function of the ray alone, for the balance heuristic.
+    [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance) const {
+        const Ellipse<float> latest = residual.latest(h);
+        const float left = latest.firstLeg() - distance;
+        if (!(left > 0)) return 0.0f;
+        const float beyond =
+            2 * latest.denominator() * left / (latest.length() - distance + latest.distanceToTarget(distance));
+        const float offset = residual.width - beyond; // excess of the connection through the point, less residual.low
+        if (!(offset >= 0)) return 0.0f;
+        const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
+        return density.pdfOffset(offset) / Ellipse<float>{residual.C, residual.low + offset, h}.firstLegPerLength();
+    }
+
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the latest arrival.
     template <typename Scatterer, typename View, typename Random>
     [[nodiscard]] DirectionSample sampleDirection(const Residual& residual, const ConnectionSample& connection,

@@ -60,6 +60,9 @@ struct Residual {
         r.shortest = C + low;
         return r;
     }
+    /// For sensors whose clock stops at the last scattering: its distance along the ray alone must lie in the range.
+    /// The vertex itself as target: with C = 0 a connection of length S turns at S / 2 in any direction.
+    static Residual withoutTarget(const ResidualRange& range) { return of({0, 0, 0}, {2 * range.low, 2 * range.high}); }
     /// Something can still arrive inside the gate. The relative guard keeps walks from ending in ever smaller steps on
     /// the needle.
     [[nodiscard]] bool alive() const { return excess > 1e-6f * C && excess > 0; }

@@ -21,6 +21,12 @@ struct Vec3 {
     Vec3& operator*=(const Vec3& b) { return *this = *this * b; }
 };
 
+/// From a host's own vector with members x, y, z.
+template <typename Vector>
+Vec3 vec3(const Vector& v) {
+    return {v.x, v.y, v.z};
+}
+
 inline float dot(const Vec3& a, const Vec3& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }

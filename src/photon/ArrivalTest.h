@@ -22,6 +22,9 @@ class ArrivalTest {
     /// With straightTimesKnown: a sensor path without mirror or refraction can see this deposit inside the gate.
     [[nodiscard]] bool seenStraight(const Vec3f& position, double time) const;
 
+    /// Tests against this gate from now on instead of the scene's.
+    void setGate(const TimeGate& gate) { gate_ = gate; }
+
   private:
     [[nodiscard]] bool insideGate(double arrival, bool testStart) const;
     [[nodiscard]] double soonestArrival(const Vec3f& position, double time) const;

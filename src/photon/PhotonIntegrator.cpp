@@ -35,12 +35,23 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
                   surfaces
                       ? "smooth surfaces are gathered"
                       : (settings_.includeSurfaces ? "no surface has a smooth lobe" : "include_surfaces is false"));
+    describeGuidance(plan);
     const bool direct = ArrivalTest(*scene_, plan).directView();
     plan.describe(
         "exact arrival culling", direct && plan.timeResolved,
         !plan.timeResolved ? "steady state: every photon counts"
         : direct           ? "direct view: photons that arrive outside the gate are not stored"
                  : "sensor paths can fold, change speed or start at many points: photons are tested when gathered");
+}
+
+void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
+    const std::string obstacle = PhotonGuidance::obstacle(*scene_, settings_.scheme, plan);
+    const auto guidance = PhotonGuidance::make(*scene_, settings_.scheme, plan);
+    plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
+    if (!guidance) return;
+    plan.describe("photons beside control vertices", !guidance->directView(),
+                  guidance->directView() ? "direct view: control vertices alone are complete"
+                                         : "mirrors, refraction or different speeds: both, by the balance heuristic");
 }
 
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {

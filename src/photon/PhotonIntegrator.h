@@ -18,6 +18,7 @@ class PhotonIntegrator : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
+    void describeGuidance(EffectPlan& plan) const;
     [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
 
     std::shared_ptr<const Scene> scene_;

@@ -1,6 +1,6 @@
 #include "photon/PhotonPass.h"
 
-#include "photon/PhotonWalk.h"
+#include "photon/GuidedPhotonWalk.h"
 
 #include <tbb/parallel_for.h>
 
@@ -56,8 +56,16 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 } // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
-    : scene_(scene), settings_(settings), arrival_(scene, plan), emitters_(powerDistribution(scene)),
-      storeVolume_(plan.mediumScattering), storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {}
+    : scene_(scene), settings_(settings), arrival_(scene, plan),
+      guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
+      storeVolume_(plan.mediumScattering), storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {
+    if (!guidance_ || !guidance_->choosesFrames()) return;
+    const TimeGate& gate = scene.transport.gate;
+    for (int frame = 0; frame < gate.frames; ++frame) {
+        frameArrivals_.push_back(arrival_);
+        frameArrivals_.back().setGate({false, false, gate.frameStart(frame), gate.frameWidth, 1});
+    }
+}
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const {
     PhotonMaps maps;
@@ -67,14 +75,18 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const
     while (traced < settings_.photonCount && !(maps.surface.full && maps.volume.full)) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
         std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
-        const WalkContext context{scene_, settings_, arrival_, emitters_, !maps.surface.full, !maps.volume.full};
+        const WalkContext context{scene_,    settings_,          arrival_,         frameArrivals_,
+                                  emitters_, !maps.surface.full, !maps.volume.full};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
             for (uint64_t path = first; path < last; ++path) {
-                PhotonWalk(context, {pass.seed, RandomStream::Photon, pass.index, path}, batch.surface, batch.volume,
-                           batch.counters)
-                    .run();
+                const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
+                if (guidance_)
+                    GuidedPhotonWalk(context, *guidance_, sampler, path, batch.surface, batch.volume, batch.counters)
+                        .run();
+                else
+                    PhotonWalk(context, sampler, batch.surface, batch.volume, batch.counters).run();
                 batch.surface.endPath();
                 batch.volume.endPath();
             }
@@ -84,6 +96,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const
             append(maps.surface, batch.surface, settings_.photonCount);
             append(maps.volume, batch.volume, settings_.volumePhotonCount);
             statistics.add("rays", batch.counters.rays);
+            statistics.add("control vertices", batch.counters.controlVertices);
         }
         traced += wave;
     }

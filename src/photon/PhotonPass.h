@@ -1,7 +1,8 @@
 #pragma once
-// The photon pass: light paths from the emitters, plain free flights and directions, deposits in the stores.
+// The photon pass: light paths from the emitters, plain or guided, and what they deposit in the stores.
 
 #include "photon/ArrivalTest.h"
+#include "photon/PhotonGuidance.h"
 #include "photon/PhotonSettings.h"
 #include "photon/PhotonStore.h"
 
@@ -22,6 +23,8 @@ class PhotonPass {
     /// whatever the threads.
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, Statistics& statistics) const;
     [[nodiscard]] const ArrivalTest& arrival() const { return arrival_; }
+    /// Null when light paths are sampled plainly.
+    [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
     [[nodiscard]] bool storesVolume() const { return storeVolume_; }
     [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 
@@ -29,7 +32,9 @@ class PhotonPass {
     const Scene& scene_;
     const PhotonSettings& settings_;
     ArrivalTest arrival_;
-    Distribution1D emitters_; ///< proportional to power
+    std::unique_ptr<PhotonGuidance> guidance_;
+    std::vector<ArrivalTest> frameArrivals_; ///< when light paths aim at single frames
+    Distribution1D emitters_;                ///< proportional to power
     bool storeVolume_, storeSurface_;
 };
 

@@ -39,8 +39,7 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
     if (scene.transport.gate.delta)
         block.problem("delta_time_gate",
                       "photon points meet a delta gate with probability zero; give the gate a width");
-    for (const char* guided : {"enable_guiding", "enable_elliptical"})
-        if (block.flag(guided, false)) block.warn(guided, "the photon pass samples distances and directions plainly");
+    settings.scheme = darts::readScheme(block);
     // Ways of building the published structures; the gathers here need no such choice.
     block.accept({"use_grid", "grid_memory", "use_frustum_grid", "exclude_non_mis", "strict_time_width",
                   "frustum_culling", "reuse_path_dir"});

@@ -25,19 +25,22 @@ void PhotonWalk::run() {
 
 bool PhotonWalk::emit() {
     const auto chosen = context_.emitters.sample(sampler_.next1D());
-    const Emitter& emitter = scene_.emitters[chosen.index];
+    return emitFrom(scene_.emitters[chosen.index], chosen.probability);
+}
+
+bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     const Vec2f uPosition = sampler_.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());
-    power_ = emission.power / chosen.probability;
+    power_ = emission.power / probability;
     time_ = emitter.emissionTime;
     region_ = scene_.regionOf(emitter);
     ray_ = emission.ray;
     ray_.tMin = emitter.isArea() ? scene_.rayEpsilon : 0.0f;
-    return !isBlack(power_) && context_.arrival.mayContinue(ray_.origin, time_);
+    return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
 }
 
 void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
-    if (context_.arrival.mayCount(position, time_))
+    if (arrival_->mayCount(position, time_))
         list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
 }
 
@@ -46,7 +49,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     time_ += double(distance) / double(region_.speed);
     ++bounce_;
     ++consecutiveMedium_;
-    if (!context_.arrival.mayContinue(position, time_)) return false;
+    if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
     if (context_.storeVolume && orderCounts) deposit(volume_, position, power_, region_.medium);
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
@@ -58,7 +61,7 @@ bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
     ++bounce_;
     flights_ = 0;
     consecutiveMedium_ = 0;
-    if (!context_.arrival.mayContinue(hit.position, time_)) return false;
+    if (!arrival_->mayContinue(hit.position, time_)) return false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
     if (context_.storeSurface && (surface.bsdf->lobes() & lobe::Smooth) != 0) {
         const float shading = std::abs(ray_.direction.dot(surface.frame.n)),

@@ -7,6 +7,8 @@
 
 #include "tungsten/scene/Interaction.h"
 
+#include <span>
+
 namespace tungsten::photon {
 
 /// Photons of consecutive paths; pathEnds[i] is where path i's end.
@@ -17,7 +19,7 @@ struct DepositList {
 };
 
 struct WalkCounters {
-    uint64_t rays = 0;
+    uint64_t rays = 0, controlVertices = 0;
 };
 
 /// What every walk of a pass shares.
@@ -25,6 +27,7 @@ struct WalkContext {
     const Scene& scene;
     const PhotonSettings& settings;
     const ArrivalTest& arrival;
+    std::span<const ArrivalTest> frameArrivals; ///< for paths that aim at single frames
     const Distribution1D& emitters;
     bool storeSurface, storeVolume;
 };
@@ -33,13 +36,15 @@ class PhotonWalk {
   public:
     PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume,
                WalkCounters& counters)
-        : context_(context), scene_(context.scene), sampler_(sampler), surface_(surface), volume_(volume),
-          counters_(counters) {}
+        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler), surface_(surface),
+          volume_(volume), counters_(counters) {}
 
     void run();
 
-  private:
+  protected:
     bool emit();
+    /// By the emitter's own distribution; `probability` is that of its choice.
+    bool emitFrom(const Emitter& emitter, float probability);
     /// False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
     bool scatterOnSurface(const SurfaceHit& hit);
@@ -47,6 +52,7 @@ class PhotonWalk {
 
     const WalkContext& context_;
     const Scene& scene_;
+    const ArrivalTest* arrival_;
     Sampler sampler_;
     DepositList& surface_;
     DepositList& volume_;
