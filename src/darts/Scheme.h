@@ -20,6 +20,9 @@ struct Scheme {
     bool elliptical = true;    ///< `enable_elliptical`
     bool everyMedium = false;  ///< media are guided whether or not they ask for it
     DirectView directView = DirectView::Auto;
+    /// Light paths also connect their vertices to visible surfaces; by default not in the paper's preset.
+    std::optional<bool> surfaceConnections;
+    [[nodiscard]] bool connectsSurfaces() const { return surfaceConnections.value_or(!published); }
 
     std::optional<Direction> direction;
     std::optional<Greens> greens;
@@ -127,6 +130,7 @@ void readSwitches(const Block& block, Scheme& scheme) {
     scheme.lengthFirst = flag(block, "length_first");
     scheme.overlap = flag(block, "overlap");
     scheme.guideEmission = flag(block, "guide_emission");
+    scheme.surfaceConnections = flag(block, "surface_connections");
 }
 
 } // namespace detail

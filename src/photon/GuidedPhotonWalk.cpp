@@ -34,9 +34,12 @@ float controlVertexShare(float controlVertexPdf, float sigmaT, float distance) {
 
 } // namespace
 
-GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance, Sampler sampler,
-                                   uint64_t path, DepositList& surface, DepositList& volume, WalkCounters& counters)
-    : PhotonWalk(context, sampler, surface, volume, counters), guidance_(guidance), gate_(guidance.gate()) {
+GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance,
+                                   const SurfaceConnections* connections, Sampler sampler, uint64_t path,
+                                   DepositList& surface, DepositList& volume,
+                                   std::vector<PixelContribution>& contributions, WalkCounters& counters)
+    : PhotonWalk(context, sampler, surface, volume, counters), guidance_(guidance), connections_(connections),
+      contributions_(contributions), gate_(guidance.gate()) {
     if (guidance.choosesFrames()) aimAtFrame(path);
 }
 
@@ -60,33 +63,72 @@ void GuidedPhotonWalk::run() {
         if (!hit) return;
         if (const Medium* medium = scene_.medium(region_)) power_ = power_ * medium->transmittance(hit->t);
         looked_ = connected_ = false;
-        if (!scatterOnSurface(*hit)) return;
+        if (!meetSurface(*hit)) return;
     }
 }
 
 bool GuidedPhotonWalk::emit() {
     const auto chosen = context_.emitters.sample(sampler_.next1D());
     const Emitter& emitter = scene_.emitters[chosen.index];
-    const darts::Guide* guide = guidance_.guide(scene_.regionOf(emitter));
-    if (!guide || !guide->settings().guideEmission || emitter.isDelta() || emitter.isInfinite()) {
+    const float frames = guidance_.choosesFrames() ? float(guidance_.frames().frames) : 1.0f;
+    if (emitter.isDelta() || emitter.isInfinite()) {
         if (!emitFrom(emitter, chosen.probability)) return false;
-    } else {
-        time_ = emitter.emissionTime;
-        region_ = scene_.regionOf(emitter);
-        power_ = Rgb(1.0f / chosen.probability);
-        if (!emitGuided(emitter, *guide)) return false;
+        power_ = power_ * frames;
+        return true;
     }
-    if (guidance_.choosesFrames()) power_ = power_ * float(guidance_.frames().frames);
-    return true;
+    time_ = emitter.emissionTime;
+    region_ = scene_.regionOf(emitter);
+    power_ = Rgb(frames / chosen.probability);
+    const darts::Guide* guide = guidance_.guide(region_);
+    return emitFromPoint(emitter, guide && guide->settings().guideEmission ? guide : nullptr);
 }
 
-bool GuidedPhotonWalk::emitGuided(const Emitter& emitter, const darts::Guide& guide) {
+bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide* guide) {
     const SurfaceSample start = sampleEmissionPoint(emitter, sampler_.next2D());
     ray_ = Ray{start.position, Vec3f(0.0f), emitter.isArea() ? scene_.rayEpsilon : 0.0f};
-    if (!look(guide)) return false;
-    const float inversePdf = redirect(guide, EmissionDirections(emitter, start));
+    connectable_ = true;
+    if (!arrival_->mayContinue(ray_.origin, time_)) return false;
+    connectToSurfaces(emitter.isArea(),
+                      [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
+    const EmissionDirections own(emitter, start);
+    float inversePdf = 0.0f;
+    if (guide) {
+        if (!look(*guide)) return false;
+        inversePdf = redirect(*guide, own);
+    } else {
+        const float u = sampler_.next1D(), v = sampler_.next1D();
+        const darts::Vec3 direction = own.sample(u, v);
+        ray_.direction = host(direction);
+        inversePdf = 1.0f / own.pdf(direction);
+    }
     power_ = power_ * emittedIntensity(emitter, start, ray_.direction) * inversePdf;
     return !isBlack(power_);
+}
+
+template <typename Scattering>
+void GuidedPhotonWalk::connectToSurfaces(bool onSurface, const Scattering& scattering) {
+    if (!connections_) return;
+    connections_->connect({ray_.origin, onSurface, time_, bounce_, region_, power_}, gate_, scattering, sampler_,
+                          contributions_, counters_.rays);
+}
+
+bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
+    if (!arriveOnSurface(hit)) return false;
+    if (connections_ && (surface_.bsdf->lobes() & lobe::Smooth) != 0) {
+        const Vec3f before = ray_.direction;
+        const Region behind = region_;
+        ray_.origin = hit.position;
+        // Light leaves to the side of the direction; a boundary's other side is another region.
+        connectToSurfaces(true, [&](const Vec3f& direction) {
+            if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
+            const Region ahead = regionBeyond(*surface_.primitive, hit, direction, behind);
+            if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
+            return surface_.bsdf->eval(surface_.query(TransportMode::Photons, lobe::Smooth), surface_.wi,
+                                       surface_.frame.toLocal(direction)) *
+                   surface_.photonShadingFactor(-before, direction);
+        });
+    }
+    return leaveSurface();
 }
 
 bool GuidedPhotonWalk::look(const darts::Guide& guide) {
@@ -137,7 +179,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     power_ = power_ * Rgb(step.transmittanceOverPdf.x, step.transmittanceOverPdf.y, step.transmittanceOverPdf.z);
     looked_ = connected_ = false;
     if (isBlack(power_)) return false;
-    if (step.surface) return scatterOnSurface(*hit);
+    if (step.surface) return meetSurface(*hit);
     power_ = power_ * medium.sigmaS;
     if (context_.storeVolume && (!guidance_.directView() || !guide.settings().elliptical))
         depositPhoton(medium, guide, step.distance, h);
@@ -150,7 +192,10 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     ++bounce_;
     ++consecutiveMedium_;
     ray_ = Ray{position, before};
+    sinceVertex_ = 0.0f;
+    connectable_ = true;
     if (!look(guide) || !survives(guide)) return false;
+    connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
     const PhaseDirections phase{medium.phase, before};
     const float inversePdf = redirect(guide, phase);
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);

@@ -4,20 +4,27 @@
 
 #include "photon/PhotonGuidance.h"
 #include "photon/PhotonWalk.h"
+#include "photon/SurfaceConnections.h"
 
 namespace tungsten::photon {
 
 class GuidedPhotonWalk : private PhotonWalk {
   public:
     /// `path` is the path's index in the run: frames are chosen in turn.
-    GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance, Sampler sampler, uint64_t path,
-                     DepositList& surface, DepositList& volume, WalkCounters& counters);
+    /// `connections` may be null.
+    GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance, const SurfaceConnections* connections,
+                     Sampler sampler, uint64_t path, DepositList& surface, DepositList& volume,
+                     std::vector<PixelContribution>& contributions, WalkCounters& counters);
     void run();
 
   private:
     void aimAtFrame(uint64_t path);
     bool emit();
-    bool emitGuided(const Emitter& emitter, const darts::Guide& guide);
+    /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
+    bool emitFromPoint(const Emitter& emitter, const darts::Guide* guide);
+    template <typename Scattering>
+    void connectToSurfaces(bool onSurface, const Scattering& scattering);
+    bool meetSurface(const SurfaceHit& hit);
     /// A flight through a scattering medium: its control vertex, then the next vertex. False ends the path.
     bool crossMedium(const Medium& medium, const darts::Guide& guide);
     bool scatter(const Medium& medium, const darts::Guide& guide, float distance);
@@ -33,6 +40,8 @@ class GuidedPhotonWalk : private PhotonWalk {
     float redirect(const darts::Guide& guide, const Scatterer& scatterer);
 
     const PhotonGuidance& guidance_;
+    const SurfaceConnections* connections_;
+    std::vector<PixelContribution>& contributions_;
     darts::TimeGate gate_;
     darts::Residual residual_;
     darts::Residual reachable_; ///< residual_ with the range that connection_ was drawn from

@@ -1,5 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
+#include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
 #include "photon/SensorPass.h"
 
@@ -19,6 +20,21 @@ void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const 
         straight.photons.push_back(store.photons[i]);
         if (radii.size() > 1) straightRadii.push_back(radii[i]);
     }
+}
+
+/// What vertices of light paths sent to pixels, averaged over the paths.
+void addContributions(const PhotonMaps& maps, Film& film, Statistics& statistics) {
+    if (maps.contributions.empty()) return;
+    const float scale = float(1.0 / double(maps.paths));
+    const int width = film.width();
+    uint64_t nonFinite = 0;
+    for (const PixelContribution& c : maps.contributions) {
+        if (isFinite(c.radiance))
+            film.passPixel(c.frame, int(c.pixel) % width, int(c.pixel) / width) += c.radiance * scale;
+        else
+            ++nonFinite;
+    }
+    statistics.add("non-finite samples", nonFinite);
 }
 
 } // namespace
@@ -56,6 +72,8 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
 
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
+    straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
+    foldedRays_ = plan.specularSensorPaths;
 }
 
 std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
@@ -71,27 +89,50 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     // Without progression every pass looks at the photons of the first.
     PassInfo photons = pass;
     if (!settings_.progressive) photons.index = 0;
+    const bool splat = straightRays_ && pass.samples == 1 && photonPass_->storesVolume();
+    const bool connect = straightRays_ && pass.samples == 1 && settings_.includeSurfaces && photonPass_->guidance() &&
+                         settings_.scheme.connectsSurfaces();
+    SensorRecord record;
+    std::unique_ptr<SurfaceConnections> connections;
+    if (splat || connect) {
+        const StageTimer timer(statistics, "sensor record");
+        record = recordSensorPaths(*scene_, connect, pass, statistics);
+        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, record, pass);
+    }
     PhotonMaps maps;
     {
         const StageTimer timer(statistics, "photon pass");
-        maps = photonPass_->trace(photons, statistics);
+        maps = photonPass_->trace(photons, connections.get(), statistics);
     }
     PhotonStore straight;
     std::vector<float> straightRadii;
-    GatherStructures structures{
-        maps, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces};
+    GatherStructures structures{maps, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces,
+                                splat};
+    if (!maps.volume.photons.empty()) {
+        const std::vector<float> radii = [&] {
+            const StageTimer timer(statistics, "build");
+            const std::vector<float> all = volumeRadii(maps.volume, photons.index);
+            selectStraight(photonPass_->arrival(), maps.volume, all, straight, straightRadii);
+            if (!splat || foldedRays_) structures.points = std::make_unique<PointGather>(*scene_, maps.volume, all);
+            if (!splat && straight.paths > 0)
+                structures.straightPoints = std::make_unique<PointGather>(*scene_, straight, straightRadii);
+            return all;
+        }();
+        if (splat) {
+            const StageTimer timer(statistics, "splat");
+            const bool all = straight.paths == 0;
+            const TimeGate& gate = scene_->transport.gate;
+            const double scale = double(maps.volume.scale()) / (gate.steadyState ? 1.0 : gate.frameWidth);
+            statistics.add("gathered photons", splatPhotons(*scene_, record, all ? maps.volume : straight,
+                                                            all ? radii : straightRadii, scale, film));
+        }
+    }
     {
         const StageTimer timer(statistics, "build");
-        if (!maps.volume.photons.empty()) {
-            const std::vector<float> radii = volumeRadii(maps.volume, photons.index);
-            structures.points = std::make_unique<PointGather>(*scene_, maps.volume, radii);
-            selectStraight(photonPass_->arrival(), maps.volume, radii, straight, straightRadii);
-            if (straight.paths > 0)
-                structures.straightPoints = std::make_unique<PointGather>(*scene_, straight, straightRadii);
-        }
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
         structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
     }
+    addContributions(maps, film, statistics);
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);
 }

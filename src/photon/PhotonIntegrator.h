@@ -24,6 +24,8 @@ class PhotonIntegrator : public Integrator {
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     std::unique_ptr<PhotonPass> photonPass_;
+    bool straightRays_ = false; ///< of one origin and speed: volume photons can be splatted, surfaces connected
+    bool foldedRays_ = false;   ///< mirrors or refraction can be seen
 };
 
 } // namespace tungsten::photon

@@ -8,12 +8,13 @@ namespace tungsten::photon {
 
 namespace {
 
-constexpr uint64_t PathsPerBatch = 1024;
-constexpr uint64_t BatchesPerWave = 32; ///< traced in parallel, then appended in order
+constexpr uint64_t PathsPerBatch = 256;
+constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
 
 /// What one batch of consecutive paths deposits, with each path's share.
 struct Batch {
     DepositList surface, volume;
+    std::vector<PixelContribution> contributions;
     WalkCounters counters;
 };
 
@@ -67,23 +68,27 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
     }
 }
 
-PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const {
+PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* connections,
+                             Statistics& statistics) const {
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume.full = !storeVolume_;
     uint64_t traced = 0;
-    while (traced < settings_.photonCount && !(maps.surface.full && maps.volume.full)) {
+    const auto finished = [&] { return (connections && storeVolume_ ? true : maps.surface.full) && maps.volume.full; };
+    while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
         std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
-        const WalkContext context{scene_,    settings_,          arrival_,         frameArrivals_,
-                                  emitters_, !maps.surface.full, !maps.volume.full};
+        const WalkContext context{
+            scene_,    settings_,          arrival_,          frameArrivals_,
+            emitters_, !maps.surface.full, !maps.volume.full, connections ? connections->nearField() : 0.0f};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
             for (uint64_t path = first; path < last; ++path) {
                 const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
                 if (guidance_)
-                    GuidedPhotonWalk(context, *guidance_, sampler, path, batch.surface, batch.volume, batch.counters)
+                    GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.surface, batch.volume,
+                                     batch.contributions, batch.counters)
                         .run();
                 else
                     PhotonWalk(context, sampler, batch.surface, batch.volume, batch.counters).run();
@@ -93,6 +98,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const
         });
         if (traced == 0) reserveStores(maps, batches, settings_);
         for (const Batch& batch : batches) {
+            maps.contributions.insert(maps.contributions.end(), batch.contributions.begin(), batch.contributions.end());
             append(maps.surface, batch.surface, settings_.photonCount);
             append(maps.volume, batch.volume, settings_.volumePhotonCount);
             statistics.add("rays", batch.counters.rays);
@@ -100,6 +106,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const
         }
         traced += wave;
     }
+    maps.paths = traced;
+    statistics.add("surface connections", maps.contributions.size());
     statistics.add("photons", traced);
     statistics.add("stored surface photons", maps.surface.photons.size());
     statistics.add("stored volume photons", maps.volume.photons.size());

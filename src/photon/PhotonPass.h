@@ -5,6 +5,7 @@
 #include "photon/PhotonGuidance.h"
 #include "photon/PhotonSettings.h"
 #include "photon/PhotonStore.h"
+#include "photon/SurfaceConnections.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -13,6 +14,9 @@ namespace tungsten::photon {
 /// The stores of one pass.
 struct PhotonMaps {
     PhotonStore surface, volume;
+    /// Light that vertices sent to pixels at once, by all paths of the pass.
+    std::vector<PixelContribution> contributions;
+    uint64_t paths = 0;
 };
 
 class PhotonPass {
@@ -21,7 +25,10 @@ class PhotonPass {
 
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
-    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, Statistics& statistics) const;
+    /// `connections`: surface points that vertices connect to; may be null. With them, surfaces do not wait for
+    /// photons: the pass ends when the volume store, if any is in use, is full.
+    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, const SurfaceConnections* connections,
+                                   Statistics& statistics) const;
     [[nodiscard]] const ArrivalTest& arrival() const { return arrival_; }
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }

@@ -52,33 +52,47 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
     if (context_.storeVolume && orderCounts) deposit(volume_, position, power_, region_.medium);
+    sinceVertex_ = 0.0f;
+    connectable_ = true;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
     return true;
 }
 
-bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
+bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     time_ += double(hit.t) / double(region_.speed);
+    sinceVertex_ += hit.t;
     ++bounce_;
     flights_ = 0;
     consecutiveMedium_ = 0;
     if (!arrival_->mayContinue(hit.position, time_)) return false;
-    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
-    if (context_.storeSurface && (surface.bsdf->lobes() & lobe::Smooth) != 0) {
-        const float shading = std::abs(ray_.direction.dot(surface.frame.n)),
-                    geometric = std::abs(ray_.direction.dot(hit.ng));
-        if (geometric > 0.0f) deposit(surface_, hit.position, power_ * (shading / geometric), -1);
-    }
+    surface_ = makeInteraction(scene_, hit, ray_.direction);
+    if (!context_.storeSurface || (surface_.bsdf->lobes() & lobe::Smooth) == 0) return true;
+    const float shading = std::abs(ray_.direction.dot(surface_.frame.n)),
+                geometric = std::abs(ray_.direction.dot(hit.ng));
+    // Where vertices connect to surfaces too, photons count for what is near.
+    const float nearField = connectable_ ? context_.nearField : 0.0f;
+    const float share = nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
+    if (geometric > 0.0f) deposit(surfacePhotons_, hit.position, power_ * (share * shading / geometric), -1);
+    return true;
+}
+
+bool PhotonWalk::leaveSurface() {
+    const SurfaceHit& hit = surface_.hit;
     const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
-    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Photons), surface.wi, random);
+    const auto sample = surface_.bsdf->sample(surface_.query(TransportMode::Photons), surface_.wi, random);
     if (!sample) return false;
-    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
+    const Vec3f direction = surface_.frame.toWorld(sample->wo).normalized();
+    const Region ahead = regionBeyond(*surface_.primitive, hit, direction, region_);
     if (sample->lobe != lobe::Forward) {
-        if (!surface.consistent(direction, scene_.transport.consistencyChecks)) return false;
-        power_ = power_ * surface.photonShadingFactor(-ray_.direction, direction);
+        if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return false;
+        power_ = power_ * surface_.photonShadingFactor(-ray_.direction, direction);
+        sinceVertex_ = 0.0f;
+        connectable_ =
+            (sample->lobe & lobe::Smooth) != 0 && ahead.medium == region_.medium && ahead.speed == region_.speed;
     }
     power_ = power_ * sample->weight;
     if (isBlack(power_)) return false;
-    region_ = regionBeyond(*surface.primitive, hit, direction, region_);
+    region_ = ahead;
     ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
     return true;
 }

@@ -30,13 +30,15 @@ struct WalkContext {
     std::span<const ArrivalTest> frameArrivals; ///< for paths that aim at single frames
     const Distribution1D& emitters;
     bool storeSurface, storeVolume;
+    /// a^2 of SurfaceConnections where light paths also connect to surfaces; else 0.
+    float nearField = 0.0f;
 };
 
 class PhotonWalk {
   public:
     PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume,
                WalkCounters& counters)
-        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler), surface_(surface),
+        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler), surfacePhotons_(surface),
           volume_(volume), counters_(counters) {}
 
     void run();
@@ -47,17 +49,21 @@ class PhotonWalk {
     bool emitFrom(const Emitter& emitter, float probability);
     /// False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
-    bool scatterOnSurface(const SurfaceHit& hit);
+    bool scatterOnSurface(const SurfaceHit& hit) { return arriveOnSurface(hit) && leaveSurface(); }
+    /// Time, bounce and deposit; surface_ is set.
+    bool arriveOnSurface(const SurfaceHit& hit);
+    bool leaveSurface();
     void deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 
     const WalkContext& context_;
     const Scene& scene_;
     const ArrivalTest* arrival_;
     Sampler sampler_;
-    DepositList& surface_;
+    DepositList& surfacePhotons_;
     DepositList& volume_;
     WalkCounters& counters_;
 
+    SurfaceInteraction surface_; ///< where the path is, between arriving and leaving
     Ray ray_;
     Region region_;
     Rgb power_{0.0f};
@@ -65,6 +71,8 @@ class PhotonWalk {
     int bounce_ = 0;
     int flights_ = 0;           ///< distances sampled since the last surface
     int consecutiveMedium_ = 0; ///< medium vertices since the last light or surface
+    float sinceVertex_ = 0.0f;  ///< way since the last vertex that scattered
+    bool connectable_ = false;  ///< that vertex has no single direction
 };
 
 } // namespace tungsten::photon

@@ -18,6 +18,7 @@ struct GatherStructures {
     float surfaceRadius = 0.0f;
     uint32_t gatherCount = 0;
     bool includeSurfaces = true;
+    bool splatted = false; ///< straight rays have their volume photons already
 };
 
 /// Adds the image of every frame to the film's pass image.
