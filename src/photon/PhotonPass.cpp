@@ -11,6 +11,9 @@ namespace {
 constexpr uint64_t PathsPerBatch = 256;
 constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
 
+/// A pass goes on until vertices have connected so often to surfaces, on average over the points.
+constexpr uint64_t ConnectionsPerPoint = 8;
+
 /// What one batch of consecutive paths deposits, with each path's share.
 struct Batch {
     DepositList surface, volume;
@@ -74,7 +77,10 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* con
     maps.surface.full = !storeSurface_;
     maps.volume.full = !storeVolume_;
     uint64_t traced = 0;
-    const auto finished = [&] { return (connections && storeVolume_ ? true : maps.surface.full) && maps.volume.full; };
+    const uint64_t wanted = connections ? ConnectionsPerPoint * connections->points() : 0;
+    const auto finished = [&] {
+        return maps.volume.full && (connections ? maps.contributions.size() >= wanted : maps.surface.full);
+    };
     while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
         std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);

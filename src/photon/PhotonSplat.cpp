@@ -67,14 +67,20 @@ class Splatter {
         const Vec3f offset = photon.position - record_.origin;
         int frame = 0;
         if (!transport.gate.steadyState) {
-            const double way =
-                transport.cameraUnwarped ? 0.0 : double(offset.length()) / double(scene_.cameraRegion.speed);
-            frame = transport.gate.frameOf(photon.time + way);
+            const Vec3d way(double(photon.position.x) - double(record_.origin.x),
+                            double(photon.position.y) - double(record_.origin.y),
+                            double(photon.position.z) - double(record_.origin.z));
+            const double cameraTime = transport.cameraUnwarped ? 0.0 : way.length() / double(scene_.cameraRegion.speed);
+            frame = transport.gate.frameOf(photon.time + cameraTime);
             if (frame < 0) return 0;
         }
         const Medium& medium = scene_.media[size_t(photon.medium)];
-        const Rgb power = photon.power * scale_;
-        const Spot spot{photon, medium, offset, power, radius * radius, frame};
+        const float g = medium.phase.g();
+        const bool rayleigh = std::holds_alternative<Rayleigh>(medium.phase.model);
+        const Rgb power = photon.power * (scale_ * 3.0f * InvPi / (radius * radius));
+        const Spot spot{
+            photon,           medium, offset, power, 1.0f / (radius * radius), frame, g, medium.isGrey() && !rayleigh,
+            medium.sigmaT().x};
         uint64_t gathered = 0;
         for (const StraightPiece& piece : record_.pieces)
             for (int y = std::max(area.top, firstRow); y <= std::min(area.bottom, lastRow); ++y)
@@ -87,61 +93,80 @@ class Splatter {
         const Photon& photon;
         const Medium& medium;
         Vec3f offset;
-        Rgb power;
-        float squaredRadius;
+        Rgb power; ///< with the kernel's constant
+        float inverseSquaredRadius;
         int frame;
+        float g;
+        bool simple; ///< grey, isotropic or Henyey-Greenstein: a register at a time
+        float sigmaT;
     };
 
     uint64_t drawRow(const Spot& spot, const StraightPiece& piece, int y, int left, int right) const {
         const size_t row = size_t(y) * size_t(record_.width);
         uint64_t gathered = 0;
-        int x = left;
-        alignas(64) float along[Lanes], kernel[Lanes];
-        for (; x <= right; x += Lanes) {
+        alignas(64) float along[Lanes], weight[Lanes];
+        for (int x = left; x <= right; x += Lanes) {
             const size_t first = row + size_t(x);
             const int count = std::min(Lanes, right - x + 1);
-            if (first + Lanes > record_.x.size()) {
-                gathered += drawScalar(spot, piece, y, x, right);
-                break;
-            }
+            if (first + Lanes > record_.x.size()) return gathered + drawSingly(spot, piece, y, x, right);
             const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
-            const Batch dx = load(record_.x), dy = load(record_.y), dz = load(record_.z);
+            const Batch dx = load(record_.x), dy = load(record_.y), dz = load(record_.z), start = load(piece.start);
             const Vec3f& o = spot.offset;
             const Batch t = dx * o.x + dy * o.y + dz * o.z;
             // Distance by the part of the offset across the ray: no difference of squares.
             const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
-            const Batch part = 1.0f - (px * px + py * py + pz * pz) / spot.squaredRadius;
-            const auto inside = part > 0.0f && t > load(piece.start) && t <= load(piece.end);
+            const Batch part = 1.0f - (px * px + py * py + pz * pz) * spot.inverseSquaredRadius;
+            const auto inside = part > 0.0f && t > start && t <= load(piece.end);
             if (!xsimd::any(inside)) continue;
-            xsimd::select(inside, part * part, Batch(0.0f)).store_aligned(kernel);
+            Batch value = part * part;
+            if (spot.simple) {
+                value = value * xsimd::exp((start - t) * spot.sigmaT) * phase(spot, dx, dy, dz);
+            }
+            xsimd::select(inside, value, Batch(0.0f)).store_aligned(weight);
             t.store_aligned(along);
             for (int lane = 0; lane < count; ++lane)
-                if (kernel[lane] > 0.0f) gathered += add(spot, piece, y, x + lane, along[lane], kernel[lane]);
+                if (weight[lane] > 0.0f) gathered += add(spot, piece, y, x + lane, along[lane], weight[lane]);
         }
         return gathered;
     }
-    uint64_t drawScalar(const Spot& spot, const StraightPiece& piece, int y, int left, int right) const {
+    /// Henyey-Greenstein between the photon's direction and the way back along the rays.
+    static Batch phase(const Spot& spot, const Batch& dx, const Batch& dy, const Batch& dz) {
+        const float g = spot.g;
+        if (g == 0.0f) return Batch(0.25f * InvPi);
+        const Vec3f& w = spot.photon.direction;
+        const Batch cosine = -(dx * w.x + dy * w.y + dz * w.z);
+        const Batch d =
+            xsimd::max(1.0f + g * g - 2.0f * g * cosine, Batch((1.0f - std::abs(g)) * (1.0f - std::abs(g))));
+        return (1.0f - g * g) * 0.25f * InvPi / (d * xsimd::sqrt(d));
+    }
+    uint64_t drawSingly(const Spot& spot, const StraightPiece& piece, int y, int left, int right) const {
         uint64_t gathered = 0;
         for (int x = left; x <= right; ++x) {
             const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
             const Vec3f direction(record_.x[pixel], record_.y[pixel], record_.z[pixel]);
             const float t = spot.offset.dot(direction);
-            const float part = 1.0f - (spot.offset - direction * t).length2() / spot.squaredRadius;
-            if (part > 0.0f && t > piece.start[pixel] && t <= piece.end[pixel])
-                gathered += add(spot, piece, y, x, t, part * part);
+            const float part = 1.0f - (spot.offset - direction * t).length2() * spot.inverseSquaredRadius;
+            if (!(part > 0.0f) || !(t > piece.start[pixel]) || t > piece.end[pixel]) continue;
+            float value = part * part;
+            if (spot.simple)
+                value *= std::exp((piece.start[pixel] - t) * spot.sigmaT) *
+                         spot.medium.phase.eval(spot.photon.direction, -direction);
+            gathered += add(spot, piece, y, x, t, value);
         }
         return gathered;
     }
-    uint64_t add(const Spot& spot, const StraightPiece& piece, int y, int x, float along, float kernel) const {
+    uint64_t add(const Spot& spot, const StraightPiece& piece, int y, int x, float along, float value) const {
         const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
         if (piece.medium[pixel] != spot.photon.medium) return 0;
         const int interactions = int(piece.interactions[pixel]) + int(spot.photon.bounce);
         if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return 0;
-        const Vec3f back(-record_.x[pixel], -record_.y[pixel], -record_.z[pixel]);
-        const float value =
-            kernel * 3.0f * InvPi / spot.squaredRadius * spot.medium.phase.eval(spot.photon.direction, back);
-        const Rgb transmittance = spot.medium.transmittance(along - piece.start[pixel]);
-        film_.passPixel(spot.frame, x, y) += spot.power * piece.throughput[pixel] * transmittance * value;
+        Rgb radiance = spot.power * piece.throughput[pixel] * value;
+        if (!spot.simple) {
+            const Vec3f back(-record_.x[pixel], -record_.y[pixel], -record_.z[pixel]);
+            radiance = radiance * spot.medium.transmittance(along - piece.start[pixel]) *
+                       spot.medium.phase.eval(spot.photon.direction, back);
+        }
+        film_.passPixel(spot.frame, x, y) += radiance;
         return 1;
     }
 

@@ -38,8 +38,8 @@ class PhotonWalk {
   public:
     PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume,
                WalkCounters& counters)
-        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler), surfacePhotons_(surface),
-          volume_(volume), counters_(counters) {}
+        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler),
+          surfacePhotons_(surface), volume_(volume), counters_(counters) {}
 
     void run();
 

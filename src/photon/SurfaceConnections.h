@@ -37,6 +37,7 @@ class SurfaceConnections {
   public:
     SurfaceConnections(const Scene& scene, const SensorRecord& record, const PassInfo& pass);
 
+    [[nodiscard]] size_t points() const { return points_.size(); }
     /// a^2; 0 when there is no sensor point.
     [[nodiscard]] float nearField() const { return nearField_; }
     /// Appends what a vertex sends to a pixel. `scattering(direction)` is the vertex's BSDF or phase function times
