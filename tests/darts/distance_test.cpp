@@ -22,10 +22,22 @@ TEST(Stratification, EveryRowHasOneNumberInEveryStratumAndColumnsFillTheirs) {
     for (size_t column = 0; column < 16; ++column) {
         std::set<int> seen;
         for (const auto& row : rows) {
-            EXPECT_EQ(int(row[column] * 16.0f), int(column));
+            EXPECT_EQ(int(row[column] * 16.0f), StratifiedTable<16>::stratum(int(column)));
             seen.insert(int(row[column] * 512.0f));
         }
         EXPECT_EQ(seen.size(), size_t(StratifiedRows)) << column; // a Sobol dimension: one point in every 32nd
+    }
+}
+
+TEST(Stratification, EitherHalfOfARowIsStratifiedOverTheUnitInterval) {
+    for (size_t half = 0; half < 2; ++half) {
+        std::set<int> quarters, strata;
+        for (size_t column = 4 * half; column < 4 * half + 4; ++column) {
+            quarters.insert(int(Stratified<8>.rows[0][column] * 4.0f));
+            strata.insert(int(Stratified<8>.rows[0][column] * 8.0f) % 2);
+        }
+        EXPECT_EQ(quarters.size(), 4u);
+        EXPECT_EQ(strata, std::set<int>{int(half)});
     }
 }
 
