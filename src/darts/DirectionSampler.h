@@ -2,11 +2,13 @@
 // Directions drawn for the connection that is to follow, mixed with what the scatterer prefers.
 
 #include "darts/ConnectionLobe.h"
+#include "darts/EdaTable.h"
 #include "darts/PhaseFunction.h"
 #include "darts/ResidualRange.h"
 #include "darts/Settings.h"
 
 #include <array>
+#include <memory>
 
 namespace darts {
 
@@ -25,21 +27,24 @@ struct NoView {
     [[nodiscard]] float pdf(const Vec3&) const { return 0; }
 };
 
-/// The guided distribution at a vertex: the connection lobe, and the view's directions to the coming control vertex.
-template <typename View>
+/// The guided distribution at a vertex: one about the target's direction, with sample(u) -> h and pdf(h) per solid
+/// angle (a connection lobe, a row of an EDA table), and the view's directions to the coming control vertex.
+template <typename AboutTarget, typename View>
 class GuidedDirections {
   public:
-    GuidedDirections(Lobe lobe, const Residual& residual, float excess, const View& view, float focus)
-        : residual_(residual), excess_(std::max(excess, 1e-6f * residual.C)), view_(view), focus_(focus),
-          lobe_(lobe == Lobe::Path ? ConnectionLobe<float>::path(residual.C, excess_)
-                                   : ConnectionLobe<float>::photon(residual.C, excess_)) {}
+    GuidedDirections(const AboutTarget& aboutTarget, const Residual& residual, float excess, const View& view,
+                     float focus)
+        : residual_(residual), excess_(excess), view_(view), focus_(focus), aboutTarget_(aboutTarget) {}
 
+    /// choice, u, v in [0, 1) -> unit direction.
     [[nodiscard]] Vec3 sample(float choice, float u, float v) const {
         if (choice < focus_) return fromView(view_.sample(u, v));
-        return directionAbout(residual_.axis, lobe_.sample(u), v);
+        return directionAbout(residual_.axis, aboutTarget_.sample(u), v);
     }
+    /// Density per solid angle; h = 1 - cos between the direction and residual.axis.
     [[nodiscard]] float pdf(const Vec3& direction, float h) const {
-        return focus_ > 0 ? (1.0f - focus_) * lobe_.pdf(h) + focus_ * viewPdf(direction, h) : lobe_.pdf(h);
+        const float about = aboutTarget_.pdf(h);
+        return focus_ > 0 ? (1.0f - focus_) * about + focus_ * viewPdf(direction, h) : about;
     }
 
   private:
@@ -61,14 +66,22 @@ class GuidedDirections {
     float excess_;
     const View& view_;
     float focus_;
-    ConnectionLobe<float> lobe_;
+    AboutTarget aboutTarget_;
 };
 
 /// Mixtures of a guided distribution with a scatterer's own. A scatterer has sample(u, v) -> unit direction and
 /// pdf(direction) per solid angle (a phase function, an emitter's or a surface's distribution).
 class DirectionSampler {
   public:
-    DirectionSampler(const Settings& settings, float g) : settings_(settings), g_(g) {}
+    /// Direction::Eda uses `table`; without one that of the medium's mean albedo and g, built here unless another
+    /// sampler in the process holds it already.
+    DirectionSampler(const Settings& settings, const Medium& medium, std::shared_ptr<const EdaTable> table = nullptr)
+        : settings_(settings), g_(medium.g), sigmaT_(mean(medium.sigmaT())) {
+        if (settings.direction != Direction::Eda) return;
+        if (!table && sigmaT_ > 0) table = EdaTable::shared(mean(medium.sigmaS) / sigmaT_, g_);
+        table_ = std::move(table);
+        if (!table_) settings_.direction = Direction::Phase; // an empty medium: nothing to approximate
+    }
 
     /// `excess`: of the connection drawn for the coming control vertex (S = C + excess). `random()` is uniform in
     /// [0, 1).
@@ -76,9 +89,10 @@ class DirectionSampler {
     [[nodiscard]] DirectionSample sample(const Residual& residual, float excess, const Scatterer& scatterer,
                                          const View& view, Random&& random) const {
         if (settings_.direction == Direction::Phase) return fromScatterer(residual, scatterer, random);
-        const GuidedDirections<View> guided(settings_.lobe, residual, excess, view, focus<View>());
-        if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
-        return mix(residual, guideShare(residual, excess), scatterer, guided, random);
+        return withGuided(residual, excess, view, [&](const auto& guided) {
+            if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
+            return mix(residual, guideShare(residual, excess), scatterer, guided, random);
+        });
     }
 
     /// Density per solid angle of the mixture; for Direction::Ris, of its candidates.
@@ -88,19 +102,31 @@ class DirectionSampler {
         if (settings_.direction == Direction::Phase) return scatterer.pdf(direction);
         const float h = oneMinusCosine(direction, residual.axis);
         const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
-        const GuidedDirections<View> guided(settings_.lobe, residual, excess, view, focus<View>());
-        return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
+        return withGuided(residual, excess, view, [&](const auto& guided) {
+            return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
+        });
     }
 
     /// gamma = (C / S) / (C / S + alpha).
     [[nodiscard]] float guideShare(const Residual& residual, float excess) const {
         const float ratio = residual.C / (residual.C + excess);
-        return ratio / (ratio + settings_.alpha);
+        return ratio > 0 ? ratio / (ratio + settings_.alpha) : 0.0f;
     }
 
   private:
     static constexpr int MostDirections = 8;
+    static constexpr float BelowOne = 0x1.fffffep-1f;
 
+    /// use(the vertex's guided distribution).
+    template <typename View, typename Use>
+    [[nodiscard]] auto withGuided(const Residual& residual, float excess, const View& view, Use&& use) const {
+        const float C = residual.C, delta = std::max(excess, 1e-6f * C);
+        if (settings_.direction == Direction::Eda)
+            return use(GuidedDirections(table_->row(C, delta, sigmaT_), residual, delta, view, focus<View>()));
+        const auto lobe = settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, delta)
+                                                       : ConnectionLobe<float>::photon(C, delta);
+        return use(GuidedDirections(lobe, residual, delta, view, focus<View>()));
+    }
     template <typename View>
     [[nodiscard]] float focus() const {
         return std::is_same_v<View, NoView> ? 0.0f : settings_.focus;
@@ -116,7 +142,8 @@ class DirectionSampler {
     static DirectionSample mix(const Residual& residual, float share, const Scatterer& scatterer, const Guided& guided,
                                Random& random) {
         const float choice = random(), u = random(), v = random();
-        const Vec3 direction = choice < share ? guided.sample(choice / share, u, v) : scatterer.sample(u, v);
+        const Vec3 direction =
+            choice < share ? guided.sample(std::min(choice / share, BelowOne), u, v) : scatterer.sample(u, v);
         const float h = oneMinusCosine(direction, residual.axis);
         const float pdf = share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         return {direction, h, pdf > 0 ? 1.0f / pdf : 0.0f};
@@ -160,7 +187,8 @@ class DirectionSampler {
     }
 
     Settings settings_;
-    float g_;
+    float g_, sigmaT_;
+    std::shared_ptr<const EdaTable> table_; ///< null unless Direction::Eda
 };
 
 } // namespace darts

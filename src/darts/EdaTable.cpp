@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -134,6 +136,19 @@ EdaTable EdaTable::build(float albedo, float g, const EdaResolution& resolution,
     });
     for (const auto& row : cumulative) table.cumulative_.insert(table.cumulative_.end(), row.begin(), row.end());
     table.index();
+    return table;
+}
+
+std::shared_ptr<const EdaTable> EdaTable::shared(float albedo, float g) {
+    requireValid(albedo, g, {}); // before NaN becomes a key
+    static std::mutex mutex;
+    static std::map<std::pair<float, float>, std::weak_ptr<const EdaTable>> tables;
+    const std::lock_guard lock(mutex);
+    std::erase_if(tables, [](const auto& entry) { return entry.second.expired(); });
+    auto& entry = tables[{albedo, g}];
+    if (auto table = entry.lock()) return table;
+    auto table = std::make_shared<const EdaTable>(build(albedo, g));
+    entry = table;
     return table;
 }
 

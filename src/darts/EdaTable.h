@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,10 @@ class EdaTable {
     /// Deterministic, the same for any number of threads (0: all cores). Throws as requireValid.
     [[nodiscard]] static EdaTable build(float albedo, float g, const EdaResolution& resolution = {},
                                         unsigned threads = 0);
+
+    /// The table of the default resolution: the one that somebody in the process still holds, or built now. May be
+    /// called from several threads. Throws as requireValid.
+    [[nodiscard]] static std::shared_ptr<const EdaTable> shared(float albedo, float g);
 
     /// Throws std::invalid_argument unless albedo is in [0, 1], g in [-1, 1] and the resolution within its bounds.
     static void requireValid(float albedo, float g, const EdaResolution& resolution);

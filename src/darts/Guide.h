@@ -35,11 +35,13 @@ struct ResponseAt {
 /// throughput and the usefulness it started with.
 class Guide {
   public:
-    Guide(const Settings& settings, const Medium& medium)
+    /// `edaTable`: for Direction::Eda, instead of the one that is built (about 0.2 s) and shared by guides in media of
+    /// one albedo and g.
+    Guide(const Settings& settings, const Medium& medium, std::shared_ptr<const EdaTable> edaTable = nullptr)
         : settings_(settings), medium_(medium),
           connectionSigmaT_(settings.uniformLength ? 0.0f : smallest(medium.sigmaT())),
           meanSigmaA_(mean(medium.sigmaA)), meanSigmaS_(mean(medium.sigmaS)), distance_(settings, medium),
-          direction_(settings, medium.g) {}
+          direction_(settings, medium, std::move(edaTable)) {}
 
     [[nodiscard]] const Settings& settings() const { return settings_; }
     [[nodiscard]] const Medium& medium() const { return medium_; }

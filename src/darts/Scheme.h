@@ -3,7 +3,9 @@
 
 #include "darts/Settings.h"
 
+#include <iomanip>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -84,7 +86,9 @@ std::optional<float> fraction(const Block& block, const char* field, double most
     if (!block.has(field)) return std::nullopt;
     const double value = block.number(field, 0.0);
     if (value >= 0.0 && value <= most) return float(value);
-    block.problem(field, "expected a number from 0 to " + std::to_string(most).substr(0, 4));
+    std::ostringstream accepted; // 0.05, 1000000: no zeros, no exponent
+    accepted << std::setprecision(10) << most;
+    block.problem(field, "expected a number from 0 to " + accepted.str());
     return std::nullopt;
 }
 

@@ -46,6 +46,11 @@ const Case Cases[] = {{1.0f, 0.3f, 0.0f, 0.1f},
 const Vec3 Before = Vec3{0.6f, 0.0f, 0.8f};
 const Vec3 ToTarget = Vec3{0.48f, 0.64f, -0.6f};
 
+/// Coloured, of mean sigmaT 2 and mean albedo 0.8.
+Medium medium(float g) {
+    return {{0.3f, 0.4f, 0.5f}, {1.7f, 1.6f, 1.5f}, g};
+}
+
 TEST(HenyeyGreenstein, SamplesItsDensity) {
     for (const float g : {0.0f, 0.3f, 0.8f, -0.7f, 1e-5f}) {
         const HenyeyGreenstein phase{Before, g};
@@ -73,7 +78,7 @@ TEST(HenyeyGreenstein, KeepsItsPeakInFloat) {
 
 template <typename View>
 void expectSamplesDensity(const Settings& settings, const Case& c, const View& view) {
-    const DirectionSampler sampler(settings, c.g);
+    const DirectionSampler sampler(settings, medium(c.g));
     const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
     const HenyeyGreenstein phase{Before, c.g};
     const double p = tungsten::test::chiSquareSphere(
@@ -110,6 +115,58 @@ TEST(DirectionSampler, TheCamerasViewBelongsToTheDensity) {
         }
 }
 
+TEST(DirectionSampler, MixturesWithTheEdaTableSampleTheirDensity) {
+    for (const Case& c : Cases)
+        for (const Mode mode : {Mode::Path, Mode::Photon})
+            for (const float focus : {0.0f, 0.3f}) {
+                if (focus > 0 && (mode == Mode::Path || c.C < 0.1f || c.excess < 0.2f)) continue; // as above
+                Settings settings = published(mode);
+                settings.alpha = c.alpha;
+                settings.focus = focus;
+                ConeView view{directionAbout({0, 1, 0}, 0.4f, 0.3f)};
+                view.h = 0.3f;
+                if (focus > 0)
+                    expectSamplesDensity(settings, c, view);
+                else
+                    expectSamplesDensity(settings, c, NoView{});
+            }
+}
+
+TEST(DirectionSampler, TheEdaTablesShareIsTheTablesOwnDensity) {
+    const auto table = std::make_shared<const EdaTable>(EdaTable::build(0.8f, 0.3f));
+    const DirectionSampler built(published(Mode::Path), medium(0.3f));
+    const DirectionSampler given(published(Mode::Path), medium(0.3f), table);
+    const HenyeyGreenstein phase{Before, 0.3f};
+    for (uint64_t i = 0; i < 2000; ++i) {
+        Sampler s(22, RandomStream::Test, 0, i);
+        const float C = std::exp(6.0f * s.next1D() - 3.0f), excess = C * std::exp2(-20.0f * s.next1D());
+        const Residual residual = Residual::of(ToTarget * C, {0.0, double(C) + double(excess)});
+        const float share = residual.C / (residual.C + excess) / (residual.C / (residual.C + excess) + 0.5f);
+        const Vec3 direction = directionAbout(ToTarget, 2.0f * std::exp2(-20.0f * s.next1D()), s.next1D());
+        const float h = oneMinusCosine(direction, residual.axis);
+        const float expected = share * table->pdf(residual.C, excess, 2.0f, h) + (1.0f - share) * phase.pdf(direction);
+        for (const DirectionSampler* sampler : {&built, &given})
+            ASSERT_NEAR(sampler->pdf(residual, excess, direction, phase, NoView{}) / expected, 1.0f, 1e-5f)
+                << C << " " << excess << " " << h;
+    }
+}
+
+TEST(DirectionSampler, EmptyMediaHaveNoTableAndUseThePhaseFunction) {
+    const DirectionSampler sampler(published(Mode::Path), Medium{});
+    const Residual residual = Residual::of({0, 0, 1}, {1.0, 1.5});
+    const HenyeyGreenstein phase{Before, 0.3f};
+    EXPECT_EQ(sampler.pdf(residual, 0.5f, ToTarget, phase, NoView{}), phase.pdf(ToTarget));
+}
+
+TEST(DirectionSampler, WithoutAShareOfThePhaseFunctionATargetAtTheVertexStillHasDirections) {
+    Settings settings = best(Mode::Path, 0.0f);
+    settings.alpha = 0.0f;
+    const DirectionSampler sampler(settings, medium(0.0f));
+    const Residual residual = Residual::of({0, 0, 0}, {0.0, 1.0});
+    const auto sample = sampler.sample(residual, 1.0f, HenyeyGreenstein{}, NoView{}, [] { return 0.25f; });
+    EXPECT_NEAR(sample.inversePdf, 4.0f * Pi, 1e-4f);
+}
+
 /// Resampled directions: E[F(w) inverse pdf] = the integral of F over the sphere.
 TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
     for (const Case& c : Cases)
@@ -119,7 +176,7 @@ TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
                 settings.direction = Direction::Ris;
                 settings.directionCandidates = count;
                 settings.focus = focus;
-                const DirectionSampler sampler(settings, c.g);
+                const DirectionSampler sampler(settings, medium(c.g));
                 const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
                 const HenyeyGreenstein phase{Before, c.g};
                 const ConeView view{{0, 1, 0}};

@@ -13,6 +13,7 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 namespace darts {
 namespace {
@@ -236,6 +237,24 @@ TEST(EdaTable, IsTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(one == EdaTable::build(0.7f, 0.4f, {}, 2));
     EXPECT_TRUE(one == EdaTable::build(0.7f, 0.4f, {}, 5));
     EXPECT_FALSE(one == EdaTable::build(0.7f, 0.5f, {}, 2));
+}
+
+TEST(EdaTable, IsSharedWhileSomebodyHoldsIt) {
+    auto table = EdaTable::shared(0.7f, 0.4f);
+    EXPECT_TRUE(*table == EdaTable::build(0.7f, 0.4f));
+    EXPECT_EQ(EdaTable::shared(0.7f, 0.4f), table);
+    EXPECT_NE(EdaTable::shared(0.7f, 0.3f), table);
+    EXPECT_NE(EdaTable::shared(0.6f, 0.4f), table);
+    const std::weak_ptr<const EdaTable> observer = table;
+    table.reset();
+    EXPECT_TRUE(observer.expired());
+    EXPECT_THROW((void)EdaTable::shared(NAN, 0.0f), std::invalid_argument);
+
+    std::array<std::shared_ptr<const EdaTable>, 4> tables;
+    std::vector<std::thread> threads;
+    for (auto& mine : tables) threads.emplace_back([&mine] { mine = EdaTable::shared(0.7f, 0.4f); });
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& one : tables) EXPECT_EQ(one, tables.front());
 }
 
 TEST(EdaTable, RefusesParametersOutOfBounds) {

@@ -53,10 +53,11 @@ void expectOnceScattered(const Settings& settings, const Geometry& geometry, uin
 }
 
 TEST(Guide, OnceScatteredLightMatchesItsClosedForm) {
+    const auto table = EdaTable::shared(0.8f, 0.0f); // held for all the guides
     uint64_t seed = 40;
     for (const Geometry& geometry : Geometries)
         for (const Mode mode : {Mode::Path, Mode::Photon})
-            for (const Direction direction : {Direction::Connection, Direction::Ris, Direction::Phase})
+            for (const Direction direction : {Direction::Connection, Direction::Ris, Direction::Phase, Direction::Eda})
                 for (const bool lengthFirst : {true, false}) {
                     // Phase-function directions have infinite variance where the range touches the straight line.
                     if (geometry.low < geometry.C && (direction == Direction::Phase || !lengthFirst)) continue;
