@@ -1,7 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
 #include "photon/ProgressiveSchedule.h"
-#include "photon/SensorPass.h"
 
 namespace tungsten::photon {
 
@@ -26,11 +25,28 @@ void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const 
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
+struct PhotonIntegrator::StraightStores {
+    PhotonStore points;
+    std::vector<float> radii;
+    std::vector<PhotonBeam> beams;
+};
+
+void PhotonIntegrator::planVolume(EffectPlan& plan) const {
+    const bool beams = settings_.primitive == VolumePrimitive::Beams;
+    const std::string none = "no medium scatters: no volume photon is stored or gathered";
+    if (!beams)
+        return plan.describe("volume photon points", plan.mediumScattering,
+                             plan.mediumScattering ? "a medium scatters" : none);
+    plan.describe("photon beams", plan.mediumScattering,
+                  plan.mediumScattering ? "a medium scatters, volume_photon_type is beams" : none);
+    const bool delta = scene_->transport.gate.delta;
+    plan.describe("temporal kernel", delta,
+                  delta ? "delta gate: a box about it that narrows with the radius" : "the gate has a width, or none");
+}
+
 void PhotonIntegrator::plan(EffectPlan& plan) const {
     const bool surfaces = settings_.includeSurfaces && plan.surfaceScattering;
-    plan.describe("volume photon points", plan.mediumScattering,
-                  plan.mediumScattering ? "a medium scatters"
-                                        : "no medium scatters: no volume photon is stored or gathered");
+    planVolume(plan);
     plan.describe("surface photons", surfaces,
                   surfaces
                       ? "smooth surfaces are gathered"
@@ -56,30 +72,55 @@ std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint3
     return radii;
 }
 
+TimeGate PhotonIntegrator::gate(uint32_t pass) const {
+    const TimeGate& gate = scene_->transport.gate;
+    if (!gate.delta) return gate;
+    const double tau = settings_.temporalRadius * deltaGateFactor(pass, settings_.volumeAlpha);
+    return {false, false, gate.start - tau, 2.0 * tau, 1};
+}
+
+void PhotonIntegrator::build(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
+                             GatherStructures& structures) const {
+    const ArrivalTest& arrival = photonPass_->arrival();
+    if (!maps.volume.photons.empty()) {
+        const std::vector<float> radii = volumeRadii(maps.volume, pass);
+        structures.points = std::make_unique<PointGather>(*scene_, maps.volume, radii);
+        selectStraight(arrival, maps.volume, radii, straight.points, straight.radii);
+        if (straight.points.paths > 0)
+            structures.straightPoints = std::make_unique<PointGather>(*scene_, straight.points, straight.radii);
+    }
+    if (!maps.beams.beams.empty()) {
+        const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
+                                                          : beamRadiusFactor(pass, settings_.alpha);
+        const float radius = settings_.volumeRadius * factor;
+        structures.beams = std::make_unique<BeamGather>(*scene_, structures.gate, maps.beams.beams, radius);
+        if (!arrival.directView() && arrival.straightTimesKnown()) {
+            straight.beams = straightParts(*scene_, arrival, maps.beams.beams);
+            structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.gate, straight.beams, radius);
+        }
+    }
+    if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
+    structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(pass, settings_.alpha);
+}
+
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     // Without progression every pass looks at the photons of the first.
     PassInfo photons = pass;
     if (!settings_.progressive) photons.index = 0;
     PhotonMaps maps;
+    const TimeGate passGate = gate(photons.index);
     {
         const StageTimer timer(statistics, "photon pass");
+        photonPass_->setGate(passGate);
         maps = photonPass_->trace(photons, statistics);
     }
-    PhotonStore straight;
-    std::vector<float> straightRadii;
+    StraightStores straight;
     GatherStructures structures{
-        maps, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces};
+        maps,    nullptr, nullptr, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces,
+        passGate};
     {
         const StageTimer timer(statistics, "build");
-        if (!maps.volume.photons.empty()) {
-            const std::vector<float> radii = volumeRadii(maps.volume, photons.index);
-            structures.points = std::make_unique<PointGather>(*scene_, maps.volume, radii);
-            selectStraight(photonPass_->arrival(), maps.volume, radii, straight, straightRadii);
-            if (straight.paths > 0)
-                structures.straightPoints = std::make_unique<PointGather>(*scene_, straight, straightRadii);
-        }
-        if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
-        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
+        build(maps, photons.index, straight, structures);
     }
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);

@@ -11,9 +11,10 @@ void PhotonWalk::run() {
         const auto hit = scene_.geometry->intersect(ray_);
         if (const Medium* medium = scene_.medium(region_)) {
             const float reach = hit ? hit->t : Infinity;
+            if (medium->scatters() && ++flights_ > medium->maxBounces) return;
+            if (context_.storeBeams && medium->scatters()) depositBeam(*medium, reach);
             const FlightSample flight = sampleFlight(*medium, reach, sampler_);
             power_ = power_ * flight.weight;
-            if (medium->scatters() && ++flights_ > medium->maxBounces) return;
             if (!flight.exited) {
                 if (!scatterInMedium(*medium, flight.distance)) return;
                 continue;
@@ -39,6 +40,12 @@ bool PhotonWalk::emit() {
 void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
     if (context_.arrival.mayCount(position, time_))
         list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
+}
+
+void PhotonWalk::depositBeam(const Medium& medium, float reach) {
+    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    storeBeam(beams_, context_.arrival, medium,
+              {time_, ray_.origin, ray_.direction, power_, 0.0f, reach, uint16_t(bounce_), int16_t(region_.medium)});
 }
 
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {

@@ -2,8 +2,8 @@
 // One light path and what it deposits.
 
 #include "photon/ArrivalTest.h"
+#include "photon/PhotonBeam.h"
 #include "photon/PhotonSettings.h"
-#include "photon/PhotonStore.h"
 
 #include "tungsten/scene/Interaction.h"
 
@@ -26,15 +26,15 @@ struct WalkContext {
     const PhotonSettings& settings;
     const ArrivalTest& arrival;
     const Distribution1D& emitters;
-    bool storeSurface, storeVolume;
+    bool storeSurface, storeVolume, storeBeams;
 };
 
 class PhotonWalk {
   public:
-    PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume,
+    PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume, BeamList& beams,
                WalkCounters& counters)
         : context_(context), scene_(context.scene), sampler_(sampler), surface_(surface), volume_(volume),
-          counters_(counters) {}
+          beams_(beams), counters_(counters) {}
 
     void run();
 
@@ -43,6 +43,8 @@ class PhotonWalk {
     /// False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
     bool scatterOnSurface(const SurfaceHit& hit);
+    /// The flight ahead, up to `reach`.
+    void depositBeam(const Medium& medium, float reach);
     void deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 
     const WalkContext& context_;
@@ -50,6 +52,7 @@ class PhotonWalk {
     Sampler sampler_;
     DepositList& surface_;
     DepositList& volume_;
+    BeamList& beams_;
     WalkCounters& counters_;
 
     Ray ray_;

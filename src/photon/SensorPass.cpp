@@ -12,7 +12,7 @@ namespace {
 constexpr size_t TileSide = 8;
 
 struct SensorCounters {
-    uint64_t rays = 0, gathered = 0, nonFinite = 0;
+    uint64_t rays = 0, gathered = 0, gatheredBeams = 0, nonFinite = 0;
 };
 
 /// Buffers that a worker reuses from pixel to pixel.
@@ -43,21 +43,28 @@ class SensorPath {
   private:
     void crossSegment(float length) {
         const Medium* medium = scene_.medium(region_);
-        if (medium && structures_.points) gatherVolume(length);
+        if (medium && structures_.points)
+            gatherVolume(length, structures_.points, structures_.straightPoints, structures_.maps.volume.scale(),
+                         counters_.gathered);
+        if (medium && structures_.beams)
+            gatherVolume(length, structures_.beams, structures_.straightBeams, structures_.maps.beams.scale(),
+                         counters_.gatheredBeams);
         if (medium) throughput_ = throughput_ * medium->transmittance(length);
         time_ += double(length) / double(region_.speed);
     }
 
-    void gatherVolume(float length) {
+    /// Points or beams along the segment; `straight`, if any, while the path has not folded.
+    template <typename Gather>
+    void gatherVolume(float length, const std::unique_ptr<Gather>& all, const std::unique_ptr<Gather>& straight,
+                      float storeScale, uint64_t& counter) {
         std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
         const CameraSegment segment{ray_.origin,   ray_.direction, length, time_, 1.0 / double(region_.speed),
                                     interactions_, region_.medium};
-        const bool straight = !folded_ && structures_.straightPoints;
-        const PointGather& points = straight ? *structures_.straightPoints : *structures_.points;
-        const uint64_t gathered = points.gather(segment, workspace_.volume);
+        const Gather& store = straight && !folded_ ? *straight : *all;
+        const uint64_t gathered = store.gather(segment, workspace_.volume);
         if (gathered == 0) return;
-        counters_.gathered += gathered;
-        const double scale = double(structures_.maps.volume.scale());
+        counter += gathered;
+        const double scale = double(storeScale);
         const Vec3d weight(double(throughput_.x) * scale, double(throughput_.y) * scale, double(throughput_.z) * scale);
         for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
             workspace_.sums[frame] += workspace_.volume[frame] * weight;
@@ -87,7 +94,7 @@ class SensorPath {
     }
 
     void add(const Rgb& radiance, double time) {
-        const TimeGate& gate = scene_.transport.gate;
+        const TimeGate& gate = structures_.gate;
         const int frame = gate.steadyState ? 0 : gate.frameOf(time);
         if (frame >= 0)
             workspace_.sums[size_t(frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
@@ -153,7 +160,7 @@ class SensorPath {
 void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
                       Statistics& statistics) {
     const auto width = size_t(scene.camera.resolution.x), height = size_t(scene.camera.resolution.y);
-    const TimeGate& gate = scene.transport.gate;
+    const TimeGate& gate = structures.gate;
     const double scale = 1.0 / (double(pass.samples) * (gate.steadyState ? 1.0 : gate.frameWidth));
     const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {
         std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));
@@ -181,6 +188,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                 renderPixel(int(x), int(y), workspace, counters);
         statistics.add("rays", counters.rays);
         statistics.add("gathered photons", counters.gathered);
+        statistics.add("gathered beams", counters.gatheredBeams);
         statistics.add("non-finite samples", counters.nonFinite);
     });
 }
