@@ -8,45 +8,28 @@ namespace darts {
 
 inline constexpr double TwoPi = 6.283185307179586476925;
 
-/// Density proportional to 1 / (delta^2 + 2 S C h) in h = 1 - cos(theta) about the target's direction: path tracing,
-/// where the connection's weight is proportional to 1 / (r (delta + C h)). S = C + delta.
+/// Density proportional to 1 / (kappa + h) in h = 1 - cos(theta) about the target's direction, azimuth uniform. With
+/// L = log(1 + 2 / kappa): h = kappa (e^{u L} - 1), density per solid angle 1 / (2 pi (kappa + h) L).
 template <typename Real>
-class PathConnectionLobe {
+class ConnectionLobe {
   public:
-    PathConnectionLobe(Real C, Real delta)
-        : slope_(2 * (C + delta) * C), offset_(delta * delta), range_(std::log1p(2 * slope_ / offset_)) {}
+    /// Path tracing: proportional to 1 / (delta^2 + 2 S C h), the connection's weight 1 / (r (delta + C h)), S = C +
+    /// delta.
+    static ConnectionLobe path(Real C, Real delta) { return ConnectionLobe(delta / (C + delta) * (delta / (2 * C))); }
+    /// Photon pass: proportional to 1 / (delta + C h); the image's second moment goes with 1 / (delta + C h)^2.
+    static ConnectionLobe photon(Real C, Real delta) { return ConnectionLobe(delta / C); }
+
     /// u in [0, 1) -> h in [0, 2].
-    [[nodiscard]] Real sample(Real u) const {
-        if (!(range_ > Real(1e-6))) return 2 * u; // target at the vertex: uniform on the sphere
-        return std::fmin(offset_ / slope_ * std::expm1(u * range_), Real(2));
-    }
+    [[nodiscard]] Real sample(Real u) const { return std::fmin(kappa_ * std::expm1(u * range_), Real(2)); }
     /// Density per solid angle.
-    [[nodiscard]] Real pdf(Real h) const {
-        if (!(range_ > Real(1e-6))) return Real(0.5 / TwoPi);
-        return slope_ / ((offset_ + slope_ * h) * range_) / Real(TwoPi);
-    }
+    [[nodiscard]] Real pdf(Real h) const { return 1 / (Real(TwoPi) * (kappa_ + h) * range_); }
 
   private:
-    Real slope_, offset_, range_;
-};
+    /// Bounds: a target at the vertex (C = 0) is the uniform sphere, the needle (delta = 0) stays a density.
+    explicit ConnectionLobe(Real kappa)
+        : kappa_(kappa < Real(1e30) ? std::fmax(kappa, Real(1e-30)) : Real(1e30)), range_(std::log1p(2 / kappa_)) {}
 
-/// Density proportional to 1 / (delta + C h): photon pass, where the image's second moment goes with 1 / (delta + C
-/// h)^2.
-template <typename Real>
-class PhotonConnectionLobe {
-  public:
-    PhotonConnectionLobe(Real C, Real delta) : slope_(C), offset_(delta), range_(std::log1p(2 * C / delta)) {}
-    [[nodiscard]] Real sample(Real u) const {
-        if (!(range_ > Real(1e-6))) return 2 * u;
-        return std::fmin(offset_ / slope_ * std::expm1(u * range_), Real(2));
-    }
-    [[nodiscard]] Real pdf(Real h) const {
-        if (!(range_ > Real(1e-6))) return Real(0.5 / TwoPi);
-        return slope_ / ((offset_ + slope_ * h) * range_) / Real(TwoPi);
-    }
-
-  private:
-    Real slope_, offset_, range_;
+    Real kappa_, range_;
 };
 
 } // namespace darts

@@ -16,18 +16,11 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
     return darts::Ellipse<double>{distance, length - distance, h}.firstLeg();
 }
 
-double highestSpeed(const Scene& scene) {
-    float speed = std::max(scene.transport.vacuumSpeed, scene.cameraRegion.speed);
-    for (const Medium& medium : scene.media) speed = std::max(speed, medium.speedOfLight);
-    for (const Primitive& primitive : scene.primitives)
-        if (primitive.boundsRegion) speed = std::max({speed, primitive.inside.speed, primitive.outside.speed});
-    return double(speed);
-}
-
 } // namespace
 
 ArrivalTest::ArrivalTest(const Scene& scene, const EffectPlan& plan)
-    : gate_(scene.transport.gate), unwarped_(scene.transport.cameraUnwarped), highestSpeed_(highestSpeed(scene)) {
+    : gate_(scene.transport.gate), unwarped_(scene.transport.cameraUnwarped),
+      highestSpeed_(double(highestSpeed(scene))) {
     const Vec3f position = scene.camera.position();
     camera_ = Vec3d(position.x, position.y, position.z);
     straightTimesKnown_ = !gate_.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;

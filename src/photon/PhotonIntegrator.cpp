@@ -1,5 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
+#include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
 
 namespace tungsten::photon {
@@ -18,6 +19,21 @@ void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const 
         straight.photons.push_back(store.photons[i]);
         if (radii.size() > 1) straightRadii.push_back(radii[i]);
     }
+}
+
+/// What vertices of light paths sent to pixels, averaged over the paths.
+void addContributions(const PhotonMaps& maps, Film& film, Statistics& statistics) {
+    if (maps.contributions.empty()) return;
+    const float scale = float(1.0 / double(maps.paths));
+    const int width = film.width();
+    uint64_t nonFinite = 0;
+    for (const PixelContribution& c : maps.contributions) {
+        if (isFinite(c.radiance))
+            film.passPixel(c.frame, int(c.pixel) % width, int(c.pixel) / width) += c.radiance * scale;
+        else
+            ++nonFinite;
+    }
+    statistics.add("non-finite samples", nonFinite);
 }
 
 } // namespace
@@ -51,6 +67,7 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
                   surfaces
                       ? "smooth surfaces are gathered"
                       : (settings_.includeSurfaces ? "no surface has a smooth lobe" : "include_surfaces is false"));
+    describeGuidance(plan);
     const bool direct = ArrivalTest(*scene_, plan).directView();
     plan.describe(
         "exact arrival culling", direct && plan.timeResolved,
@@ -59,8 +76,20 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
                  : "sensor paths can fold, change speed or start at many points: photons are tested when gathered");
 }
 
+void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
+    const std::string obstacle = PhotonGuidance::obstacle(*scene_, settings_.scheme, plan);
+    const auto guidance = PhotonGuidance::make(*scene_, settings_.scheme, plan);
+    plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
+    if (!guidance) return;
+    plan.describe("photons beside control vertices", !guidance->directView(),
+                  guidance->directView() ? "direct view: control vertices alone are complete"
+                                         : "mirrors, refraction or different speeds: both, by the balance heuristic");
+}
+
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
+    straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
+    foldedRays_ = plan.specularSensorPaths;
 }
 
 std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
@@ -79,49 +108,73 @@ TimeGate PhotonIntegrator::gate(uint32_t pass) const {
     return {false, false, gate.start - tau, 2.0 * tau, 1};
 }
 
-void PhotonIntegrator::build(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
-                             GatherStructures& structures) const {
+void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
+                                    StraightStores& straight, GatherStructures& structures, Film& film,
+                                    Statistics& statistics) const {
+    std::vector<float> radii;
+    {
+        const StageTimer timer(statistics, "build");
+        radii = volumeRadii(maps.volume, pass);
+        selectStraight(photonPass_->arrival(), maps.volume, radii, straight.points, straight.radii);
+        const TimeGate& gate = structures.gate;
+        if (!structures.splatted || foldedRays_)
+            structures.points = std::make_unique<PointGather>(*scene_, gate, maps.volume, radii);
+        if (!structures.splatted && straight.points.paths > 0)
+            structures.straightPoints = std::make_unique<PointGather>(*scene_, gate, straight.points, straight.radii);
+    }
+    if (!structures.splatted) return;
+    const StageTimer timer(statistics, "splat");
+    const bool all = straight.points.paths == 0;
+    const double width = structures.gate.steadyState ? 1.0 : structures.gate.frameWidth;
+    const uint64_t gathered = splatPhotons(*scene_, structures.gate, record, all ? maps.volume : straight.points,
+                                           all ? radii : straight.radii, double(maps.volume.scale()) / width, film);
+    statistics.add("gathered photons", gathered);
+}
+
+void PhotonIntegrator::buildBeams(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
+                                  GatherStructures& structures) const {
     const ArrivalTest& arrival = photonPass_->arrival();
-    if (!maps.volume.photons.empty()) {
-        const std::vector<float> radii = volumeRadii(maps.volume, pass);
-        structures.points = std::make_unique<PointGather>(*scene_, maps.volume, radii);
-        selectStraight(arrival, maps.volume, radii, straight.points, straight.radii);
-        if (straight.points.paths > 0)
-            structures.straightPoints = std::make_unique<PointGather>(*scene_, straight.points, straight.radii);
-    }
-    if (!maps.beams.beams.empty()) {
-        const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
-                                                          : beamRadiusFactor(pass, settings_.alpha);
-        const float radius = settings_.volumeRadius * factor;
-        structures.beams = std::make_unique<BeamGather>(*scene_, structures.gate, maps.beams.beams, radius);
-        if (!arrival.directView() && arrival.straightTimesKnown()) {
-            straight.beams = straightParts(*scene_, arrival, maps.beams.beams);
-            structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.gate, straight.beams, radius);
-        }
-    }
-    if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
-    structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(pass, settings_.alpha);
+    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
+                                                      : beamRadiusFactor(pass, settings_.alpha);
+    const float radius = settings_.volumeRadius * factor;
+    structures.beams = std::make_unique<BeamGather>(*scene_, structures.gate, maps.beams.beams, radius);
+    if (arrival.directView() || !arrival.straightTimesKnown()) return;
+    straight.beams = straightParts(*scene_, arrival, maps.beams.beams);
+    structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.gate, straight.beams, radius);
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     // Without progression every pass looks at the photons of the first.
     PassInfo photons = pass;
     if (!settings_.progressive) photons.index = 0;
-    PhotonMaps maps;
     const TimeGate passGate = gate(photons.index);
+    const bool recordable = straightRays_ && pass.samples == 1;
+    const bool splat = recordable && photonPass_->storesVolume();
+    const bool connect =
+        recordable && settings_.includeSurfaces && photonPass_->guidance() && settings_.scheme.connectsSurfaces();
+    SensorRecord record;
+    std::unique_ptr<SurfaceConnections> connections;
+    if (splat || connect) {
+        const StageTimer timer(statistics, "sensor record");
+        record = recordSensorPaths(*scene_, connect, pass, statistics);
+        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, passGate, record, pass);
+    }
+    PhotonMaps maps;
     {
         const StageTimer timer(statistics, "photon pass");
         photonPass_->setGate(passGate);
-        maps = photonPass_->trace(photons, statistics);
+        maps = photonPass_->trace(photons, connections.get(), statistics);
     }
     StraightStores straight;
-    GatherStructures structures{
-        maps,    nullptr, nullptr, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces,
-        passGate};
+    GatherStructures structures{maps, passGate, splat, settings_.includeSurfaces, settings_.gatherCount};
+    if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, straight, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
-        build(maps, photons.index, straight, structures);
+        if (!maps.beams.beams.empty()) buildBeams(maps, photons.index, straight, structures);
+        if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
+        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
     }
+    addContributions(maps, film, statistics);
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);
 }

@@ -22,14 +22,20 @@ class PhotonIntegrator : public Integrator {
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
     [[nodiscard]] TimeGate gate(uint32_t pass) const;
     void planVolume(EffectPlan& plan) const;
-    /// Structures over the pass's photons; `straight` holds what only straight sensor paths look at.
+    void describeGuidance(EffectPlan& plan) const;
+    /// Photons to pixels, or structures over them; `straight` holds what only straight sensor paths look at.
     struct StraightStores;
-    void build(const PhotonMaps& maps, uint32_t pass, StraightStores& straight, GatherStructures& structures) const;
+    void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
+                      GatherStructures& structures, Film& film, Statistics& statistics) const;
+    void buildBeams(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
+                    GatherStructures& structures) const;
     [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     std::unique_ptr<PhotonPass> photonPass_;
+    bool straightRays_ = false; ///< of one origin and speed: volume photons can be splatted, surfaces connected
+    bool foldedRays_ = false;   ///< mirrors or refraction can be seen
 };
 
 } // namespace tungsten::photon

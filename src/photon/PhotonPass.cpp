@@ -1,6 +1,6 @@
 #include "photon/PhotonPass.h"
 
-#include "photon/PhotonWalk.h"
+#include "photon/GuidedPhotonWalk.h"
 
 #include <tbb/parallel_for.h>
 
@@ -8,13 +8,14 @@ namespace tungsten::photon {
 
 namespace {
 
-constexpr uint64_t PathsPerBatch = 1024;
-constexpr uint64_t BatchesPerWave = 32; ///< traced in parallel, then appended in order
+constexpr uint64_t PathsPerBatch = 256;
+constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
 
-/// What one batch of consecutive paths deposits, with each path's share.
+/// A pass goes on until vertices have connected so often to surfaces, on average over the points.
+constexpr uint64_t ConnectionsPerPoint = 8;
+
 struct Batch {
-    DepositList surface, volume;
-    BeamList beams;
+    Deposits deposits;
     WalkCounters counters;
 };
 
@@ -41,20 +42,21 @@ void append(StoreState& store, std::vector<Record>& records, const std::vector<R
     }
 }
 
-void append(PhotonMaps& maps, const Batch& batch, const PhotonSettings& settings) {
-    append(maps.surface, maps.surface.photons, batch.surface.photons, batch.surface.pathEnds, settings.photonCount);
-    append(maps.volume, maps.volume.photons, batch.volume.photons, batch.volume.pathEnds, settings.volumePhotonCount);
-    append(maps.beams, maps.beams.beams, batch.beams.beams, batch.beams.pathEnds, settings.volumePhotonCount);
+void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings) {
+    append(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount);
+    append(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount);
+    append(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount);
+    maps.contributions.insert(maps.contributions.end(), d.contributions.begin(), d.contributions.end());
 }
 
 /// Room for what the first wave lets expect, so that growing does not hold the photons twice.
 void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const PhotonSettings& settings) {
     uint64_t surface = 0, volume = 0, beams = 0, paths = 0;
     for (const Batch& batch : wave) {
-        surface += batch.surface.photons.size();
-        volume += batch.volume.photons.size();
-        beams += batch.beams.beams.size();
-        paths += batch.surface.pathEnds.size();
+        surface += batch.deposits.surface.photons.size();
+        volume += batch.deposits.volume.photons.size();
+        beams += batch.deposits.beams.beams.size();
+        paths += batch.deposits.surface.pathEnds.size();
     }
     constexpr double Margin = 1.02;
     const double scale = Margin * double(settings.photonCount) / double(std::max<uint64_t>(paths, 1));
@@ -66,41 +68,71 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 } // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
-    : scene_(scene), settings_(settings), arrival_(scene, plan), emitters_(powerDistribution(scene)),
+    : scene_(scene), settings_(settings), arrival_(scene, plan),
+      guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
       storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
       storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
-      storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {}
+      storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {
+    if (!guidance_ || !guidance_->choosesFrames()) return;
+    const TimeGate& gate = scene.transport.gate;
+    for (int frame = 0; frame < gate.frames; ++frame) {
+        frameArrivals_.push_back(arrival_);
+        frameArrivals_.back().setGate({false, false, gate.frameStart(frame), gate.frameWidth, 1});
+    }
+}
 
-PhotonMaps PhotonPass::trace(const PassInfo& pass, Statistics& statistics) const {
+void PhotonPass::setGate(const TimeGate& gate) {
+    arrival_.setGate(gate);
+    if (guidance_) guidance_->setGate(gate);
+}
+
+PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* connections,
+                             Statistics& statistics) const {
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume.full = !storeVolume_;
     maps.beams.full = !storeBeams_;
     uint64_t traced = 0;
-    while (traced < settings_.photonCount && !(maps.surface.full && maps.volume.full && maps.beams.full)) {
+    const uint64_t wanted = connections ? ConnectionsPerPoint * connections->points() : 0;
+    const auto finished = [&] {
+        return maps.volume.full && maps.beams.full &&
+               (connections ? maps.contributions.size() >= wanted : maps.surface.full);
+    };
+    while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
         std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
-        const WalkContext context{
-            scene_, settings_, arrival_, emitters_, !maps.surface.full, !maps.volume.full, !maps.beams.full};
+        const WalkContext context{scene_,
+                                  settings_,
+                                  arrival_,
+                                  frameArrivals_,
+                                  emitters_,
+                                  !maps.surface.full,
+                                  !maps.volume.full,
+                                  !maps.beams.full,
+                                  connections ? connections->nearField() : 0.0f};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
             for (uint64_t path = first; path < last; ++path) {
-                PhotonWalk(context, {pass.seed, RandomStream::Photon, pass.index, path}, batch.surface, batch.volume,
-                           batch.beams, batch.counters)
-                    .run();
-                batch.surface.endPath();
-                batch.volume.endPath();
-                batch.beams.endPath();
+                const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
+                if (guidance_)
+                    GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.deposits, batch.counters)
+                        .run();
+                else
+                    PhotonWalk(context, sampler, batch.deposits, batch.counters).run();
+                batch.deposits.endPath();
             }
         });
         if (traced == 0) reserveStores(maps, batches, settings_);
         for (const Batch& batch : batches) {
-            append(maps, batch, settings_);
+            append(maps, batch.deposits, settings_);
             statistics.add("rays", batch.counters.rays);
+            statistics.add("control vertices", batch.counters.controlVertices);
         }
         traced += wave;
     }
+    maps.paths = traced;
+    statistics.add("surface connections", maps.contributions.size());
     statistics.add("photons", traced);
     statistics.add("stored surface photons", maps.surface.photons.size());
     statistics.add("stored volume photons", maps.volume.photons.size());

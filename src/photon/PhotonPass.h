@@ -1,9 +1,11 @@
 #pragma once
-// The photon pass: light paths from the emitters, plain free flights and directions, deposits in the stores.
+// The photon pass: light paths from the emitters, plain or guided, and what they deposit in the stores.
 
 #include "photon/ArrivalTest.h"
 #include "photon/PhotonBeam.h"
+#include "photon/PhotonGuidance.h"
 #include "photon/PhotonSettings.h"
+#include "photon/SurfaceConnections.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -13,6 +15,9 @@ namespace tungsten::photon {
 struct PhotonMaps {
     PhotonStore surface, volume;
     BeamStore beams;
+    /// Light that vertices sent to pixels at once, by all paths of the pass.
+    std::vector<PixelContribution> contributions;
+    uint64_t paths = 0;
 };
 
 class PhotonPass {
@@ -21,10 +26,15 @@ class PhotonPass {
 
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
-    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, Statistics& statistics) const;
+    /// `connections`: surface points that vertices connect to; may be null. With them, surfaces do not wait for
+    /// photons: the pass ends when the volume store, if any is in use, is full.
+    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, const SurfaceConnections* connections,
+                                   Statistics& statistics) const;
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
-    void setGate(const TimeGate& gate) { arrival_.setGate(gate); }
+    void setGate(const TimeGate& gate);
     [[nodiscard]] const ArrivalTest& arrival() const { return arrival_; }
+    /// Null when light paths are sampled plainly.
+    [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
     [[nodiscard]] bool storesVolume() const { return storeVolume_; }
     [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 
@@ -32,7 +42,9 @@ class PhotonPass {
     const Scene& scene_;
     const PhotonSettings& settings_;
     ArrivalTest arrival_;
-    Distribution1D emitters_; ///< proportional to power
+    std::unique_ptr<PhotonGuidance> guidance_;
+    std::vector<ArrivalTest> frameArrivals_; ///< when light paths aim at single frames
+    Distribution1D emitters_;                ///< proportional to power
     bool storeVolume_, storeBeams_, storeSurface_;
 };
 

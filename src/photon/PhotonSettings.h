@@ -1,6 +1,8 @@
 #pragma once
 // Settings of the photon-map integrators' block (scene format, section 10.2).
 
+#include "darts/Scheme.h"
+
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 
@@ -24,6 +26,7 @@ struct PhotonSettings {
     bool progressive = true;
     float alpha = 0.3f;       ///< surface radius reduction
     float volumeAlpha = 0.3f; ///< volume radius reduction
+    darts::Scheme scheme;     ///< how light paths are guided
 };
 
 /// Reads the block; problems and warnings go to the reader's diagnostics.

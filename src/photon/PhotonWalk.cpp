@@ -26,25 +26,28 @@ void PhotonWalk::run() {
 
 bool PhotonWalk::emit() {
     const auto chosen = context_.emitters.sample(sampler_.next1D());
-    const Emitter& emitter = scene_.emitters[chosen.index];
+    return emitFrom(scene_.emitters[chosen.index], chosen.probability);
+}
+
+bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     const Vec2f uPosition = sampler_.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());
-    power_ = emission.power / chosen.probability;
+    power_ = emission.power / probability;
     time_ = emitter.emissionTime;
     region_ = scene_.regionOf(emitter);
     ray_ = emission.ray;
     ray_.tMin = emitter.isArea() ? scene_.rayEpsilon : 0.0f;
-    return !isBlack(power_) && context_.arrival.mayContinue(ray_.origin, time_);
+    return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
 }
 
 void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
-    if (context_.arrival.mayCount(position, time_))
+    if (arrival_->mayCount(position, time_))
         list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
 }
 
 void PhotonWalk::depositBeam(const Medium& medium, float reach) {
     if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
-    storeBeam(beams_, context_.arrival, medium,
+    storeBeam(deposits_.beams, *arrival_, medium,
               {time_, ray_.origin, ray_.direction, power_, 0.0f, reach, uint16_t(bounce_), int16_t(region_.medium)});
 }
 
@@ -53,36 +56,50 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     time_ += double(distance) / double(region_.speed);
     ++bounce_;
     ++consecutiveMedium_;
-    if (!context_.arrival.mayContinue(position, time_)) return false;
+    if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
-    if (context_.storeVolume && orderCounts) deposit(volume_, position, power_, region_.medium);
+    if (context_.storeVolume && orderCounts) deposit(deposits_.volume, position, power_, region_.medium);
+    sinceVertex_ = 0.0f;
+    connectable_ = true;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
     return true;
 }
 
-bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
+bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     time_ += double(hit.t) / double(region_.speed);
+    sinceVertex_ += hit.t;
     ++bounce_;
     flights_ = 0;
     consecutiveMedium_ = 0;
-    if (!context_.arrival.mayContinue(hit.position, time_)) return false;
-    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
-    if (context_.storeSurface && (surface.bsdf->lobes() & lobe::Smooth) != 0) {
-        const float shading = std::abs(ray_.direction.dot(surface.frame.n)),
-                    geometric = std::abs(ray_.direction.dot(hit.ng));
-        if (geometric > 0.0f) deposit(surface_, hit.position, power_ * (shading / geometric), -1);
-    }
+    if (!arrival_->mayContinue(hit.position, time_)) return false;
+    surface_ = makeInteraction(scene_, hit, ray_.direction);
+    if (!context_.storeSurface || (surface_.bsdf->lobes() & lobe::Smooth) == 0) return true;
+    const float shading = std::abs(ray_.direction.dot(surface_.frame.n)),
+                geometric = std::abs(ray_.direction.dot(hit.ng));
+    // Where vertices connect to surfaces too, photons count for what is near.
+    const float nearField = connectable_ ? context_.nearField : 0.0f;
+    const float share = nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
+    if (geometric > 0.0f) deposit(deposits_.surface, hit.position, power_ * (share * shading / geometric), -1);
+    return true;
+}
+
+bool PhotonWalk::leaveSurface() {
+    const SurfaceHit& hit = surface_.hit;
     const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
-    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Photons), surface.wi, random);
+    const auto sample = surface_.bsdf->sample(surface_.query(TransportMode::Photons), surface_.wi, random);
     if (!sample) return false;
-    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
+    const Vec3f direction = surface_.frame.toWorld(sample->wo).normalized();
+    const Region ahead = regionBeyond(*surface_.primitive, hit, direction, region_);
     if (sample->lobe != lobe::Forward) {
-        if (!surface.consistent(direction, scene_.transport.consistencyChecks)) return false;
-        power_ = power_ * surface.photonShadingFactor(-ray_.direction, direction);
+        if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return false;
+        power_ = power_ * surface_.photonShadingFactor(-ray_.direction, direction);
+        sinceVertex_ = 0.0f;
+        connectable_ =
+            (sample->lobe & lobe::Smooth) != 0 && ahead.medium == region_.medium && ahead.speed == region_.speed;
     }
     power_ = power_ * sample->weight;
     if (isBlack(power_)) return false;
-    region_ = regionBeyond(*surface.primitive, hit, direction, region_);
+    region_ = ahead;
     ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
     return true;
 }

@@ -2,22 +2,17 @@
 // One light path and what it deposits.
 
 #include "photon/ArrivalTest.h"
-#include "photon/PhotonBeam.h"
+#include "photon/Deposits.h"
 #include "photon/PhotonSettings.h"
 
 #include "tungsten/scene/Interaction.h"
 
+#include <span>
+
 namespace tungsten::photon {
 
-/// Photons of consecutive paths; pathEnds[i] is where path i's end.
-struct DepositList {
-    std::vector<Photon> photons;
-    std::vector<uint32_t> pathEnds;
-    void endPath() { pathEnds.push_back(uint32_t(photons.size())); }
-};
-
 struct WalkCounters {
-    uint64_t rays = 0;
+    uint64_t rays = 0, controlVertices = 0;
 };
 
 /// What every walk of a pass shares.
@@ -25,36 +20,43 @@ struct WalkContext {
     const Scene& scene;
     const PhotonSettings& settings;
     const ArrivalTest& arrival;
+    std::span<const ArrivalTest> frameArrivals; ///< for paths that aim at single frames
     const Distribution1D& emitters;
     bool storeSurface, storeVolume, storeBeams;
+    /// a^2 of SurfaceConnections where light paths also connect to surfaces; else 0.
+    float nearField = 0.0f;
 };
 
 class PhotonWalk {
   public:
-    PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume, BeamList& beams,
-               WalkCounters& counters)
-        : context_(context), scene_(context.scene), sampler_(sampler), surface_(surface), volume_(volume),
-          beams_(beams), counters_(counters) {}
+    PhotonWalk(const WalkContext& context, Sampler sampler, Deposits& deposits, WalkCounters& counters)
+        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler), deposits_(deposits),
+          counters_(counters) {}
 
     void run();
 
-  private:
+  protected:
     bool emit();
+    /// By the emitter's own distribution; `probability` is that of its choice.
+    bool emitFrom(const Emitter& emitter, float probability);
     /// False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
-    bool scatterOnSurface(const SurfaceHit& hit);
+    bool scatterOnSurface(const SurfaceHit& hit) { return arriveOnSurface(hit) && leaveSurface(); }
     /// The flight ahead, up to `reach`.
     void depositBeam(const Medium& medium, float reach);
+    /// Time, bounce and deposit; surface_ is set.
+    bool arriveOnSurface(const SurfaceHit& hit);
+    bool leaveSurface();
     void deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 
     const WalkContext& context_;
     const Scene& scene_;
+    const ArrivalTest* arrival_;
     Sampler sampler_;
-    DepositList& surface_;
-    DepositList& volume_;
-    BeamList& beams_;
+    Deposits& deposits_;
     WalkCounters& counters_;
 
+    SurfaceInteraction surface_; ///< where the path is, between arriving and leaving
     Ray ray_;
     Region region_;
     Rgb power_{0.0f};
@@ -62,6 +64,8 @@ class PhotonWalk {
     int bounce_ = 0;
     int flights_ = 0;           ///< distances sampled since the last surface
     int consecutiveMedium_ = 0; ///< medium vertices since the last light or surface
+    float sinceVertex_ = 0.0f;  ///< way since the last vertex that scattered
+    bool connectable_ = false;  ///< that vertex has no single direction
 };
 
 } // namespace tungsten::photon

@@ -1,6 +1,6 @@
 #include "photon/SensorPass.h"
 
-#include "tungsten/scene/Interaction.h"
+#include "photon/SensorPath.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
@@ -21,76 +21,54 @@ struct Workspace {
     std::vector<NearestPhotons::Neighbour> neighbours;
 };
 
-/// One camera path: straight through forward surfaces and along specular lobes, gathering on the way.
-class SensorPath {
+/// Gathers on a camera path.
+class SensorGather {
   public:
-    SensorPath(const Scene& scene, const GatherStructures& structures, Sampler& sampler, Workspace& workspace,
-               SensorCounters& counters)
-        : scene_(scene), structures_(structures), sampler_(sampler), workspace_(workspace), counters_(counters) {}
+    SensorGather(const Scene& scene, const GatherStructures& structures, Workspace& workspace, SensorCounters& counters)
+        : scene_(scene), structures_(structures), workspace_(workspace), counters_(counters) {}
 
-    void run(Ray ray) {
-        ray_ = ray;
-        region_ = scene_.cameraRegion;
-        while (interactions_ < scene_.transport.maxBounces) {
-            ++counters_.rays;
-            const auto hit = scene_.geometry->intersect(ray_);
-            crossSegment(hit ? hit->t : Infinity);
-            if (!hit) return addEnvironment();
-            if (!meetSurface(*hit)) return;
-        }
+    void segment(const SensorState& state, float length) {
+        if (!scene_.medium(state.region)) return;
+        if (structures_.points && !(structures_.splatted && !state.folded))
+            gatherVolume(state, length, structures_.points, structures_.straightPoints, structures_.maps.volume.scale(),
+                         counters_.gathered);
+        if (structures_.beams)
+            gatherVolume(state, length, structures_.beams, structures_.straightBeams, structures_.maps.beams.scale(),
+                         counters_.gatheredBeams);
+    }
+
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        if (!structures_.includeSurfaces) return;
+        if (surface.primitive->emitter >= 0) addEmission(state, surface);
+        if (structures_.surfaces && (surface.bsdf->lobes() & lobe::Smooth) != 0) gatherSurface(state, surface);
+    }
+
+    void escaped(const SensorState& state) {
+        if (!structures_.includeSurfaces || scene_.infiniteEmitters.empty() || scene_.medium(state.region) ||
+            !rendered(state.interactions))
+            return;
+        const Emitter& environment = scene_.emitters[size_t(scene_.infiniteEmitters.back())];
+        add(state.throughput * environmentRadiance(environment, state.ray.direction), Infinity);
     }
 
   private:
-    void crossSegment(float length) {
-        const Medium* medium = scene_.medium(region_);
-        if (medium && structures_.points)
-            gatherVolume(length, structures_.points, structures_.straightPoints, structures_.maps.volume.scale(),
-                         counters_.gathered);
-        if (medium && structures_.beams)
-            gatherVolume(length, structures_.beams, structures_.straightBeams, structures_.maps.beams.scale(),
-                         counters_.gatheredBeams);
-        if (medium) throughput_ = throughput_ * medium->transmittance(length);
-        time_ += double(length) / double(region_.speed);
-    }
-
     /// Points or beams along the segment; `straight`, if any, while the path has not folded.
     template <typename Gather>
-    void gatherVolume(float length, const std::unique_ptr<Gather>& all, const std::unique_ptr<Gather>& straight,
-                      float storeScale, uint64_t& counter) {
+    void gatherVolume(const SensorState& state, float length, const std::unique_ptr<Gather>& all,
+                      const std::unique_ptr<Gather>& straight, float storeScale, uint64_t& counter) {
         std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
-        const CameraSegment segment{ray_.origin,   ray_.direction, length, time_, 1.0 / double(region_.speed),
-                                    interactions_, region_.medium};
-        const Gather& store = straight && !folded_ ? *straight : *all;
+        const CameraSegment segment{
+            state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
+            state.interactions, state.region.medium};
+        const Gather& store = straight && !state.folded ? *straight : *all;
         const uint64_t gathered = store.gather(segment, workspace_.volume);
         if (gathered == 0) return;
         counter += gathered;
         const double scale = double(storeScale);
-        const Vec3d weight(double(throughput_.x) * scale, double(throughput_.y) * scale, double(throughput_.z) * scale);
+        const Rgb& t = state.throughput;
+        const Vec3d weight(double(t.x) * scale, double(t.y) * scale, double(t.z) * scale);
         for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
             workspace_.sums[frame] += workspace_.volume[frame] * weight;
-    }
-
-    /// False ends the path.
-    bool meetSurface(const SurfaceHit& hit) {
-        if (isBlack(throughput_)) return false;
-        const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
-        if (structures_.includeSurfaces) {
-            if (surface.primitive->emitter >= 0) addEmission(hit, *surface.primitive);
-            if (structures_.surfaces && (surface.bsdf->lobes() & lobe::Smooth) != 0) gatherSurface(surface);
-        }
-        ++interactions_;
-        const LobeMask followed = structures_.includeSurfaces ? lobe::Specular | lobe::Forward : lobe::Forward;
-        const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
-        const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance, followed), surface.wi, random);
-        if (!sample) return false;
-        const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
-        if (sample->lobe != lobe::Forward && !surface.consistent(direction, scene_.transport.consistencyChecks))
-            return false;
-        folded_ = folded_ || sample->lobe != lobe::Forward;
-        throughput_ = throughput_ * sample->weight;
-        region_ = regionBeyond(*surface.primitive, hit, direction, region_);
-        ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
-        return true;
     }
 
     void add(const Rgb& radiance, double time) {
@@ -104,23 +82,17 @@ class SensorPath {
         return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
     }
 
-    void addEmission(const SurfaceHit& hit, const Primitive& primitive) {
-        if (!rendered(interactions_)) return;
-        const Emitter& emitter = scene_.emitters[size_t(primitive.emitter)];
-        const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -ray_.direction);
-        add(throughput_ * radiance, emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time_));
-    }
-
-    void addEnvironment() {
-        if (!structures_.includeSurfaces || scene_.infiniteEmitters.empty() || scene_.medium(region_) ||
-            !rendered(interactions_))
-            return;
-        add(throughput_ * environmentRadiance(scene_.emitters[size_t(scene_.infiniteEmitters.back())], ray_.direction),
-            Infinity);
+    void addEmission(const SensorState& state, const SurfaceInteraction& surface) {
+        if (!rendered(state.interactions)) return;
+        const SurfaceHit& hit = surface.hit;
+        const Emitter& emitter = scene_.emitters[size_t(surface.primitive->emitter)];
+        const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -state.ray.direction);
+        const double time = state.time + double(hit.t) / double(state.region.speed);
+        add(state.throughput * radiance, emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
     }
 
     /// Density estimate with a constant kernel over the k nearest photons (scene format, section 10.4).
-    void gatherSurface(const SurfaceInteraction& surface) {
+    void gatherSurface(const SensorState& state, const SurfaceInteraction& surface) {
         const auto& photons = structures_.maps.surface.photons;
         const float squaredRadius = structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,
                                                                structures_.gatherCount, workspace_.neighbours);
@@ -128,31 +100,23 @@ class SensorPath {
         counters_.gathered += workspace_.neighbours.size();
         const float scale = structures_.maps.surface.scale() * InvPi / squaredRadius;
         const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
-        // Camera time up to the start of this segment; each photon adds its own distance to it.
-        const double cameraTime = time_ - double(surface.hit.t) / double(region_.speed);
         for (const auto& neighbour : workspace_.neighbours) {
             const Photon& photon = photons[neighbour.index];
-            if (!rendered(interactions_ + photon.bounce)) continue;
+            if (!rendered(state.interactions + photon.bounce)) continue;
             const Vec3f wo = surface.frame.toLocal(-photon.direction);
             if (wo.z == 0.0f) continue;
             const Rgb scattering = surface.bsdf->eval(query, surface.wi, wo) / std::abs(wo.z);
-            const double own = double((photon.position - ray_.origin).length()) / double(region_.speed);
-            add(throughput_ * photon.power * scattering * scale,
-                photon.time + (scene_.transport.cameraUnwarped ? 0.0 : cameraTime + own));
+            // Camera time up to the start of this segment; each photon adds its own distance to it.
+            const double own = double((photon.position - state.ray.origin).length()) / double(state.region.speed);
+            add(state.throughput * photon.power * scattering * scale,
+                photon.time + (scene_.transport.cameraUnwarped ? 0.0 : state.time + own));
         }
     }
 
     const Scene& scene_;
     const GatherStructures& structures_;
-    Sampler& sampler_;
     Workspace& workspace_;
     SensorCounters& counters_;
-    Ray ray_;
-    Region region_;
-    Rgb throughput_{1.0f};
-    double time_ = 0.0;
-    int interactions_ = 0;
-    bool folded_ = false; ///< a mirror or refraction lies behind
 };
 
 } // namespace
@@ -168,14 +132,15 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
             Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample + s),
                             size_t(y) * width + size_t(x));
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
-            SensorPath(scene, structures, sampler, workspace, counters)
-                .run(scene.camera.generateRay({x, y}, uFilter, uLens));
+            const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
+            counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.includeSurfaces, sampler,
+                                              SensorGather(scene, structures, workspace, counters));
         }
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;
             const Rgb pixel{float(value.x), float(value.y), float(value.z)};
             if (isFinite(pixel))
-                film.passPixel(frame, x, y) = pixel;
+                film.passPixel(frame, x, y) += pixel;
             else
                 ++counters.nonFinite;
         }

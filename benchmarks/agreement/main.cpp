@@ -1,0 +1,121 @@
+// agreement FOLDER [EFFORT [SIDE [SCENE]]]
+//
+// Renders the proofs' scenes (or those whose name holds SCENE) by every method under test, SIDE x SIDE pixels (128)
+// with EFFORT (4) times the passes of the test, and compares block means with the plain path tracer's. Writes
+// FOLDER/table.md, a picture per method, and a map of each method's deviations: red too bright, blue too dark, full
+// colour where the deviation reaches what is allowed. Exits with 1 if a method disagrees.
+
+#include "support/AgreementScenes.h"
+
+#include "tungsten/film/ImageIo.h"
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+namespace tungsten::test {
+namespace {
+
+struct Run {
+    std::filesystem::path folder;
+    double effort = 4.0;
+    int side = 128;
+    std::string only;
+};
+
+std::string fileName(const AgreementScene& scene, const Method& method) {
+    std::string name = scene.name + "_" + method.name;
+    std::replace(name.begin(), name.end(), ' ', '-');
+    return name;
+}
+
+/// Green channel of (method - reference) / allowed, by block.
+Image deviationMap(const BlockMeans& method, const BlockMeans& reference, int side) {
+    Image map(side, side);
+    const Vec3d mean = reference.whole(0);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const auto block = size_t((y / BlockSide) * (side / BlockSide) + x / BlockSide);
+            const double ratio =
+                (method.mean[block].y - reference.mean[block].y) / Allowance(method, reference, block, 1, mean).total();
+            map.at(x, y) = floats(Vec3d(std::clamp(ratio, 0.0, 1.0), 0.0, std::clamp(-ratio, 0.0, 1.0)));
+        }
+    return map;
+}
+
+void addRow(std::ostream& table, const AgreementScene& scene, const Method& method, double seconds,
+            const Agreement& agreement) {
+    char row[512];
+    std::snprintf(row, sizeof row, "| %s | %s | %.0f | %+.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n",
+                  scene.name.c_str(), method.name.c_str(), seconds, 100.0 * agreement.difference,
+                  100.0 * agreement.wholeError, 100.0 * agreement.deviation, 100.0 * agreement.blockError,
+                  100.0 * agreement.shrink, agreement.score());
+    table << row;
+    std::cout << row << std::flush;
+}
+
+/// True if every method agrees with the first.
+bool proveScene(AgreementScene scene, const Run& run, std::ostream& table) {
+    scene.width = scene.height = run.side;
+    scene.effort.pathPasses = uint32_t(scene.effort.pathPasses * run.effort);
+    scene.effort.photonPasses = uint32_t(scene.effort.photonPasses * run.effort);
+    BlockMeans reference;
+    bool agree = true;
+    for (const Method& method : methodsUnderTest()) {
+        if (scene.steadyState && !method.steadyState) continue;
+        const auto start = std::chrono::steady_clock::now();
+        const BlockMeans render = renderBlocks(scene, method);
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (reference.frames == 0) reference = render;
+        const Agreement agreement = compare(render, reference);
+        agree = agree && agreement.score() <= 1.0;
+        addRow(table, scene, method, seconds, agreement);
+        const std::string base = (run.folder / fileName(scene, method)).string();
+        writePng(base + ".png", render.images.front(), ToneMap::Pbrt);
+        writePfm(base + ".pfm", render.images.front());
+        writePng(base + "_deviation.png", deviationMap(render, reference, run.side), ToneMap::Linear);
+    }
+    return agree;
+}
+
+int prove(const Run& run) {
+    std::filesystem::create_directories(run.folder);
+    std::ofstream table(run.folder / "table.md");
+    const char* const head = "| scene | method | seconds | mean, % | its error | rms of blocks, % | their error | "
+                             "change with the radius, % | "
+                             "used of what is allowed |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    table << head;
+    std::cout << head;
+    bool agree = true;
+    for (const AgreementScene& scene : agreementScenes())
+        if (scene.name.find(run.only) != std::string::npos) agree = proveScene(scene, run, table) && agree;
+    return agree ? 0 : 1;
+}
+
+} // namespace
+} // namespace tungsten::test
+
+int main(int argc, char** argv) {
+    using namespace tungsten::test;
+    if (argc < 2 || argc > 5) {
+        std::cerr << "usage: agreement FOLDER [EFFORT [SIDE [SCENE]]]\n";
+        return 2;
+    }
+    Run run;
+    run.folder = argv[1];
+    if (argc > 2) run.effort = std::atof(argv[2]);
+    if (argc > 3) run.side = std::atoi(argv[3]);
+    if (argc > 4) run.only = argv[4];
+    if (!(run.effort > 0.0) || run.side < BlockSide || run.side % BlockSide != 0) {
+        std::cerr << "EFFORT must be above 0 and SIDE a multiple of " << BlockSide << '\n';
+        return 2;
+    }
+    try {
+        return prove(run);
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << '\n';
+        return 2;
+    }
+}

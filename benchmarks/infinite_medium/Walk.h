@@ -1,0 +1,164 @@
+#pragma once
+// One walk through an infinite homogeneous medium towards a target, told by the library's Guide. Path mode: from a
+// receiver's ray towards a point emitter; photon mode: from a point emitter towards the camera.
+
+#include "darts/Guide.h"
+
+#include <limits>
+
+namespace infinite_medium {
+
+/// What the walk goes from and to. Lengths and times are one: the speed of light is 1.
+struct Route {
+    darts::Vec3 start, target;
+    darts::TimeGate gate; ///< of the whole path's length
+    int mostScatterings = std::numeric_limits<int>::max();
+};
+
+/// The method's reading of two formulas that were published with errors; tests put those in its place.
+struct DerivedForm {
+    /// What bounds and shapes distances: the latest arrival.
+    [[nodiscard]] static const darts::Residual& distanceRange(const darts::Residual& residual,
+                                                              const darts::ConnectionSample&) {
+        return residual;
+    }
+    /// 1 / density along the ray of the control vertex.
+    [[nodiscard]] static float inversePdf(const darts::ControlVertex& vertex, const darts::ConnectionSample&) {
+        return vertex.inversePdf;
+    }
+};
+
+/// A vertex where light scatters towards the target.
+struct LastScattering {
+    darts::Vec3 position, before; ///< before: direction of travel up to it
+    darts::Vec3 toTarget;         ///< unit
+    double distance = 0;          ///< to the target
+    double throughput = 0;        ///< sigmaS and the density of the place included, 1 / gate width not
+    int order = 1;                ///< scatterings up to and with this one
+};
+
+template <typename Form = DerivedForm>
+class Walk {
+  public:
+    Walk(const darts::Guide& guide, const Route& route)
+        : guide_(guide), route_(route), sigmaS_(guide.medium().sigmaS.x), sigmaT_(guide.medium().sigmaT().x) {}
+
+    /// Along a given ray, as a receiver's: use(LastScattering) for every connection. Returns the number of rays.
+    template <typename Random, typename Use>
+    int fromRay(const darts::Vec3& direction, Random&& random, Use&& use) const {
+        State state = first(1.0f);
+        if (!state.residual.alive()) return 0;
+        const auto connection = guide_.sampleConnection(state.residual, random());
+        state.direction = direction;
+        const float h = oneMinusCosine(direction, state.residual.axis);
+        return run(state, connection, h, darts::NoView{}, random, use);
+    }
+    /// From an emitter of intensity 1 per steradian; `view` is the target's.
+    template <typename View, typename Random, typename Use>
+    int fromEmitter(const View& view, Random&& random, Use&& use) const {
+        const darts::HenyeyGreenstein isotropic{{0, 0, 1}, 0.0f};
+        State state = first(4.0f * darts::Pi);
+        if (!state.residual.alive()) return 0;
+        const auto connection = guide_.sampleConnection(state.residual, random());
+        darts::DirectionSample sample;
+        if (guide_.settings().guideEmission) {
+            sample = guide_.sampleDirection(state.residual, connection, isotropic, view, random);
+        } else {
+            const float u = random(), v = random();
+            sample.direction = isotropic.sample(u, v);
+            sample.h = oneMinusCosine(sample.direction, state.residual.axis);
+            sample.inversePdf = 4.0f * darts::Pi;
+        }
+        state.direction = sample.direction;
+        state.throughput = sample.inversePdf;
+        return run(state, connection, sample.h, view, random, use);
+    }
+
+  private:
+    struct State {
+        darts::Vec3 position, direction;
+        darts::Residual residual;
+        double elapsed = 0;
+        float throughput = 1;
+        float usefulnessAtStart = 0; ///< logarithm; before a direction is drawn, so that it is the same for all walks
+    };
+
+    [[nodiscard]] State first(float throughput) const {
+        State state;
+        state.position = route_.start;
+        state.residual = residualAt(state);
+        state.throughput = throughput;
+        state.usefulnessAtStart = guide_.logUsefulness(state.residual, throughput);
+        return state;
+    }
+    [[nodiscard]] darts::Residual residualAt(const State& state) const {
+        return darts::Residual::of(route_.target - state.position,
+                                   darts::ResidualRange::of(route_.gate, state.elapsed, 1.0));
+    }
+    template <typename View, typename Random, typename Use>
+    int run(State state, darts::ConnectionSample connection, float h, const View& view, Random&& random,
+            Use&& use) const {
+        constexpr float Surface = std::numeric_limits<float>::infinity();
+        for (int order = 1;; ++order) {
+            if (guide_.settings().elliptical) connect(state, connection, h, order, use);
+            if (order == route_.mostScatterings && guide_.settings().elliptical) return order;
+            const float throughput = state.throughput;
+            const auto step = guide_.sampleDistance(Form::distanceRange(state.residual, connection), h, Surface,
+                                                    {throughput, throughput, throughput}, random);
+            if (!(step.transmittanceOverPdf.x > 0)) return order;
+            state.throughput *= sigmaS_ * step.transmittanceOverPdf.x;
+            state.position = state.position + state.direction * step.distance;
+            state.elapsed += double(step.distance);
+            state.residual = residualAt(state);
+            if (!state.residual.alive()) return order;
+            if (!guide_.settings().elliptical) connectByChance(state, order, use);
+            if (order == route_.mostScatterings) return order;
+            const float survival =
+                guide_.survival(guide_.logUsefulness(state.residual, state.throughput), state.usefulnessAtStart);
+            if (survival < 1 && !(random() < survival)) return order;
+            const darts::HenyeyGreenstein scatterer{state.direction, guide_.medium().g};
+            connection = guide_.sampleConnection(state.residual, random());
+            const auto sample = guide_.sampleDirection(state.residual, connection, scatterer, view, random);
+            if (!(sample.inversePdf > 0)) return order;
+            state.throughput *= scatterer.pdf(sample.direction) * sample.inversePdf / survival;
+            state.direction = sample.direction;
+            h = sample.h;
+        }
+    }
+    /// The control vertex on the ray.
+    template <typename Use>
+    void connect(const State& state, const darts::ConnectionSample& connection, float h, int order, Use&& use) const {
+        const auto vertex = guide_.controlVertex(state.residual, connection, h, std::numeric_limits<float>::infinity());
+        if (!vertex) return;
+        const darts::Vec3 leg = state.direction * vertex->distance;
+        const darts::Vec3 onward = state.residual.axis * state.residual.C - leg;
+        // In double: a connection straight through a dense medium underflows a float.
+        const double throughput = double(state.throughput * sigmaS_ * Form::inversePdf(*vertex, connection)) *
+                                  std::exp(-double(sigmaT_) * double(vertex->distance));
+        use(LastScattering{state.position + leg, state.direction, onward * (1.0f / std::max(length(onward), 1e-30f)),
+                           double(vertex->toTarget), throughput, order});
+    }
+    /// Plain sampling: the walk's own vertex counts if the rest of the path happens to end in the gate.
+    template <typename Use>
+    void connectByChance(const State& state, int order, Use&& use) const {
+        const darts::Residual& residual = state.residual;
+        if (residual.low > 0) return;
+        use(LastScattering{state.position, state.direction, residual.axis, double(residual.C), double(state.throughput),
+                           order});
+    }
+
+    const darts::Guide& guide_;
+    Route route_;
+    float sigmaS_, sigmaT_;
+};
+
+/// Path mode: what a connection to an isotropic emitter of intensity 1 per steradian adds to the radiance, averaged
+/// over the gate.
+inline double radiance(const LastScattering& last, const darts::Medium& medium, const darts::TimeGate& gate) {
+    const darts::HenyeyGreenstein scatterer{last.before, medium.g};
+    return last.throughput * double(scatterer.pdf(last.toTarget)) *
+           std::exp(-double(medium.sigmaT().x) * last.distance) /
+           (last.distance * last.distance * (gate.end - gate.begin));
+}
+
+} // namespace infinite_medium

@@ -1,0 +1,85 @@
+"""report.md: the tables of a study, with its plots and pictures."""
+
+import os
+import time
+from pathlib import Path
+
+import pictures
+import plots
+from tables import accuracy_table, cost_table, published_table
+
+SHARE_OF_A_QUIET_MACHINE = 0.85
+
+
+def _legend(study):
+    return f"""All figures are medians over the seeds, of the mean of R, G and B, relative to the mean of the reference.
+
+- **rel. std**: rms over pixels of the renders' own standard error (the EXR's `stderr` layer; smallest and largest seed in
+  brackets). **std over seeds**: the same from the spread of the seeds' images, independent of it. At a resolution above the
+  reference's both are of the render's own pixels; **std, averaged down** is over the seeds at the reference's resolution.
+- **block bias**: rms difference of the means of blocks of {study.block}×{study.block} reference pixels after subtracting the noise
+  of renders and reference; "< x" where it does not stand out of that noise (2 standard errors).
+- **mean ratio**: mean of the image over that of the reference, with its standard error over seeds.
+- **MSE** = std² + bias². **gain**: MSE of the baseline ({study.baseline}; in scenes without it, the first method) over the
+  method's, after bringing the baseline's variance to the method's wall time, since the last pass ends late by different amounts.
+  **gain per CPU s**: the same at equal CPU time, which is firmer on a shared machine. **over published**: the same at equal CPU
+  time over the published implementation's figures, measured elsewhere: a yardstick only.
+- **wall s, CPU s**: of the passes, without loading and preparation. **processor share**: CPU time over wall time and threads.
+"""
+
+
+def _conditions(study, everything):
+    done = [s for s in everything if s.seeds]
+    lines = [f"{len(study.methods)} methods, {study.seeds} seeds, {study.threads} threads, "
+             f"{', '.join(f'{s:g}' for s in study.seconds)} s of passes; written {time.strftime('%Y-%m-%d %H:%M')}."]
+    builds = sorted(set().union(*(s.builds for s in done)) if done else [])
+    lines.append(f"Renderer: build {', '.join(builds) or '(none)'}.")
+    if len(builds) > 1:
+        lines.append("**Results of different builds are mixed: run the study again.**")
+    short = [s for s in done if s.share < SHARE_OF_A_QUIET_MACHINE]
+    if short:
+        lines.append(f"**The renderer had less than {100 * SHARE_OF_A_QUIET_MACHINE:.0f} % of its threads' time in {len(short)} of "
+                     f"{len(done)} cases (least: {100 * min(s.share for s in short):.0f} %): the machine was shared, or the method "
+                     "does not use its threads. Wall-time figures are provisional.**")
+    missing = sum(s.missing for s in everything)
+    if missing:
+        lines.append(f"**{missing} runs are still to be made.**")
+    return " \n".join(lines) + "\n"
+
+
+def _failures(everything):
+    failures = [failure for s in everything for failure in s.failures]
+    if not failures:
+        return ""
+    blocks = [f"**{label}**\n\n```\n{message}\n```\n" for label, message in failures]
+    return f"## Failed runs ({len(failures)})\n\n" + "\n".join(blocks)
+
+
+def _scene_section(study, scene, by_seconds, reference, folder):
+    width, height = scene.resolution
+    gate = f", gate [{scene.gate[0]:g}, {scene.gate[1]:g})" if scene.gate else ""
+    parts = [f"## {scene.name}\n", f"{scene.path.name} at {width}×{height}{gate}; reference {scene.reference.name}, "
+             f"{reference.image.shape[1]}×{reference.image.shape[0]}.\n"]
+    for seconds, summaries in by_seconds.items():
+        if not any(s.seeds for s in summaries.values()):
+            continue
+        parts += [f"### {seconds:g} seconds\n", accuracy_table(study, summaries), cost_table(summaries)]
+    if scene.published:
+        parts.append(published_table(scene.published))
+    for title, file in plots.scene_plots(study, scene, by_seconds, folder) \
+            + pictures.scene_pictures(study, scene, by_seconds, reference, folder):
+        parts.append(f"### {title}\n\n![{title}]({file})\n")
+    return "\n".join(parts)
+
+
+def write_report(study, summaries, references, work: Path):
+    """Writes report.md and its images into the work folder; returns its path."""
+    everything = [s for by_seconds in summaries.values() for group in by_seconds.values() for s in group.values()]
+    parts = [f"# {study.title}\n", _conditions(study, everything), _failures(everything), _legend(study)]
+    for scene in study.scenes:
+        parts.append(_scene_section(study, scene, summaries[scene.name], references[scene.name], work))
+    report = work / "report.md"
+    unfinished = work / "report.md.partial"
+    unfinished.write_text("\n".join(part for part in parts if part))
+    os.replace(unfinished, report)
+    return report

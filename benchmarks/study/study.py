@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+"""Compares methods at equal time: renders what a study file asks for, measures the images, writes report.md."""
+
+import argparse
+import dataclasses
+import sys
+from pathlib import Path
+
+from images import ImageError
+from results import collect
+from report import write_report
+from runs import check, plan, run_all
+from study_file import StudyError, load_study
+
+ROOT = Path(__file__).resolve().parents[2]
+EXIT_DONE, EXIT_FAILED_RUNS, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
+
+
+def _names(text):
+    return [name.strip() for name in text.split(";")]
+
+
+def parse_arguments(arguments):
+    parser = argparse.ArgumentParser(prog="study.py", description=__doc__, epilog="An interrupted study goes on where it was: "
+                                     "give the same command again. Exit codes: 0 done, 1 some runs failed, 2 bad input.")
+    parser.add_argument("study", type=Path, help="study file, such as benchmarks/study/studies/cbox-128.json")
+    parser.add_argument("action", nargs="?", choices=["run", "report", "check", "list"], default="run",
+                        help="run: render what is missing, then report (default); report: from the results so far; "
+                        "check: have the renderer read every scene with every method's settings; list: show the runs")
+    parser.add_argument("--tungsten", type=Path, default=ROOT / "build/bin/tungsten", help="the renderer (default: %(default)s)")
+    parser.add_argument("--work", type=Path, help="folder of results (default: build/study/STUDY)")
+    parser.add_argument("--root", type=Path, default=ROOT, help="what paths in the study are relative to (default: the project)")
+    parser.add_argument("--seconds", type=float, nargs="+", help="time budgets instead of the study's")
+    parser.add_argument("--seeds", type=int, help="number of seeds instead of the study's")
+    parser.add_argument("--threads", type=int, help="threads instead of the study's")
+    parser.add_argument("--scenes", type=_names, help='only these, as "a; b"')
+    parser.add_argument("--methods", type=_names, help='only these, as "a; b"')
+    parser.add_argument("--retry-failed", action="store_true", help="run what failed once more")
+    parser.add_argument("--accept-warnings", action="store_true",
+                        help="do not refuse runs whose settings the renderer warns about")
+    return parser.parse_intermixed_args(arguments)
+
+
+def _keep(entries, names, kind):
+    if names is None:
+        return entries
+    unknown = set(names) - {entry.name for entry in entries}
+    if unknown:
+        raise StudyError(f"no {kind} called '{', '.join(sorted(unknown))}'; there are: "
+                         + "; ".join(entry.name for entry in entries))
+    return [entry for entry in entries if entry.name in names]
+
+
+def narrowed(study, options):
+    """The study with what the command line overrides or leaves out."""
+    changes = {"scenes": _keep(study.scenes, options.scenes, "scene"), "methods": _keep(study.methods, options.methods, "method")}
+    if options.seconds:
+        if min(options.seconds) <= 0:
+            raise StudyError("--seconds: positive numbers are needed")
+        changes["seconds"] = sorted(options.seconds)
+    for name in ("seeds", "threads"):
+        if getattr(options, name) is not None:
+            if getattr(options, name) < 1:
+                raise StudyError(f"--{name}: at least 1 is needed")
+            changes[name] = getattr(options, name)
+    if study.baseline not in {method.name for method in changes["methods"]}:
+        changes["baseline"] = changes["methods"][0].name
+    return dataclasses.replace(study, **changes)
+
+
+def perform(options):
+    study = narrowed(load_study(options.study, options.root), options)
+    work = (options.work or ROOT / "build/study" / study.name).resolve()
+    runs = plan(study, work)
+    if options.action == "list":
+        for run in runs:
+            record = run.record()
+            print(f"{'to do ' if record is None else 'FAILED' if record['error'] else 'done  '}  {run.label}")
+        return EXIT_DONE
+    if options.action in ("run", "check") and not options.tungsten.is_file():
+        raise StudyError(f"there is no renderer {options.tungsten}: build it (scripts/setup.sh) or name it with --tungsten")
+    if options.action == "check":
+        problems = check(runs, options.tungsten)
+        print("".join(f"\n{problem}\n" for problem in problems), end="")
+        return EXIT_FAILED_RUNS if problems else EXIT_DONE
+    work.mkdir(parents=True, exist_ok=True)
+    if options.action == "run":
+        run_all(study, runs, options.tungsten.resolve(), options.retry_failed, options.accept_warnings)
+    failed = [run for run in runs if (record := run.record()) and record["error"]]
+    summaries, references = collect(study, runs)
+    print(f"{write_report(study, summaries, references, work)}")
+    if failed:
+        print(f"{len(failed)} of {len(runs)} runs failed; the report has their messages", file=sys.stderr)
+    return EXIT_FAILED_RUNS if failed else EXIT_DONE
+
+
+def main(arguments=None):
+    try:
+        return perform(parse_arguments(arguments))
+    except (StudyError, ImageError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+    except KeyboardInterrupt:
+        print("\ninterrupted: give the same command to go on", file=sys.stderr)
+        return EXIT_INTERRUPTED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

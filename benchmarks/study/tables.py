@@ -1,0 +1,93 @@
+"""Figures as text: the Markdown tables of a report."""
+
+from results import STAGES
+
+
+def number(value, digits=3):
+    """Three significant digits without an exponent where that is readable; a dash for what is not known."""
+    if value is None:
+        return "–"
+    if value != 0 and (abs(value) < 1e-3 or abs(value) >= 1e5):
+        return f"{value:.{digits - 1}e}"
+    if abs(value) >= 100:
+        return f"{value:.0f}"
+    return f"{value:.{digits}g}"
+
+
+def table(header, rows):
+    """A Markdown table; the first column is text, the others are figures."""
+    lines = ["| " + " | ".join(header) + " |", "| --- |" + " ---: |" * (len(header) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]) + "\n"
+
+
+def bias_text(bias):
+    """rms bias where it stands out of the noise, else its bound."""
+    if bias is None:
+        return "–"
+    return number(bias.squared**0.5) if bias.is_significant else f"< {number(bias.bound, 2)}"
+
+
+def _times(value):
+    return "–" if value is None else f"{number(value)}×"
+
+
+def _range(summary):
+    if summary.std is None:
+        return "–"
+    low, high = summary.std_range
+    return number(summary.std) if summary.seeds < 2 else f"{number(summary.std)} ({number(low)}–{number(high)})"
+
+
+def _ratio(summary):
+    error = summary.mean_ratio_error
+    return f"{summary.mean_ratio:.3f}" + (f" ± {error:.3f}" if error is not None else "")
+
+
+def baseline_of(study, summaries):
+    """The study's baseline, or the first method where a scene lacks it."""
+    return summaries.get(study.baseline) or next(iter(summaries.values()))
+
+
+def accuracy_table(study, summaries):
+    done = [s for s in summaries.values() if s.seeds]
+    baseline = baseline_of(study, summaries)
+    averaged = any(s.std_averaged is not None for s in done)
+    published = any(s.gain_over_published() is not None for s in done)
+    header = ["method", "seeds", "passes", "wall s", "CPU s", "rel. std (range)", "std over seeds"]
+    header += ["std, averaged down"] if averaged else []
+    header += ["block bias", "mean ratio", "MSE", "gain", "gain per CPU s"] + (["over published"] if published else [])
+    rows = []
+    for s in done:
+        row = [s.method.name, s.seeds, number(s.passes), number(s.wall), number(s.cpu), _range(s), number(s.std_spread)]
+        row += [number(s.std_averaged)] if averaged else []
+        row += [bias_text(s.bias), _ratio(s), number(s.mse), _times(s.gain_over(baseline)),
+                _times(s.gain_over(baseline, at_equal_cpu=True))]
+        row += [_times(s.gain_over_published())] if published else []
+        rows.append(row)
+    return table(header, rows)
+
+
+def cost_table(summaries):
+    done = [s for s in summaries.values() if s.seeds]
+    stages = [stage for stage in STAGES if any(stage in s.stages for s in done)]
+    once = {"load", "prepare"}
+    header = ["method", "peak memory, MB", "processor share"]
+    header += [f"{stage}, {'s' if stage in once else 'ms per pass'}" for stage in stages] + ["non-finite samples"]
+    rows = []
+    for s in done:
+        row = [s.method.name, number(s.memory / 1e6), f"{100 * s.share:.0f} %"]
+        for stage in stages:
+            seconds = s.stages.get(stage)
+            row.append(number(seconds if stage in once or seconds is None else 1000 * seconds / s.passes))
+        rows.append([*row, s.non_finite])
+    return table(header, rows)
+
+
+def published_table(published):
+    rows = []
+    for row in published.rows:
+        bias = f"< {row['bias_below']}" if "bias_below" in row else number(row.get("bias"))
+        rows.append([row["method"], number(row.get("passes")), number(row.get("std")), bias, number(row.get("mean_ratio")),
+                     number(row.get("memory_mb"))])
+    return (f"Published implementation, {published.seconds:g} s on {published.threads} threads ({published.source}):\n\n"
+            + table(["method", "passes", "rel. std", "block bias", "mean ratio", "memory, MB"], rows))

@@ -1,0 +1,166 @@
+#pragma once
+// Directions drawn for the connection that is to follow, mixed with what the scatterer prefers.
+
+#include "darts/ConnectionLobe.h"
+#include "darts/PhaseFunction.h"
+#include "darts/ResidualRange.h"
+#include "darts/Settings.h"
+
+#include <array>
+
+namespace darts {
+
+/// A direction, its h = 1 - cos to the target's direction, and what the estimate is divided by.
+struct DirectionSample {
+    Vec3 direction;
+    float h = 0;
+    /// 1 / density per solid angle; for resampled directions an unbiased estimate of it.
+    float inversePdf = 0;
+};
+
+/// The target's own view, from which a share of the guided directions comes: sample(u, v) -> unit direction seen from
+/// the target, pdf(direction) per solid angle. NoView where there is none.
+struct NoView {
+    [[nodiscard]] Vec3 sample(float, float) const { return {0, 0, 1}; }
+    [[nodiscard]] float pdf(const Vec3&) const { return 0; }
+};
+
+/// The guided distribution at a vertex: the connection lobe, and the view's directions to the coming control vertex.
+template <typename View>
+class GuidedDirections {
+  public:
+    GuidedDirections(Lobe lobe, const Residual& residual, float excess, const View& view, float focus)
+        : residual_(residual), excess_(std::max(excess, 1e-6f * residual.C)), view_(view), focus_(focus),
+          lobe_(lobe == Lobe::Path ? ConnectionLobe<float>::path(residual.C, excess_)
+                                   : ConnectionLobe<float>::photon(residual.C, excess_)) {}
+
+    [[nodiscard]] Vec3 sample(float choice, float u, float v) const {
+        if (choice < focus_) return fromView(view_.sample(u, v));
+        return directionAbout(residual_.axis, lobe_.sample(u), v);
+    }
+    [[nodiscard]] float pdf(const Vec3& direction, float h) const {
+        return focus_ > 0 ? (1.0f - focus_) * lobe_.pdf(h) + focus_ * viewPdf(direction, h) : lobe_.pdf(h);
+    }
+
+  private:
+    /// The vertex's direction to the control vertex on a view ray; the ellipse is the same from its other focus.
+    [[nodiscard]] Vec3 fromView(const Vec3& seen) const {
+        const Ellipse<float> back{residual_.C, excess_, oneMinusCosine(seen, -residual_.axis)};
+        const Vec3 toVertex = residual_.axis * residual_.C + seen * back.firstLeg();
+        return toVertex * (1.0f / std::max(length(toVertex), 1e-30f));
+    }
+    /// Both legs meet the ellipse at one angle: p(w) = p(w') t^2 / r^2.
+    [[nodiscard]] float viewPdf(const Vec3& direction, float h) const {
+        const Ellipse<float> e{residual_.C, excess_, h};
+        const float t = e.firstLeg(), r = std::max(e.secondLeg(), 1e-20f * e.length());
+        const Vec3 seen = direction * t - residual_.axis * residual_.C;
+        return view_.pdf(seen * (1.0f / std::max(length(seen), 1e-30f))) * (t / r) * (t / r);
+    }
+
+    const Residual& residual_;
+    float excess_;
+    const View& view_;
+    float focus_;
+    ConnectionLobe<float> lobe_;
+};
+
+/// Mixtures of a guided distribution with a scatterer's own. A scatterer has sample(u, v) -> unit direction and
+/// pdf(direction) per solid angle (a phase function, an emitter's or a surface's distribution).
+class DirectionSampler {
+  public:
+    DirectionSampler(const Settings& settings, float g) : settings_(settings), g_(g) {}
+
+    /// `excess`: of the connection drawn for the coming control vertex (S = C + excess). `random()` is uniform in
+    /// [0, 1).
+    template <typename Scatterer, typename View, typename Random>
+    [[nodiscard]] DirectionSample sample(const Residual& residual, float excess, const Scatterer& scatterer,
+                                         const View& view, Random&& random) const {
+        if (settings_.direction == Direction::Phase) return fromScatterer(residual, scatterer, random);
+        const GuidedDirections<View> guided(settings_.lobe, residual, excess, view, focus<View>());
+        if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
+        return mix(residual, guideShare(residual, excess), scatterer, guided, random);
+    }
+
+    /// Density per solid angle of the mixture; for Direction::Ris, of its candidates.
+    template <typename Scatterer, typename View>
+    [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction, const Scatterer& scatterer,
+                            const View& view) const {
+        if (settings_.direction == Direction::Phase) return scatterer.pdf(direction);
+        const float h = oneMinusCosine(direction, residual.axis);
+        const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
+        const GuidedDirections<View> guided(settings_.lobe, residual, excess, view, focus<View>());
+        return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
+    }
+
+    /// gamma = (C / S) / (C / S + alpha).
+    [[nodiscard]] float guideShare(const Residual& residual, float excess) const {
+        const float ratio = residual.C / (residual.C + excess);
+        return ratio / (ratio + settings_.alpha);
+    }
+
+  private:
+    static constexpr int MostDirections = 8;
+
+    template <typename View>
+    [[nodiscard]] float focus() const {
+        return std::is_same_v<View, NoView> ? 0.0f : settings_.focus;
+    }
+    template <typename Scatterer, typename Random>
+    static DirectionSample fromScatterer(const Residual& residual, const Scatterer& scatterer, Random& random) {
+        const float u = random(), v = random();
+        const Vec3 direction = scatterer.sample(u, v);
+        const float pdf = scatterer.pdf(direction);
+        return {direction, oneMinusCosine(direction, residual.axis), pdf > 0 ? 1.0f / pdf : 0.0f};
+    }
+    template <typename Scatterer, typename Guided, typename Random>
+    static DirectionSample mix(const Residual& residual, float share, const Scatterer& scatterer, const Guided& guided,
+                               Random& random) {
+        const float choice = random(), u = random(), v = random();
+        const Vec3 direction = choice < share ? guided.sample(choice / share, u, v) : scatterer.sample(u, v);
+        const float h = oneMinusCosine(direction, residual.axis);
+        const float pdf = share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
+        return {direction, h, pdf > 0 ? 1.0f / pdf : 0.0f};
+    }
+    /// Target: scatterer's density x (guided density x phase function at the control vertex + a floor).
+    template <typename Scatterer, typename Guided, typename Random>
+    [[nodiscard]] DirectionSample resample(const Residual& residual, float excess, const Scatterer& scatterer,
+                                           const Guided& guided, Random& random) const {
+        constexpr float Uniform = 1.0f / (4.0f * Pi), Floor = 0.2f * Uniform;
+        const int count = std::min(settings_.directionCandidates, MostDirections);
+        std::array<DirectionSample, MostDirections> candidates;
+        std::array<float, MostDirections> weights{};
+        float sum = 0.0f;
+        for (int i = 0; i < count; ++i) {
+            DirectionSample& c = candidates[size_t(i)];
+            const float choice = random(), u = random(), v = random();
+            c.direction = 2 * i < count ? scatterer.sample(u, v) : guided.sample(choice, u, v);
+            c.h = oneMinusCosine(c.direction, residual.axis);
+            const float own = scatterer.pdf(c.direction), guide = guided.pdf(c.direction, c.h);
+            const Ellipse<float> e{residual.C, excess, c.h};
+            const Vec3 onward = residual.axis * residual.C - c.direction * e.firstLeg();
+            const HenyeyGreenstein phase{c.direction, g_};
+            const float last = phase.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
+            const float target = own * (guide * last * (1.0f / Uniform) + Floor);
+            const float mixture = 0.5f * (own + guide);
+            weights[size_t(i)] = mixture > 0 ? target / mixture : 0.0f;
+            c.inversePdf = target > 0 ? 1.0f / target : 0.0f;
+            sum += weights[size_t(i)];
+        }
+        if (!(sum > 0)) return {residual.axis, 0, 0};
+        float rest = random() * sum;
+        int chosen = 0;
+        for (; chosen < count - 1; ++chosen) {
+            rest -= weights[size_t(chosen)];
+            if (rest < 0) break;
+        }
+        while (chosen > 0 && !(weights[size_t(chosen)] > 0)) --chosen; // rounding at the end
+        DirectionSample result = candidates[size_t(chosen)];
+        result.inversePdf *= sum / float(count);
+        return result;
+    }
+
+    Settings settings_;
+    float g_;
+};
+
+} // namespace darts

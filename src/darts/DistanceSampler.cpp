@@ -1,0 +1,94 @@
+#include "darts/DistanceSampler.h"
+
+#include "darts/CandidateKernel.h"
+
+#include <stdexcept>
+
+namespace darts {
+
+namespace {
+
+using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3&);
+
+template <Greens G, int N>
+Kernel kernelFor(bool grey) {
+    return grey ? resample<RegisterOf<N>, G, N, 1> : resample<RegisterOf<N>, G, N, 3>;
+}
+
+template <Greens G>
+Kernel kernelFor(int candidates, bool grey, bool scalar) {
+    if (scalar && candidates == 8) return grey ? resample<float, G, 8, 1> : resample<float, G, 8, 3>;
+    switch (candidates) {
+    case 1:
+        return kernelFor<G, 1>(grey);
+    case 4:
+        return kernelFor<G, 4>(grey);
+    case 8:
+        return kernelFor<G, 8>(grey);
+    case 16:
+        return kernelFor<G, 16>(grey);
+    default:
+        throw std::invalid_argument("the number of candidates must be 1, 4, 8 or 16");
+    }
+}
+
+} // namespace
+
+DistanceSampler::Kernel DistanceSampler::chooseKernel(const Settings& settings, bool grey, bool scalar) {
+    switch (settings.greens) {
+    case Greens::None:
+        return kernelFor<Greens::None>(settings.candidates, grey, scalar);
+    case Greens::Diffusion:
+        return kernelFor<Greens::Diffusion>(settings.candidates, grey, scalar);
+    case Greens::Causal:
+        return kernelFor<Greens::Causal>(settings.candidates, grey, scalar);
+    }
+    throw std::invalid_argument("unknown Green's function");
+}
+
+DistanceSampler::DistanceSampler(const Settings& settings, const Medium& medium, bool scalar)
+    : settings_(settings), medium_(medium), sigmaT_(medium.sigmaT()), meanSigmaT_(mean(sigmaT_)),
+      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernel_(chooseKernel(settings, grey_, scalar)) {}
+
+Vec3 DistanceSampler::transmittance(float distance) const {
+    if (grey_) {
+        const float x = std::exp(-sigmaT_.x * distance);
+        return {x, x, x};
+    }
+    return {std::exp(-sigmaT_.x * distance), std::exp(-sigmaT_.y * distance), std::exp(-sigmaT_.z * distance)};
+}
+
+DistanceSample DistanceSampler::sample(const Residual& residual, float h, float surface, const Vec3& throughput,
+                                       const DistanceRandom& random) const {
+    DistanceSample sample;
+    CandidateDraw draw;
+    draw.latest = residual.latest(h);
+    draw.firstLeg = draw.latest.firstLeg();
+    if ((surface < draw.firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity()) {
+        const Vec3 reaching = transmittance(surface);
+        const float total = throughput.x + throughput.y + throughput.z;
+        const float probability = !scatters_              ? 1.0f
+                                  : grey_ || !(total > 0) ? reaching.x
+                                                          : dot(throughput, reaching) / total;
+        if (probability > 0 && random.event < probability) {
+            sample.surface = true;
+            sample.distance = surface;
+            sample.transmittanceOverPdf = reaching * (1.0f / probability);
+            return sample;
+        }
+        draw.probability = 1.0f - probability;
+    }
+    draw.bound = settings_.bounded ? std::min(surface, draw.firstLeg) : surface;
+    if (!scatters_ || !(draw.probability > 0) || !(draw.bound > 0)) return sample;
+    draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
+    draw.proposals = settings_.proposals;
+    if (settings_.mixDenseOnly && meanSigmaT_ * residual.C < 4.0f) draw.proposals = Proposals::Exponential;
+    draw.overlap = settings_.overlap;
+    draw.floor = settings_.floor;
+    draw.throughput = throughput;
+    draw.medium = &medium_;
+    sample.distance = kernel_(draw, random, sample.transmittanceOverPdf);
+    return sample;
+}
+
+} // namespace darts

@@ -1,0 +1,171 @@
+#include "darts/EdaTable.h"
+
+#include "darts/EdaDensity.h"
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+
+namespace darts {
+namespace {
+
+using Row = EdaTable::Row;
+
+/// log f at an albedo, a g and a row's C and delta, in mean free paths.
+struct RowDensity {
+    double albedo, g, C, delta;
+    [[nodiscard]] double log(double h) const { return edaLogDensity(albedo, g, C, delta, h); }
+};
+
+/// Upper edge of the first bin in h.
+double firstEdge(int octaves) {
+    return 1.0 / ((1 << Row::Log2PerOctave) * double(Row::scaleOf(octaves)));
+}
+
+/// The fewest octaves that leave at most 2 % of the directions to the first bin, beside which nothing is resolved.
+int octavesFor(const RowDensity& f) {
+    constexpr int Levels = Row::MaxOctaves + 3;
+    std::array<double, Levels> mass; // about h = 2^(1-i), up to a common factor
+    double maximum = -std::numeric_limits<double>::infinity(), total = 0.0;
+    for (int i = 0; i < Levels; ++i) {
+        mass[size_t(i)] = f.log(std::ldexp(1.0, 1 - i)) - i * std::log(2.0);
+        maximum = std::max(maximum, mass[size_t(i)]);
+    }
+    for (double& m : mass) total += m = std::exp(m - maximum);
+    int octaves = Row::MinOctaves;
+    for (; octaves < Row::MaxOctaves; ++octaves) {
+        double first = 0.0;
+        for (int i = 0; i < Levels; ++i)
+            if (std::ldexp(1.0, 1 - i) <= firstEdge(octaves)) first += mass[size_t(i)];
+        if (first <= 0.02 * total) break;
+    }
+    return octaves;
+}
+
+/// Integrals of f over the bins, normalised to sum 1.
+std::vector<double> binMasses(const RowDensity& f, int octaves) {
+    // Gauss-Legendre over sqrt(h), in which f is smooth even where it rises with h^(-1/2) toward the needle.
+    constexpr std::array<double, 3> Nodes{-0.7745966692414834, 0.0, 0.7745966692414834}, Weights{5.0, 8.0, 5.0};
+    const int bins = Row::binsOf(octaves);
+    const Row edges(nullptr, octaves);
+    std::vector<double> terms(size_t(bins) * Nodes.size());
+    double maximum = -std::numeric_limits<double>::infinity();
+    for (int bin = 0; bin < bins; ++bin) {
+        const double low = std::sqrt(double(edges.edge(bin))), high = std::sqrt(double(edges.edge(bin + 1)));
+        for (size_t i = 0; i < Nodes.size(); ++i) {
+            const double root = 0.5 * (low + high) + 0.5 * (high - low) * Nodes[i];
+            const double term = f.log(root * root) + std::log(Weights[i] * root * (high - low));
+            terms[size_t(bin) * Nodes.size() + i] = term;
+            maximum = std::max(maximum, term);
+        }
+    }
+    std::vector<double> masses(size_t(bins), 0.0);
+    double total = 0.0;
+    for (size_t i = 0; i < terms.size(); ++i) {
+        const double term = std::exp(terms[i] - maximum);
+        masses[i / Nodes.size()] += term;
+        total += term;
+    }
+    for (double& mass : masses) mass /= total;
+    return masses;
+}
+
+std::vector<float> cumulativeOf(const RowDensity& f, int octaves, double floor) {
+    std::vector<double> masses = binMasses(f, octaves);
+    const Row edges(nullptr, octaves);
+    std::vector<float> cumulative(size_t(Row::strideOf(octaves)), 1.0f);
+    double sum = 0.0;
+    for (int bin = 0; bin < Row::binsOf(octaves); ++bin) {
+        cumulative[size_t(bin)] = float(sum);
+        const double even = 0.5 * double(edges.edge(bin + 1) - edges.edge(bin)), perBin = 1.0 / Row::binsOf(octaves);
+        sum += (1.0 - floor) * masses[size_t(bin)] + 0.5 * floor * (even + perBin);
+    }
+    return cumulative;
+}
+
+/// Runs work(i) for i in [0, count) on as many threads as asked for and to be had.
+template <typename Work>
+void inParallel(int count, unsigned threads, const Work& work) {
+    std::atomic<int> next{0};
+    const auto run = [&] {
+        for (int i = next++; i < count; i = next++) work(i);
+    };
+    std::vector<std::jthread> others;
+    try {
+        for (unsigned i = 1; i < std::min(threads, unsigned(count)); ++i) others.emplace_back(run);
+    } catch (const std::system_error&) { // no more threads: those there are do the work
+    }
+    run();
+}
+
+} // namespace
+
+void EdaTable::requireValid(float albedo, float g, const EdaResolution& r) {
+    const auto require = [](bool holds, const char* message) {
+        if (!holds) throw std::invalid_argument(message);
+    };
+    require(albedo >= 0.0f && albedo <= 1.0f, "EDA table: albedo must be in [0, 1]");
+    require(g >= -1.0f && g <= 1.0f, "EDA table: g must be in [-1, 1]");
+    require(r.excessOctaves >= 1 && r.excessOctaves <= 24 && r.log2ExcessPerOctave >= 0 && r.log2ExcessPerOctave <= 4,
+            "EDA table: delta / S must have 1 to 24 octaves of 1 to 16 bins");
+    require(r.lowestDepthLog2 >= -20 && r.depthOctaves >= 1 && r.depthOctaves <= 34 &&
+                r.lowestDepthLog2 + r.depthOctaves <= 14 && r.log2DepthPerOctave >= 0 && r.log2DepthPerOctave <= 4,
+            "EDA table: sigmaT S must lie within 2^-20 to 2^14, with 1 to 16 bins an octave");
+    require(r.floor >= 1e-3f && r.floor <= 1.0f, "EDA table: the floor must be in [0.001, 1]");
+}
+
+EdaTable EdaTable::build(float albedo, float g, const EdaResolution& resolution, unsigned threads) {
+    requireValid(albedo, g, resolution);
+    const OctaveBins excess = resolution.excess(), depth = resolution.depth();
+    const auto rows = size_t(excess.count()) * size_t(depth.count());
+    EdaTable table(albedo, g, resolution);
+    table.octaves_.resize(rows);
+    std::vector<std::vector<float>> cumulative(rows);
+    inParallel(int(rows), threads ? threads : std::thread::hardware_concurrency(), [&](int i) {
+        const double S = depth.centre(i % depth.count()), delta = S * double(excess.centre(i / depth.count()));
+        const RowDensity f{albedo, g, S - delta, delta};
+        const int octaves = octavesFor(f);
+        table.octaves_[size_t(i)] = std::uint8_t(octaves);
+        cumulative[size_t(i)] = cumulativeOf(f, octaves, double(resolution.floor));
+    });
+    for (const auto& row : cumulative) table.cumulative_.insert(table.cumulative_.end(), row.begin(), row.end());
+    table.index();
+    return table;
+}
+
+bool EdaTable::index() {
+    if (octaves_.size() != size_t(resolution_.excess().count()) * size_t(resolution_.depth().count())) return false;
+    size_t next = 0;
+    first_.clear();
+    for (const int octaves : octaves_) {
+        if (octaves < Row::MinOctaves || octaves > Row::MaxOctaves) return false;
+        first_.push_back(std::uint32_t(next));
+        next += size_t(Row::strideOf(octaves));
+    }
+    return next == cumulative_.size();
+}
+
+std::optional<EdaTable> EdaTable::restore(float albedo, float g, const EdaResolution& resolution,
+                                          std::vector<std::uint8_t> octaves, std::vector<float> cumulative) {
+    requireValid(albedo, g, resolution);
+    EdaTable table(albedo, g, resolution);
+    table.octaves_ = std::move(octaves);
+    table.cumulative_ = std::move(cumulative);
+    if (!table.index()) return std::nullopt;
+    for (size_t i = 0; i < table.octaves_.size(); ++i) {
+        const float* row = table.cumulative_.data() + table.first_[i];
+        const int bins = Row::binsOf(table.octaves_[i]);
+        if (row[0] != 0.0f) return std::nullopt;
+        for (int bin = 0; bin < bins; ++bin)
+            if (!(row[bin + 1] > row[bin])) return std::nullopt;
+        for (int bin = bins; bin < Row::strideOf(table.octaves_[i]); ++bin)
+            if (row[bin] != 1.0f) return std::nullopt;
+    }
+    return table;
+}
+
+} // namespace darts

@@ -1,0 +1,24 @@
+#pragma once
+// A table kept in a file between renders.
+
+#include "darts/EdaTable.h"
+
+#include <filesystem>
+#include <string>
+
+namespace darts {
+
+struct CachedEdaTable {
+    EdaTable table;
+    bool built = false;  // rather than read
+    std::string warning; // empty unless the file was unfit or could not be written
+};
+
+/// The table of this albedo, g and resolution: read from `file` if that holds it, otherwise built and written there, by
+/// way of a temporary file and rename. The outcome is the same either way: a file that is damaged, of another version
+/// or of other parameters is replaced, and one that cannot be written is done without; both are told in the warning.
+/// Throws only as EdaTable::build.
+[[nodiscard]] CachedEdaTable loadOrBuildEdaTable(const std::filesystem::path& file, float albedo, float g,
+                                                 const EdaResolution& resolution = {}, unsigned threads = 0);
+
+} // namespace darts

@@ -1,0 +1,157 @@
+#pragma once
+// What a walk asks at each of its vertices: the length of the next connection, a direction for it, the control vertex
+// on the way, the distance to go, and whether to go on.
+
+#include "darts/ControlVertex.h"
+#include "darts/DirectionSampler.h"
+#include "darts/DistanceSampler.h"
+#include "darts/GreensFunction.h"
+#include "darts/TemporalResponse.h"
+
+#include <optional>
+
+namespace darts {
+
+/// A connection's length S = C + excess, with 1 / its density per length (1 at a delta gate; 0: nothing can arrive).
+struct ConnectionSample {
+    float excess = 0;
+    float inversePdf = 0;
+};
+
+/// The last scattering before the target, at `distance` along the ray.
+struct ControlVertex {
+    float distance = 0;
+    float toTarget = 0;   ///< second leg
+    float inversePdf = 0; ///< 1 / density per length along the ray
+};
+
+/// A sensor's response at a vertex: when it was reached and how fast light goes on.
+struct ResponseAt {
+    const TemporalResponse* response = nullptr;
+    double elapsed = 0, speed = 1;
+};
+
+/// Sampling in one medium towards one kind of target. Immutable; a walk keeps the state: position, elapsed time,
+/// throughput and the usefulness it started with.
+class Guide {
+  public:
+    Guide(const Settings& settings, const Medium& medium)
+        : settings_(settings), medium_(medium),
+          connectionSigmaT_(settings.uniformLength ? 0.0f : smallest(medium.sigmaT())),
+          meanSigmaA_(mean(medium.sigmaA)), meanSigmaS_(mean(medium.sigmaS)), distance_(settings, medium),
+          direction_(settings, medium.g) {}
+
+    [[nodiscard]] const Settings& settings() const { return settings_; }
+    [[nodiscard]] const Medium& medium() const { return medium_; }
+    [[nodiscard]] const DistanceSampler& distance() const { return distance_; }
+
+    /// Length of the next connection: exponential of rate sigmaT on the residual range, or by the sensor's response.
+    [[nodiscard]] ConnectionSample sampleConnection(const Residual& residual, float u,
+                                                    const ResponseAt& at = {}) const {
+        if (at.response) return sampleResponse(residual, u, at);
+        if (!(residual.width > 0)) return {residual.low, 1.0f};
+        const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
+        const float offset = density.sampleOffset(u);
+        return {residual.low + offset, 1.0f / density.pdfOffset(offset)};
+    }
+    /// The part of the residual range whose connections along the ray end before the surface: for lengths drawn after
+    /// the direction.
+    [[nodiscard]] static Residual beforeSurface(const Residual& residual, float h, float surface) {
+        Residual limited = residual;
+        const Ellipse<float> latest = residual.latest(h);
+        if (!(surface < latest.firstLeg())) return limited;
+        // Excess of S(d_s) = d_s + rho, from what is left of the latest excess beyond the surface.
+        const float beyond = 2 * latest.denominator() * (latest.firstLeg() - surface) /
+                             (latest.length() - surface + latest.distanceToTarget(surface));
+        limited.width = std::max(residual.width - beyond, 0.0f);
+        if (residual.width > 0 && !(limited.width > 0)) limited.excess = 0; // nothing left
+        return limited;
+    }
+    /// The vertex of a connection drawn by sampleConnection; none beyond the surface or on the needle.
+    [[nodiscard]] std::optional<ControlVertex>
+    controlVertex(const Residual& residual, const ConnectionSample& connection, float h, float surface) const {
+        const Ellipse<float> e{residual.C, connection.excess, h};
+        if (!(connection.inversePdf > 0) || e.isNeedle()) return std::nullopt;
+        const float t = e.firstLeg();
+        if (!(t < surface)) return std::nullopt;
+        return ControlVertex{t, e.secondLeg(), e.firstLegPerLength() * connection.inversePdf};
+    }
+
+    /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a
+    /// function of the ray alone, for the balance heuristic.
+    [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance) const {
+        const Ellipse<float> latest = residual.latest(h);
+        const float left = latest.firstLeg() - distance;
+        if (!(left > 0)) return 0.0f;
+        const float beyond =
+            2 * latest.denominator() * left / (latest.length() - distance + latest.distanceToTarget(distance));
+        const float offset = residual.width - beyond; // excess of the connection through the point, less residual.low
+        if (!(offset >= 0)) return 0.0f;
+        const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
+        return density.pdfOffset(offset) / Ellipse<float>{residual.C, residual.low + offset, h}.firstLegPerLength();
+    }
+
+    /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the latest arrival.
+    template <typename Scatterer, typename View, typename Random>
+    [[nodiscard]] DirectionSample sampleDirection(const Residual& residual, const ConnectionSample& connection,
+                                                  const Scatterer& scatterer, const View& view, Random&& random) const {
+        return direction_.sample(residual, directionExcess(residual, connection), scatterer, view, random);
+    }
+    template <typename Scatterer, typename View>
+    [[nodiscard]] float pdfDirection(const Residual& residual, const ConnectionSample& connection,
+                                     const Vec3& direction, const Scatterer& scatterer, const View& view) const {
+        return direction_.pdf(residual, directionExcess(residual, connection), direction, scatterer, view);
+    }
+
+    /// The next vertex along the ray; see DistanceSampler.
+    template <typename Random>
+    [[nodiscard]] DistanceSample sampleDistance(const Residual& residual, float h, float surface,
+                                                const Vec3& throughput, Random&& random) const {
+        const float row = random(), rotation = random(), choice = random(), event = random();
+        return distance_.sample(residual, h, surface, throughput, {row, rotation, choice, event});
+    }
+
+    /// Logarithm of throughput x Phi(C, S_hi) x reachable gate: what a walk at this vertex is good for, and by what it
+    /// is ended at random. Never by throughput alone.
+    [[nodiscard]] float logUsefulness(const Residual& residual, float throughput) const {
+        const float S = residual.C + residual.excess,
+                    reach = std::min(residual.excess, std::max(residual.width, 1e-6f * S));
+        const float own = std::log(std::max(throughput * reach, 1e-37f));
+        if (settings_.greens == Greens::Diffusion)
+            return own + DiffusionGreensFunction<float>{meanSigmaA_, meanSigmaS_, medium_.g}.log(residual.C, S);
+        if (settings_.greens == Greens::Causal) {
+            const CausalGreensFunction<float> phi{meanSigmaA_, meanSigmaS_ * (1.0f - medium_.g)};
+            return own + phi.log(residual.excess * (S + residual.C) / (S * S), S);
+        }
+        return own;
+    }
+    /// Probability of going on at a usefulness, given the walk's first one (logarithms).
+    [[nodiscard]] float survival(float logUseful, float logFirst) const {
+        if (!(settings_.roulette > 0)) return 1.0f;
+        return std::min(std::exp(logUseful - logFirst) / settings_.roulette, 1.0f);
+    }
+
+  private:
+    [[nodiscard]] float directionExcess(const Residual& residual, const ConnectionSample& connection) const {
+        return settings_.lengthFirst ? connection.excess : residual.excess;
+    }
+    [[nodiscard]] static ConnectionSample sampleResponse(const Residual& residual, float u, const ResponseAt& at) {
+        const double begin = at.elapsed + residual.shortest / at.speed;
+        const double low = at.response->distribution(begin),
+                     high = at.response->distribution(begin + double(residual.width) / at.speed);
+        if (!(high > low)) return {};
+        const double time = at.response->quantile(low + double(u) * (high - low));
+        const double density = at.response->pdf(time);
+        if (!(density > 0)) return {};
+        const double offset = std::clamp(at.speed * (time - begin), 0.0, double(residual.width));
+        return {residual.low + float(offset), float(at.speed * (high - low) / density)};
+    }
+
+    Settings settings_;
+    Medium medium_;
+    float connectionSigmaT_, meanSigmaA_, meanSigmaS_;
+    DistanceSampler distance_;
+    DirectionSampler direction_;
+};
+
+} // namespace darts

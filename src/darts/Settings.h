@@ -1,0 +1,106 @@
+#pragma once
+// Every switch of the sampling, and the two presets that set them all.
+
+#include "darts/Vec3.h"
+
+namespace darts {
+
+/// Coefficients per unit of length in three colour channels; equal ones are treated as grey, at a third of the cost.
+struct Medium {
+    Vec3 sigmaA, sigmaS;
+    float g = 0; ///< mean cosine of the phase function
+
+    [[nodiscard]] Vec3 sigmaT() const { return sigmaA + sigmaS; }
+    [[nodiscard]] bool isGrey() const {
+        const auto equal = [](const Vec3& a) { return a.x == a.y && a.y == a.z; };
+        return equal(sigmaA) && equal(sigmaS);
+    }
+};
+
+/// What the walk's target is: the emitter, connected to at once (path tracing), or the camera, for which control
+/// vertices are stored as photons.
+enum class Mode { Path, Photon };
+
+/// How directions are drawn.
+enum class Direction {
+    Phase,      ///< the phase function (or emission, or BSDF) alone
+    Eda,        ///< one-sample MIS with the elliptical diffusion approximation's table (He et al. 2024)
+    Connection, ///< one-sample MIS with the lobe of the connection's weight
+    Ris,        ///< resampled from both; phase-aware, for |g| >= 0.5
+};
+
+/// What shapes distances: the light that is still to arrive from the next vertex.
+enum class Greens { None, Diffusion, Causal };
+
+/// Where candidate distances come from.
+enum class Proposals {
+    Exponential,  ///< transmittance, truncated
+    MixedUniform, ///< half of them uniform up to the bound
+    MixedQuarter, ///< half of them exponential of a quarter of the rate
+    Equiangular,  ///< about the target (Kulla and Fajardo 2012)
+};
+
+/// Which lobe Direction::Connection and Ris use; the mode's own unless an experiment asks for the other.
+enum class Lobe { Path, Photon };
+
+struct Settings {
+    Mode mode = Mode::Path;
+
+    Direction direction = Direction::Connection;
+    Lobe lobe = Lobe::Path;
+    float alpha = 0.1f;          ///< share of the phase function: gamma = (C/S) / (C/S + alpha) is the guide's
+    int directionCandidates = 4; ///< of Direction::Ris: half phase function, half lobe; even, at most 8
+    bool lengthFirst = true;     ///< the connection's length is drawn before the direction, and shapes it
+    bool guideEmission = true;   ///< the emitted direction is guided as well
+    float focus = 0.0f;          ///< share of the guided directions drawn from the camera's view
+
+    bool bounded = true; ///< candidates end where no path can be in time any more
+    Greens greens = Greens::Causal;
+    Proposals proposals = Proposals::MixedUniform;
+    int candidates = 8;        ///< 1, 4, 8 or 16
+    bool overlap = true;       ///< the target includes the part of the gate that is still reachable
+    float floor = 0.0f;        ///< added to the target, relative to the candidates' mean; at most 0.05
+    bool mixDenseOnly = false; ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
+
+    bool elliptical = true;     ///< control vertices at all
+    bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
+    float roulette = 0.1f;      ///< walks end at random below this part of their first usefulness; 0: never
+};
+
+/// The sampler of He et al. 2024: eight exponential candidates against the diffusion approximation, the EDA table mixed
+/// with the phase function, control vertices drawn after the direction.
+inline Settings published(Mode mode) {
+    Settings s;
+    s.mode = mode;
+    s.direction = Direction::Eda;
+    s.lobe = mode == Mode::Path ? Lobe::Path : Lobe::Photon;
+    s.alpha = 0.5f;
+    s.lengthFirst = false;
+    s.guideEmission = false;
+    s.bounded = false;
+    s.greens = Greens::Diffusion;
+    s.proposals = Proposals::Exponential;
+    s.overlap = false;
+    s.roulette = 0.0f;
+    return s;
+}
+
+/// What the study of sampling targets found best, for a phase function of mean cosine g.
+inline Settings best(Mode mode, float g) {
+    const bool peaked = std::abs(g) >= 0.5f;
+    Settings s;
+    s.mode = mode;
+    s.direction = peaked ? Direction::Ris : Direction::Connection;
+    if (mode == Mode::Photon) {
+        s.lobe = Lobe::Photon;
+        s.alpha = 0.2f;
+        s.focus = 0.1f;
+        s.greens = peaked ? Greens::Causal : Greens::Diffusion;
+        s.mixDenseOnly = !peaked;
+    } else {
+        s.greens = peaked ? Greens::Diffusion : Greens::Causal;
+    }
+    return s;
+}
+
+} // namespace darts

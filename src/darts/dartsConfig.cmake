@@ -1,0 +1,11 @@
+# find_package(darts): the target darts::darts.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_path(XSIMD_INCLUDE_DIR xsimd/xsimd.hpp)
+if(NOT XSIMD_INCLUDE_DIR)
+  set(darts_FOUND FALSE)
+  set(darts_NOT_FOUND_MESSAGE "the xsimd headers were not found (XSIMD_INCLUDE_DIR)")
+  return()
+endif()
+include(${CMAKE_CURRENT_LIST_DIR}/darts-targets.cmake)
+target_include_directories(darts::darts SYSTEM INTERFACE ${XSIMD_INCLUDE_DIR})

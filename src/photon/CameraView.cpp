@@ -1,0 +1,44 @@
+#include "photon/CameraView.h"
+
+namespace tungsten::photon {
+
+CameraView::CameraView(const Camera& camera) : position_(camera.position()), frame_(camera.toWorld.rotation()) {
+    float fov = 60.0f;
+    if (const auto* pinhole = std::get_if<Pinhole>(&camera.model)) fov = pinhole->fovDegrees;
+    if (const auto* lens = std::get_if<ThinLens>(&camera.model)) {
+        fov = lens->fovDegrees;
+        aperture_ = lens->apertureRadius * (1.0f + 1.0f / std::max(lens->focusDistance, 1e-6f));
+    }
+    const float width = float(camera.resolution.x), height = float(camera.resolution.y);
+    halfWidth_ = std::tan(0.5f * fov * Pi / 180.0f);
+    halfHeight_ = halfWidth_ * height / width;
+    // Pixel centres lie inside the image; filters reach a little beyond, the thin lens is off by half a pixel.
+    const float pixel = 2.0f * halfWidth_ / width, reach = (camera.filter.halfWidth() + 1.0f) * pixel;
+    marginX_ = halfWidth_ + reach;
+    marginY_ = halfHeight_ + reach;
+    slantX_ = std::sqrt(1.0f + marginX_ * marginX_);
+    slantY_ = std::sqrt(1.0f + marginY_ * marginY_);
+}
+
+darts::Vec3 CameraView::sample(float u, float v) const {
+    if (u < SphereShare) return darts::directionAbout({0, 0, 1}, 2.0f * u / SphereShare, v);
+    const float x = (2.0f * (u - SphereShare) / (1.0f - SphereShare) - 1.0f) * halfWidth_;
+    return darts::vec3(frame_.toWorld(Vec3f(x, (2.0f * v - 1.0f) * halfHeight_, 1.0f)).normalized());
+}
+
+float CameraView::pdf(const darts::Vec3& direction) const {
+    constexpr float Sphere = SphereShare / (4.0f * Pi);
+    const Vec3f local = frame_.toLocal(Vec3f(direction.x, direction.y, direction.z));
+    if (local.z <= 0.0f || std::abs(local.x) > halfWidth_ * local.z || std::abs(local.y) > halfHeight_ * local.z)
+        return Sphere;
+    return Sphere + (1.0f - SphereShare) / (4.0f * halfWidth_ * halfHeight_ * local.z * local.z * local.z);
+}
+
+bool CameraView::sees(const Vec3f& point, float radius) const {
+    const Vec3f local = frame_.toLocal(point - position_);
+    const float reach = radius + aperture_ * (1.0f + std::max(local.z, 0.0f));
+    return local.z > -reach && std::abs(local.x) <= marginX_ * local.z + slantX_ * reach &&
+           std::abs(local.y) <= marginY_ * local.z + slantY_ * reach;
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,38 @@
+#pragma once
+// An emitter's own distribution of directions, as a scatterer of the sampling library.
+
+#include "darts/Vec3.h"
+
+#include "tungsten/emitter/Emitter.h"
+
+namespace tungsten::photon {
+
+/// Uniform over what the emitter lights: the sphere of a point, the cone of a spot; cosine-weighted for surfaces.
+class EmissionDirections {
+  public:
+    EmissionDirections(const Emitter& emitter, const SurfaceSample& start) {
+        if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) {
+            axis_ = darts::vec3(spot->direction);
+            widest_ = 1.0f - spot->cosOuter;
+        } else if (emitter.isArea()) {
+            axis_ = darts::vec3(start.normal);
+            cosine_ = true;
+        }
+    }
+    [[nodiscard]] darts::Vec3 sample(float u, float v) const {
+        // cos^2 is uniform for the cosine: h = 1 - sqrt(1 - u) = u / (1 + sqrt(1 - u)).
+        return darts::directionAbout(axis_, cosine_ ? u / (1.0f + std::sqrt(1.0f - u)) : widest_ * u, v);
+    }
+    [[nodiscard]] float pdf(const darts::Vec3& direction) const {
+        const float h = darts::oneMinusCosine(direction, axis_);
+        if (cosine_) return std::max(1.0f - h, 0.0f) / darts::Pi;
+        return h <= widest_ ? 1.0f / (2.0f * darts::Pi * widest_) : 0.0f;
+    }
+
+  private:
+    darts::Vec3 axis_{0, 0, 1};
+    float widest_ = 2.0f; ///< largest 1 - cos
+    bool cosine_ = false;
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,243 @@
+#include "photon/GuidedPhotonWalk.h"
+
+#include "photon/EmissionDirections.h"
+
+namespace tungsten::photon {
+
+namespace {
+
+/// A phase function as a scatterer of the sampling library.
+struct PhaseDirections {
+    const PhaseFunction& phase;
+    Vec3f before;
+
+    [[nodiscard]] darts::Vec3 sample(float u, float v) const { return darts::vec3(phase.sample(before, {u, v})); }
+    [[nodiscard]] float pdf(const darts::Vec3& after) const {
+        return phase.pdf(before, Vec3f(after.x, after.y, after.z));
+    }
+};
+
+Vec3f host(const darts::Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// Between points as they are stored, so that times are those of the path that is gathered.
+double distanceBetween(const Vec3f& a, const Vec3f& b) {
+    const Vec3d d(double(b.x) - double(a.x), double(b.y) - double(a.y), double(b.z) - double(a.z));
+    return d.length();
+}
+
+/// Balance heuristic between a control vertex's density along the ray and a free flight's.
+float controlVertexShare(float controlVertexPdf, float sigmaT, float distance) {
+    return controlVertexPdf / (controlVertexPdf + sigmaT * std::exp(-sigmaT * distance));
+}
+
+} // namespace
+
+GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance,
+                                   const SurfaceConnections* connections, Sampler sampler, uint64_t path,
+                                   Deposits& deposits, WalkCounters& counters)
+    : PhotonWalk(context, sampler, deposits, counters), guidance_(guidance), connections_(connections),
+      gate_(guidance.gate()) {
+    if (guidance.choosesFrames()) aimAtFrame(path);
+}
+
+void GuidedPhotonWalk::aimAtFrame(uint64_t path) {
+    const int frame = guidance_.frames().stratified(path, 0.0f);
+    gate_ = guidance_.frames().frame(frame);
+    arrival_ = &context_.frameArrivals[size_t(frame)];
+}
+
+void GuidedPhotonWalk::run() {
+    if (!emit()) return;
+    const int mostBounces = std::min(scene_.transport.maxBounces - 1, MostPhotonBounces);
+    while (bounce_ < mostBounces) {
+        const darts::Guide* guide = guidance_.guide(region_);
+        if (guide) {
+            if (!crossMedium(*scene_.medium(region_), *guide)) return;
+            continue;
+        }
+        ++counters_.rays;
+        const auto hit = scene_.geometry->intersect(ray_);
+        if (!hit) return;
+        if (const Medium* medium = scene_.medium(region_)) power_ = power_ * medium->transmittance(hit->t);
+        looked_ = connected_ = false;
+        if (!meetSurface(*hit)) return;
+    }
+}
+
+bool GuidedPhotonWalk::emit() {
+    const auto chosen = context_.emitters.sample(sampler_.next1D());
+    const Emitter& emitter = scene_.emitters[chosen.index];
+    const float frames = guidance_.choosesFrames() ? float(guidance_.frames().frames) : 1.0f;
+    if (emitter.isDelta() || emitter.isInfinite()) {
+        if (!emitFrom(emitter, chosen.probability)) return false;
+        power_ = power_ * frames;
+        return true;
+    }
+    time_ = emitter.emissionTime;
+    region_ = scene_.regionOf(emitter);
+    power_ = Rgb(frames / chosen.probability);
+    const darts::Guide* guide = guidance_.guide(region_);
+    return emitFromPoint(emitter, guide && guide->settings().guideEmission ? guide : nullptr);
+}
+
+bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide* guide) {
+    const SurfaceSample start = sampleEmissionPoint(emitter, sampler_.next2D());
+    ray_ = Ray{start.position, Vec3f(0.0f), emitter.isArea() ? scene_.rayEpsilon : 0.0f};
+    connectable_ = true;
+    if (!arrival_->mayContinue(ray_.origin, time_)) return false;
+    connectToSurfaces(emitter.isArea(),
+                      [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
+    const EmissionDirections own(emitter, start);
+    float inversePdf = 0.0f;
+    if (guide) {
+        if (!look(*guide)) return false;
+        inversePdf = redirect(*guide, own);
+    } else {
+        const float u = sampler_.next1D(), v = sampler_.next1D();
+        const darts::Vec3 direction = own.sample(u, v);
+        ray_.direction = host(direction);
+        inversePdf = 1.0f / own.pdf(direction);
+    }
+    power_ = power_ * emittedIntensity(emitter, start, ray_.direction) * inversePdf;
+    return !isBlack(power_);
+}
+
+template <typename Scattering>
+void GuidedPhotonWalk::connectToSurfaces(bool onSurface, const Scattering& scattering) {
+    if (!connections_) return;
+    connections_->connect({ray_.origin, onSurface, time_, bounce_, region_, power_}, gate_, scattering, sampler_,
+                          deposits_.contributions, counters_.rays);
+}
+
+bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
+    if (!arriveOnSurface(hit)) return false;
+    if (connections_ && (surface_.bsdf->lobes() & lobe::Smooth) != 0) {
+        const Vec3f before = ray_.direction;
+        const Region behind = region_;
+        ray_.origin = hit.position;
+        // Light leaves to the side of the direction; a boundary's other side is another region.
+        connectToSurfaces(true, [&](const Vec3f& direction) {
+            if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
+            const Region ahead = regionBeyond(*surface_.primitive, hit, direction, behind);
+            if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
+            return surface_.bsdf->eval(surface_.query(TransportMode::Photons, lobe::Smooth), surface_.wi,
+                                       surface_.frame.toLocal(direction)) *
+                   surface_.photonShadingFactor(-before, direction);
+        });
+    }
+    return leaveSurface();
+}
+
+bool GuidedPhotonWalk::look(const darts::Guide& guide) {
+    residual_ = guidance_.residual(ray_.origin, time_, gate_);
+    looked_ = true;
+    connected_ = guide.settings().lengthFirst;
+    if (connected_) connection_ = guide.sampleConnection(residual_, sampler_.next1D());
+    return residual_.alive();
+}
+
+template <typename Scatterer>
+float GuidedPhotonWalk::redirect(const darts::Guide& guide, const Scatterer& scatterer) {
+    const auto random = [this] { return sampler_.next1D(); };
+    const darts::DirectionSample next =
+        guide.sampleDirection(residual_, connection_, scatterer, guidance_.view(), random);
+    ray_.direction = host(next.direction);
+    return next.inversePdf;
+}
+
+bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
+    if (!(guide.settings().roulette > 0.0f)) return true;
+    const float useful = guide.logUsefulness(residual_, meanComponent(power_));
+    if (!started_) {
+        firstUsefulness_ = useful;
+        started_ = true;
+        return true;
+    }
+    const float survival = guide.survival(useful, firstUsefulness_);
+    if (survival >= 1.0f) return true;
+    if (sampler_.next1D() >= survival) return false;
+    power_ = power_ / survival;
+    return true;
+}
+
+bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& guide) {
+    if (++flights_ > medium.maxBounces) return false;
+    if (!looked_ && (!look(guide) || !survives(guide))) return false; // after a surface
+    const float h = darts::oneMinusCosine(darts::vec3(ray_.direction), residual_.axis);
+    ray_.tMax = guide.distance().bound(residual_, h);
+    ++counters_.rays;
+    const auto hit = scene_.geometry->intersect(ray_);
+    ray_.tMax = Infinity;
+    const float surface = hit ? hit->t : Infinity;
+    if (context_.storeVolume) placeControlVertex(medium, guide, h, surface);
+    if (context_.storeBeams) depositBeam(medium, surface);
+
+    const auto random = [this] { return sampler_.next1D(); };
+    const darts::DistanceSample step = guide.sampleDistance(residual_, h, surface, darts::vec3(power_), random);
+    power_ = power_ * Rgb(step.transmittanceOverPdf.x, step.transmittanceOverPdf.y, step.transmittanceOverPdf.z);
+    looked_ = connected_ = false;
+    if (isBlack(power_)) return false;
+    if (step.surface) return meetSurface(*hit);
+    power_ = power_ * medium.sigmaS;
+    if (context_.storeVolume && (!guidance_.directView() || !guide.settings().elliptical))
+        depositPhoton(medium, guide, step.distance, h);
+    return scatter(medium, guide, step.distance);
+}
+
+bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, float distance) {
+    const Vec3f position = ray_.at(distance), before = ray_.direction;
+    time_ += distanceBetween(ray_.origin, position) / double(region_.speed);
+    ++bounce_;
+    ++consecutiveMedium_;
+    ray_ = Ray{position, before};
+    sinceVertex_ = 0.0f;
+    connectable_ = true;
+    if (!look(guide) || !survives(guide)) return false;
+    connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
+    const PhaseDirections phase{medium.phase, before};
+    const float inversePdf = redirect(guide, phase);
+    power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);
+    return !isBlack(power_);
+}
+
+void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface) {
+    if (!guide.settings().elliptical) return;
+    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    reachable_ = residual_;
+    if (!connected_) {
+        reachable_ = darts::Guide::beforeSurface(residual_, h, surface);
+        if (!reachable_.alive()) return;
+        connection_ = guide.sampleConnection(reachable_, sampler_.next1D());
+    }
+    const auto vertex = guide.controlVertex(residual_, connection_, h, surface);
+    if (!vertex) return;
+    ++counters_.controlVertices;
+    const Vec3f position = ray_.at(vertex->distance);
+    Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
+    if (!guidance_.directView())
+        power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
+    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power, bounce_ + 1);
+}
+
+void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h) {
+    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    float share = 0.0f;
+    if (guide.settings().elliptical)
+        share = controlVertexShare(guide.pdfControlVertex(reachable_, h, distance), meanComponent(medium.sigmaT()),
+                                   distance);
+    const Vec3f position = ray_.at(distance);
+    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power_ * (1.0f - share),
+          bounce_ + 1);
+}
+
+void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
+    if (isBlack(power) || bounce > MostPhotonBounces) return;
+    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
+    if (!arrival_->mayCount(position, time)) return;
+    deposits_.volume.photons.push_back(
+        {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
+}
+
+} // namespace tungsten::photon

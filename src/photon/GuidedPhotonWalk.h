@@ -1,0 +1,53 @@
+#pragma once
+// One light path aimed at the camera inside the time gate: elliptical control vertices in place of volume photons,
+// resampled distances, guided directions (method of He et al. 2024 and its successor presets; see src/darts).
+
+#include "photon/PhotonGuidance.h"
+#include "photon/PhotonWalk.h"
+#include "photon/SurfaceConnections.h"
+
+namespace tungsten::photon {
+
+class GuidedPhotonWalk : private PhotonWalk {
+  public:
+    /// `path` is the path's index in the run: frames are chosen in turn.
+    /// `connections` may be null.
+    GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance, const SurfaceConnections* connections,
+                     Sampler sampler, uint64_t path, Deposits& deposits, WalkCounters& counters);
+    void run();
+
+  private:
+    void aimAtFrame(uint64_t path);
+    bool emit();
+    /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
+    bool emitFromPoint(const Emitter& emitter, const darts::Guide* guide);
+    template <typename Scattering>
+    void connectToSurfaces(bool onSurface, const Scattering& scattering);
+    bool meetSurface(const SurfaceHit& hit);
+    /// A flight through a scattering medium: its control vertex, then the next vertex. False ends the path.
+    bool crossMedium(const Medium& medium, const darts::Guide& guide);
+    bool scatter(const Medium& medium, const darts::Guide& guide, float distance);
+    void placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface);
+    /// Ordinary photons share with control vertices where sensor paths can fold.
+    void depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h);
+    void store(const Vec3f& position, double time, const Rgb& power, int bounce);
+    bool survives(const darts::Guide& guide);
+    /// Residual at the ray's origin, and the length of the next connection.
+    bool look(const darts::Guide& guide);
+    /// Draws the direction of the flight ahead; the ray's origin and residual_ are set.
+    template <typename Scatterer>
+    float redirect(const darts::Guide& guide, const Scatterer& scatterer);
+
+    const PhotonGuidance& guidance_;
+    const SurfaceConnections* connections_;
+    darts::TimeGate gate_;
+    darts::Residual residual_;
+    darts::Residual reachable_; ///< residual_ with the range that connection_ was drawn from
+    darts::ConnectionSample connection_;
+    bool connected_ = false; ///< connection_ was drawn before the flight's direction
+    bool looked_ = false;    ///< residual_ belongs to the ray's origin
+    float firstUsefulness_ = 0.0f;
+    bool started_ = false; ///< firstUsefulness_ is known
+};
+
+} // namespace tungsten::photon

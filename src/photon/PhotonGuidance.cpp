@@ -1,0 +1,65 @@
+#include "photon/PhotonGuidance.h"
+
+namespace tungsten::photon {
+
+namespace {
+
+double aperture(const Camera& camera) {
+    const auto* lens = std::get_if<ThinLens>(&camera.model);
+    return lens ? double(lens->apertureRadius) : 0.0;
+}
+
+} // namespace
+
+std::string PhotonGuidance::obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan) {
+    if (!scheme.on) return "the scene does not ask for it";
+    if (!plan.timeResolved) return "steady state: there is no gate to aim at";
+    if (!plan.mediumScattering) return "no medium scatters";
+    if (std::holds_alternative<Orthographic>(scene.camera.model))
+        return "an orthographic camera has no position to aim at";
+    return {};
+}
+
+std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const darts::Scheme& scheme,
+                                                     const EffectPlan& plan) {
+    if (!obstacle(scene, scheme, plan).empty()) return nullptr;
+    return std::unique_ptr<PhotonGuidance>(new PhotonGuidance(scene, scheme, plan));
+}
+
+PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
+    : view_(scene.camera), camera_(scene.camera.position()),
+      speed_(double(plan.speedsDiffer ? highestSpeed(scene) : scene.cameraRegion.speed)),
+      slack_(scene.transport.cameraUnwarped ? 0.0 : aperture(scene.camera) / speed_),
+      unwarped_(scene.transport.cameraUnwarped) {
+    const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
+    directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
+    const TimeGate& gate = scene.transport.gate;
+    setGate(gate);
+    choosesFrames_ = gate.frames > 1 && directView_ && straight && slack_ == 0.0;
+    for (const Medium& medium : scene.media) {
+        guides_.emplace_back();
+        if (!medium.scatters()) continue;
+        darts::Settings settings =
+            scheme.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
+        if (unwarped_) {
+            // Any place seen will do: nothing to aim at, only the bound in time.
+            settings.direction = darts::Direction::Phase;
+            settings.greens = darts::Greens::None;
+        }
+        guides_.back() = std::make_unique<darts::Guide>(
+            settings, darts::Medium{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()});
+    }
+}
+
+void PhotonGuidance::setGate(const TimeGate& gate) {
+    frames_ = {gate.start, gate.frameWidth, gate.frames};
+    gate_ = {frames_.all().begin - slack_, frames_.all().end + slack_};
+}
+
+darts::Residual PhotonGuidance::residual(const Vec3f& position, double elapsed, const darts::TimeGate& gate) const {
+    const auto range = darts::ResidualRange::of(gate, elapsed, speed_);
+    if (unwarped_) return darts::Residual::withoutTarget(range);
+    return darts::Residual::of(darts::vec3(camera_ - position), range);
+}
+
+} // namespace tungsten::photon

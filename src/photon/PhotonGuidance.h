@@ -1,0 +1,56 @@
+#pragma once
+// What guides the photon pass: the camera as the target of every light path.
+
+#include "photon/CameraView.h"
+
+#include "darts/Guide.h"
+#include "darts/Scheme.h"
+
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/scene/Scene.h"
+
+#include <memory>
+
+namespace tungsten::photon {
+
+class PhotonGuidance {
+  public:
+    /// Null when the scheme, the scene or the camera leaves nothing to guide.
+    static std::unique_ptr<PhotonGuidance> make(const Scene& scene, const darts::Scheme& scheme,
+                                                const EffectPlan& plan);
+    /// Why make() returns null; empty if it does not.
+    static std::string obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
+
+    /// Null in regions where nothing scatters.
+    [[nodiscard]] const darts::Guide* guide(const Region& region) const {
+        return region.medium < 0 ? nullptr : guides_[size_t(region.medium)].get();
+    }
+    /// What is left of a path that got to `position` at `elapsed`, for arrival inside `gate`.
+    [[nodiscard]] darts::Residual residual(const Vec3f& position, double elapsed, const darts::TimeGate& gate) const;
+
+    /// Every sensor path is one straight chain at one speed: control vertices alone are complete. Otherwise ordinary
+    /// photons share the work with them, by the balance heuristic.
+    [[nodiscard]] bool directView() const { return directView_; }
+    /// Each light path aims at one frame; otherwise at all of them as one gate.
+    [[nodiscard]] bool choosesFrames() const { return choosesFrames_; }
+    [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
+    /// The gate of paths that aim at all frames, with the aperture's slack.
+    [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
+    /// Aims at this gate from now on (a delta gate's temporal kernel) instead of the scene's.
+    void setGate(const TimeGate& gate);
+    [[nodiscard]] const CameraView& view() const { return view_; }
+
+  private:
+    PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
+
+    std::vector<std::unique_ptr<darts::Guide>> guides_; ///< by medium
+    CameraView view_;
+    Vec3f camera_;
+    double speed_;
+    double slack_; ///< of arrival times, from the aperture
+    bool unwarped_, directView_, choosesFrames_;
+    darts::FrameSequence frames_;
+    darts::TimeGate gate_;
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,213 @@
+#include "photon/PhotonSplat.h"
+
+#include "photon/PointGather.h"
+
+#include <tbb/parallel_for.h>
+#include <xsimd/xsimd.hpp>
+
+namespace tungsten::photon {
+
+namespace {
+
+using Batch = xsimd::batch<float>;
+constexpr int Lanes = int(Batch::size);
+constexpr int BandRows = 4; ///< rows of the image that one task draws
+
+/// Rows and columns of the pixels whose rays can come within the kernel.
+struct Footprint {
+    int left, right, top, bottom; ///< inclusive
+};
+
+class Splatter {
+  public:
+    Splatter(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+             const std::vector<float>& radii, double scale, Film& film)
+        : scene_(scene), gate_(gate), record_(record), photons_(store.photons), radii_(radii), scale_(float(scale)),
+          film_(film),
+          // Rays leave pixel centres by the filter, whose samples may reach a little beyond its half width.
+          margin_(scene.camera.filter.halfWidth() + 0.1f) {
+        const Frame frame = scene.camera.toWorld.rotation();
+        frame_ = frame;
+        const auto& pinhole = std::get<Pinhole>(scene.camera.model);
+        pixelsPerSlope_ = 0.5f * float(record.width) / std::tan(0.5f * pinhole.fovDegrees * Pi / 180.0f);
+    }
+
+    [[nodiscard]] std::optional<Footprint> footprint(const Photon& photon, float radius) const {
+        const Vec3f local = frame_.toLocal(photon.position - record_.origin);
+        const float squaredDistance = local.length2();
+        Footprint all{0, record_.width - 1, 0, record_.height - 1};
+        if (squaredDistance <= radius * radius * 1.0001f) return all;
+        if (local.z < -radius) return std::nullopt;
+        // Rays within asin(r / distance) of the photon's direction; tangent planes bound the slopes x / z and y / z.
+        const auto range = [&](float sideways, float& low, float& high) {
+            const float c = std::sqrt(sideways * sideways + local.z * local.z);
+            if (c <= radius * 1.0001f) return false;
+            const float angle = std::atan2(sideways, local.z), spread = std::asin(radius / c);
+            if (angle - spread < -1.5f || angle + spread > 1.5f) return false;
+            low = std::tan(angle - spread) * pixelsPerSlope_;
+            high = std::tan(angle + spread) * pixelsPerSlope_;
+            return true;
+        };
+        float low = 0.0f, high = 0.0f;
+        const float centreX = 0.5f * float(record_.width), centreY = 0.5f * float(record_.height);
+        const auto clampPixel = [](float v, int size) { return int(std::clamp(v, -1.0f, float(size))); };
+        if (range(local.x, low, high)) {
+            all.left = std::max(all.left, clampPixel(std::floor(centreX + low - 0.5f - margin_), record_.width));
+            all.right = std::min(all.right, clampPixel(std::ceil(centreX + high - 0.5f + margin_), record_.width));
+        }
+        if (range(local.y, low, high)) {
+            all.top = std::max(all.top, clampPixel(std::floor(centreY - high - 0.5f - margin_), record_.height));
+            all.bottom = std::min(all.bottom, clampPixel(std::ceil(centreY - low - 0.5f + margin_), record_.height));
+        }
+        if (all.left > all.right || all.top > all.bottom) return std::nullopt;
+        return all;
+    }
+
+    uint64_t draw(const Photon& photon, float radius, const Footprint& area, int firstRow, int lastRow) const {
+        const TransportSettings& transport = scene_.transport;
+        const Vec3f offset = photon.position - record_.origin;
+        int frame = 0;
+        if (!gate_.steadyState) {
+            const Vec3d way(double(photon.position.x) - double(record_.origin.x),
+                            double(photon.position.y) - double(record_.origin.y),
+                            double(photon.position.z) - double(record_.origin.z));
+            const double cameraTime = transport.cameraUnwarped ? 0.0 : way.length() / double(scene_.cameraRegion.speed);
+            frame = gate_.frameOf(photon.time + cameraTime);
+            if (frame < 0) return 0;
+        }
+        const Medium& medium = scene_.media[size_t(photon.medium)];
+        const float g = medium.phase.g();
+        const bool rayleigh = std::holds_alternative<Rayleigh>(medium.phase.model);
+        const Rgb power = photon.power * (scale_ * 3.0f * InvPi / (radius * radius));
+        const Spot spot{
+            photon,           medium, offset, power, 1.0f / (radius * radius), frame, g, medium.isGrey() && !rayleigh,
+            medium.sigmaT().x};
+        uint64_t gathered = 0;
+        for (const StraightPiece& piece : record_.pieces)
+            for (int y = std::max(area.top, firstRow); y <= std::min(area.bottom, lastRow); ++y)
+                gathered += drawRow(spot, piece, y, area.left, area.right);
+        return gathered;
+    }
+
+  private:
+    struct Spot {
+        const Photon& photon;
+        const Medium& medium;
+        Vec3f offset;
+        Rgb power; ///< with the kernel's constant
+        float inverseSquaredRadius;
+        int frame;
+        float g;
+        bool simple; ///< grey, isotropic or Henyey-Greenstein: a register at a time
+        float sigmaT;
+    };
+
+    uint64_t drawRow(const Spot& spot, const StraightPiece& piece, int y, int left, int right) const {
+        const size_t row = size_t(y) * size_t(record_.width);
+        uint64_t gathered = 0;
+        alignas(64) float along[Lanes], weight[Lanes];
+        for (int x = left; x <= right; x += Lanes) {
+            const size_t first = row + size_t(x);
+            const int count = std::min(Lanes, right - x + 1);
+            if (first + Lanes > record_.x.size()) return gathered + drawSingly(spot, piece, y, x, right);
+            const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
+            const Batch dx = load(record_.x), dy = load(record_.y), dz = load(record_.z), start = load(piece.start);
+            const Vec3f& o = spot.offset;
+            const Batch t = dx * o.x + dy * o.y + dz * o.z;
+            // Distance by the part of the offset across the ray: no difference of squares.
+            const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
+            const Batch part = 1.0f - (px * px + py * py + pz * pz) * spot.inverseSquaredRadius;
+            const auto inside = part > 0.0f && t > start && t <= load(piece.end);
+            if (!xsimd::any(inside)) continue;
+            Batch value = part * part;
+            if (spot.simple) {
+                value = value * xsimd::exp((start - t) * spot.sigmaT) * phase(spot, dx, dy, dz);
+            }
+            xsimd::select(inside, value, Batch(0.0f)).store_aligned(weight);
+            t.store_aligned(along);
+            for (int lane = 0; lane < count; ++lane)
+                if (weight[lane] > 0.0f) gathered += add(spot, piece, y, x + lane, along[lane], weight[lane]);
+        }
+        return gathered;
+    }
+    /// Henyey-Greenstein between the photon's direction and the way back along the rays.
+    static Batch phase(const Spot& spot, const Batch& dx, const Batch& dy, const Batch& dz) {
+        const float g = spot.g;
+        if (g == 0.0f) return Batch(0.25f * InvPi);
+        const Vec3f& w = spot.photon.direction;
+        const Batch cosine = -(dx * w.x + dy * w.y + dz * w.z);
+        const Batch d =
+            xsimd::max(1.0f + g * g - 2.0f * g * cosine, Batch((1.0f - std::abs(g)) * (1.0f - std::abs(g))));
+        return (1.0f - g * g) * 0.25f * InvPi / (d * xsimd::sqrt(d));
+    }
+    uint64_t drawSingly(const Spot& spot, const StraightPiece& piece, int y, int left, int right) const {
+        uint64_t gathered = 0;
+        for (int x = left; x <= right; ++x) {
+            const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
+            const Vec3f direction(record_.x[pixel], record_.y[pixel], record_.z[pixel]);
+            const float t = spot.offset.dot(direction);
+            const float part = 1.0f - (spot.offset - direction * t).length2() * spot.inverseSquaredRadius;
+            if (!(part > 0.0f) || !(t > piece.start[pixel]) || t > piece.end[pixel]) continue;
+            float value = part * part;
+            if (spot.simple)
+                value *= std::exp((piece.start[pixel] - t) * spot.sigmaT) *
+                         spot.medium.phase.eval(spot.photon.direction, -direction);
+            gathered += add(spot, piece, y, x, t, value);
+        }
+        return gathered;
+    }
+    uint64_t add(const Spot& spot, const StraightPiece& piece, int y, int x, float along, float value) const {
+        const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
+        if (piece.medium[pixel] != spot.photon.medium) return 0;
+        const int interactions = int(piece.interactions[pixel]) + int(spot.photon.bounce);
+        if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return 0;
+        Rgb radiance = spot.power * piece.throughput[pixel] * value;
+        if (!spot.simple) {
+            const Vec3f back(-record_.x[pixel], -record_.y[pixel], -record_.z[pixel]);
+            radiance = radiance * spot.medium.transmittance(along - piece.start[pixel]) *
+                       spot.medium.phase.eval(spot.photon.direction, back);
+        }
+        film_.passPixel(spot.frame, x, y) += radiance;
+        return 1;
+    }
+
+    const Scene& scene_;
+    TimeGate gate_;
+    const SensorRecord& record_;
+    const std::vector<Photon>& photons_;
+    const std::vector<float>& radii_;
+    float scale_;
+    Film& film_;
+    Frame frame_;
+    float margin_, pixelsPerSlope_;
+};
+
+} // namespace
+
+uint64_t splatPhotons(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+                      const std::vector<float>& radii, double scale, Film& film) {
+    const Splatter splatter(scene, gate, record, store, radii, scale, film);
+    const size_t bands = size_t((record.height + BandRows - 1) / BandRows);
+    std::vector<std::optional<Footprint>> footprints(store.photons.size());
+    tbb::parallel_for(size_t(0), footprints.size(), [&](size_t i) {
+        footprints[i] = splatter.footprint(store.photons[i], radii[radii.size() == 1 ? 0 : i]);
+    });
+    // Photons by band, in their own order: the sums do not depend on the threads.
+    std::vector<std::vector<uint32_t>> byBand(bands);
+    for (size_t i = 0; i < footprints.size(); ++i)
+        if (footprints[i])
+            for (int band = footprints[i]->top / BandRows; band <= footprints[i]->bottom / BandRows; ++band)
+                byBand[size_t(std::clamp(band, 0, int(bands) - 1))].push_back(uint32_t(i));
+    std::vector<uint64_t> gathered(bands, 0);
+    tbb::parallel_for(size_t(0), bands, [&](size_t band) {
+        const int first = int(band) * BandRows, last = std::min(first + BandRows, record.height) - 1;
+        for (const uint32_t i : byBand[band])
+            gathered[band] +=
+                splatter.draw(store.photons[i], radii[radii.size() == 1 ? 0 : i], *footprints[i], first, last);
+    });
+    uint64_t total = 0;
+    for (const uint64_t count : gathered) total += count;
+    return total;
+}
+
+} // namespace tungsten::photon

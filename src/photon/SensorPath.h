@@ -1,0 +1,58 @@
+#pragma once
+// A camera path of the sensor pass: straight through forward surfaces and along specular lobes. What is done on the way
+// is a visitor's: gathering photons, or recording where photons are wanted.
+
+#include "tungsten/scene/Interaction.h"
+
+namespace tungsten::photon {
+
+/// Where a camera path has got to.
+struct SensorState {
+    Ray ray;
+    Region region;
+    Rgb throughput{1.0f};
+    double time = 0.0; ///< of flight from the camera to the ray's origin
+    int interactions = 0;
+    bool folded = false; ///< a mirror or refraction lies behind
+};
+
+/// Follows the path from `state`. `specular`: along specular lobes too, not only straight on. The visitor has
+///   segment(state, length): the ray ahead up to `length`, possibly infinite, in state.region
+///   surface(state, interaction): the end of the segment; the throughput includes the way there, the time does not
+///   escaped(state)
+/// Returns the number of rays.
+template <typename Visitor>
+uint64_t followSensorPath(const Scene& scene, SensorState state, bool specular, Sampler& sampler, Visitor&& visitor) {
+    uint64_t rays = 0;
+    while (state.interactions < scene.transport.maxBounces) {
+        ++rays;
+        const auto hit = scene.geometry->intersect(state.ray);
+        const float length = hit ? hit->t : Infinity;
+        visitor.segment(state, length);
+        if (const Medium* medium = scene.medium(state.region))
+            state.throughput = state.throughput * medium->transmittance(length);
+        if (!hit) {
+            visitor.escaped(state);
+            return rays;
+        }
+        if (isBlack(state.throughput)) return rays;
+        const SurfaceInteraction surface = makeInteraction(scene, *hit, state.ray.direction);
+        visitor.surface(state, surface);
+        state.time += double(length) / double(state.region.speed);
+        ++state.interactions;
+        const LobeMask followed = specular ? lobe::Specular | lobe::Forward : lobe::Forward;
+        const BsdfRandom random{sampler.next2D(), sampler.next1D()};
+        const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance, followed), surface.wi, random);
+        if (!sample) return rays;
+        const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
+        if (sample->lobe != lobe::Forward && !surface.consistent(direction, scene.transport.consistencyChecks))
+            return rays;
+        state.folded = state.folded || sample->lobe != lobe::Forward;
+        state.throughput = state.throughput * sample->weight;
+        state.region = regionBeyond(*surface.primitive, *hit, direction, state.region);
+        state.ray = Ray{hit->position, direction, scene.rayEpsilon};
+    }
+    return rays;
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,84 @@
+// Every method shows the same image on every scene, and the closed form where there is one.
+
+#include "support/AgreementScenes.h"
+#include "support/SingleScattering.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::test {
+namespace {
+
+std::string identifier(std::string name) {
+    for (char& c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+    return name;
+}
+
+/// A comparison that noise or bias could not have hidden a wrong value from.
+void expectAgreement(const BlockMeans& method, const BlockMeans& reference) {
+    const Agreement agreement = compare(method, reference);
+    EXPECT_LE(agreement.score(), 1.0) << agreement;
+    EXPECT_LT(agreement.wholeError, 0.04) << "too noisy to be a proof: " << agreement;
+    EXPECT_LT(agreement.shrink, 0.08) << "too large a radius to be a proof: " << agreement;
+}
+
+class MethodsAgree : public testing::TestWithParam<AgreementScene> {};
+
+TEST_P(MethodsAgree, WithThePathTracer) {
+    const std::vector<Method> methods = methodsUnderTest();
+    const BlockMeans reference = renderBlocks(GetParam(), methods.front());
+    ASSERT_GT(channelMean(reference.whole(0)), 0.0);
+    for (size_t i = 1; i < methods.size(); ++i) {
+        if (GetParam().steadyState && !methods[i].steadyState) continue;
+        SCOPED_TRACE(methods[i].name);
+        expectAgreement(renderBlocks(GetParam(), methods[i]), reference);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, MethodsAgree, testing::ValuesIn(agreementScenes()),
+                         [](const auto& instance) { return identifier(instance.param.name); });
+
+class ClosedForms : public testing::TestWithParam<PulsesInFog> {};
+
+TEST_P(ClosedForms, MatchEveryMethod) {
+    constexpr int Side = 24;
+    const AgreementScene scene = builtScene(GetParam().name, sceneJson(GetParam()), 0.1, ClosedFormEffort);
+    const BlockMeans exact = closedForm(GetParam(), Side);
+    for (const Method& method : methodsUnderTest()) {
+        SCOPED_TRACE(method.name);
+        expectAgreement(renderBlocks(scene, method), exact);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(SingleScattering, ClosedForms, testing::ValuesIn(singleScatteringCases()),
+                         [](const auto& instance) { return identifier(instance.param.name); });
+
+/// Block means of the sum over the frames of radiance times width.
+BlockMeans summedOverFrames(const BlockMeans& sequence, double width) {
+    BlockMeans sum(1, sequence.blocks);
+    for (int block = 0; block < sequence.blocks; ++block)
+        for (int frame = 0; frame < sequence.frames; ++frame) {
+            const size_t from = sequence.index(frame, block), to = size_t(block);
+            sum.mean[to] += sequence.mean[from] * width;
+            sum.shrink[to] += sequence.shrink[from] * width;
+            // Frames share paths: at worst errors add up.
+            sum.error[to] += sequence.error[from] * width;
+        }
+    return sum;
+}
+
+TEST(Sequence, FramesSumToTheSteadyStateOfThePathTracer) {
+    const std::vector<Method> methods = methodsUnderTest();
+    Method independent = methods.front();
+    independent.seed = 77;
+    const BlockMeans steady = renderBlocks(fogInSteadyState(), independent);
+    for (const Method& method : methods) {
+        SCOPED_TRACE(method.name);
+        const BlockMeans frames = renderBlocks(fogSequence(), method);
+        EXPECT_EQ(frames.frames, 20);
+        expectAgreement(summedOverFrames(frames, SequenceFrameWidth), steady);
+    }
+}
+
+} // namespace
+} // namespace tungsten::test

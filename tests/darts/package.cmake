@@ -1,0 +1,42 @@
+# Installs the sampling library to temporary folders, once as a project of its own and once as a component of this build,
+# and builds and runs the example against each.
+#   cmake -DHOST_BUILD=... -DLIBRARY=<src/darts> -DWORK=... -DGENERATOR=... -DCOMPILER=... -P package.cmake
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT code EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${code}): ${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(configure_and_build source build)
+  run(${CMAKE_COMMAND} -S ${source} -B ${build} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+    -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror" ${ARGN})
+  run(${CMAKE_COMMAND} --build ${build})
+endfunction()
+
+function(run_example prefix)
+  # Found here and nowhere else.
+  configure_and_build(${WORK}/example ${prefix}-example -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
+  run(${prefix}-example/darts-example)
+  if(NOT output MATCHES "connection lobe: 0\\.[0-9]+   EDA table: 0\\.[0-9]+")
+    message(FATAL_ERROR "the example printed:\n${output}")
+  endif()
+  file(GLOB_RECURSE installed RELATIVE ${prefix} ${prefix}/*)
+  foreach(file ${installed})
+    if(NOT file MATCHES "^(include/darts/[A-Za-z0-9]+\\.h|lib/libdarts\\.a|lib/cmake/darts/[-A-Za-z]+\\.cmake)$")
+      message(FATAL_ERROR "installed what is not the library's: ${file}")
+    endif()
+  endforeach()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+file(COPY ${LIBRARY}/example DESTINATION ${WORK}) # out of the tree, whose headers must not be found
+configure_and_build(${LIBRARY} ${WORK}/library)
+run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/alone)
+run_example(${WORK}/alone)
+run(${CMAKE_COMMAND} --install ${HOST_BUILD} --component darts --prefix ${WORK}/component)
+run_example(${WORK}/component)
+file(REMOVE_RECURSE ${WORK})

@@ -1,0 +1,206 @@
+#!/usr/bin/python3
+"""The study's command from outside: renders a tiny scene with the built renderer, named by the environment's TUNGSTEN."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+PROJECT = Path(__file__).resolve().parents[2]
+STUDY = PROJECT / "benchmarks/study/study.py"
+TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
+sys.path.insert(0, str(STUDY.parent))
+
+import measures  # noqa: E402
+from images import read_exr, read_pfm  # noqa: E402
+from results import Summary  # noqa: E402
+from runs import call, plan  # noqa: E402
+from study_file import Method, PublishedFigures, Scene, StudyError, load_study  # noqa: E402
+
+SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
+SIZE = 32
+
+
+def render(folder, name, *options):
+    subprocess.run([TUNGSTEN, "--quiet", "-t", "2", "--resolution", f"{SIZE}x{SIZE}", "-d", folder, "-o", "reference.png", "-e",
+                    name, "--set", "integrator.type=path_tracer", *options, SCENE], check=True)
+
+
+class TinyStudy(unittest.TestCase):
+    """One scratch folder with a reference, a study and its results for all tests, which only look at them."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.scratch.name)
+        render(cls.folder, "reference.exr", "--spp", "2000", "-s", "1000")
+        points = ["integrator.photon_count=30000", "integrator.volume_photon_count=15000"]
+        cls.study = {
+            "title": "Tiny", "baseline": "paths", "seconds": 0.3, "block": 4,
+            "scenes": [{"name": "fog", "path": str(SCENE), "resolution": [SIZE, SIZE], "reference": str(cls.folder / "reference.exr"),
+                        "gate": [5.45, 5.75], "set": {"points": points},
+                        "published": {"source": "invented", "seconds": 1, "threads": 1, "rows": [{"method": "paths", "std": 2.0}]}}],
+            "methods": [{"name": "points", "set": []}, {"name": "paths", "set": ["integrator.type=path_tracer"]},
+                        {"name": "wrong", "set": ["integrator.photon_count=-1"]},
+                        {"name": "unknown", "set": ["integrator.no_such_field=1"]}]}
+        cls.first = cls.call()
+        cls.report = (cls.folder / "work/report.md").read_text()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @classmethod
+    def call(cls, *options):
+        (cls.folder / "tiny.json").write_text(json.dumps(cls.study))
+        return subprocess.run([sys.executable, STUDY, cls.folder / "tiny.json", "--work", cls.folder / "work", "--tungsten",
+                               TUNGSTEN, *options], capture_output=True, text=True)
+
+    def folder_of(self, method, seed=1):
+        return self.folder / "work/runs/fog" / method / f"0.3s-seed{seed}"
+
+    def test_report(self):
+        self.assertEqual(self.first.returncode, 1, self.first.stderr)  # two methods fail
+        report = self.report
+        self.assertIn("## Failed runs (6)", report)
+        self.assertIn("integrator.photon_count", report)  # the renderer's own message
+        self.assertIn("no_such_field", report)
+        for method in ("points", "paths"):
+            self.assertIn(f"| {method} | 3 |", report)
+        self.assertNotIn("| wrong |", report)
+        self.assertNotIn("nan", report.replace("non-finite", ""))
+        for image in ("fog-pictures-1.png", "fog-gain-0.3s.png"):
+            self.assertIn(f"({image})", report)
+            self.assertEqual((self.folder / "work" / image).read_bytes()[:4], b"\x89PNG")
+
+    def test_figures(self):
+        """The noise as read here against the renderer's own statistics; the unbiased method against its reference."""
+        for method in ("points", "paths"):
+            stats = json.loads((self.folder_of(method) / "stats.json").read_text())
+            layers = read_exr(self.folder_of(method) / "image.exr")
+            error = np.sqrt(np.mean(layers["stderr"] ** 2)) / layers[""].mean()
+            self.assertGreater(error, 0)
+            self.assertAlmostEqual(error / stats["relative standard error"], 1, delta=1e-4)
+        reference = read_exr(self.folder / "reference.exr")
+        mean, seeds = measures.grey(reference[""]).mean(), range(1, 4)
+        renders = [read_exr(self.folder_of("paths", seed) / "image.exr") for seed in seeds]
+        difference = np.mean([layers[""].mean() for layers in renders]) / mean - 1
+        variance = measures.relative_std(reference["stderr"], mean) ** 2 \
+            + sum(measures.relative_std(layers["stderr"], mean) ** 2 for layers in renders) / len(seeds) ** 2
+        self.assertLess(abs(difference), 5 * np.sqrt(variance / SIZE**2))
+
+    def test_goes_on_and_repeats_nothing(self):
+        files = [self.folder_of(method, seed) / "run.json" for method in ("points", "wrong") for seed in (1, 2, 3)]
+        before = [file.stat().st_mtime_ns for file in files]
+        again = self.call("--seeds", "4", "--methods", "points; wrong")
+        self.assertIn("6 of 8 runs are already there", again.stdout)
+        self.assertIn("[2/2]", again.stdout)
+        self.assertEqual(before, [file.stat().st_mtime_ns for file in files])
+        self.assertTrue((self.folder_of("points", 4) / "image.exr").exists())
+        self.assertEqual(self.call("report").returncode, 1)
+        self.assertEqual(self.call("report", "--methods", "points; paths").returncode, 0)
+
+    def test_interrupted_runs_leave_no_result(self):
+        work = self.folder / "interrupted"
+        process = subprocess.Popen([sys.executable, STUDY, self.folder / "tiny.json", "--seconds", "600", "--methods", "points",
+                                    "--work", work, "--tungsten", TUNGSTEN],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while not list(work.glob("runs/fog/points/*.partial")) and process.poll() is None:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("interrupted", process.communicate(timeout=60)[1])
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(list(work.glob("runs/*/*/*/run.json")), [])
+
+    def test_peak_memory_is_the_renderers_own(self):
+        """A child of a large process may not inherit its peak: compared with what Python alone reports of itself."""
+        ask = "import resource; print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+        ballast = np.ones(20_000_000)  # 160 MB
+        peak = int(call([sys.executable, "-c", ask], 60)[1])
+        self.assertLess(1024 * peak, ballast.nbytes / 2)
+
+    def test_check_names_what_the_renderer_refuses(self):
+        checked = self.call("check")
+        self.assertEqual(checked.returncode, 1)
+        self.assertIn("good     fog, points", checked.stdout)
+        self.assertIn("refused  fog, wrong", checked.stdout)
+        self.assertIn("refused  fog, unknown", checked.stdout)
+
+    def test_exr_holds_what_pfm_does(self):
+        render(self.folder, "two.exr", "--spp", "2")
+        render(self.folder, "two.pfm", "--spp", "2")
+        np.testing.assert_array_equal(read_exr(self.folder / "two.exr")[""], read_pfm(self.folder / "two.pfm"))
+
+
+class Summaries(unittest.TestCase):
+    def test_gain_is_at_equal_time(self):
+        """A method that ran four times as long and has half the noise is as good as the other."""
+        scene = Scene("s", Path(), (1, 1), Path(), published=PublishedFigures("invented", 5, 2, [{"method": "m", "std": 0.6}]))
+        long = Summary(scene, Method("m", published="m"), 1, wall=8.0, cpu=10.0, std=0.5)
+        short = Summary(scene, Method("n", published="n"), 1, wall=2.0, cpu=5.0, std=1.0)
+        self.assertAlmostEqual(long.gain_over(short), 1)
+        self.assertAlmostEqual(short.gain_over(long), 1)
+        self.assertAlmostEqual(long.gain_over(short, at_equal_cpu=True), 2)
+        self.assertAlmostEqual(long.gain_over_published(), 1.44)
+        self.assertIsNone(short.gain_over_published())
+        short.std, short.std_spread = None, 2.0  # one pass only: the seeds' spread stands in
+        self.assertAlmostEqual(long.gain_over(short), 4)
+
+
+class StudyFiles(unittest.TestCase):
+    def load(self, study):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "reference.pfm").touch()
+            for scene in study["scenes"]:
+                scene.setdefault("reference", str(Path(folder) / "reference.pfm"))
+            file = Path(folder) / "study.json"
+            file.write_text(json.dumps(study))
+            return load_study(file, PROJECT)
+
+    def study(self, **changes):
+        scenes = [{"name": name, "path": "data/scenes/cornell-fog/scene.json", "resolution": [8, 8]} for name in ("a", "b")]
+        return {"scenes": scenes, "methods": [{"name": "m"}, {"name": "n"}, {"name": "o"}], **changes}
+
+    def test_runs_are_interleaved(self):
+        runs = plan(self.load(self.study()), Path("work"))
+        self.assertEqual(len(runs), 2 * 3 * 3)
+        order = [(run.seed, run.scene.name + run.method.name) for run in runs]
+        self.assertEqual(order[:6], [(1, name) for name in ("am", "an", "ao", "bm", "bn", "bo")])
+        self.assertEqual(order[6:12], [(2, name) for name in ("bo", "bn", "bm", "ao", "an", "am")])
+
+    def test_bases_and_sweeps(self):
+        definitions = {"methods": [{"name": "base", "set": ["x=1"], "published": "p"},
+                                   {"name": "derived", "base": "base", "set": ["x=2"]}]}
+        sweep = {"parameter": "size", "set": ["s={0}", "t={1}"], "methods": ["derived"], "values": {"a": [[1, 2], [3, 4]]}}
+        study = self.load(self.study(definitions=definitions, methods=["base"], sweeps=[sweep]))
+        self.assertEqual([m.name for m in study.methods], ["base", "derived, size 1", "derived, size 3"])
+        swept = study.methods[2]
+        self.assertEqual((swept.overrides, swept.published, swept.swept), (("x=1", "x=2", "s=3", "t=4"), "p", ("size", 3, "derived")))
+        self.assertEqual([len(study.methods_of(scene)) for scene in study.scenes], [3, 1])
+
+    def test_mistakes_are_named(self):
+        for change, message in (({"methods": ["nobody"]}, "'nobody' is not defined"), ({"sceens": []}, "unknown field 'sceens'"),
+                                ({"seeds": 0}, "'seeds' is a whole number"), ({"baseline": "z"}, "baseline 'z'"),
+                                ({"methods": [{"name": "m"}, {"name": "m"}]}, "same name"), ({"seconds": -1}, "positive"),
+                                ({"methods": [{"name": "m", "scenes": ["c"]}]}, "not compared")):
+            with self.assertRaisesRegex(StudyError, message):
+                self.load(self.study(**change))
+
+    def test_studies_that_ship(self):
+        if not (PROJECT / "../shared/scenes").is_dir():
+            self.skipTest("the scenes by others are not there")
+        for file in sorted((STUDY.parent / "studies").glob("*.json")):
+            study = load_study(file, PROJECT)
+            self.assertEqual(study.seeds, 3)
+            plan(study, Path("work"))
+
+
+if __name__ == "__main__":
+    unittest.main()
