@@ -1,6 +1,22 @@
 #include "photon/ArrivalTest.h"
 
+#include "darts/Ellipse.h"
+
 namespace tungsten::photon {
+
+namespace {
+
+/// Where the path from `position` along `direction` and then straight to `target` is `length` long; 0 if it always is
+/// longer.
+double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec3d& target, double length) {
+    const Vec3d toTarget = target - position;
+    const double distance = toTarget.length();
+    if (!(length > distance)) return 0.0;
+    const double h = distance > 0.0 ? 0.5 * (direction - toTarget / distance).length2() : 0.0;
+    return darts::Ellipse<double>{distance, length - distance, h}.firstLeg();
+}
+
+} // namespace
 
 ArrivalTest::ArrivalTest(const Scene& scene, const EffectPlan& plan)
     : gate_(scene.transport.gate), unwarped_(scene.transport.cameraUnwarped),
@@ -33,6 +49,29 @@ bool ArrivalTest::mayCount(const Vec3f& position, double time) const {
 
 bool ArrivalTest::seenStraight(const Vec3f& position, double time) const {
     return insideGate(soonestArrival(position, time), true);
+}
+
+FlightPart ArrivalTest::part(const Vec3f& position, const Vec3f& direction, double time, double speed,
+                             bool testStart) const {
+    if (gate_.steadyState) return {0.0, std::numeric_limits<double>::infinity()};
+    const double tolerance = 1e-6 * std::abs(gate_.end());
+    const double untilStart = gate_.start - tolerance - time, untilEnd = gate_.end() + tolerance - time;
+    if (unwarped_) return {std::max(untilStart * speed, 0.0), untilEnd * speed};
+    const Vec3d from(position.x, position.y, position.z), along(direction.x, direction.y, direction.z);
+    const auto distance = [&](double duration) {
+        return distanceOfLength(from, along, camera_, duration * highestSpeed_ + slack_);
+    };
+    // The flight alone ends it where the way to the camera is unknown, and where it is slower than the highest speed.
+    const double end = std::isinf(slack_) ? untilEnd * speed : std::min(distance(untilEnd), untilEnd * speed);
+    return {testStart ? distance(untilStart) : 0.0, end};
+}
+
+FlightPart ArrivalTest::countingPart(const Vec3f& position, const Vec3f& direction, double time, double speed) const {
+    return part(position, direction, time, speed, directView_);
+}
+
+FlightPart ArrivalTest::straightPart(const Vec3f& position, const Vec3f& direction, double time, double speed) const {
+    return part(position, direction, time, speed, true);
 }
 
 bool ArrivalTest::mayContinue(const Vec3f& position, double time) const {

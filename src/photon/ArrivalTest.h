@@ -6,6 +6,11 @@
 
 namespace tungsten::photon {
 
+/// Distances along a flight, start < end unless empty.
+struct FlightPart {
+    double start, end;
+};
+
 /// Exact tests by time of flight: what they reject can contribute to no pixel of any frame.
 class ArrivalTest {
   public:
@@ -22,10 +27,20 @@ class ArrivalTest {
     /// With straightTimesKnown: a sensor path without mirror or refraction can see this deposit inside the gate.
     [[nodiscard]] bool seenStraight(const Vec3f& position, double time) const;
 
+    /// The part of a flight, from `position` at `time` with `speed`, on which a deposit mayCount: an interval, since
+    /// the arrival never falls along a flight. Holds a little more than that part, never less.
+    [[nodiscard]] FlightPart countingPart(const Vec3f& position, const Vec3f& direction, double time,
+                                          double speed) const;
+    /// The part that is seenStraight.
+    [[nodiscard]] FlightPart straightPart(const Vec3f& position, const Vec3f& direction, double time,
+                                          double speed) const;
     /// Tests against this gate from now on instead of the scene's.
     void setGate(const TimeGate& gate) { gate_ = gate; }
 
   private:
+    /// With or without the gate's start.
+    [[nodiscard]] FlightPart part(const Vec3f& position, const Vec3f& direction, double time, double speed,
+                                  bool testStart) const;
     [[nodiscard]] bool insideGate(double arrival, bool testStart) const;
     [[nodiscard]] double soonestArrival(const Vec3f& position, double time) const;
 

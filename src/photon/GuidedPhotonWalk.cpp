@@ -36,10 +36,9 @@ float controlVertexShare(float controlVertexPdf, float sigmaT, float distance) {
 
 GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance,
                                    const SurfaceConnections* connections, Sampler sampler, uint64_t path,
-                                   DepositList& surface, DepositList& volume,
-                                   std::vector<PixelContribution>& contributions, WalkCounters& counters)
-    : PhotonWalk(context, sampler, surface, volume, counters), guidance_(guidance), connections_(connections),
-      contributions_(contributions), gate_(guidance.gate()) {
+                                   Deposits& deposits, WalkCounters& counters)
+    : PhotonWalk(context, sampler, deposits, counters), guidance_(guidance), connections_(connections),
+      gate_(guidance.gate()) {
     if (guidance.choosesFrames()) aimAtFrame(path);
 }
 
@@ -109,7 +108,7 @@ template <typename Scattering>
 void GuidedPhotonWalk::connectToSurfaces(bool onSurface, const Scattering& scattering) {
     if (!connections_) return;
     connections_->connect({ray_.origin, onSurface, time_, bounce_, region_, power_}, gate_, scattering, sampler_,
-                          contributions_, counters_.rays);
+                          deposits_.contributions, counters_.rays);
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
@@ -173,6 +172,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     ray_.tMax = Infinity;
     const float surface = hit ? hit->t : Infinity;
     if (context_.storeVolume) placeControlVertex(medium, guide, h, surface);
+    if (context_.storeBeams) depositBeam(medium, surface);
 
     const auto random = [this] { return sampler_.next1D(); };
     const darts::DistanceSample step = guide.sampleDistance(residual_, h, surface, darts::vec3(power_), random);
@@ -236,7 +236,8 @@ void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& powe
     if (isBlack(power) || bounce > MostPhotonBounces) return;
     if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
     if (!arrival_->mayCount(position, time)) return;
-    volume_.photons.push_back({time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
+    deposits_.volume.photons.push_back(
+        {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
 }
 
 } // namespace tungsten::photon

@@ -13,8 +13,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     /// `path` is the path's index in the run: frames are chosen in turn.
     /// `connections` may be null.
     GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance, const SurfaceConnections* connections,
-                     Sampler sampler, uint64_t path, DepositList& surface, DepositList& volume,
-                     std::vector<PixelContribution>& contributions, WalkCounters& counters);
+                     Sampler sampler, uint64_t path, Deposits& deposits, WalkCounters& counters);
     void run();
 
   private:
@@ -41,7 +40,6 @@ class GuidedPhotonWalk : private PhotonWalk {
 
     const PhotonGuidance& guidance_;
     const SurfaceConnections* connections_;
-    std::vector<PixelContribution>& contributions_;
     darts::TimeGate gate_;
     darts::Residual residual_;
     darts::Residual reachable_; ///< residual_ with the range that connection_ was drawn from

@@ -29,14 +29,13 @@ std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const d
 PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
     : view_(scene.camera), camera_(scene.camera.position()),
       speed_(double(plan.speedsDiffer ? highestSpeed(scene) : scene.cameraRegion.speed)),
+      slack_(scene.transport.cameraUnwarped ? 0.0 : aperture(scene.camera) / speed_),
       unwarped_(scene.transport.cameraUnwarped) {
     const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
     directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
     const TimeGate& gate = scene.transport.gate;
-    const double slack = unwarped_ ? 0.0 : aperture(scene.camera) / speed_;
-    frames_ = {gate.start, gate.frameWidth, gate.frames};
-    gate_ = {frames_.all().begin - slack, frames_.all().end + slack};
-    choosesFrames_ = gate.frames > 1 && directView_ && straight && slack == 0.0;
+    setGate(gate);
+    choosesFrames_ = gate.frames > 1 && directView_ && straight && slack_ == 0.0;
     for (const Medium& medium : scene.media) {
         guides_.emplace_back();
         if (!medium.scatters()) continue;
@@ -50,6 +49,11 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, 
         guides_.back() = std::make_unique<darts::Guide>(
             settings, darts::Medium{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()});
     }
+}
+
+void PhotonGuidance::setGate(const TimeGate& gate) {
+    frames_ = {gate.start, gate.frameWidth, gate.frames};
+    gate_ = {frames_.all().begin - slack_, frames_.all().end + slack_};
 }
 
 darts::Residual PhotonGuidance::residual(const Vec3f& position, double elapsed, const darts::TimeGate& gate) const {

@@ -36,6 +36,8 @@ class PhotonGuidance {
     [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
     /// The gate of paths that aim at all frames, with the aperture's slack.
     [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
+    /// Aims at this gate from now on (a delta gate's temporal kernel) instead of the scene's.
+    void setGate(const TimeGate& gate);
     [[nodiscard]] const CameraView& view() const { return view_; }
 
   private:
@@ -45,6 +47,7 @@ class PhotonGuidance {
     CameraView view_;
     Vec3f camera_;
     double speed_;
+    double slack_; ///< of arrival times, from the aperture
     bool unwarped_, directView_, choosesFrames_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;

@@ -2,7 +2,6 @@
 
 #include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
-#include "photon/SensorPass.h"
 
 namespace tungsten::photon {
 
@@ -42,11 +41,28 @@ void addContributions(const PhotonMaps& maps, Film& film, Statistics& statistics
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
+struct PhotonIntegrator::StraightStores {
+    PhotonStore points;
+    std::vector<float> radii;
+    std::vector<PhotonBeam> beams;
+};
+
+void PhotonIntegrator::planVolume(EffectPlan& plan) const {
+    const bool beams = settings_.primitive == VolumePrimitive::Beams;
+    const std::string none = "no medium scatters: no volume photon is stored or gathered";
+    if (!beams)
+        return plan.describe("volume photon points", plan.mediumScattering,
+                             plan.mediumScattering ? "a medium scatters" : none);
+    plan.describe("photon beams", plan.mediumScattering,
+                  plan.mediumScattering ? "a medium scatters, volume_photon_type is beams" : none);
+    const bool delta = scene_->transport.gate.delta;
+    plan.describe("temporal kernel", delta,
+                  delta ? "delta gate: a box about it that narrows with the radius" : "the gate has a width, or none");
+}
+
 void PhotonIntegrator::plan(EffectPlan& plan) const {
     const bool surfaces = settings_.includeSurfaces && plan.surfaceScattering;
-    plan.describe("volume photon points", plan.mediumScattering,
-                  plan.mediumScattering ? "a medium scatters"
-                                        : "no medium scatters: no volume photon is stored or gathered");
+    planVolume(plan);
     plan.describe("surface photons", surfaces,
                   surfaces
                       ? "smooth surfaces are gathered"
@@ -85,50 +101,76 @@ std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint3
     return radii;
 }
 
+TimeGate PhotonIntegrator::gate(uint32_t pass) const {
+    const TimeGate& gate = scene_->transport.gate;
+    if (!gate.delta) return gate;
+    const double tau = settings_.temporalRadius * deltaGateFactor(pass, settings_.volumeAlpha);
+    return {false, false, gate.start - tau, 2.0 * tau, 1};
+}
+
+void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
+                                    StraightStores& straight, GatherStructures& structures, Film& film,
+                                    Statistics& statistics) const {
+    std::vector<float> radii;
+    {
+        const StageTimer timer(statistics, "build");
+        radii = volumeRadii(maps.volume, pass);
+        selectStraight(photonPass_->arrival(), maps.volume, radii, straight.points, straight.radii);
+        const TimeGate& gate = structures.gate;
+        if (!structures.splatted || foldedRays_)
+            structures.points = std::make_unique<PointGather>(*scene_, gate, maps.volume, radii);
+        if (!structures.splatted && straight.points.paths > 0)
+            structures.straightPoints = std::make_unique<PointGather>(*scene_, gate, straight.points, straight.radii);
+    }
+    if (!structures.splatted) return;
+    const StageTimer timer(statistics, "splat");
+    const bool all = straight.points.paths == 0;
+    const double width = structures.gate.steadyState ? 1.0 : structures.gate.frameWidth;
+    const uint64_t gathered = splatPhotons(*scene_, structures.gate, record, all ? maps.volume : straight.points,
+                                           all ? radii : straight.radii, double(maps.volume.scale()) / width, film);
+    statistics.add("gathered photons", gathered);
+}
+
+void PhotonIntegrator::buildBeams(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
+                                  GatherStructures& structures) const {
+    const ArrivalTest& arrival = photonPass_->arrival();
+    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
+                                                      : beamRadiusFactor(pass, settings_.alpha);
+    const float radius = settings_.volumeRadius * factor;
+    structures.beams = std::make_unique<BeamGather>(*scene_, structures.gate, maps.beams.beams, radius);
+    if (arrival.directView() || !arrival.straightTimesKnown()) return;
+    straight.beams = straightParts(*scene_, arrival, maps.beams.beams);
+    structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.gate, straight.beams, radius);
+}
+
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     // Without progression every pass looks at the photons of the first.
     PassInfo photons = pass;
     if (!settings_.progressive) photons.index = 0;
-    const bool splat = straightRays_ && pass.samples == 1 && photonPass_->storesVolume();
-    const bool connect = straightRays_ && pass.samples == 1 && settings_.includeSurfaces && photonPass_->guidance() &&
-                         settings_.scheme.connectsSurfaces();
+    const TimeGate passGate = gate(photons.index);
+    const bool recordable = straightRays_ && pass.samples == 1;
+    const bool splat = recordable && photonPass_->storesVolume();
+    const bool connect =
+        recordable && settings_.includeSurfaces && photonPass_->guidance() && settings_.scheme.connectsSurfaces();
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
         const StageTimer timer(statistics, "sensor record");
         record = recordSensorPaths(*scene_, connect, pass, statistics);
-        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, record, pass);
+        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, passGate, record, pass);
     }
     PhotonMaps maps;
     {
         const StageTimer timer(statistics, "photon pass");
+        photonPass_->setGate(passGate);
         maps = photonPass_->trace(photons, connections.get(), statistics);
     }
-    PhotonStore straight;
-    std::vector<float> straightRadii;
-    GatherStructures structures{maps, nullptr, nullptr, nullptr, 0.0f, settings_.gatherCount, settings_.includeSurfaces,
-                                splat};
-    if (!maps.volume.photons.empty()) {
-        const std::vector<float> radii = [&] {
-            const StageTimer timer(statistics, "build");
-            const std::vector<float> all = volumeRadii(maps.volume, photons.index);
-            selectStraight(photonPass_->arrival(), maps.volume, all, straight, straightRadii);
-            if (!splat || foldedRays_) structures.points = std::make_unique<PointGather>(*scene_, maps.volume, all);
-            if (!splat && straight.paths > 0)
-                structures.straightPoints = std::make_unique<PointGather>(*scene_, straight, straightRadii);
-            return all;
-        }();
-        if (splat) {
-            const StageTimer timer(statistics, "splat");
-            const bool all = straight.paths == 0;
-            const TimeGate& gate = scene_->transport.gate;
-            const double scale = double(maps.volume.scale()) / (gate.steadyState ? 1.0 : gate.frameWidth);
-            statistics.add("gathered photons", splatPhotons(*scene_, record, all ? maps.volume : straight,
-                                                            all ? radii : straightRadii, scale, film));
-        }
-    }
+    StraightStores straight;
+    GatherStructures structures{maps, passGate, splat, settings_.includeSurfaces, settings_.gatherCount};
+    if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, straight, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
+        if (!maps.beams.beams.empty()) buildBeams(maps, photons.index, straight, structures);
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
         structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
     }

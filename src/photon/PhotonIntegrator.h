@@ -3,6 +3,7 @@
 
 #include "photon/PhotonPass.h"
 #include "photon/PhotonSettings.h"
+#include "photon/SensorPass.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -18,7 +19,16 @@ class PhotonIntegrator : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
+    /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
+    [[nodiscard]] TimeGate gate(uint32_t pass) const;
+    void planVolume(EffectPlan& plan) const;
     void describeGuidance(EffectPlan& plan) const;
+    /// Photons to pixels, or structures over them; `straight` holds what only straight sensor paths look at.
+    struct StraightStores;
+    void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
+                      GatherStructures& structures, Film& film, Statistics& statistics) const;
+    void buildBeams(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
+                    GatherStructures& structures) const;
     [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
 
     std::shared_ptr<const Scene> scene_;

@@ -14,10 +14,8 @@ constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended i
 /// A pass goes on until vertices have connected so often to surfaces, on average over the points.
 constexpr uint64_t ConnectionsPerPoint = 8;
 
-/// What one batch of consecutive paths deposits, with each path's share.
 struct Batch {
-    DepositList surface, volume;
-    std::vector<PixelContribution> contributions;
+    Deposits deposits;
     WalkCounters counters;
 };
 
@@ -27,34 +25,44 @@ Distribution1D powerDistribution(const Scene& scene) {
     return Distribution1D(powers);
 }
 
-/// Appends the batch path by path until the store is full.
-void append(PhotonStore& store, const DepositList& deposits, uint64_t capacity) {
+/// Appends the deposits path by path until the store is full.
+template <typename Record>
+void append(StoreState& store, std::vector<Record>& records, const std::vector<Record>& deposits,
+            const std::vector<uint32_t>& pathEnds, uint64_t capacity) {
     if (store.full) return;
     size_t start = 0;
-    for (const uint32_t end : deposits.pathEnds) {
-        if (store.photons.size() + (end - start) > capacity) {
+    for (const uint32_t end : pathEnds) {
+        if (records.size() + (end - start) > capacity) {
             store.full = true;
             return;
         }
-        store.photons.insert(store.photons.end(), deposits.photons.begin() + ptrdiff_t(start),
-                             deposits.photons.begin() + ptrdiff_t(end));
+        records.insert(records.end(), deposits.begin() + ptrdiff_t(start), deposits.begin() + ptrdiff_t(end));
         ++store.paths;
         start = end;
     }
 }
 
+void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings) {
+    append(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount);
+    append(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount);
+    append(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount);
+    maps.contributions.insert(maps.contributions.end(), d.contributions.begin(), d.contributions.end());
+}
+
 /// Room for what the first wave lets expect, so that growing does not hold the photons twice.
 void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const PhotonSettings& settings) {
-    uint64_t surface = 0, volume = 0, paths = 0;
+    uint64_t surface = 0, volume = 0, beams = 0, paths = 0;
     for (const Batch& batch : wave) {
-        surface += batch.surface.photons.size();
-        volume += batch.volume.photons.size();
-        paths += batch.surface.pathEnds.size();
+        surface += batch.deposits.surface.photons.size();
+        volume += batch.deposits.volume.photons.size();
+        beams += batch.deposits.beams.beams.size();
+        paths += batch.deposits.surface.pathEnds.size();
     }
     constexpr double Margin = 1.02;
     const double scale = Margin * double(settings.photonCount) / double(std::max<uint64_t>(paths, 1));
     maps.surface.photons.reserve(std::min(settings.photonCount, uint64_t(double(surface) * scale)));
     maps.volume.photons.reserve(std::min(settings.volumePhotonCount, uint64_t(double(volume) * scale)));
+    maps.beams.beams.reserve(std::min(settings.volumePhotonCount, uint64_t(double(beams) * scale)));
 }
 
 } // namespace
@@ -62,7 +70,9 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
     : scene_(scene), settings_(settings), arrival_(scene, plan),
       guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
-      storeVolume_(plan.mediumScattering), storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {
+      storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
+      storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
+      storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     const TimeGate& gate = scene.transport.gate;
     for (int frame = 0; frame < gate.frames; ++frame) {
@@ -71,42 +81,51 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
     }
 }
 
+void PhotonPass::setGate(const TimeGate& gate) {
+    arrival_.setGate(gate);
+    if (guidance_) guidance_->setGate(gate);
+}
+
 PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* connections,
                              Statistics& statistics) const {
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume.full = !storeVolume_;
+    maps.beams.full = !storeBeams_;
     uint64_t traced = 0;
     const uint64_t wanted = connections ? ConnectionsPerPoint * connections->points() : 0;
     const auto finished = [&] {
-        return maps.volume.full && (connections ? maps.contributions.size() >= wanted : maps.surface.full);
+        return maps.volume.full && maps.beams.full &&
+               (connections ? maps.contributions.size() >= wanted : maps.surface.full);
     };
     while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
         std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
-        const WalkContext context{
-            scene_,    settings_,          arrival_,          frameArrivals_,
-            emitters_, !maps.surface.full, !maps.volume.full, connections ? connections->nearField() : 0.0f};
+        const WalkContext context{scene_,
+                                  settings_,
+                                  arrival_,
+                                  frameArrivals_,
+                                  emitters_,
+                                  !maps.surface.full,
+                                  !maps.volume.full,
+                                  !maps.beams.full,
+                                  connections ? connections->nearField() : 0.0f};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
             for (uint64_t path = first; path < last; ++path) {
                 const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
                 if (guidance_)
-                    GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.surface, batch.volume,
-                                     batch.contributions, batch.counters)
+                    GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.deposits, batch.counters)
                         .run();
                 else
-                    PhotonWalk(context, sampler, batch.surface, batch.volume, batch.counters).run();
-                batch.surface.endPath();
-                batch.volume.endPath();
+                    PhotonWalk(context, sampler, batch.deposits, batch.counters).run();
+                batch.deposits.endPath();
             }
         });
         if (traced == 0) reserveStores(maps, batches, settings_);
         for (const Batch& batch : batches) {
-            maps.contributions.insert(maps.contributions.end(), batch.contributions.begin(), batch.contributions.end());
-            append(maps.surface, batch.surface, settings_.photonCount);
-            append(maps.volume, batch.volume, settings_.volumePhotonCount);
+            append(maps, batch.deposits, settings_);
             statistics.add("rays", batch.counters.rays);
             statistics.add("control vertices", batch.counters.controlVertices);
         }
@@ -117,6 +136,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* con
     statistics.add("photons", traced);
     statistics.add("stored surface photons", maps.surface.photons.size());
     statistics.add("stored volume photons", maps.volume.photons.size());
+    statistics.add("photon beams", maps.beams.beams.size());
     return maps;
 }
 

@@ -2,9 +2,9 @@
 // The photon pass: light paths from the emitters, plain or guided, and what they deposit in the stores.
 
 #include "photon/ArrivalTest.h"
+#include "photon/PhotonBeam.h"
 #include "photon/PhotonGuidance.h"
 #include "photon/PhotonSettings.h"
-#include "photon/PhotonStore.h"
 #include "photon/SurfaceConnections.h"
 
 #include "tungsten/render/Integrator.h"
@@ -14,6 +14,7 @@ namespace tungsten::photon {
 /// The stores of one pass.
 struct PhotonMaps {
     PhotonStore surface, volume;
+    BeamStore beams;
     /// Light that vertices sent to pixels at once, by all paths of the pass.
     std::vector<PixelContribution> contributions;
     uint64_t paths = 0;
@@ -29,6 +30,8 @@ class PhotonPass {
     /// photons: the pass ends when the volume store, if any is in use, is full.
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, const SurfaceConnections* connections,
                                    Statistics& statistics) const;
+    /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
+    void setGate(const TimeGate& gate);
     [[nodiscard]] const ArrivalTest& arrival() const { return arrival_; }
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
@@ -42,7 +45,7 @@ class PhotonPass {
     std::unique_ptr<PhotonGuidance> guidance_;
     std::vector<ArrivalTest> frameArrivals_; ///< when light paths aim at single frames
     Distribution1D emitters_;                ///< proportional to power
-    bool storeVolume_, storeSurface_;
+    bool storeVolume_, storeBeams_, storeSurface_;
 };
 
 } // namespace tungsten::photon

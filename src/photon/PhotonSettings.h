@@ -8,14 +8,20 @@
 
 namespace tungsten::photon {
 
+/// What the volume store holds.
+enum class VolumePrimitive { Points, Beams };
+
 struct PhotonSettings {
+    VolumePrimitive primitive = VolumePrimitive::Points;
     uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
-    uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store
+    uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store, points or beams
     uint32_t gatherCount = 20;            ///< nearest surface photons used
     float gatherRadius = 1e30f;           ///< largest distance of a gathered surface photon
-    float volumeRadius = 1e30f;           ///< radius of the point kernel, when fixed
+    float volumeRadius = 1e30f;           ///< radius of the point kernel, when fixed, and of the beam kernel
+    double temporalRadius = 0.0;          ///< half-width of a delta gate's temporal kernel in the first pass
     bool fixedVolumeRadius = false;       ///< false: the radius follows the photons' density
-    bool lowOrderScattering = true;       ///< false: no photon on the first medium vertex after a light or surface
+    bool lowOrderScattering = true;       ///< false: no photon on the first medium vertex after a light or surface, and
+                                          ///< no beam from a light or surface
     bool includeSurfaces = true;          ///< false: no surface photons, no visible emission
     bool progressive = true;
     float alpha = 0.3f;       ///< surface radius reduction

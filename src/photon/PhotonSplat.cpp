@@ -20,9 +20,10 @@ struct Footprint {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const SensorRecord& record, const PhotonStore& store, const std::vector<float>& radii,
-             double scale, Film& film)
-        : scene_(scene), record_(record), photons_(store.photons), radii_(radii), scale_(float(scale)), film_(film),
+    Splatter(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+             const std::vector<float>& radii, double scale, Film& film)
+        : scene_(scene), gate_(gate), record_(record), photons_(store.photons), radii_(radii), scale_(float(scale)),
+          film_(film),
           // Rays leave pixel centres by the filter, whose samples may reach a little beyond its half width.
           margin_(scene.camera.filter.halfWidth() + 0.1f) {
         const Frame frame = scene.camera.toWorld.rotation();
@@ -66,12 +67,12 @@ class Splatter {
         const TransportSettings& transport = scene_.transport;
         const Vec3f offset = photon.position - record_.origin;
         int frame = 0;
-        if (!transport.gate.steadyState) {
+        if (!gate_.steadyState) {
             const Vec3d way(double(photon.position.x) - double(record_.origin.x),
                             double(photon.position.y) - double(record_.origin.y),
                             double(photon.position.z) - double(record_.origin.z));
             const double cameraTime = transport.cameraUnwarped ? 0.0 : way.length() / double(scene_.cameraRegion.speed);
-            frame = transport.gate.frameOf(photon.time + cameraTime);
+            frame = gate_.frameOf(photon.time + cameraTime);
             if (frame < 0) return 0;
         }
         const Medium& medium = scene_.media[size_t(photon.medium)];
@@ -171,6 +172,7 @@ class Splatter {
     }
 
     const Scene& scene_;
+    TimeGate gate_;
     const SensorRecord& record_;
     const std::vector<Photon>& photons_;
     const std::vector<float>& radii_;
@@ -182,9 +184,9 @@ class Splatter {
 
 } // namespace
 
-uint64_t splatPhotons(const Scene& scene, const SensorRecord& record, const PhotonStore& store,
+uint64_t splatPhotons(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
                       const std::vector<float>& radii, double scale, Film& film) {
-    const Splatter splatter(scene, record, store, radii, scale, film);
+    const Splatter splatter(scene, gate, record, store, radii, scale, film);
     const size_t bands = size_t((record.height + BandRows - 1) / BandRows);
     std::vector<std::optional<Footprint>> footprints(store.photons.size());
     tbb::parallel_for(size_t(0), footprints.size(), [&](size_t i) {

@@ -11,8 +11,8 @@ namespace tungsten::photon {
 /// Adds what PointGather would gather along the recorded straight rays to the pass image, times `scale`. Each photon
 /// visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons and a
 /// traversal per ray (benchmarks/micro, gather). `radii`: one per photon, or one for all. Returns the number of photons
-/// gathered, one per pixel and photon.
-uint64_t splatPhotons(const Scene& scene, const SensorRecord& record, const PhotonStore& store,
+/// gathered, one per pixel and photon. `gate` is the pass's.
+uint64_t splatPhotons(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
                       const std::vector<float>& radii, double scale, Film& film);
 
 } // namespace tungsten::photon

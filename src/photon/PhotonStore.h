@@ -21,14 +21,17 @@ static_assert(sizeof(Photon) == 48, "millions are stored: no padding");
 /// Longest light path that a photon's bounce can tell.
 inline constexpr int MostPhotonBounces = 65535;
 
-/// Photons in path order, so the content does not depend on the number of threads. A store takes whole paths: it is
-/// full when the next path no longer fits, and that path is neither kept nor counted.
-struct PhotonStore {
-    std::vector<Photon> photons;
+/// A store takes whole paths: it is full when the next path no longer fits, and that path is neither kept nor counted.
+struct StoreState {
     uint64_t paths = 0; ///< light paths that the content stands for
     bool full = false;
 
     [[nodiscard]] float scale() const { return paths > 0 ? float(1.0 / double(paths)) : 0.0f; }
+};
+
+/// Photons in path order, so the content does not depend on the number of threads.
+struct PhotonStore : StoreState {
+    std::vector<Photon> photons;
 };
 
 } // namespace tungsten::photon

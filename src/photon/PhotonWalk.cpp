@@ -11,9 +11,10 @@ void PhotonWalk::run() {
         const auto hit = scene_.geometry->intersect(ray_);
         if (const Medium* medium = scene_.medium(region_)) {
             const float reach = hit ? hit->t : Infinity;
+            if (medium->scatters() && ++flights_ > medium->maxBounces) return;
+            if (context_.storeBeams && medium->scatters()) depositBeam(*medium, reach);
             const FlightSample flight = sampleFlight(*medium, reach, sampler_);
             power_ = power_ * flight.weight;
-            if (medium->scatters() && ++flights_ > medium->maxBounces) return;
             if (!flight.exited) {
                 if (!scatterInMedium(*medium, flight.distance)) return;
                 continue;
@@ -44,6 +45,12 @@ void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& po
         list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
 }
 
+void PhotonWalk::depositBeam(const Medium& medium, float reach) {
+    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    storeBeam(deposits_.beams, *arrival_, medium,
+              {time_, ray_.origin, ray_.direction, power_, 0.0f, reach, uint16_t(bounce_), int16_t(region_.medium)});
+}
+
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     const Vec3f position = ray_.at(distance);
     time_ += double(distance) / double(region_.speed);
@@ -51,7 +58,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     ++consecutiveMedium_;
     if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
-    if (context_.storeVolume && orderCounts) deposit(volume_, position, power_, region_.medium);
+    if (context_.storeVolume && orderCounts) deposit(deposits_.volume, position, power_, region_.medium);
     sinceVertex_ = 0.0f;
     connectable_ = true;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
@@ -72,7 +79,7 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     // Where vertices connect to surfaces too, photons count for what is near.
     const float nearField = connectable_ ? context_.nearField : 0.0f;
     const float share = nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
-    if (geometric > 0.0f) deposit(surfacePhotons_, hit.position, power_ * (share * shading / geometric), -1);
+    if (geometric > 0.0f) deposit(deposits_.surface, hit.position, power_ * (share * shading / geometric), -1);
     return true;
 }
 

@@ -2,21 +2,14 @@
 // One light path and what it deposits.
 
 #include "photon/ArrivalTest.h"
+#include "photon/Deposits.h"
 #include "photon/PhotonSettings.h"
-#include "photon/PhotonStore.h"
 
 #include "tungsten/scene/Interaction.h"
 
 #include <span>
 
 namespace tungsten::photon {
-
-/// Photons of consecutive paths; pathEnds[i] is where path i's end.
-struct DepositList {
-    std::vector<Photon> photons;
-    std::vector<uint32_t> pathEnds;
-    void endPath() { pathEnds.push_back(uint32_t(photons.size())); }
-};
 
 struct WalkCounters {
     uint64_t rays = 0, controlVertices = 0;
@@ -29,17 +22,16 @@ struct WalkContext {
     const ArrivalTest& arrival;
     std::span<const ArrivalTest> frameArrivals; ///< for paths that aim at single frames
     const Distribution1D& emitters;
-    bool storeSurface, storeVolume;
+    bool storeSurface, storeVolume, storeBeams;
     /// a^2 of SurfaceConnections where light paths also connect to surfaces; else 0.
     float nearField = 0.0f;
 };
 
 class PhotonWalk {
   public:
-    PhotonWalk(const WalkContext& context, Sampler sampler, DepositList& surface, DepositList& volume,
-               WalkCounters& counters)
-        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler),
-          surfacePhotons_(surface), volume_(volume), counters_(counters) {}
+    PhotonWalk(const WalkContext& context, Sampler sampler, Deposits& deposits, WalkCounters& counters)
+        : context_(context), scene_(context.scene), arrival_(&context.arrival), sampler_(sampler), deposits_(deposits),
+          counters_(counters) {}
 
     void run();
 
@@ -50,6 +42,8 @@ class PhotonWalk {
     /// False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
     bool scatterOnSurface(const SurfaceHit& hit) { return arriveOnSurface(hit) && leaveSurface(); }
+    /// The flight ahead, up to `reach`.
+    void depositBeam(const Medium& medium, float reach);
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
@@ -59,8 +53,7 @@ class PhotonWalk {
     const Scene& scene_;
     const ArrivalTest* arrival_;
     Sampler sampler_;
-    DepositList& surfacePhotons_;
-    DepositList& volume_;
+    Deposits& deposits_;
     WalkCounters& counters_;
 
     SurfaceInteraction surface_; ///< where the path is, between arriving and leaving

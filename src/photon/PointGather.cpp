@@ -12,6 +12,7 @@ namespace {
 struct Query {
     RTCIntersectContext context;
     const Scene* scene;
+    const TimeGate* gate;
     const std::vector<Photon>* photons;
     const std::vector<float>* squaredRadii;
     const CameraSegment* segment;
@@ -34,11 +35,11 @@ void evaluate(Query& query, uint32_t index) {
     const int interactions = segment.interactions + photon.bounce;
     if (interactions < transport.minBounces || interactions >= transport.maxBounces) return;
     int frame = 0;
-    if (!transport.gate.steadyState) {
+    if (!query.gate->steadyState) {
         // The photon's own distance to the segment's origin: the exact time of the path through the photon.
         const double cameraTime =
             transport.cameraUnwarped ? 0.0 : segment.time + double(offset.length()) * segment.inverseSpeed;
-        frame = transport.gate.frameOf(photon.time + cameraTime);
+        frame = query.gate->frameOf(photon.time + cameraTime);
         if (frame < 0) return;
     }
     const Medium& medium = query.scene->media[size_t(segment.medium)];
@@ -57,8 +58,9 @@ void filter(const RTCFilterFunctionNArguments* arguments) {
 
 } // namespace
 
-PointGather::PointGather(const Scene& scene, const PhotonStore& store, const std::vector<float>& radii)
-    : scene_(scene), store_(store) {
+PointGather::PointGather(const Scene& scene, const TimeGate& gate, const PhotonStore& store,
+                         const std::vector<float>& radii)
+    : scene_(scene), gate_(gate), store_(store) {
     std::vector<PointWithRadius> points;
     points.reserve(store.photons.size());
     for (size_t i = 0; i < store.photons.size(); ++i)
@@ -69,7 +71,7 @@ PointGather::PointGather(const Scene& scene, const PhotonStore& store, const std
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (store_.photons.empty()) return 0;
-    Query query{{}, &scene_, &store_.photons, &squaredRadii_, &segment, &sums, 0};
+    Query query{{}, &scene_, &gate_, &store_.photons, &squaredRadii_, &segment, &sums, 0};
     rtcInitIntersectContext(&query.context);
     query.context.filter = filter;
     // Embree skips discs that hold or nearly touch the ray's origin: start two radii behind it and test exactly in

@@ -32,8 +32,9 @@ using FrameSums = std::vector<Vec3d>;
 
 class PointGather {
   public:
-    /// `radii` holds one radius per photon, or one for all.
-    PointGather(const Scene& scene, const PhotonStore& store, const std::vector<float>& radii);
+    /// `radii` holds one radius per photon, or one for all. `gate` is the pass's: a delta gate's temporal kernel is a
+    /// narrow box.
+    PointGather(const Scene& scene, const TimeGate& gate, const PhotonStore& store, const std::vector<float>& radii);
 
     /// Adds sum of power K f_p T over the photons near the segment to the frames they fall in. Returns how many were
     /// gathered.
@@ -41,6 +42,7 @@ class PointGather {
 
   private:
     const Scene& scene_;
+    TimeGate gate_;
     const PhotonStore& store_;
     std::vector<float> squaredRadii_;
     std::unique_ptr<EmbreePoints> points_;

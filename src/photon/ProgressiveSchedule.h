@@ -20,5 +20,13 @@ inline float surfaceRadiusFactor(uint32_t pass, float alpha) {
 inline float pointRadiusFactor(uint32_t pass, float volumeAlpha) {
     return float(std::cbrt(radiusScale(pass, double(volumeAlpha))));
 }
+/// Beam radii shrink with gamma(alpha) itself: their kernel has one dimension.
+inline float beamRadiusFactor(uint32_t pass, float alpha) {
+    return float(radiusScale(pass, double(alpha)));
+}
+/// At a delta gate the radius and the half-width of the temporal kernel share gamma(volume_alpha): a square root each.
+inline double deltaGateFactor(uint32_t pass, float volumeAlpha) {
+    return std::sqrt(radiusScale(pass, double(volumeAlpha)));
+}
 
 } // namespace tungsten::photon

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t TileSide = 8;
 
 struct SensorCounters {
-    uint64_t rays = 0, gathered = 0, nonFinite = 0;
+    uint64_t rays = 0, gathered = 0, gatheredBeams = 0, nonFinite = 0;
 };
 
 /// Buffers that a worker reuses from pixel to pixel.
@@ -28,21 +28,13 @@ class SensorGather {
         : scene_(scene), structures_(structures), workspace_(workspace), counters_(counters) {}
 
     void segment(const SensorState& state, float length) {
-        if (!structures_.points || !scene_.medium(state.region) || (structures_.splatted && !state.folded)) return;
-        std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
-        const CameraSegment segment{
-            state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
-            state.interactions, state.region.medium};
-        const bool straight = !state.folded && structures_.straightPoints;
-        const PointGather& points = straight ? *structures_.straightPoints : *structures_.points;
-        const uint64_t gathered = points.gather(segment, workspace_.volume);
-        if (gathered == 0) return;
-        counters_.gathered += gathered;
-        const double scale = double(structures_.maps.volume.scale());
-        const Rgb& t = state.throughput;
-        const Vec3d weight(double(t.x) * scale, double(t.y) * scale, double(t.z) * scale);
-        for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
-            workspace_.sums[frame] += workspace_.volume[frame] * weight;
+        if (!scene_.medium(state.region)) return;
+        if (structures_.points && !(structures_.splatted && !state.folded))
+            gatherVolume(state, length, structures_.points, structures_.straightPoints, structures_.maps.volume.scale(),
+                         counters_.gathered);
+        if (structures_.beams)
+            gatherVolume(state, length, structures_.beams, structures_.straightBeams, structures_.maps.beams.scale(),
+                         counters_.gatheredBeams);
     }
 
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
@@ -60,8 +52,27 @@ class SensorGather {
     }
 
   private:
+    /// Points or beams along the segment; `straight`, if any, while the path has not folded.
+    template <typename Gather>
+    void gatherVolume(const SensorState& state, float length, const std::unique_ptr<Gather>& all,
+                      const std::unique_ptr<Gather>& straight, float storeScale, uint64_t& counter) {
+        std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
+        const CameraSegment segment{
+            state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
+            state.interactions, state.region.medium};
+        const Gather& store = straight && !state.folded ? *straight : *all;
+        const uint64_t gathered = store.gather(segment, workspace_.volume);
+        if (gathered == 0) return;
+        counter += gathered;
+        const double scale = double(storeScale);
+        const Rgb& t = state.throughput;
+        const Vec3d weight(double(t.x) * scale, double(t.y) * scale, double(t.z) * scale);
+        for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
+            workspace_.sums[frame] += workspace_.volume[frame] * weight;
+    }
+
     void add(const Rgb& radiance, double time) {
-        const TimeGate& gate = scene_.transport.gate;
+        const TimeGate& gate = structures_.gate;
         const int frame = gate.steadyState ? 0 : gate.frameOf(time);
         if (frame >= 0)
             workspace_.sums[size_t(frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
@@ -113,7 +124,7 @@ class SensorGather {
 void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
                       Statistics& statistics) {
     const auto width = size_t(scene.camera.resolution.x), height = size_t(scene.camera.resolution.y);
-    const TimeGate& gate = scene.transport.gate;
+    const TimeGate& gate = structures.gate;
     const double scale = 1.0 / (double(pass.samples) * (gate.steadyState ? 1.0 : gate.frameWidth));
     const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {
         std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));
@@ -142,6 +153,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                 renderPixel(int(x), int(y), workspace, counters);
         statistics.add("rays", counters.rays);
         statistics.add("gathered photons", counters.gathered);
+        statistics.add("gathered beams", counters.gatheredBeams);
         statistics.add("non-finite samples", counters.nonFinite);
     });
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The sensor pass: camera rays gather what the photon pass has left.
 
+#include "photon/BeamGather.h"
 #include "photon/NearestPhotons.h"
 #include "photon/PhotonPass.h"
 #include "photon/PointGather.h"
@@ -10,15 +11,18 @@ namespace tungsten::photon {
 /// Structures over one pass's photons, and the pass's radii.
 struct GatherStructures {
     const PhotonMaps& maps;
-    std::unique_ptr<PointGather> points; ///< null when there is no volume photon
+    TimeGate gate;         ///< the pass's: the scene's, or a delta gate's temporal kernel
+    bool splatted = false; ///< straight rays have their volume photons already
+    bool includeSurfaces = true;
+    uint32_t gatherCount = 0;
+    float surfaceRadius = 0.0f;
+    std::unique_ptr<PointGather> points{}; ///< null when there is no volume photon
     /// Those that a straight sensor path can see inside the gate, where sensor paths can also fold; null: `points`
     /// serves both.
-    std::unique_ptr<PointGather> straightPoints;
-    std::unique_ptr<NearestPhotons> surfaces; ///< null when there is no surface photon
-    float surfaceRadius = 0.0f;
-    uint32_t gatherCount = 0;
-    bool includeSurfaces = true;
-    bool splatted = false; ///< straight rays have their volume photons already
+    std::unique_ptr<PointGather> straightPoints{};
+    std::unique_ptr<BeamGather> beams{};         ///< null when there is no photon beam
+    std::unique_ptr<BeamGather> straightBeams{}; ///< as straightPoints
+    std::unique_ptr<NearestPhotons> surfaces{};  ///< null when there is no surface photon
 };
 
 /// Adds the image of every frame to the film's pass image.

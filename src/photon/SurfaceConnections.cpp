@@ -4,8 +4,9 @@
 
 namespace tungsten::photon {
 
-SurfaceConnections::SurfaceConnections(const Scene& scene, const SensorRecord& record, const PassInfo& pass)
-    : scene_(scene), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
+SurfaceConnections::SurfaceConnections(const Scene& scene, const TimeGate& frames, const SensorRecord& record,
+                                       const PassInfo& pass)
+    : scene_(scene), frames_(frames), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
     order_.resize(points_.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -81,14 +82,13 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     const int interactions = point.interactions + vertex.bounce + 1 + visibility.crossings;
     if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return;
     const double arrival = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
-    const TimeGate& frames = scene_.transport.gate;
     if (!(arrival >= gate.begin && arrival < gate.end)) return;
-    const int frame = frames.frameOf(arrival);
+    const int frame = frames_.frameOf(arrival);
     if (frame < 0) return;
     const float geometry = 1.0f / (candidate.distance * candidate.distance + nearField_);
     contributions.push_back(
         {point.pixel, frame,
-         scale * scattering * visibility.transmittance * point.throughput * (geometry / float(frames.frameWidth))});
+         scale * scattering * visibility.transmittance * point.throughput * (geometry / float(frames_.frameWidth))});
 }
 
 } // namespace tungsten::photon

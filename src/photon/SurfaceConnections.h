@@ -2,6 +2,7 @@
 // Light that reaches visible surfaces from the vertices of light paths: instead of waiting for photons to hit a surface
 // just in time, vertices look for surface points that the camera sees at the right time.
 
+#include "photon/Deposits.h"
 #include "photon/SensorRecord.h"
 
 #include "darts/ResidualRange.h"
@@ -9,13 +10,6 @@
 #include <array>
 
 namespace tungsten::photon {
-
-/// Light that a pixel receives.
-struct PixelContribution {
-    uint32_t pixel;
-    int32_t frame;
-    Rgb radiance; ///< of one path, averaged over the frame
-};
 
 /// A vertex of a light path that can be connected to.
 struct LightVertex {
@@ -35,7 +29,8 @@ struct LightVertex {
 /// point equally often: a^2 = NearFieldShare (area per sensor point) (points) / (4 pi points tested).
 class SurfaceConnections {
   public:
-    SurfaceConnections(const Scene& scene, const SensorRecord& record, const PassInfo& pass);
+    /// `frames` is the pass's gate.
+    SurfaceConnections(const Scene& scene, const TimeGate& frames, const SensorRecord& record, const PassInfo& pass);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
     /// a^2; 0 when there is no sensor point.
@@ -75,6 +70,7 @@ class SurfaceConnections {
                 std::vector<PixelContribution>& contributions, uint64_t& rays) const;
 
     const Scene& scene_;
+    TimeGate frames_;
     const std::vector<SensorPoint>& points_;
     double speed_;
     float nearField_ = 0.0f, perTested_ = 0.0f;

@@ -66,7 +66,7 @@ TEST(PointGather, LosesNoPhotonNotEvenAtTheOrigin) {
     const Scene scene = fogScene();
     const PhotonStore store = randomStore(20000);
     constexpr float Radius = 0.05f;
-    const PointGather gather(scene, store, {Radius});
+    const PointGather gather(scene, scene.transport.gate, store, {Radius});
     Sampler sampler(4, RandomStream::Test, 0, 0);
     uint64_t total = 0;
     for (int i = 0; i < 400; ++i) {
