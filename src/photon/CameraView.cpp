@@ -16,6 +16,11 @@ CameraView::CameraView(const Camera& camera) : position_(camera.position()), fra
     const float pixel = 2.0f * halfWidth_ / width, reach = (camera.filter.halfWidth() + 1.0f) * pixel;
     marginX_ = halfWidth_ + reach;
     marginY_ = halfHeight_ + reach;
+    // Directions aim wider than a narrow image: across its edge, where their density leaps, a direction's rounding
+    // would mistake many.
+    constexpr float Narrowest = 0.01f;
+    halfWidth_ = std::max(halfWidth_, Narrowest);
+    halfHeight_ = std::max(halfHeight_, Narrowest);
     slantX_ = std::sqrt(1.0f + marginX_ * marginX_);
     slantY_ = std::sqrt(1.0f + marginY_ * marginY_);
 }

@@ -25,7 +25,7 @@ class CameraView {
 
     Vec3f position_;
     Frame frame_;
-    float halfWidth_, halfHeight_; ///< of the image at distance 1
+    float halfWidth_, halfHeight_; ///< of the image at distance 1, widened if narrow
     float marginX_, marginY_;      ///< of the same with the filter's reach
     float slantX_, slantY_;        ///< sqrt(1 + margin^2): a sphere's reach beyond a slanted plane
     float aperture_ = 0.0f;

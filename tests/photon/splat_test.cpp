@@ -1,0 +1,209 @@
+// Splatted photons against gathered ones, and the record of camera paths.
+
+#include "photon/PhotonSplat.h"
+#include "photon/PointGather.h"
+
+#include "tungsten/core/Warp.h"
+
+#include "support/Render.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+struct SplatCase {
+    const char* name;
+    Vec2i resolution;
+    float fov;
+    bool steady, unwarped, radiusEach;
+    size_t pieces;
+};
+
+/// Grey, coloured and Rayleigh fog; a slanted camera.
+Scene foggyScene(const SplatCase& c) {
+    Scene scene;
+    for (int i = 0; i < 3; ++i) {
+        Medium fog;
+        fog.sigmaA = Rgb(0.2f);
+        fog.sigmaS = i == 1 ? Rgb(0.5f, 1.0f, 2.0f) : Rgb(0.7f);
+        if (i < 2) fog.phase.model = HenyeyGreenstein{i == 0 ? 0.4f : -0.6f};
+        if (i == 2) fog.phase.model = Rayleigh{};
+        scene.media.push_back(fog);
+    }
+    scene.transport.minBounces = 2;
+    scene.transport.maxBounces = 6;
+    scene.transport.cameraUnwarped = c.unwarped;
+    scene.cameraRegion.speed = 0.8f;
+    scene.camera.model = Pinhole{c.fov};
+    scene.camera.resolution = c.resolution;
+    const Frame frame(Vec3f(0.4f, -0.3f, 0.8f).normalized());
+    scene.camera.toWorld = {frame.s, frame.t, frame.n, Vec3f(1.0f, 2.0f, 3.0f)};
+    return scene;
+}
+
+/// Photons all around the camera and behind it, many right before the lens.
+PhotonStore photonsAround(const Vec3f& camera) {
+    Sampler sampler(3, RandomStream::Test, 0, 0);
+    PhotonStore store;
+    store.paths = 1;
+    for (int i = 0; i < 8000; ++i) {
+        const float reach = i % 4 == 0 ? 0.3f : 4.0f;
+        const Vec3f position = camera + warp::squareToSphere(sampler.next2D()) * (reach * sampler.next1D());
+        const Vec3f direction = warp::squareToSphere(sampler.next2D());
+        const Rgb power(sampler.next1D(), sampler.next1D(), 1.0f);
+        store.photons.push_back(
+            {double(3.0f * sampler.next1D()), position, direction, power, uint16_t(1 + i % 4), int16_t(i / 4 % 3)});
+    }
+    return store;
+}
+
+SensorRecord randomRecord(const Scene& scene, size_t pieces) {
+    Sampler sampler(4, RandomStream::Test, 0, 0);
+    SensorRecord record;
+    record.width = scene.camera.resolution.x;
+    record.height = scene.camera.resolution.y;
+    record.origin = scene.camera.position();
+    record.pieces.resize(pieces);
+    for (int y = 0; y < record.height; ++y)
+        for (int x = 0; x < record.width; ++x) {
+            const Ray ray = scene.camera.generateRay({x, y}, sampler.next2D(), sampler.next2D());
+            record.x.push_back(ray.direction.x);
+            record.y.push_back(ray.direction.y);
+            record.z.push_back(ray.direction.z);
+            float start = 0.0f;
+            for (StraightPiece& piece : record.pieces) {
+                // Some pixels lack a piece; some never end.
+                const bool none = sampler.next1D() < 0.2f;
+                if (&piece != &record.pieces.front()) start += 0.5f * sampler.next1D();
+                const float end = sampler.next1D() < 0.2f ? Infinity : start + 2.0f * sampler.next1D();
+                piece.start.push_back(none ? 0.0f : start);
+                piece.end.push_back(none ? 0.0f : end);
+                piece.medium.push_back(int16_t(sampler.nextBits() % 3));
+                piece.interactions.push_back(uint16_t(sampler.nextBits() % 3));
+                piece.throughput.emplace_back(sampler.next1D(), 0.5f, 1.0f);
+                if (std::isfinite(end)) start = end;
+            }
+        }
+    return record;
+}
+
+/// What PointGather finds along every recorded piece.
+uint64_t gatherRecord(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+                      const std::vector<float>& radii, Film& film) {
+    const PointGather gather(scene, gate, store, radii);
+    uint64_t gathered = 0;
+    for (const StraightPiece& piece : record.pieces)
+        for (size_t i = 0; i < record.x.size(); ++i) {
+            if (!(piece.end[i] > piece.start[i])) continue;
+            const Vec3f direction(record.x[i], record.y[i], record.z[i]);
+            FrameSums sums(size_t(gate.frames), Vec3d(0.0));
+            gathered += gather.gather({record.origin + direction * piece.start[i], direction,
+                                       piece.end[i] - piece.start[i], double(piece.start[i] / 0.8f), 1.0 / double(0.8f),
+                                       piece.interactions[i], piece.medium[i]},
+                                      sums);
+            for (int frame = 0; frame < gate.frames; ++frame) {
+                const Vec3d& sum = sums[size_t(frame)];
+                film.passPixel(frame, int(i) % record.width, int(i) / record.width) +=
+                    Rgb(float(sum.x), float(sum.y), float(sum.z)) * piece.throughput[i];
+            }
+        }
+    return gathered;
+}
+
+class Splat : public testing::TestWithParam<SplatCase> {};
+
+TEST_P(Splat, AddsWhatGatheringFinds) {
+    const SplatCase& c = GetParam();
+    const Scene scene = foggyScene(c);
+    const PhotonStore store = photonsAround(scene.camera.position());
+    const SensorRecord record = randomRecord(scene, c.pieces);
+    std::vector<float> radii{0.15f};
+    if (c.radiusEach)
+        for (size_t i = 1; i < store.photons.size(); ++i) radii.push_back(0.02f + 0.3f * float(i % 7) / 7.0f);
+    const TimeGate gate = c.steady ? TimeGate{} : TimeGate{false, false, 1.0, 0.7, 4};
+    Film splatted(record.width, record.height, gate.frames), gathered = splatted;
+    splatted.beginPass();
+    gathered.beginPass();
+    const uint64_t count = splatPhotons(scene, gate, record, store, radii, 3.0, splatted);
+    const uint64_t expected = gatherRecord(scene, gate, record, store, radii, gathered);
+    // At the kernel's edge rounding decides.
+    EXPECT_NEAR(double(count), double(expected), 1e-4 * double(expected) + 2.0);
+    EXPECT_GT(expected, 1000u);
+    int lit = 0;
+    for (int frame = 0; frame < gate.frames; ++frame)
+        for (int y = 0; y < record.height; ++y)
+            for (int x = 0; x < record.width; ++x)
+                for (int k = 0; k < 3; ++k) {
+                    const float value = splatted.passPixel(frame, x, y)[k],
+                                right = 3.0f * gathered.passPixel(frame, x, y)[k];
+                    EXPECT_NEAR(value, right, 1e-4f * right + 1e-4f) << x << ' ' << y << ' ' << frame;
+                    if (right > 0.01f) ++lit;
+                }
+    EXPECT_GT(lit, gate.frames * record.width * record.height);
+}
+
+// Beyond the first piece a gather takes a photon's time from the piece's start, which is a detour: no gate there.
+INSTANTIATE_TEST_SUITE_P(Views, Splat,
+                         testing::Values(SplatCase{"Frames", {37, 21}, 60.0f, false, false, false, 1},
+                                         SplatCase{"UnwarpedFrames", {37, 21}, 60.0f, false, true, true, 1},
+                                         SplatCase{"Pieces", {37, 21}, 60.0f, true, false, false, 3},
+                                         SplatCase{"PiecesAndRadii", {16, 40}, 100.0f, true, false, true, 2},
+                                         SplatCase{"Wide", {40, 24}, 160.0f, true, false, false, 1},
+                                         SplatCase{"FewerPixelsThanARegister", {5, 3}, 90.0f, true, false, false, 2},
+                                         SplatCase{"Tele", {48, 32}, 8.0f, true, false, true, 2}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+/// Two clouds and a mirror behind them, in which a wall behind the camera shows.
+constexpr const char* Bench =
+    R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.2, "sigma_s": [0.1, 0.2, 0.3]},
+                                            {"name": "haze", "type": "homogeneous", "sigma_a": 0.1, "sigma_s": 0.4},
+                                            {"name": "ink", "type": "homogeneous", "sigma_a": 0.5}],
+     "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"}, "transform": {"scale": [9, 9, 2]}},
+                    {"type": "cube", "int_medium": "ink", "bsdf": {"type": "forward"}, "transform": {"position": [0, 0, 1.75], "scale": [9, 9, 0.5]}},
+                    {"type": "cube", "int_medium": "haze", "bsdf": {"type": "forward"}, "transform": {"position": [0, 0, 3], "scale": [9, 9, 1]}},
+                    {"type": "cube", "bsdf": {"type": "mirror", "albedo": 0.9}, "transform": {"position": [0, 0, 6], "scale": [8, 8, 2]}},
+                    {"type": "cube", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"position": [0, 0, -10], "scale": [20, 20, 2]}},
+                    {"type": "point", "emission": 1, "transform": {"position": [0, 3, 0]}}],
+     "camera": {"type": "pinhole", "fov": 6, "resolution": [4, 3], "reconstruction_filter": "box",
+                "transform": {"position": [0, 0, -5], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+     "integrator": {"type": "progressive_transient_photon_map", "transient_time_center": 10, "transient_time_width": 1}})";
+
+TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
+    const test::SceneFile file(Bench);
+    const LoadedScene loaded = loadScene(file.path(), {});
+    Statistics statistics;
+    const SensorRecord record = recordSensorPaths(*loaded.scene, true, {0, 0, 1, 1}, statistics);
+    ASSERT_EQ(record.x.size(), 12u);
+    ASSERT_EQ(record.pieces.size(), 2u) << "nothing scatters in the ink, and behind the mirror the ray is not straight";
+    ASSERT_EQ(record.points.size(), 12u);
+    const StraightPiece &fog = record.pieces[0], &haze = record.pieces[1];
+    for (size_t i = 0; i < 12; ++i) {
+        const float slant = 1.0f / record.z[i];
+        EXPECT_NEAR(fog.start[i], 4.0f * slant, 1e-4f);
+        EXPECT_NEAR(fog.end[i], 6.0f * slant, 1e-3f);
+        EXPECT_EQ(fog.medium[i], 0);
+        EXPECT_EQ(fog.interactions[i], 1);
+        EXPECT_EQ(fog.throughput[i].x, 1.0f);
+        EXPECT_NEAR(haze.start[i], 7.5f * slant, 1e-3f);
+        EXPECT_NEAR(haze.end[i], 8.5f * slant, 1e-3f);
+        EXPECT_EQ(haze.medium[i], 1);
+        EXPECT_EQ(haze.interactions[i], 5) << "two boundaries each of fog and ink, one of the haze";
+        EXPECT_NEAR(haze.throughput[i].z, std::exp(-(0.5f * 2.0f + 0.5f * 0.5f) * slant), 1e-3f);
+        const SensorPoint& point = record.points[i];
+        EXPECT_EQ(point.pixel, i);
+        EXPECT_NEAR(point.time, double(24.0f * slant), 2e-3) << "10 to the mirror, 14 back to the wall";
+        EXPECT_NEAR(point.hit.position.z, -9.0f, 1e-3f);
+        EXPECT_EQ(point.interactions, 13);
+        EXPECT_LT(point.direction.z, 0.0f);
+        EXPECT_NEAR(point.throughput.x, 0.9f * std::exp(-2.0f * (0.3f * 2.0f + 0.5f * 0.5f + 0.5f) * slant), 1e-3f);
+    }
+    const SensorRecord volumeOnly = recordSensorPaths(*loaded.scene, false, {0, 0, 1, 1}, statistics);
+    EXPECT_TRUE(volumeOnly.points.empty());
+    EXPECT_EQ(volumeOnly.pieces.size(), 2u);
+    EXPECT_EQ(volumeOnly.x, record.x) << "the same rays";
+    EXPECT_NE(recordSensorPaths(*loaded.scene, false, {1, 1, 1, 1}, statistics).x, record.x) << "another pass";
+}
+
+} // namespace
+} // namespace tungsten::photon

@@ -1,0 +1,123 @@
+// What the camera sees, and directions that leave emitters.
+
+#include "photon/CameraView.h"
+#include "photon/EmissionDirections.h"
+
+#include "tungsten/core/Warp.h"
+
+#include "support/ChiSquare.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+constexpr Rgb White{1.0f, 1.0f, 1.0f};
+
+/// At (1, 2, 3), looking along a slanted axis.
+Camera slantedCamera(const decltype(Camera::model)& model, FilterType filter = FilterType::Tent) {
+    Camera camera;
+    camera.model = model;
+    camera.resolution = {30, 20};
+    camera.filter = ReconstructionFilter(filter);
+    const Frame frame(Vec3f(0.4f, -0.3f, 0.8f).normalized());
+    camera.toWorld = {frame.s, frame.t, frame.n, Vec3f(1.0f, 2.0f, 3.0f)};
+    return camera;
+}
+
+template <typename Directions>
+double pValue(const Directions& directions) {
+    return test::chiSquareSphere(
+        [&](Sampler& sampler) {
+            const Vec2f u = sampler.next2D();
+            const darts::Vec3 d = directions.sample(u.x, u.y);
+            return std::optional<Vec3f>(Vec3f(d.x, d.y, d.z));
+        },
+        [&](const Vec3f& d) { return double(directions.pdf(darts::vec3(d))); });
+}
+
+TEST(CameraView, DirectionsFollowTheirDensity) {
+    for (const float fov : {35.0f, 70.0f, 120.0f}) {
+        EXPECT_GT(pValue(CameraView(slantedCamera(Pinhole{fov}))), test::SmallestPValue) << fov;
+        EXPECT_GT(pValue(CameraView(slantedCamera(ThinLens{fov, 2.0f, 0.1f, 0.0f}))), test::SmallestPValue) << fov;
+    }
+}
+
+TEST(CameraView, EveryDirectionHasADensity) {
+    const CameraView view(slantedCamera(Pinhole{0.001f}));
+    for (const Vec3f& d : {Vec3f(1, 0, 0), Vec3f(0, 0, 1), Vec3f(0.4f, -0.3f, 0.8f).normalized()})
+        EXPECT_GE(view.pdf(darts::vec3(d)), 0.1f / (4.0f * Pi) * 0.999f);
+}
+
+struct ViewCase {
+    const char* name;
+    decltype(Camera::model) model;
+    FilterType filter;
+};
+class Sight : public testing::TestWithParam<ViewCase> {};
+
+/// A photon culled although some ray passes near it would be missing from the image.
+TEST_P(Sight, MissesNoPointNearASensorRay) {
+    const Camera camera = slantedCamera(GetParam().model, GetParam().filter);
+    const CameraView view(camera);
+    Sampler sampler(3, RandomStream::Test, 0, 0);
+    int hidden = 0;
+    for (int i = 0; i < 50000; ++i) {
+        // Rays at the image's edge and beyond by the filter matter most: every other one leaves a border pixel.
+        Vec2i pixel(int(sampler.next1D() * 30.0f), int(sampler.next1D() * 20.0f));
+        if (i % 4 == 0) pixel.x = i % 8 == 0 ? 0 : 29;
+        if (i % 4 == 2) pixel.y = i % 8 == 2 ? 0 : 19;
+        const Ray ray = camera.generateRay(pixel, sampler.next2D(), sampler.next2D());
+        const float radius = i % 3 == 0 ? 1.0f : 0.05f, t = 5.0f * sampler.next1D();
+        const Vec3f offset = warp::squareToSphere(sampler.next2D()) * (0.9999f * radius);
+        EXPECT_TRUE(view.sees(ray.at(t) + offset, radius)) << i;
+        const Vec3f anywhere = camera.position() + warp::squareToSphere(sampler.next2D()) * 5.0f;
+        if (!view.sees(anywhere, 0.05f)) ++hidden;
+    }
+    EXPECT_GT(hidden, 25000) << "the test must also say no";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cameras, Sight,
+                         testing::Values(ViewCase{"Pinhole", Pinhole{60.0f}, FilterType::Box},
+                                         ViewCase{"Tele", Pinhole{5.0f}, FilterType::Lanczos},
+                                         ViewCase{"Wide", Pinhole{110.0f}, FilterType::Gaussian},
+                                         ViewCase{"Lens", ThinLens{50.0f, 3.0f, 0.2f, 0.0f}, FilterType::Tent},
+                                         ViewCase{"NearFocus", ThinLens{40.0f, 0.5f, 0.1f, 0.0f}, FilterType::Box}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(EmissionDirections, FollowTheirDensity) {
+    SurfaceSample start{};
+    start.normal = Vec3f(0.48f, -0.6f, 0.64f);
+    Emitter emitter;
+    emitter.model = PointEmitter{Vec3f(0.0f), White};
+    EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
+    emitter.model = AreaEmitter{};
+    EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
+    for (const float cosOuter : {-0.3f, 0.5f, 0.9f}) {
+        emitter.model = SpotEmitter{Vec3f(0.0f), start.normal, White, 0.95f, cosOuter};
+        EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << cosOuter;
+    }
+}
+
+/// The integral of the density over what the emitter lights: the emission weighted by it is the emitter's power.
+TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
+    std::vector<Emitter> emitters(2);
+    emitters[0].model = PointEmitter{Vec3f(0.0f), White};
+    emitters[1].model = SpotEmitter{Vec3f(0.0f), Vec3f(0.48f, -0.6f, 0.64f), White, 0.9f, 0.6f};
+    for (const Emitter& emitter : emitters) {
+        const SurfaceSample start = sampleEmissionPoint(emitter, Vec2f(0.5f, 0.5f));
+        const EmissionDirections directions(emitter, start);
+        double sum = 0.0;
+        constexpr int Side = 500;
+        for (int i = 0; i < Side * Side; ++i) {
+            const darts::Vec3 d =
+                directions.sample((float(i % Side) + 0.5f) / float(Side), (float(i / Side) + 0.5f) / float(Side));
+            sum += double(emittedIntensity(emitter, start, Vec3f(d.x, d.y, d.z)).x) / double(directions.pdf(d));
+        }
+        const double power = double(emitterPower(emitter).x);
+        EXPECT_NEAR(sum / (Side * Side), power, 1e-3 * power);
+    }
+}
+
+} // namespace
+} // namespace tungsten::photon
