@@ -130,7 +130,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     } else if (!straight) {
         weighted_ = false; // emitters seen in a mirror cannot be connected to
     }
-    region_ = regionBeyond(*surface.primitive, hit, direction, region_);
+    region_ = regionBeyond(surface, direction, region_);
     ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
     return continueRoulette();
 }
@@ -188,7 +188,7 @@ void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction&
     const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi, wo);
     if (isBlack(scattering)) return;
     const float pdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
-    const Region region = regionBeyond(*surface.primitive, surface.hit, light->direct.direction, region_);
+    const Region region = regionBeyond(surface, light->direct.direction, region_);
     addConnection(*light, scattering, pdf, {surface.hit.position, light->direct.direction, scene_.rayEpsilon}, region);
 }
 

@@ -120,7 +120,7 @@ bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
         // Light leaves to the side of the direction; a boundary's other side is another region.
         connectToSurfaces(true, [&](const Vec3f& direction) {
             if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
-            const Region ahead = regionBeyond(*surface_.primitive, hit, direction, behind);
+            const Region ahead = regionBeyond(surface_, direction, behind);
             if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
             return surface_.bsdf->eval(surface_.query(TransportMode::Photons, lobe::Smooth), surface_.wi,
                                        surface_.frame.toLocal(direction)) *

@@ -89,7 +89,7 @@ bool PhotonWalk::leaveSurface() {
     const auto sample = surface_.bsdf->sample(surface_.query(TransportMode::Photons), surface_.wi, random);
     if (!sample) return false;
     const Vec3f direction = surface_.frame.toWorld(sample->wo).normalized();
-    const Region ahead = regionBeyond(*surface_.primitive, hit, direction, region_);
+    const Region ahead = regionBeyond(surface_, direction, region_);
     if (sample->lobe != lobe::Forward) {
         if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return false;
         power_ = power_ * surface_.photonShadingFactor(-ray_.direction, direction);

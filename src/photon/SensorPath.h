@@ -49,7 +49,7 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, bool specular, 
             return rays;
         state.folded = state.folded || sample->lobe != lobe::Forward;
         state.throughput = state.throughput * sample->weight;
-        state.region = regionBeyond(*surface.primitive, *hit, direction, state.region);
+        state.region = regionBeyond(surface, direction, state.region);
         state.ray = Ray{hit->position, direction, scene.rayEpsilon};
     }
     return rays;

@@ -46,10 +46,21 @@ SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, co
     return interaction;
 }
 
-Region regionBeyond(const Primitive& primitive, const SurfaceHit& hit, const Vec3f& direction, const Region& current) {
+namespace {
+
+Region regionOnSide(const Primitive& primitive, bool inside, const Region& current) {
     if (!primitive.boundsRegion) return current;
     if (!primitive.boundsMedium && current.medium >= 0) return current;
-    return direction.dot(hit.ng) < 0.0f ? primitive.inside : primitive.outside;
+    return inside ? primitive.inside : primitive.outside;
+}
+
+} // namespace
+
+Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, const Region& current) {
+    const bool inside = direction.dot(surface.hit.ng) < 0.0f;
+    const Region region = regionOnSide(*surface.primitive, inside, current);
+    const bool cameFromInside = surface.frame.toWorld(surface.wi).dot(surface.hit.ng) < 0.0f;
+    return region.medium < 0 && inside == cameFromInside ? current : region;
 }
 
 Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
@@ -80,7 +91,7 @@ Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSur
         }
         advance(hit->t);
         result.transmittance = result.transmittance * through;
-        region = regionBeyond(scene.primitives[hit->shape], *hit, direction, region);
+        region = regionOnSide(scene.primitives[hit->shape], direction.dot(hit->ng) < 0.0f, region);
         ray.tMin = hit->t + scene.rayEpsilon;
     }
     advance(distance);

@@ -25,8 +25,10 @@ struct SurfaceInteraction {
 
 SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, const Vec3f& rayDirection);
 
-/// The region beyond a surface for a path that leaves it along `direction` (world).
-Region regionBeyond(const Primitive& primitive, const SurfaceHit& hit, const Vec3f& direction, const Region& current);
+/// The region of a path that leaves a surface along `direction` (world). The primitive's own sides decide; only a path
+/// reflected to a side for which the primitive names no medium stays in `current`: meshes that bound nothing may be hit
+/// from behind, and what they reflect goes back to where it came from.
+Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, const Region& current);
 
 /// A straight connection between two points through index-matched boundaries.
 struct Visibility {
