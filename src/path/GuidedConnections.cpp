@@ -119,7 +119,7 @@ void GuidedPathWalk::connectToLightVertex(const SurfaceInteraction* surface) {
     const float perArea = std::abs(direction.dot(vertex.surface.hit.ng)) / sqr(distance);
     const float share = lightVertexShare(vertex.areaPdf, scattering.pdf * perArea);
     const Medium* beyond =
-        scene_.medium(regionBeyond(*vertex.surface.primitive, vertex.surface.hit, vertex.toLight, region_));
+        scene_.medium(regionBeyond(vertex.surface, vertex.toLight, region_));
     Rgb transmittance = medium ? medium->transmittance(distance) : Rgb(1.0f);
     if (beyond) transmittance = transmittance * beyond->transmittance(vertex.distance);
     sink_.add(throughput_ * scattering.value * transmittance * onward * (perArea * choice.weight * share),
@@ -152,7 +152,7 @@ void GuidedPathWalk::connectFromSurface(const SurfaceInteraction& surface, const
     if (isBlack(scattering)) return;
     const Rgb light = target_->intensity(-way.direction);
     if (isBlack(light)) return;
-    const Region region = regionBeyond(*surface.primitive, surface.hit, way.direction, region_);
+    const Region region = regionBeyond(surface, way.direction, region_);
     const Visibility visibility =
         traceConnection(scene_, context_.forwardBoundaries, {surface.hit.position, way.direction, scene_.rayEpsilon},
                         way.distance, target_->onSurface, region, counters_.shadowRays);

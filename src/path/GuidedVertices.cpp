@@ -80,7 +80,7 @@ bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
 const darts::Guide* GuidedPathWalk::guideFor(const SurfaceInteraction& surface) const {
     const LobeMask lobes = surface.bsdf->lobes();
     if ((lobes & lobe::Smooth) == 0 || (lobes & (lobe::Specular | lobe::Transmissive)) != 0) return nullptr;
-    const Region region = regionBeyond(*surface.primitive, surface.hit, -ray_.direction, region_);
+    const Region region = regionBeyond(surface, -ray_.direction, region_);
     const Medium* medium = scene_.medium(region);
     if (!medium || !medium->scatters()) return nullptr;
     const darts::Guide& guide = context_.guides.surfaces[size_t(region.medium)];
@@ -89,7 +89,7 @@ const darts::Guide* GuidedPathWalk::guideFor(const SurfaceInteraction& surface) 
 
 bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide) {
     scattered_ = true;
-    region_ = regionBeyond(*surface.primitive, surface.hit, -ray_.direction, region_);
+    region_ = regionBeyond(surface, -ray_.direction, region_);
     lookAhead(surface.hit.position);
     if (!residual_.alive()) return leavePlainly(surface);
     if (!roulette(guide)) return false;
@@ -132,7 +132,7 @@ bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
 /// Into the region ahead. A connection drawn before goes on through a boundary that light passes straight at its speed.
 void GuidedPathWalk::passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight) {
     const float speed = region_.speed;
-    region_ = regionBeyond(*surface.primitive, surface.hit, direction, region_);
+    region_ = regionBeyond(surface, direction, region_);
     if (!straight || region_.speed != speed)
         forgetConnection();
     else if (pending_)

@@ -127,7 +127,7 @@ bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit&
     const float shading =
         sample->lobe == lobe::Forward ? 1.0f : surface.photonShadingFactor(-beam.ray.direction, direction);
     target.power = target.power * sample->weight * (shading / (1.0f - scatters));
-    beam.region = regionBeyond(*surface.primitive, hit, direction, beam.region);
+    beam.region = regionBeyond(surface, direction, beam.region);
     beam.ray = Ray{hit.position, direction, scene_.rayEpsilon};
     return true;
 }

@@ -225,7 +225,7 @@ void PathWalk<TimeResolved, Media>::connectSurfaceToSource(const SurfaceInteract
     if (!(distance > scene_.rayEpsilon) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
     const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
                                               surface.frame.toLocal(direction));
-    const Region region = regionBeyond(*surface.primitive, surface.hit, direction, region_);
+    const Region region = regionBeyond(surface, direction, region_);
     addSource(scattering, {surface.hit.position, direction, scene_.rayEpsilon}, distance, region);
 }
 
