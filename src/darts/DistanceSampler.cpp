@@ -67,9 +67,11 @@ DistanceSample DistanceSampler::sample(const Residual& residual, float h, float 
     if ((surface < draw.firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity()) {
         const Vec3 reaching = transmittance(surface);
         const float total = throughput.x + throughput.y + throughput.z;
-        const float probability = !scatters_              ? 1.0f
-                                  : grey_ || !(total > 0) ? reaching.x
-                                                          : dot(throughput, reaching) / total;
+        const float natural = !scatters_              ? 1.0f
+                              : grey_ || !(total > 0) ? reaching.x
+                                                      : dot(throughput, reaching) / total;
+        const float odds = settings_.surfaceOdds;
+        const float probability = natural * odds / (natural * odds + (1.0f - natural));
         if (probability > 0 && random.event < probability) {
             sample.surface = true;
             sample.distance = surface;

@@ -22,7 +22,8 @@ struct Scheme {
     bool elliptical = true;    ///< `enable_elliptical`
     bool everyMedium = false;  ///< media are guided whether or not they ask for it
     DirectView directView = DirectView::Auto;
-    /// Light paths also connect their vertices to visible surfaces; by default not in the paper's preset.
+    /// Light paths also connect their vertices to visible surfaces, camera paths theirs to surfaces that light reaches
+    /// first; by default not in the paper's preset.
     std::optional<bool> surfaceConnections;
     [[nodiscard]] bool connectsSurfaces() const { return surfaceConnections.value_or(!published); }
 

@@ -64,6 +64,7 @@ struct Settings {
 
     bool elliptical = true;     ///< control vertices at all
     bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
+    float surfaceOdds = 1.0f;   ///< factor on the odds of a surface in reach against scattering before it
     float roulette = 0.1f;      ///< walks end at random below this part of their first usefulness; 0: never
 };
 

@@ -30,14 +30,6 @@ Vec3f positionOf(const EmitterModel& model) {
     return std::get<PointEmitter>(model).position;
 }
 
-/// Every speed a path can travel at: that of the camera's region and of those that surfaces bound.
-std::vector<float> speedsOf(const Scene& scene) {
-    std::vector<float> speeds{scene.cameraRegion.speed};
-    for (const Primitive& primitive : scene.primitives)
-        if (primitive.boundsRegion) speeds.insert(speeds.end(), {primitive.inside.speed, primitive.outside.speed});
-    return speeds;
-}
-
 } // namespace
 
 ArrivalBound::Source ArrivalBound::sourceOf(const Emitter& emitter) {
@@ -59,16 +51,15 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
     return all;
 }
 
-ArrivalBound::ArrivalBound(const Scene& scene) : start_(scene.transport.gate.start), end_(scene.transport.gate.end()) {
+ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
+    : start_(scene.transport.gate.start), end_(scene.transport.gate.end()),
+      highestSpeed_(plan.speedsDiffer ? tungsten::highestSpeed(scene) : scene.cameraRegion.speed),
+      slowness_(1.0 / double(highestSpeed_)), oneSpeed_(!plan.speedsDiffer) {
     // Environments never arrive; single directions are never found.
     for (const Emitter& emitter : scene.emitters)
         if (!emitter.isInfinite() && !emitter.isDelta()) sources_.push_back(sourceOf(emitter));
     if (sources_.size() > MostSources) sources_ = {merged(sources_)};
     for (Source& source : sources_) source.radius += 1e-6f * (source.centre.length() + source.radius);
-    const std::vector<float> speeds = speedsOf(scene);
-    const auto [slowest, fastest] = std::minmax_element(speeds.begin(), speeds.end());
-    oneSpeed_ = *slowest == *fastest;
-    slowness_ = 1.0 / double(*fastest);
 }
 
 bool ArrivalBound::mayArrive(const Vec3f& position, double time) const {
@@ -84,6 +75,11 @@ bool ArrivalBound::mayConnect(double time, float distance, double emissionTime) 
     const double arrival = time + double(distance) * slowness_ + emissionTime;
     const double slack = Slack * std::abs(arrival);
     return arrival < end_ + slack && (!oneSpeed_ || arrival >= start_ - slack);
+}
+
+bool ArrivalBound::beforeEnd(double time, float distance, double emissionTime) const {
+    const double arrival = time + double(distance) * slowness_ + emissionTime;
+    return arrival < end_ + Slack * std::abs(arrival);
 }
 
 } // namespace tungsten::path

@@ -1,7 +1,7 @@
 #pragma once
 // Bounds on when light can arrive: what they reject contributes to no frame.
 
-#include "tungsten/scene/Scene.h"
+#include "tungsten/render/EffectPlan.h"
 
 #include <vector>
 
@@ -10,13 +10,18 @@ namespace tungsten::path {
 /// Exact culling by time of flight in a time-resolved render; the tests leave room for rounding at the gate's ends.
 class ArrivalBound {
   public:
-    explicit ArrivalBound(const Scene& scene);
+    ArrivalBound(const Scene& scene, const EffectPlan& plan);
 
     /// A camera path that took `time` from the sensor to `position` may still meet light inside the gate.
     [[nodiscard]] bool mayArrive(const Vec3f& position, double time) const;
     /// A straight connection of this length to an emitter whose pulse starts at `emissionTime` may fall into the gate.
     /// Where all speeds are equal its time is known, so that one that comes too early is rejected too.
     [[nodiscard]] bool mayConnect(double time, float distance, double emissionTime) const;
+    /// Light that leaves a point at this distance at `emissionTime` may still arrive before the gate's end.
+    [[nodiscard]] bool beforeEnd(double time, float distance, double emissionTime) const;
+    /// Of light, anywhere on a path.
+    [[nodiscard]] float highestSpeed() const { return highestSpeed_; }
+    [[nodiscard]] bool oneSpeed() const { return oneSpeed_; }
 
   private:
     /// Emitters within `radius` of `centre` (rounding of coordinates included), the first pulse at `emissionTime`.
@@ -30,7 +35,8 @@ class ArrivalBound {
 
     std::vector<Source> sources_; ///< a few: many emitters are merged into one
     double start_ = 0.0, end_ = 0.0;
-    double slowness_ = 1.0; ///< 1 / highest speed
+    float highestSpeed_ = 1.0f;
+    double slowness_ = 1.0; ///< 1 / highestSpeed_
     bool oneSpeed_ = true;
 };
 

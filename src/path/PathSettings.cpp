@@ -1,25 +1,54 @@
 #include "path/PathSettings.h"
 
+#include "tungsten/render/EffectPlan.h"
+
 namespace tungsten::path {
 
+namespace {
+
+/// Why a delta gate cannot be rendered; empty if it can. Only control vertices arrive at one moment.
+std::string deltaGateProblem(const PathSettings& settings, const EffectPlan& plan) {
+    if (!settings.scheme.on || !settings.scheme.elliptical)
+        return "plain paths meet a delta gate with probability zero; give the gate a width, or set \"darts\": \"best\"";
+    if (plan.surfaceScattering || plan.surfaceEmission)
+        return "light from diffuse, glossy or emitting surfaces meets a delta gate with probability zero; give the "
+               "gate a width";
+    if (plan.speedsDiffer)
+        return "connections through regions of different speeds meet a delta gate with probability zero; give the "
+               "gate a width";
+    return {};
+}
+
+void readGuidance(const ObjectReader& block, const EffectPlan& plan, PathSettings& settings) {
+    settings.scheme = darts::readScheme(block);
+    if (!settings.scheme.on) return;
+    if (!plan.timeResolved) {
+        settings.scheme.on = false;
+        if (block.has("darts")) block.warn("darts", "guides time-resolved renders only");
+    } else if (!settings.lightSampling || !settings.volumeLightSampling) {
+        settings.scheme.on = false;
+        block.warn(settings.lightSampling ? "enable_volume_light_sampling" : "enable_light_sampling",
+                   "guided paths connect to emitters; without it paths are sampled plainly");
+    } else if (!plan.mediumScattering) {
+        settings.scheme.on = false;
+    }
+}
+
+} // namespace
+
 PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
-    const bool timeResolved = !scene.transport.gate.steadyState;
     PathSettings settings;
+    const EffectPlan plan = analyseScene(scene);
     settings.lightSampling = block.flag("enable_light_sampling", true);
     settings.volumeLightSampling = block.flag("enable_volume_light_sampling", true);
     settings.lowOrderScattering = block.flag("low_order_scattering", true);
     settings.includeSurfaces = block.flag("include_surfaces", true);
-    settings.russianRoulette = block.flag("enable_rr", !timeResolved);
-    if (scene.transport.gate.delta)
-        block.problem("delta_time_gate",
-                      "a path tracer meets a delta gate with probability zero; give the gate a width");
-    for (const char* guided : {"enable_guiding", "enable_elliptical"})
-        if (block.flag(guided, false)) block.warn(guided, "the path tracer samples distances and directions plainly");
-    for (const Emitter& emitter : scene.emitters)
-        if (emitter.isDelta())
-            block.warn("type",
-                       "the emitter '" + emitter.name +
-                           "' shines in a single direction, which a path tracer cannot find: it lights nothing");
+    settings.russianRoulette = block.flag("enable_rr", !plan.timeResolved);
+    readGuidance(block, plan, settings);
+    if (scene.transport.gate.delta) {
+        const std::string problem = deltaGateProblem(settings, plan);
+        if (!problem.empty()) block.problem("delta_time_gate", problem);
+    }
     // Settings of the photon integrators: a scene may switch between them and this one by its type alone.
     block.accept({"photon_count", "volume_photon_count", "gather_photon_count", "gather_radius", "volume_gather_radius",
                   "volume_photon_type", "fixed_volume_radius", "alpha", "volume_alpha", "use_grid", "grid_memory",

@@ -1,6 +1,8 @@
 #pragma once
 // Settings of the path tracer's integrator block.
 
+#include "darts/Scheme.h"
+
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 
@@ -12,6 +14,7 @@ struct PathSettings {
     bool lowOrderScattering = true;  ///< false: nothing from paths with exactly one medium scatter
     bool includeSurfaces = true;     ///< false: nothing that reaches surfaces without a medium scatter
     bool russianRoulette = true;
+    darts::Scheme scheme; ///< on: walks are guided (time-resolved renders of scattering media)
 };
 
 /// Reads the block; problems and warnings go to the reader's diagnostics.

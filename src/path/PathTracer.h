@@ -1,9 +1,10 @@
 #pragma once
-// The integrator `path_tracer`: unbiased, steady state or time-resolved.
+// The integrators `path_tracer` and `transient_path_tracer`: unbiased, steady state or time-resolved.
 
-#include "path/ArrivalBound.h"
+#include "path/GuidedPathWalk.h"
 #include "path/LightChoice.h"
-#include "path/PathSettings.h"
+
+#include "darts/TemporalResponse.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -18,13 +19,25 @@ class PathTracer : public Integrator {
 
   private:
     template <bool TimeResolved, bool Media>
-    void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics) const;
+    void renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const;
+    /// Why guided paths connect to no light vertices; empty if they do.
+    [[nodiscard]] std::string lightVertexObstacle(const EffectPlan& plan) const;
+    void renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const;
+    /// `trace(ray, sink, counters, sampler, u)` for every sample of every pixel; u chooses among targets.
+    template <typename Trace>
+    void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const TargetChoice& targets,
+                     const Trace& trace) const;
 
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
+    std::optional<darts::TemporalResponse> response_;
+    Sensor sensor_;
     LightChoice lights_;
-    ArrivalBound arrival_;
-    bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true;
+    TargetChoice targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
+    std::optional<ArrivalBound> arrival_;
+    PathGuides guides_;
+    LightVertices lightVertices_; ///< of the pass
+    bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true, tracesLightVertices_ = false;
 };
 
 } // namespace tungsten::path

@@ -1,27 +1,13 @@
 #include "path/PathWalk.h"
 
+#include "path/Connection.h"
+
 namespace tungsten::path {
 
 namespace {
 
-/// Power heuristic with exponent 2 (Veach 1997).
-float powerHeuristic(float a, float b) {
-    const float aa = a * a, bb = b * b;
-    return aa + bb > 0.0f ? aa / (aa + bb) : 0.0f;
-}
-
 constexpr float RouletteThreshold = 0.1f;
 constexpr int RouletteFirstVertex = 3;
-
-/// A connection where every surface is opaque: one ray, one region.
-Visibility traceOpaque(const Scene& scene, Ray ray, float distance, bool toSurface, const Region& region,
-                       uint64_t& rays) {
-    ray.tMax = toSurface ? distance - scene.rayEpsilon : distance;
-    ++rays;
-    if (scene.geometry->occluded(ray)) return {};
-    const Medium* medium = scene.medium(region);
-    return {medium ? medium->transmittance(distance) : Rgb(1.0f), double(distance) / double(region.speed), 0};
-}
 
 } // namespace
 
@@ -76,7 +62,11 @@ template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
     // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
     if constexpr (TimeResolved)
-        if (scattered_ || !scene_.transport.cameraUnwarped) return !arrival_.mayArrive(position, time_);
+        if (scattered_ || !scene_.transport.cameraUnwarped) {
+            if (arrival_.mayArrive(position, time_)) return false;
+            return !source_ ||
+                   !arrival_.beforeEnd(time_, (source_->point.position - position).length(), source_->start);
+        }
     return false;
 }
 
@@ -101,6 +91,7 @@ bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float 
     if (tooLate(vertex_) || interactions_ >= scene_.transport.maxBounces) return false;
     const Vec3f before = ray_.direction;
     if (settings_.volumeLightSampling && orderCounts()) connectFromMedium(medium);
+    if (settings_.volumeLightSampling && source_) connectMediumToSource(medium);
     ray_ = Ray{vertex_, medium.phase.sample(before, sampler_.next2D())};
     directionPdf_ = medium.phase.pdf(before, ray_.direction);
     weighted_ = settings_.volumeLightSampling;
@@ -122,6 +113,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     const LobeMask lobes = surface.bsdf->lobes();
     const bool smooth = (lobes & lobe::Smooth) != 0;
     if (smooth && settings_.lightSampling && orderCounts()) connectFromSurface(surface);
+    if (smooth && settings_.lightSampling && source_) connectSurfaceToSource(surface);
     const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
     const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance), surface.wi, random);
     if (!sample) return false;
@@ -174,6 +166,7 @@ auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::o
     if (!choice) return std::nullopt;
     const auto direct = sampleDirect(*choice->emitter, position, sampler_.next2D());
     if (!direct) return std::nullopt;
+    ++counters_.connections;
     if constexpr (TimeResolved)
         if (!arrival_.mayConnect(time_, direct->distance, choice->emitter->emissionTime)) return std::nullopt;
     return LightSample{*choice->emitter, *direct, choice->probability};
@@ -204,10 +197,8 @@ void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, cons
                                                   const Ray& ray, const Region& region) {
     const bool toSurface = light.emitter.isArea();
     const float distance = light.direct.distance;
-    const Visibility visibility = forwardBoundaries_
-                                      ? traceVisibility(scene_, ray.origin, ray.tMin > 0.0f, ray.direction, distance,
-                                                        toSurface, region, counters_.shadowRays)
-                                      : traceOpaque(scene_, ray, distance, toSurface, region, counters_.shadowRays);
+    const Visibility visibility =
+        traceConnection(scene_, forwardBoundaries_, ray, distance, toSurface, region, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !rendered(interactions_ + visibility.crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
     const float pdf = light.direct.pdf;
@@ -215,6 +206,43 @@ void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, cons
     const Rgb radiance =
         throughput_ * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
     sink_.add(radiance, time_ + visibility.time + light.emitter.emissionTime);
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::connectMediumToSource(const Medium& medium) {
+    const Vec3f offset = source_->point.position - vertex_;
+    const float distance = offset.length();
+    if (!(distance > 0.0f)) return;
+    const Vec3f direction = offset / distance;
+    addSource(Rgb(medium.phase.eval(ray_.direction, direction)), {vertex_, direction}, distance, region_);
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::connectSurfaceToSource(const SurfaceInteraction& surface) {
+    const Vec3f offset = source_->point.position - surface.hit.position;
+    const float distance = offset.length();
+    const Vec3f direction = offset / distance;
+    if (!(distance > scene_.rayEpsilon) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
+    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
+                                              surface.frame.toLocal(direction));
+    const Region region = regionBeyond(surface, direction, region_);
+    addSource(scattering, {surface.hit.position, direction, scene_.rayEpsilon}, distance, region);
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::addSource(const Rgb& scattering, const Ray& ray, float distance,
+                                              const Region& region) {
+    if (!orderCounts(source_->mediumScatters)) return;
+    ++counters_.connections;
+    if constexpr (TimeResolved)
+        if (!arrival_.mayConnect(time_, distance, source_->start)) return;
+    const Rgb light = scattering * source_->intensity(-ray.direction) / sqr(distance);
+    if (isBlack(light)) return;
+    const Visibility visibility =
+        traceConnection(scene_, forwardBoundaries_, ray, distance, source_->onSurface, region, counters_.shadowRays);
+    if (isBlack(visibility.transmittance)) return;
+    if (!rendered(interactions_ + visibility.crossings + source_->interactions)) return;
+    sink_.add(throughput_ * light * visibility.transmittance, time_ + visibility.time + source_->start);
 }
 
 template class PathWalk<false, false>;

@@ -4,9 +4,7 @@
 #include "path/ArrivalBound.h"
 #include "path/LightChoice.h"
 #include "path/PathSettings.h"
-#include "path/PixelSink.h"
-
-#include "tungsten/scene/Interaction.h"
+#include "path/PathTarget.h"
 
 namespace tungsten::path {
 
@@ -19,14 +17,17 @@ struct WalkContext {
     bool forwardBoundaries; ///< connections must look through index-matched surfaces
 };
 
-/// Traces one camera path and adds what it finds to the sink. The two flags choose a specialised loop: `TimeResolved`
+/// Traces one camera path and adds what it finds to the sink; light that starts in a single direction is found through
+/// the virtual point source `source`, if there is one. The two flags choose a specialised loop: `TimeResolved`
 /// off leaves out every clock, `Media` off every free flight.
 template <bool TimeResolved, bool Media>
 class PathWalk {
   public:
-    PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler)
+    PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler,
+             const PathTarget* source)
         : scene_(context.scene), settings_(context.settings), lights_(context.lights), arrival_(context.arrival),
-          forwardBoundaries_(context.forwardBoundaries), sink_(sink), counters_(counters), sampler_(sampler) {}
+          forwardBoundaries_(context.forwardBoundaries), sink_(sink), counters_(counters), sampler_(sampler),
+          source_(source) {}
 
     void run(Ray ray);
 
@@ -49,10 +50,14 @@ class PathWalk {
     std::optional<LightSample> sampleLight(const Vec3f& position);
     void connectFromMedium(const Medium& medium);
     void connectFromSurface(const SurfaceInteraction& surface);
+    void connectMediumToSource(const Medium& medium);
+    void connectSurfaceToSource(const SurfaceInteraction& surface);
     /// Adds light through a connection whose scattering value (cosine included) and density of the walk's own sampling
     /// are given. The ray starts in `region`; its tMin is above 0 when it leaves a surface.
     void addConnection(const LightSample& light, const Rgb& scattering, float directionPdf, const Ray& ray,
                        const Region& region);
+    /// The same for the virtual source, seen along `direction` at `distance`.
+    void addSource(const Rgb& scattering, const Ray& ray, float distance, const Region& region);
     bool continueRoulette();
     void advanceClock(float length);
     /// Whether light found from `position` on can still arrive inside the gate.
@@ -61,9 +66,9 @@ class PathWalk {
         return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
     }
     /// Whether light found at the end of the current segment counts (low_order_scattering, include_surfaces).
-    [[nodiscard]] bool orderCounts() const {
-        if (mediumScatters_ == 0) return settings_.includeSurfaces;
-        return settings_.lowOrderScattering || mediumScatters_ > 1;
+    [[nodiscard]] bool orderCounts(int further = 0) const {
+        if (mediumScatters_ + further == 0) return settings_.includeSurfaces;
+        return settings_.lowOrderScattering || mediumScatters_ + further > 1;
     }
 
     const Scene& scene_;
@@ -74,6 +79,7 @@ class PathWalk {
     PixelSink& sink_;
     PathCounters& counters_;
     Sampler sampler_;
+    const PathTarget* source_;
 
     Ray ray_;
     Region region_;

@@ -7,10 +7,12 @@
 namespace {
 
 void registerIntegrators(tungsten::IntegratorRegistry& registry) {
+    const auto make = [](std::shared_ptr<const tungsten::Scene> scene, const tungsten::ObjectReader& settings) {
+        return std::make_unique<tungsten::path::PathTracer>(std::move(scene), settings);
+    };
     registry.add("path_tracer", "unbiased path tracing with next-event estimation, steady state or time-resolved",
-                 [](std::shared_ptr<const tungsten::Scene> scene, const tungsten::ObjectReader& settings) {
-                     return std::make_unique<tungsten::path::PathTracer>(std::move(scene), settings);
-                 });
+                 make);
+    registry.add("transient_path_tracer", "the same, always time-resolved", make);
 }
 
 } // namespace

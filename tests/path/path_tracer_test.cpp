@@ -135,8 +135,81 @@ TEST(PathTracer, CountersSayWhatHappened) {
     EXPECT_EQ(clear->statistics.counter("medium events"), 0u);
 }
 
-TEST(PathTracer, DeltaGatesAreRefused) {
+TEST(PathTracer, DeltaGatesAreRefusedWhereNoControlVertexCanMeetThem) {
     EXPECT_THROW(renderPaths(test::litFloor(1), {{"integrator.delta_time_gate=true"}, 1, 1}), InputError);
+    const auto problem = [](std::vector<std::string> overrides) -> std::string {
+        overrides.insert(overrides.end(), {"integrator.delta_time_gate=true", "integrator.frame_num=0"});
+        try {
+            renderPaths(test::fogOverFloor(test::SteadyState), {overrides, 1, 1});
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string best = "integrator.darts=best", black = R"(primitives.1.bsdf={"type": "null"})";
+    EXPECT_NE(problem({"integrator.darts=off", black}).find("plain paths"), std::string::npos);
+    EXPECT_NE(problem({R"(integrator.darts={"direction": "phase"})", "integrator.enable_elliptical=false", black})
+                  .find("plain paths"),
+              std::string::npos);
+    EXPECT_NE(problem({best}).find("diffuse, glossy or emitting surfaces"), std::string::npos);
+    EXPECT_NE(problem({best, black, "media.0.speed_of_light=0.5"}).find("different speeds"),
+              std::string::npos);
+    EXPECT_EQ(problem({best, black}), "");
+}
+
+/// Fog over a lit floor in a gate, guided.
+std::unique_ptr<Rendered> renderGuided(const std::string& darts, RenderOptions options) {
+    options.overrides.push_back("integrator.darts=" + darts);
+    return renderPaths(test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4)"), options);
+}
+
+TEST(GuidedPaths, SameImageOnOneAndTwoThreadsBitForBit) {
+    const auto one = renderGuided("best", {{}, 3, 16, 7, 1}), two = renderGuided("best", {{}, 3, 16, 7, 2});
+    EXPECT_EQ(one->film.mean(0).pixels, two->film.mean(0).pixels);
+    EXPECT_GT(one->mean(), 0.0);
+    EXPECT_NE(one->film.mean(0).pixels, renderGuided("best", {{}, 3, 16, 8, 2})->film.mean(0).pixels);
+}
+
+TEST(GuidedPaths, StagesThatAreOffCountNothing) {
+    struct Counts {
+        uint64_t controlVertices, lightPaths, lightConnections;
+    };
+    const auto counts = [](const std::string& darts, std::vector<std::string> overrides = {}) {
+        const auto rendered = renderGuided(darts, {std::move(overrides), 1, 8});
+        const Statistics& statistics = rendered->statistics;
+        return Counts{statistics.counter("control vertices"), statistics.counter("light paths"),
+                      statistics.counter("light vertex connections")};
+    };
+    const Counts best = counts("best");
+    EXPECT_GT(best.controlVertices, 0u);
+    EXPECT_GT(best.lightPaths, 0u);
+    EXPECT_GT(best.lightConnections, 0u);
+    EXPECT_EQ(counts("best", {"integrator.enable_elliptical=false"}).controlVertices, 0u);
+    const std::string black = R"(primitives.1.bsdf={"type": "null"})";
+    for (const Counts& c : {counts("published"), counts("best", {black}),
+                            counts("best", {"media.0.speed_of_light=0.5"}), counts("off")}) {
+        EXPECT_EQ(c.lightPaths, 0u);
+        EXPECT_EQ(c.lightConnections, 0u);
+    }
+    EXPECT_EQ(counts("off").controlVertices, 0u);
+}
+
+TEST(GuidedPaths, ThePlanSaysWhy) {
+    const auto planned = [](const std::string& darts, const std::string& effect) {
+        const test::SceneFile file(
+            test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4, "darts": )" + darts));
+        const LoadedScene loaded = loadScene(file.path(), {{}, {"integrator.type=path_tracer"}});
+        EffectPlan plan = analyseScene(*loaded.scene);
+        PathTracer(loaded.scene, loaded.integratorSettings).plan(plan);
+        for (const Effect& e : plan.effects)
+            if (e.name == effect) return std::string(e.on ? "on: " : "off: ") + e.reason;
+        return std::string();
+    };
+    EXPECT_EQ(planned(R"("best")", "guided paths"), "on: DARTS sampling of scattering media");
+    EXPECT_EQ(planned(R"("published")", "guided paths"), "on: published DARTS sampling of scattering media");
+    EXPECT_EQ(planned(R"("off")", "guided paths").substr(0, 4), "off:");
+    EXPECT_EQ(planned(R"("best")", "light vertices").substr(0, 3), "on:");
+    EXPECT_EQ(planned(R"("published")", "light vertices").substr(0, 4), "off:");
 }
 
 } // namespace

@@ -90,11 +90,12 @@ std::string scene(const Case& c) {
            number(c.width) + R"(, "frame_num": )" + std::to_string(Frames) + "}}";
 }
 
-class SingleScattering : public testing::TestWithParam<Case> {};
+class SingleScattering : public testing::TestWithParam<std::tuple<Case, const char*>> {};
 
 TEST_P(SingleScattering, MatchesTheClosedFormInEveryFrame) {
-    const Case& c = GetParam();
-    const auto rendered = test::renderWithPathTracer(scene(c), {{}, 100, 3000});
+    const auto& [c, sampling] = GetParam();
+    const auto rendered =
+        test::renderWithPathTracer(scene(c), {{std::string("integrator.darts=") + sampling}, 100, 3000});
     double total = 0.0;
     for (int frame = 0; frame < Frames; ++frame) {
         const Rgb mean = rendered->film.mean(frame).at(0, 0), error = rendered->film.standardError(frame).at(0, 0);
@@ -109,11 +110,15 @@ TEST_P(SingleScattering, MatchesTheClosedFormInEveryFrame) {
     EXPECT_GT(total, 5e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, SingleScattering,
-                         testing::Values(Case{"LightInside", {0.5, 0.6, -0.2}, false, 2, 6.5, 0.5},
-                                         Case{"LightInsideUnwarped", {0.5, 0.6, -0.2}, true, 2, 0.9, 0.25},
-                                         Case{"LightOutside", {0.3, 0.4, 3.0}, false, 3, 5.5, 1.0}),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Cases, SingleScattering,
+    testing::Combine(testing::Values(Case{"LightInside", {0.5, 0.6, -0.2}, false, 2, 6.5, 0.5},
+                                     Case{"LightInsideUnwarped", {0.5, 0.6, -0.2}, true, 2, 0.9, 0.25},
+                                     Case{"LightOutside", {0.3, 0.4, 3.0}, false, 3, 5.5, 1.0}),
+                     testing::Values("off", "published", "best")),
+    [](const auto& instance) {
+        return std::string(std::get<0>(instance.param).name) + "_" + std::get<1>(instance.param);
+    });
 
 } // namespace
 } // namespace tungsten::path

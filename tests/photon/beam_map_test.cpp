@@ -59,16 +59,6 @@ std::string nameOf(const testing::TestParamInfo<OrderCase>& info) {
            (c.delta ? "Delta" : "Box");
 }
 
-/// The laser of configuration C instead of the point.
-std::string withLaser(std::string json) {
-    const std::string point =
-        R"({"type": "point", "emission": 1, "ext_medium": "fog", "transform": {"position": [1.2, 0.5, 2]}})";
-    const size_t at = json.find(point);
-    EXPECT_NE(at, std::string::npos);
-    return json.replace(at, point.size(), R"({"type": "collimated", "emission": 1, "ext_medium": "fog",
-        "transform": {"position": [1.2, 0.5, 2], "look_at": [-0.8, 0, 3], "up": [0, 1, 0]}})");
-}
-
 class BeamOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(BeamOrders, MatchVerifiedValues) {
@@ -86,7 +76,7 @@ TEST_P(BeamOrders, MatchVerifiedValues) {
         overrides.emplace_back("integrator.delta_time_gate=true");
         overrides.push_back(setting("transient_time_width", 2.0 * Tau));
     }
-    const auto rendered = renderBeams(laser ? withLaser(json) : json, {overrides, c.passes, 1});
+    const auto rendered = renderBeams(laser ? test::withLaser(json) : json, {overrides, c.passes, 1});
     const double error = rendered->pixelError();
     constexpr double KernelBias = 0.01;
     EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + KernelBias * c.expected) << "standard error " << error;

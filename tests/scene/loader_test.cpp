@@ -78,7 +78,8 @@ TEST(SceneLoader, GatesOfEveryKind) {
     };
     EXPECT_TRUE(gate({"integrator.transient_time_width=0"}).steadyState);
     EXPECT_TRUE(gate({"integrator.transient_time_center=-1"}).steadyState);
-    const TimeGate frames = gate({"integrator.frame_num=5", "integrator.start_time=1", "integrator.transient_time_width=0.5"});
+    const TimeGate frames =
+        gate({"integrator.frame_num=5", "integrator.start_time=1", "integrator.transient_time_width=0.5"});
     EXPECT_EQ(frames.frames, 5);
     EXPECT_DOUBLE_EQ(frames.end(), 3.5);
     EXPECT_EQ(frames.frameOf(0.999), -1);
@@ -89,6 +90,50 @@ TEST(SceneLoader, GatesOfEveryKind) {
     EXPECT_TRUE(gate({"integrator.delta_time_gate=true", "integrator.type=progressive_transient_photon_map"}).delta);
 }
 
+TEST(SceneLoader, AResponseBringsItsOwnGate) {
+    const SceneFile file(Fog);
+    const auto transport = [&](const std::string& response) {
+        return loadScene(file.path(), {{}, {"integrator.temporal_response=" + response}}).scene->transport;
+    };
+    const TransportSettings tabulated = transport(R"({"times": [1, 2, 4], "values": [0, 3, 0]})");
+    EXPECT_DOUBLE_EQ(tabulated.gate.start, 1.0);
+    EXPECT_DOUBLE_EQ(tabulated.gate.end(), 4.0);
+    EXPECT_EQ(tabulated.response.values, (std::vector<double>{0, 3, 0}));
+    const TransportSettings gaussian = transport(R"({"type": "gaussian", "center": 5, "sigma": 0.5})");
+    EXPECT_DOUBLE_EQ(gaussian.gate.start, 3.0);
+    EXPECT_DOUBLE_EQ(gaussian.gate.end(), 7.0);
+    EXPECT_DOUBLE_EQ(gaussian.response.values[32], 1.0);
+    EXPECT_NEAR(gaussian.response.values[40], std::exp(-0.5), 1e-12);
+    EXPECT_DOUBLE_EQ(transport(R"({"type": "box", "start": 2, "end": 2.5})").gate.frameWidth, 0.5);
+    EXPECT_TRUE(loadScene(file.path()).scene->transport.response.empty());
+}
+
+TEST(SceneLoader, BadResponsesAreErrors) {
+    const auto problems = [](const std::string& fields) {
+        return problemsOf(
+            R"({"primitives": [{"type": "point", "emission": 1}], "integrator": {"transient_time_center": 1,
+                              "transient_time_width": 1, )" +
+            fields + "}}");
+    };
+    const std::string good = R"("temporal_response": {"times": [0, 1], "values": [1, 1]})";
+    EXPECT_EQ(problems(good), "");
+    const std::vector<std::pair<std::string, std::string>> bad{
+        {R"("temporal_response": {"times": [0], "values": [1]})",
+         "integrator.temporal_response.times: expected as many"},
+        {R"("temporal_response": {"times": [0, 1], "values": [1]})", "at least two"},
+        {R"("temporal_response": {"times": [0, 1, 1], "values": [1, 2, 1]})", "increasing times"},
+        {R"("temporal_response": {"times": [0, 1], "values": [1, -1]})", "no negative value"},
+        {R"("temporal_response": {"times": [0, 1], "values": [0, 0]})", "zero at all times"},
+        {R"("temporal_response": {"type": "box", "start": 2, "end": 1})", "temporal_response.end: expected increasing"},
+        {R"("temporal_response": {"type": "gaussian", "sigma": 0})", "temporal_response.sigma"},
+        {R"("temporal_response": {"type": "gausian"})", "did you mean 'gaussian'?"},
+        {R"("frame_num": 3, )" + good, "describes a single gate"},
+        {R"("delta_time_gate": true, )" + good, "describes a single gate"},
+        {R"("time_normalization": "integral", )" + good, "time_normalization"}};
+    for (const auto& [fields, expected] : bad)
+        EXPECT_NE(problems(fields).find(expected), std::string::npos) << fields << "\n" << problems(fields);
+}
+
 TEST(SceneLoader, EveryProblemIsListedWithItsPath) {
     const std::string text = problemsOf(R"({
         "media": [{"name": "fog", "type": "homogenous", "sigma_s": -1}],
@@ -97,7 +142,8 @@ TEST(SceneLoader, EveryProblemIsListedWithItsPath) {
                        {"type": "cylinder"}, {"type": "qaud"}, {"type": "point", "emission": 1}],
         "camera": {"fov": 200}, "integrator": {"max_bounces": "many"}, "renderer": {"timeout": 5}})");
     for (const char* expected :
-         {"media[0].type: expected homogeneous or guided_homo, found the string \"homogenous\"; did you mean 'homogeneous'?",
+         {"media[0].type: expected homogeneous or guided_homo, found the string \"homogenous\"; did you mean "
+          "'homogeneous'?",
           "media[0].sigma_s", "bsdfs[0].albedo", "missing.png", "primitives[0].file", "missing.wo3",
           "primitives[0].bsdf: there is no BSDF called 'whit' above it; did you mean 'white'?",
           "primitives[0].int_medium: there is no medium called 'frog'", "did you mean 'fog'?",
@@ -109,7 +155,8 @@ TEST(SceneLoader, EveryProblemIsListedWithItsPath) {
 TEST(SceneLoader, LightThatNeverArrivesIsAnError) {
     const std::string gated = R"("integrator": {"transient_time_center": 1, "transient_time_width": 1})";
     EXPECT_NE(problemsOf("{" + gated + "}").find("nothing emits light"), std::string::npos);
-    EXPECT_NE(problemsOf(R"({"primitives": [{"type": "infinite_sphere", "emission": 1}], )" + gated + "}").find("never arrives"),
+    EXPECT_NE(problemsOf(R"({"primitives": [{"type": "infinite_sphere", "emission": 1}], )" + gated + "}")
+                  .find("never arrives"),
               std::string::npos);
     EXPECT_EQ(problemsOf(R"({"primitives": [{"type": "infinite_sphere", "emission": 1}]})"), "");
 }
@@ -149,8 +196,8 @@ TEST(Visibility, TimeTransmittanceAndCrossingsThroughABoundary) {
                                                Region{-1, 1.0f}, rays);
     EXPECT_EQ(blocked.transmittance, Rgb(0.0f));
     // From inside the fog outward: one crossing.
-    const Visibility outward = traceVisibility(*loaded.scene, Vec3f(0, 0, 0), false, Vec3f(1, 0, 0), 1.0f, false,
-                                               Region{0, 0.75f}, rays);
+    const Visibility outward =
+        traceVisibility(*loaded.scene, Vec3f(0, 0, 0), false, Vec3f(1, 0, 0), 1.0f, false, Region{0, 0.75f}, rays);
     EXPECT_EQ(outward.crossings, 1);
     EXPECT_NEAR(outward.time, 0.5 / 0.75 + 0.5, 1e-6);
 }
@@ -158,15 +205,17 @@ TEST(Visibility, TimeTransmittanceAndCrossingsThroughABoundary) {
 TEST(SceneLoader, SharedScenesLoadUnchanged) {
     const std::filesystem::path folder = std::filesystem::path(SHARED_DIR) / "scenes";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the shared scenes are not here";
-    for (const char* name : {"cbox/transient.json", "cbox/scene.json", "cbox/path_tracer.json", "cbox/transient-beams.json",
-                             "dragon/scene-points-darts-short.json", "dragon/transient.json", "dragon/path_trace.json",
-                             "staircase/scene-points-darts-short.json", "staircase/scene-steady.json", "staircase/transient.json"}) {
+    for (const char* name :
+         {"cbox/transient.json", "cbox/scene.json", "cbox/path_tracer.json", "cbox/transient-beams.json",
+          "dragon/scene-points-darts-short.json", "dragon/transient.json", "dragon/path_trace.json",
+          "staircase/scene-points-darts-short.json", "staircase/scene-steady.json", "staircase/transient.json"}) {
         SCOPED_TRACE(name);
         const LoadedScene loaded = loadScene(folder / name);
         EXPECT_GT(loaded.scene->geometry->triangleCount(), 30u);
         EXPECT_FALSE(loaded.scene->emitters.empty());
         // The integrator block is its plugin's to read; everything else must be known.
-        for (const Problem& warning : loaded.diagnostics->warnings) EXPECT_EQ(warning.path.find("primitives["), std::string::npos) << warning.text();
+        for (const Problem& warning : loaded.diagnostics->warnings)
+            EXPECT_EQ(warning.path.find("primitives["), std::string::npos) << warning.text();
     }
 }
 

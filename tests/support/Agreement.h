@@ -27,6 +27,11 @@ inline Method pathMethod(std::string name, std::vector<std::string> fields, uint
     fields.insert(fields.begin(), "type=path_tracer");
     return {std::move(name), std::move(fields), false, seed, true};
 }
+inline Method guidedPathMethod(std::string name, std::vector<std::string> fields, uint64_t seed) {
+    Method method = pathMethod(std::move(name), std::move(fields), seed);
+    method.steadyState = false;
+    return method;
+}
 inline Method photonMethod(std::string name, std::vector<std::string> fields, uint64_t seed) {
     fields.insert(fields.begin(), {"type=progressive_transient_photon_map", "alpha=1", "volume_alpha=1",
                                    "fixed_volume_radius=true", "gather_photon_count=1000000"});
@@ -38,6 +43,8 @@ inline std::vector<Method> methodsUnderTest() {
     return {
         pathMethod("plain paths", {}, 1),
         photonMethod("plain points", {"volume_photon_type=points"}, 2),
+        guidedPathMethod("published paths", {"darts=published"}, 3),
+        guidedPathMethod("best paths", {"darts=best"}, 4),
     };
 }
 

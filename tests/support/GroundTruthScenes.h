@@ -27,6 +27,14 @@ inline std::string configurationA(int order, bool unwarped, double g = 0.0) {
            std::to_string(centre) + "}}";
 }
 
+/// Configuration C: a laser of power 1 instead of the point.
+inline std::string withLaser(std::string json) {
+    const std::string point =
+        R"({"type": "point", "emission": 1, "ext_medium": "fog", "transform": {"position": [1.2, 0.5, 2]}})";
+    return json.replace(json.find(point), point.size(), R"({"type": "collimated", "emission": 1, "ext_medium": "fog",
+        "transform": {"position": [1.2, 0.5, 2], "look_at": [-0.8, 0, 3], "up": [0, 1, 0]}})");
+}
+
 /// A box of fog (sigma_a 0.05, sigma_s 0.4, speed of light 0.8) with absorbing walls, 4 wide; a point of intensity 2 at
 /// (0.7, 0.6, 0.3), seen along +z from (0, 0, -1.5); single scattering in the gate [3.2, 4.2).
 inline std::string foggedBox() {

@@ -1,6 +1,6 @@
 #pragma once
-// Counter-based random numbers: a sample is a pure function of (seed, stream, pass, path index, dimension), so results do
-// not depend on the number of threads or the order of work (Salmon et al. 2011, Philox4x32).
+// Counter-based random numbers: a sample is a pure function of (seed, stream, pass, path index, dimension), so results
+// do not depend on the number of threads or the order of work (Salmon et al. 2011, Philox4x32).
 
 #include "tungsten/core/Types.h"
 
@@ -24,15 +24,16 @@ inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::
 }
 
 /// What a random stream is for; streams with different purposes never share numbers.
-enum class RandomStream : uint32_t { Camera = 1, Photon = 2, Resample = 3, Test = 4 };
+enum class RandomStream : uint32_t { Camera = 1, Photon = 2, Resample = 3, Test = 4, Target = 5, LightVertex = 6 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.
 class Sampler {
   public:
     /// `path` counts paths within the pass (pixel × sample, or photon index).
     Sampler(uint64_t seed, RandomStream stream, uint32_t pass, uint64_t path)
-        : key_{uint32_t(seed), uint32_t(seed >> 32) ^ (uint32_t(stream) * 0x632BE5ABu)},
-          counter_{0, pass, uint32_t(path), uint32_t(path >> 32)} {}
+        : key_{uint32_t(seed), uint32_t(seed >> 32) ^ (uint32_t(stream) * 0x632BE5ABu)}, counter_{
+                                                                                             0, pass, uint32_t(path),
+                                                                                             uint32_t(path >> 32)} {}
 
     /// 32 uniform random bits.
     uint32_t nextBits() {

@@ -115,6 +115,10 @@ EffectPlan analyseScene(const Scene& scene) {
     plan.timeResolved = !scene.transport.gate.steadyState;
     plan.multipleFrames = scene.transport.gate.frames > 1;
     plan.describe("time of flight", plan.timeResolved, describeGate(scene.transport.gate));
+    const TemporalResponse& response = scene.transport.response;
+    if (!response.empty())
+        plan.describe("temporal response", true,
+                      "times of arrival are weighed by " + std::to_string(response.times.size()) + " values");
     planMedia(scene, plan);
 
     const LobeUse smooth = usesOf(scene, lobe::Smooth), specular = usesOf(scene, lobe::Specular),

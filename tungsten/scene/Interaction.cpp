@@ -69,12 +69,14 @@ Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSur
     result.transmittance = Rgb(1.0f);
     const float end = toSurface ? distance - scene.rayEpsilon : distance;
     float start = 0.0f;
+    const float speed = region.speed;
     Ray ray{origin, direction, fromSurface ? scene.rayEpsilon : 0.0f, end};
     const auto advance = [&](float to) {
         const float length = to - start;
         if (const Medium* medium = scene.medium(region))
             result.transmittance = result.transmittance * medium->transmittance(length);
         result.time += double(length) / double(region.speed);
+        result.oneSpeed = result.oneSpeed && region.speed == speed;
         start = to;
     };
     constexpr int MostCrossings = 4096; // a guard against endless coincident surfaces

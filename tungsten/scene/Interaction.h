@@ -35,6 +35,7 @@ struct Visibility {
     Rgb transmittance{0.0f}; ///< 0 when blocked
     double time = 0.0;       ///< of flight over the whole connection, all speeds included
     int crossings = 0;       ///< forward surfaces passed: each counts as a bounce
+    bool oneSpeed = true;    ///< light went at the speed of the starting region all the way
 };
 /// From `origin` (in `region`) along the unit `direction` for `distance`; `fromSurface` and `toSurface` say whether the
 /// ends lie on surfaces (ray offsets). `distance` may be Infinity. `rays` is increased by the number of rays traced.

@@ -2,6 +2,9 @@
 
 #include "tungsten/scene/LoadContext.h"
 
+#include <algorithm>
+#include <functional>
+
 namespace tungsten {
 
 namespace {
@@ -52,6 +55,61 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
     return gate;
 }
 
+TemporalResponse gaussianResponse(double centre, double sigma) {
+    constexpr int Points = 65;
+    constexpr double Reach = 4.0; // standard deviations
+    TemporalResponse response;
+    for (int i = 0; i < Points; ++i) {
+        const double x = Reach * (2.0 * i / (Points - 1) - 1.0);
+        response.times.push_back(centre + x * sigma);
+        response.values.push_back(std::exp(-0.5 * x * x));
+    }
+    return response;
+}
+
+/// Why (times, values) are no response; empty if they are.
+std::string responseProblem(const TemporalResponse& response) {
+    const std::vector<double>&times = response.times, &values = response.values;
+    if (times.size() < 2 || times.size() != values.size()) return "expected as many values as times, at least two";
+    if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
+        return "expected increasing times";
+    if (std::any_of(values.begin(), values.end(), [](double v) { return v < 0.0; }))
+        return "expected no negative value";
+    if (std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; })) return "zero at all times";
+    return {};
+}
+
+TemporalResponse readResponse(const ObjectReader& reader) {
+    const auto block = reader.has("temporal_response") ? reader.object("temporal_response") : std::nullopt;
+    if (!block) return {};
+    TemporalResponse response;
+    const std::string type = block->choice("type", "tabulated", {"box", "gaussian", "tabulated"});
+    if (type == "box") {
+        response = {{block->number("start", 0.0), block->number("end", 1.0)}, {1.0, 1.0}};
+    } else if (type == "gaussian") {
+        const double centre = block->number("center", 0.0);
+        response = gaussianResponse(centre, block->number("sigma", 1.0, Range::positive()));
+    } else {
+        response = {block->numbers("times"), block->numbers("values")};
+    }
+    const std::string problem = responseProblem(response);
+    if (!problem.empty()) block->problem(type == "box" ? "end" : "times", problem);
+    block->warnAboutUnknown();
+    return problem.empty() ? response : TemporalResponse{};
+}
+
+/// The response's support becomes the gate.
+void useResponse(const ObjectReader& reader, TransportSettings& transport) {
+    transport.response = readResponse(reader);
+    if (transport.response.empty()) return;
+    if (transport.gate.frames > 1 || transport.gate.delta)
+        reader.problem("temporal_response", "describes a single gate; leave out frame_num and delta_time_gate");
+    if (transport.integrateOverGate)
+        reader.problem("time_normalization", "a temporal response has an integral of 1 and no other normalization");
+    const double start = transport.response.times.front(), end = transport.response.times.back();
+    transport.gate = {false, false, start, end - start, 1};
+}
+
 } // namespace
 
 TransportSettings readTransport(const ObjectReader& reader, const std::string& type) {
@@ -63,6 +121,7 @@ TransportSettings readTransport(const ObjectReader& reader, const std::string& t
     transport.gate = readGate(reader, type);
     transport.cameraUnwarped = reader.flag("camera_unwarped", false);
     transport.integrateOverGate = reader.choice("time_normalization", "average", {"average", "integral"}) == "integral";
+    if (!isSteadyPhotonMap(type)) useResponse(reader, transport);
     transport.vacuumSpeed = float(reader.number("vaccum_speed_of_light", 1.0, Range::positive()));
     return transport;
 }

@@ -52,6 +52,17 @@ struct TimeGate {
         const double position = (time - start) / frameWidth;
         return position < double(frames) ? int(position) : -1;
     }
+    /// The frame a time falls in, or the nearest one.
+    [[nodiscard]] int nearestFrame(double time) const {
+        return int(std::clamp((time - start) / frameWidth, 0.0, double(frames) - 0.5));
+    }
+};
+
+/// How the sensor weighs times of arrival: linear between (times[i], values[i]), zero outside, in any scale. Empty:
+/// evenly over the gate.
+struct TemporalResponse {
+    std::vector<double> times, values;
+    [[nodiscard]] bool empty() const { return times.empty(); }
 };
 
 /// What every integrator's block has in common.
@@ -60,7 +71,8 @@ struct TransportSettings {
     int maxBounces = 64;
     bool twoSidedShading = true;
     bool consistencyChecks = false;
-    TimeGate gate;
+    TimeGate gate; ///< the response's support where there is one
+    TemporalResponse response;
     bool cameraUnwarped = false;    ///< time stops at the first interaction seen: camera segments do not count
     bool integrateOverGate = false; ///< output is the integral over a frame instead of its mean
     float vacuumSpeed = 1.0f;

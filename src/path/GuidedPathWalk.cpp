@@ -1,0 +1,143 @@
+// The walk's flights: through media towards what can still arrive inside the gate, and when it ends.
+
+#include "path/GuidedPathWalk.h"
+
+#include "path/DartsVectors.h"
+#include "path/ShellChord.h"
+
+namespace tungsten::path {
+
+void GuidedPathWalk::run(const Ray& ray, const PathTarget& target) {
+    target_ = &target;
+    ray_ = ray;
+    region_ = scene_.cameraRegion;
+    ++counters_.paths;
+    if (timed()) lookAhead(ray_.origin);
+    while (interactions_ < scene_.transport.maxBounces) {
+        const Medium* medium = scene_.medium(region_);
+        if (!medium || !medium->scatters()) {
+            if (!crossEmpty()) return;
+        } else if (timed()) {
+            if (!crossMedium(*medium)) return;
+        } else if (!crossUntimed(*medium)) {
+            return;
+        }
+    }
+}
+
+bool GuidedPathWalk::counts(int interactions, int mediumScatters) const {
+    const int total = interactions_ + interactions + target_->interactions;
+    if (total < scene_.transport.minBounces || total >= scene_.transport.maxBounces) return false;
+    const int inMedia = mediumScatters_ + mediumScatters + target_->mediumScatters;
+    if (inMedia == 0) return context_.settings.includeSurfaces;
+    return context_.settings.lowOrderScattering || inMedia > 1;
+}
+
+void GuidedPathWalk::lookAhead(const Vec3f& position) {
+    const TimeGate& gate = context_.sensor.gate;
+    const darts::TimeGate open{gate.start - target_->start, gate.end() - target_->start};
+    const auto range = darts::ResidualRange::of(open, time_, double(region_.speed));
+    residual_ = darts::Residual::of(toDarts(target_->point.position - position), range);
+    reachable_ = residual_;
+    const float faster = context_.arrival.oneSpeed() ? 0.0f : context_.arrival.highestSpeed() / region_.speed - 1.0f;
+    const float more = target_->reach + faster * std::max(float(range.high), 0.0f);
+    reachable_.excess += more;
+    reachable_.width += more;
+}
+
+bool GuidedPathWalk::crossEmpty() {
+    if (timed()) {
+        if (!reachable_.alive()) return false;
+        ray_.tMax = reachable_.latest(darts::oneMinusCosine(toDarts(ray_.direction), reachable_.axis)).firstLeg();
+    }
+    ++counters_.rays;
+    const auto hit = scene_.geometry->intersect(ray_);
+    if (!hit) return false;
+    if (const Medium* medium = scene_.medium(region_)) throughput_ = throughput_ * medium->transmittance(hit->t);
+    findAt(*hit, throughput_);
+    return !isBlack(throughput_) && scatterOnSurface(*hit);
+}
+
+bool GuidedPathWalk::crossMedium(const Medium& medium) {
+    if (!mayFly(&medium) || !reachable_.alive()) return false;
+    ++flights_;
+    const darts::Guide& guide = guideOf(region_);
+    startRoulette(guide);
+    const float h = darts::oneMinusCosine(toDarts(ray_.direction), residual_.axis);
+    ray_.tMax = guide.distance().bound(reachable_, h);
+    ++counters_.rays;
+    const auto hit = scene_.geometry->intersect(ray_);
+    const float surface = hit ? hit->t : Infinity;
+    connectElliptically(medium, guide, h, surface);
+    // In expectation, whether or not the walk goes there.
+    if (hit) findAt(*hit, throughput_ * medium.transmittance(surface));
+    const darts::Guide& flights = mediumScatters_ == 0 ? context_.guides.view[size_t(region_.medium)] : guide;
+    const darts::DistanceSample flight =
+        flights.sampleDistance(reachable_, h, surface, toDarts(throughput_), [this] { return next(); });
+    throughput_ = throughput_ * colourFrom(flight.transmittanceOverPdf);
+    if (isBlack(throughput_)) return false;
+    if (flight.surface) return scatterOnSurface(*hit);
+    throughput_ = throughput_ * medium.sigmaS;
+    return scatterInMedium(medium, flight.distance);
+}
+
+/// A camera segment that does not count: time starts at the vertex on it.
+bool GuidedPathWalk::crossUntimed(const Medium& medium) {
+    if (!mayFly(&medium)) return false;
+    ++flights_;
+    lookAhead(ray_.origin);
+    const double reach = double(reachable_.C) + double(reachable_.excess);
+    const Vec3f toTarget = target_->point.position - ray_.origin;
+    ray_.tMax = float(ShellChord(toTarget, ray_.direction, 0.0, reach, double(Infinity)).end());
+    if (!(ray_.tMax > 0.0f)) return false;
+    ++counters_.rays;
+    const auto hit = scene_.geometry->intersect(ray_);
+    const float surface = hit ? hit->t : Infinity;
+    connectUntimed(medium, surface);
+    if (hit) {
+        const Rgb reaching = medium.transmittance(surface);
+        findAt(*hit, throughput_ * reaching);
+        const float probability = meanComponent(reaching);
+        if (next() < probability) {
+            throughput_ = throughput_ * reaching / probability;
+            return scatterOnSurface(*hit);
+        }
+        throughput_ = throughput_ / (1.0f - probability);
+    }
+    const auto distance = sampleUntimed(medium, std::min(surface, ray_.tMax));
+    return distance && !isBlack(throughput_) && scatterInMedium(medium, *distance);
+}
+
+/// A distance from which light may still arrive, half of them by transmittance, half by angle; the throughput includes
+/// its scattering.
+std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, float surface) {
+    const double reach = double(reachable_.C) + double(reachable_.excess);
+    const ShellChord chord(target_->point.position - ray_.origin, ray_.direction, 0.0, reach, double(surface));
+    if (chord.empty()) return std::nullopt;
+    const darts::ConnectionLength<double> flights{chord.begin(), chord.end() - chord.begin(),
+                                                  double(meanComponent(medium.sigmaT()))};
+    const double u = sampler_.nextDouble();
+    const double t = next() < 0.5f ? chord.begin() + flights.sampleOffset(u) : chord.sample(u);
+    const double pdf = 0.5 * flights.pdfOffset(t - chord.begin()) + 0.5 * chord.pdf(t);
+    if (!(pdf > 0.0)) return std::nullopt;
+    throughput_ = throughput_ * medium.sigmaS * medium.transmittance(float(t)) * float(1.0 / pdf);
+    return float(t);
+}
+
+void GuidedPathWalk::startRoulette(const darts::Guide& guide) {
+    if (rouletteStarted_) return;
+    firstUsefulness_ = guide.logUsefulness(reachable_, meanComponent(throughput_));
+    rouletteStarted_ = true;
+}
+
+bool GuidedPathWalk::roulette(const darts::Guide& guide) {
+    startRoulette(guide);
+    const float survival =
+        guide.survival(guide.logUsefulness(reachable_, meanComponent(throughput_)), firstUsefulness_);
+    if (survival >= 1.0f) return true;
+    if (!(next() < survival)) return false;
+    throughput_ = throughput_ / survival;
+    return true;
+}
+
+} // namespace tungsten::path

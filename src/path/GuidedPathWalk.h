@@ -1,0 +1,156 @@
+#pragma once
+// One path from the camera, guided towards one target (method, sections 3 to 6): elliptical control vertices in media,
+// resampled distances and directions, ordinary connections from surfaces.
+//
+// Every path is found in one way or by weighted ways, told apart by the last vertex before the emitter: in a medium
+// with a straight connection at one speed: a control vertex; in a medium otherwise: an ordinary connection; on a
+// surface: an ordinary connection from where the walk meets it, or a light vertex, weighted against each other and
+// against emitters that the walk meets; specular, or none: emitters that the walk meets.
+
+#include "path/ArrivalBound.h"
+#include "path/LightVertices.h"
+#include "path/PathSettings.h"
+#include "path/PathTarget.h"
+
+#include "darts/Guide.h"
+
+namespace tungsten::path {
+
+/// Sampling by medium.
+struct PathGuides {
+    std::vector<darts::Guide> media;    ///< for scattering in it, and flights
+    std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
+    std::vector<darts::Guide> view;     ///< for flights from the camera
+};
+
+/// What guided walks share.
+struct GuidedContext {
+    const Scene& scene;
+    const PathSettings& settings;
+    const Sensor& sensor;
+    const PathGuides& guides;
+    const LightVertices& lightVertices;
+    const ArrivalBound& arrival;
+    bool forwardBoundaries; ///< connections must look through index-matched surfaces
+};
+
+class GuidedPathWalk {
+  public:
+    GuidedPathWalk(const GuidedContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler)
+        : context_(context), scene_(context.scene), sink_(sink), counters_(counters), sampler_(sampler) {}
+
+    void run(const Ray& ray, const PathTarget& target);
+
+  private:
+    /// The last vertex before what comes next, for emitters that the walk meets.
+    enum class Last { Specular, Surface, Medium };
+    /// The control vertex of a connection drawn before the direction that was to suit it. It holds for the whole
+    /// straight way, through boundaries too.
+    struct Pending {
+        darts::ControlVertex vertex; ///< at a distance from the ray's origin
+        double arrival = 0.0;        ///< total time of flight of its connection
+    };
+    /// From a vertex to the target.
+    struct Straight {
+        Vec3f direction;
+        float distance;
+    };
+    /// A vertex's scattering towards a direction (cosine included) and the density of its own sampling, per solid
+    /// angle.
+    struct Scattering {
+        Rgb value{0.0f};
+        float pdf = 0.0f;
+    };
+
+    // Flights. False ends the path.
+    bool crossMedium(const Medium& medium);
+    bool crossUntimed(const Medium& medium);
+    bool crossEmpty();
+    std::optional<float> sampleUntimed(const Medium& medium, float surface);
+    [[nodiscard]] bool mayFly(const Medium* medium) const { return !medium || flights_ < medium->maxBounces; }
+    /// What may still come from `position`, at the present time and in the present region.
+    void lookAhead(const Vec3f& position);
+    void startRoulette(const darts::Guide& guide);
+    bool roulette(const darts::Guide& guide);
+
+    // Vertices. False ends the path.
+    bool scatterInMedium(const Medium& medium, float distance);
+    bool scatterOnSurface(const SurfaceHit& hit);
+    [[nodiscard]] const darts::Guide* guideFor(const SurfaceInteraction& surface) const;
+    bool leavePlainly(const SurfaceInteraction& surface);
+    bool leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide);
+    void passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight);
+    darts::ConnectionSample drawConnection(const darts::Guide& guide, const darts::Residual& residual);
+    /// Draws the next direction, and before it, where the settings say so, the control vertex on it.
+    template <typename Scatterer>
+    darts::DirectionSample sampleDirection(const darts::Guide& guide, const Scatterer& scatterer);
+    /// A straight way starts whose control vertex has not been drawn.
+    void forgetConnection() {
+        connectionDrawn_ = false;
+        pending_.reset();
+    }
+
+    // Ways to find light.
+    void connectElliptically(const Medium& medium, const darts::Guide& guide, float h, float surface);
+    void connectUntimed(const Medium& medium, float surface);
+    void addControlVertex(const Medium& medium, const darts::ControlVertex& vertex, double arrival);
+    /// An ordinary connection from the ray's origin.
+    void connectFromMedium(const Medium& medium);
+    /// Light by way of a light vertex, from the ray's origin: on `surface`, or in the medium if there is none.
+    void connectToLightVertex(const SurfaceInteraction* surface);
+    [[nodiscard]] Scattering scatteringTowards(const Vec3f& direction, const SurfaceInteraction* surface) const;
+    /// Light that the surface at the end of the ray emits or scatters straight from the target; `throughput` includes
+    /// the way there.
+    void findAt(const SurfaceHit& hit, const Rgb& throughput);
+    void connectFromSurface(const SurfaceInteraction& surface, const Straight& way, const Rgb& throughput);
+    void addEmission(const SurfaceHit& hit, const Rgb& throughput);
+    /// The part of a connection from the surface that is not left to light vertices.
+    [[nodiscard]] float shareOfWalk(const SurfaceInteraction& surface, const Straight& way) const;
+
+    [[nodiscard]] Straight straightFrom(const Vec3f& position) const;
+    [[nodiscard]] bool mayConnect(double time, float distance) const {
+        return distance > 0.0f && context_.arrival.mayConnect(time, distance, target_->start);
+    }
+    /// Total time of flight of a connection from the ray's origin.
+    [[nodiscard]] double arrivalOf(const darts::ConnectionSample& connection) const;
+    [[nodiscard]] double timeAfter(float length) const {
+        return timed() ? time_ + double(length) / double(region_.speed) : time_;
+    }
+    /// Camera segments count, or are over.
+    [[nodiscard]] bool timed() const { return scattered_ || !scene_.transport.cameraUnwarped; }
+    [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
+        return context_.guides.media[size_t(region.medium)];
+    }
+    [[nodiscard]] bool elliptical(const darts::Guide& guide) const { return guide.settings().elliptical; }
+    /// Whether a path with this many further interactions and medium scatters counts.
+    [[nodiscard]] bool counts(int interactions, int mediumScatters) const;
+    [[nodiscard]] float next() { return sampler_.next1D(); }
+
+    const GuidedContext& context_;
+    const Scene& scene_;
+    PixelSink& sink_;
+    PathCounters& counters_;
+    Sampler sampler_;
+    const PathTarget* target_ = nullptr;
+
+    Ray ray_;
+    Region region_;
+    Rgb throughput_{1.0f};
+    double time_ = 0.0; ///< from the sensor so far
+    int interactions_ = 0;
+    int flights_ = 0; ///< distances sampled in media since the last surface
+    int mediumScatters_ = 0;
+    bool scattered_ = false; ///< a smooth vertex exists: the camera side of the path is over
+    Last last_ = Last::Specular;
+    float scatteringPdf_ = 0.0f;    ///< of the last vertex's own sampling, for the present direction
+    Vec3f vertex_{0.0f};            ///< the last vertex on a surface
+    bool lightVertexTried_ = false; ///< at the ray's origin
+    darts::Residual residual_;      ///< at the ray's origin, towards the target
+    darts::Residual reachable_;     ///< the same for everything the walk may find: whole emitters, at the highest speed
+    bool connectionDrawn_ = false;  ///< this straight way's control vertex is pending, behind, or void
+    std::optional<Pending> pending_;
+    float firstUsefulness_ = 0.0f; ///< logarithm
+    bool rouletteStarted_ = false;
+};
+
+} // namespace tungsten::path

@@ -1,0 +1,142 @@
+// The walk's vertices: directions drawn for the connections that follow.
+
+#include "path/DartsVectors.h"
+#include "path/GuidedPathWalk.h"
+
+namespace tungsten::path {
+
+darts::ConnectionSample GuidedPathWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
+    return guide.sampleConnection(residual, next(),
+                                  {context_.sensor.response, time_ + target_->start, double(region_.speed)});
+}
+
+double GuidedPathWalk::arrivalOf(const darts::ConnectionSample& connection) const {
+    const double length = residual_.shortest + double(connection.excess - residual_.low);
+    return time_ + length / double(region_.speed) + target_->start;
+}
+
+template <typename Scatterer>
+darts::DirectionSample GuidedPathWalk::sampleDirection(const darts::Guide& guide, const Scatterer& scatterer) {
+    const bool lengthFirst = guide.settings().lengthFirst;
+    const darts::ConnectionSample connection =
+        lengthFirst ? drawConnection(guide, residual_) : darts::ConnectionSample{};
+    const darts::DirectionSample sample =
+        guide.sampleDirection(residual_, connection, scatterer, darts::NoView{}, [this] { return next(); });
+    if (lengthFirst && elliptical(guide)) {
+        connectionDrawn_ = true;
+        const auto vertex = guide.controlVertex(residual_, connection, sample.h, Infinity);
+        if (vertex) pending_ = Pending{*vertex, arrivalOf(connection)};
+    }
+    return sample;
+}
+
+bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
+    ++counters_.mediumEvents;
+    time_ = timeAfter(distance);
+    ++interactions_;
+    ++mediumScatters_;
+    scattered_ = true;
+    last_ = Last::Medium;
+    const darts::Guide& guide = guideOf(region_);
+    const Vec3f before = ray_.direction;
+    ray_ = Ray{ray_.at(distance), before};
+    lookAhead(ray_.origin);
+    if (!reachable_.alive()) return false;
+    if (!elliptical(guide) || !context_.arrival.oneSpeed()) connectFromMedium(medium);
+    if (interactions_ + 1 >= scene_.transport.maxBounces || !roulette(guide)) return false;
+
+    forgetConnection();
+    connectToLightVertex(nullptr);
+    if (!residual_.alive() || guide.settings().direction == darts::Direction::Phase) {
+        ray_.direction = medium.phase.sample(before, sampler_.next2D());
+        scatteringPdf_ = medium.phase.pdf(before, ray_.direction);
+        return true;
+    }
+    const darts::DirectionSample sample = sampleDirection(guide, PhaseScatterer{medium.phase, before});
+    ray_.direction = directionFrom(sample.direction);
+    scatteringPdf_ = medium.phase.eval(before, ray_.direction);
+    throughput_ = throughput_ * (scatteringPdf_ * sample.inversePdf);
+    return !isBlack(throughput_);
+}
+
+bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
+    ++counters_.surfaceEvents;
+    time_ = timeAfter(hit.t);
+    flights_ = 0;
+    if (timed()) {
+        lookAhead(hit.position);
+        if (!reachable_.alive()) return false;
+    }
+    if (++interactions_ >= scene_.transport.maxBounces) return false;
+    // The format ends such a path at any surface, index-matched ones included.
+    if (mediumScatters_ == 1 && !context_.settings.lowOrderScattering) return false;
+    lightVertexTried_ = false;
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
+    if (const darts::Guide* guide = guideFor(surface)) return leaveGuided(surface, *guide);
+    return leavePlainly(surface);
+}
+
+/// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere.
+const darts::Guide* GuidedPathWalk::guideFor(const SurfaceInteraction& surface) const {
+    const LobeMask lobes = surface.bsdf->lobes();
+    if ((lobes & lobe::Smooth) == 0 || (lobes & (lobe::Specular | lobe::Transmissive)) != 0) return nullptr;
+    const Region region = regionBeyond(surface, -ray_.direction, region_);
+    const Medium* medium = scene_.medium(region);
+    if (!medium || !medium->scatters()) return nullptr;
+    const darts::Guide& guide = context_.guides.surfaces[size_t(region.medium)];
+    return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
+}
+
+bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide) {
+    scattered_ = true;
+    region_ = regionBeyond(surface, -ray_.direction, region_);
+    lookAhead(surface.hit.position);
+    if (!residual_.alive()) return leavePlainly(surface);
+    if (!roulette(guide)) return false;
+    last_ = Last::Surface;
+    vertex_ = surface.hit.position;
+    ray_ = Ray{vertex_, ray_.direction, scene_.rayEpsilon};
+    forgetConnection();
+    connectToLightVertex(&surface);
+    const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, sampler_});
+    ray_.direction = directionFrom(sample.direction);
+    const Scattering scattering = scatteringTowards(ray_.direction, &surface);
+    throughput_ = throughput_ * scattering.value * sample.inversePdf;
+    scatteringPdf_ = scattering.pdf;
+    return !isBlack(throughput_);
+}
+
+bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
+    const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
+    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance), surface.wi, random);
+    if (!sample) return false;
+    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
+    const bool straight = sample->lobe == lobe::Forward;
+    if (!straight && !surface.consistent(direction, scene_.transport.consistencyChecks)) return false;
+    throughput_ = throughput_ * sample->weight;
+    if (isBlack(throughput_)) return false;
+    if ((sample->lobe & lobe::Smooth) != 0) {
+        scattered_ = true;
+        last_ = Last::Surface;
+        scatteringPdf_ = sample->pdf;
+        vertex_ = surface.hit.position;
+    } else if (!straight) {
+        last_ = Last::Specular;
+    }
+    passBoundary(surface, direction, straight);
+    ray_ = Ray{surface.hit.position, direction, scene_.rayEpsilon};
+    if (timed()) lookAhead(ray_.origin);
+    return true;
+}
+
+/// Into the region ahead. A connection drawn before goes on through a boundary that light passes straight at its speed.
+void GuidedPathWalk::passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight) {
+    const float speed = region_.speed;
+    region_ = regionBeyond(surface, direction, region_);
+    if (!straight || region_.speed != speed)
+        forgetConnection();
+    else if (pending_)
+        pending_->vertex.distance -= surface.hit.t;
+}
+
+} // namespace tungsten::path

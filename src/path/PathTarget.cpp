@@ -1,0 +1,135 @@
+#include "path/PathTarget.h"
+
+namespace tungsten::path {
+
+namespace {
+
+/// Largest distance between two points of a surface, from above.
+float diameter(const Shape& shape) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) return 2.0f * sphere->radius;
+    if (const auto* disk = std::get_if<Disk>(&shape)) return 2.0f * disk->radius;
+    Vec3f low(Infinity), high(-Infinity);
+    for (const Vec3f& p : std::get<TriangleMesh>(shape).positions)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    return (high - low).length();
+}
+
+bool chosenFrom(const Emitter& emitter, TargetChoice::Emitters emitters) {
+    return !emitter.isInfinite() && (emitters == TargetChoice::Emitters::All || emitter.isDelta());
+}
+
+} // namespace
+
+Rgb PathTarget::intensity(const Vec3f& direction) const {
+    if (medium) return power * medium->phase.eval(incoming, direction);
+    if (surface) {
+        if (!surface->consistent(direction, consistencyChecks)) return Rgb(0.0f);
+        const Vec3f wo = surface->frame.toLocal(direction);
+        const Rgb value = surface->bsdf->eval(surface->query(TransportMode::Photons, lobe::Smooth), surface->wi, wo);
+        return power * value * surface->photonShadingFactor(-incoming, direction);
+    }
+    if (const auto* area = std::get_if<AreaEmitter>(&emitter->model))
+        return emittedRadiance(*emitter, point.uv, point.normal, direction) *
+               (std::abs(direction.dot(point.normal)) * area->areaSampler->area() / probability);
+    return emittedIntensity(*emitter, point, direction) / probability;
+}
+
+TargetChoice::TargetChoice(const Scene& scene, Emitters emitters) : scene_(scene) {
+    std::vector<float> powers;
+    float total = 0.0f;
+    for (const Emitter& emitter : scene.emitters) {
+        const float power = chosenFrom(emitter, emitters) ? meanComponent(emitterPower(emitter)) : 0.0f;
+        powers.push_back(power);
+        total += power;
+        count_ += power > 0.0f ? 1 : 0;
+        const auto* area = std::get_if<AreaEmitter>(&emitter.model);
+        radii_.push_back(area ? diameter(*area->shape) : 0.0f);
+    }
+    for (float& power : powers)
+        if (power > 0.0f) power = 0.5f * power / total + 0.5f / float(count_);
+    distribution_ = Distribution1D(powers);
+}
+
+std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCounters& counters) const {
+    if (!any()) return std::nullopt;
+    const auto chosen = distribution_.sample(u);
+    const Emitter& emitter = scene_.emitters[chosen.index];
+    PathTarget target;
+    target.emitter = &emitter;
+    target.probability = chosen.probability;
+    target.start = emitter.emissionTime;
+    if (emitter.isDelta()) return scatterBeam(std::move(target), sampler, counters);
+    target.index = int(chosen.index);
+    target.point = sampleEmissionPoint(emitter, sampler.next2D());
+    target.onSurface = emitter.isArea();
+    target.reach = radii_[chosen.index];
+    return target;
+}
+
+/// Light on its straight or specular way from the emitter to its first scattering vertex.
+struct TargetChoice::Beam {
+    Ray ray;
+    Region region;
+};
+
+std::optional<PathTarget> TargetChoice::scatterBeam(PathTarget target, Sampler& sampler, PathCounters& counters) const {
+    const EmissionSample emission = sampleEmission(*target.emitter, sampler.next2D(), Vec2f(0.5f, 0.5f));
+    target.power = emission.power / target.probability;
+    Beam beam{emission.ray, scene_.regionOf(*target.emitter)};
+    while (target.interactions + 1 < scene_.transport.maxBounces && !isBlack(target.power)) {
+        const Medium* medium = scene_.medium(beam.region);
+        FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
+        if (medium) flight = sampleFlight(*medium, Infinity, sampler);
+        beam.ray.tMax = flight.distance;
+        ++counters.rays;
+        const auto hit = scene_.geometry->intersect(beam.ray);
+        if (!hit && flight.exited) return std::nullopt;
+        const float length = hit ? hit->t : flight.distance;
+        target.start += double(length) / double(beam.region.speed);
+        target.incoming = beam.ray.direction;
+        ++target.interactions;
+        if (!hit) {
+            target.power = target.power * flight.weight;
+            target.point = {beam.ray.at(length), beam.ray.direction, {0.0f, 0.0f}};
+            target.medium = medium;
+            ++target.mediumScatters;
+            return target;
+        }
+        if (medium)
+            target.power = target.power * (medium->transmittance(length) / probabilityFlightExits(*medium, length));
+        if (!meetSurface(target, beam, *hit, sampler)) return std::nullopt;
+        if (target.surface) return target;
+    }
+    return std::nullopt;
+}
+
+/// Becomes a virtual source or goes on along a specular or forward lobe, by chance where both can be; false: absorbed.
+bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit& hit, Sampler& sampler) const {
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, beam.ray.direction);
+    const LobeMask lobes = surface.bsdf->lobes(), onward = lobes & (lobe::Specular | lobe::Forward);
+    const float scatters = (lobes & lobe::Smooth) == 0 ? 0.0f : onward == 0 ? 1.0f : 0.5f;
+    if (sampler.next1D() < scatters) {
+        target.power = target.power / scatters;
+        target.point = {hit.position, hit.ng, hit.uv};
+        target.surface = surface;
+        target.consistencyChecks = scene_.transport.consistencyChecks;
+        target.onSurface = true;
+        return true;
+    }
+    if (onward == 0) return false;
+    const BsdfRandom random{sampler.next2D(), sampler.next1D()};
+    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Photons, onward), surface.wi, random);
+    if (!sample) return false;
+    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
+    const float shading =
+        sample->lobe == lobe::Forward ? 1.0f : surface.photonShadingFactor(-beam.ray.direction, direction);
+    target.power = target.power * sample->weight * (shading / (1.0f - scatters));
+    beam.region = regionBeyond(surface, direction, beam.region);
+    beam.ray = Ray{hit.position, direction, scene_.rayEpsilon};
+    return true;
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,63 @@
+#pragma once
+// What a whole path connects to: one point that sends light, chosen before the path starts.
+
+#include "path/PixelSink.h"
+
+#include "tungsten/scene/Interaction.h"
+
+#include <optional>
+
+namespace tungsten::path {
+
+/// A point of an emitter; for light that starts in a single direction, the first vertex that scatters it: a virtual
+/// point source.
+struct PathTarget {
+    const Emitter* emitter = nullptr;
+    int index = -1; ///< of the emitter; -1 for virtual sources, which cannot be hit
+    SurfaceSample point{Vec3f(0.0f), Vec3f(0.0f), Vec2f(0.0f)};
+    bool onSurface = false;                    ///< connections end on a surface (ray offsets)
+    float reach = 0.0f;                        ///< distance from `point` to the emitter's farthest point
+    double start = 0.0;                        ///< when light leaves the point
+    float probability = 1.0f;                  ///< of the emitter's choice
+    int interactions = 0;                      ///< of the light's own path so far, the virtual source included
+    int mediumScatters = 0;                    ///< of these, in media
+    Rgb power{0.0f};                           ///< that a virtual source scatters
+    Vec3f incoming{0.0f};                      ///< its direction
+    const Medium* medium = nullptr;            ///< of a virtual source in a medium
+    std::optional<SurfaceInteraction> surface; ///< of a virtual source on a surface
+    bool consistencyChecks = false;            ///< there: drop directions on the wrong side of the geometric normal
+
+    /// Power per steradian that leaves the point along the unit `direction` (intensity; radiance times cosine over the
+    /// area density for surfaces), divided by the probability of the emitter's choice.
+    [[nodiscard]] Rgb intensity(const Vec3f& direction) const;
+    /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
+    [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
+        return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;
+    }
+};
+
+/// Chooses targets: half by power and half uniformly among the emitters it is made for.
+class TargetChoice {
+  public:
+    enum class Emitters { All, SingleDirections };
+    TargetChoice(const Scene& scene, Emitters emitters);
+
+    /// Several emitters to choose from.
+    [[nodiscard]] bool several() const { return count_ > 1; }
+    [[nodiscard]] bool any() const { return count_ > 0; }
+    [[nodiscard]] float probability(size_t emitter) const { return distribution_.probability(emitter); }
+    /// `u` chooses the emitter. None when light that starts in a single direction is absorbed or escapes.
+    [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, PathCounters& counters) const;
+
+  private:
+    struct Beam;
+    std::optional<PathTarget> scatterBeam(PathTarget target, Sampler& sampler, PathCounters& counters) const;
+    bool meetSurface(PathTarget& target, Beam& beam, const SurfaceHit& hit, Sampler& sampler) const;
+
+    const Scene& scene_;
+    Distribution1D distribution_;
+    std::vector<float> radii_; ///< of a ball about a point of the surface that holds the area emitter, by emitter
+    int count_ = 0;
+};
+
+} // namespace tungsten::path
