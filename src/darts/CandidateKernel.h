@@ -134,7 +134,7 @@ struct Proposal {
     alignas(64) std::array<float, N> laneRate, laneDrop;
     float second = 0; ///< share of the second density
     float slowRate = 0, slowDrop = 0;
-    float centre = 0, spread = 1, angleLow = 0, angleRange = 0;
+    float centre = 0, spread = 1, angleRange = 0;
     Proposals kind;
 
     explicit Proposal(const CandidateDraw& d) : draw(d), kind(d.proposals) {
@@ -171,8 +171,8 @@ struct Proposal {
         const Ellipse<float>& e = draw.latest;
         centre = e.C * (1.0f - e.h);
         spread = std::max(e.C * std::sqrt(e.h * (2.0f - e.h)), 1e-3f * e.length());
-        angleLow = std::atan(-centre / spread);
-        angleRange = std::atan((draw.bound - centre) / spread) - angleLow;
+        // atan((bound - centre) / spread) + atan(centre / spread) as one angle, without a difference.
+        angleRange = std::atan2(spread * draw.bound, spread * spread - centre * (draw.bound - centre));
     }
 
     /// Candidates first, first + 1, ... from uniform numbers, and the mixture's density there.
@@ -204,7 +204,10 @@ struct Proposal {
         using std::log1p;
         using std::tan;
         if (kind == Proposals::MixedQuarter) return -log1p(-u * slowDrop) / slowRate;
-        if (kind == Proposals::Equiangular) return tan(angleLow + u * angleRange) * spread + centre;
+        if (kind == Proposals::Equiangular) { // tan of a sum, multiplied out
+            const Batch turned = tan(u * angleRange);
+            return (spread * spread + centre * centre) * turned / (spread + centre * turned);
+        }
         return u * draw.bound;
     }
     Batch pdf(const Batch& d) const {
