@@ -53,8 +53,8 @@ class Guide {
         if (at.response) return sampleResponse(residual, u, at);
         if (!(residual.width > 0)) return {residual.low, 1.0f};
         const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
-        const float offset = density.sampleOffset(u);
-        return {residual.low + offset, 1.0f / density.pdfOffset(offset)};
+        const auto [offset, inversePdf] = density.sample(u);
+        return {residual.low + offset, inversePdf};
     }
     /// The part of the residual range whose connections along the ray end before the surface: for lengths drawn after
     /// the direction.
@@ -86,7 +86,7 @@ class Guide {
         const float offset = std::clamp(float(exact), 0.0f, residual.width);
         const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
         const Ellipse<float> connection{residual.C, residual.low + offset, h};
-        return controlVertexPdf(connection, density.pdfOffset(offset));
+        return controlVertexPdf(connection, density.pdf(offset));
     }
 
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the latest arrival.

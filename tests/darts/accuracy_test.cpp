@@ -82,9 +82,9 @@ TEST(Accuracy, ConnectionLength) {
                 const Exact sigma(length.sigmaT), d = sigma * Exact(width);
                 const Exact drop = -expm1(-d), offset = depth > 0 ? Exact(-log1p(-u * drop) / sigma) : Exact(u) * width;
                 SCOPED_TRACE(testing::Message() << "width " << width << " depth " << depth << " u " << u);
-                const float sampled = length.sampleOffset(u);
+                const float sampled = length.sample(u).offset;
                 EXPECT_TRUE(near(sampled, offset));
-                EXPECT_TRUE(near(length.pdfOffset(sampled),
+                EXPECT_TRUE(near(length.pdf(sampled),
                                  depth > 0 ? Exact(sigma * exp(-sigma * sampled) / drop) : 1 / Exact(width)));
             }
 }

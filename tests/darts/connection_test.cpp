@@ -53,12 +53,12 @@ TEST(ConnectionLength, SamplesFollowTheDensity) {
             return depth < 1e-6 ? x / 0.5 : -std::expm1(-length.sigmaT * x) / -std::expm1(-depth);
         };
         EXPECT_GT(tungsten::test::chiSquareUniform(
-                      [&](Sampler& s) { return cumulative(length.sampleOffset(s.nextDouble())); }),
+                      [&](Sampler& s) { return cumulative(length.sample(s.nextDouble()).offset); }),
                   tungsten::test::SmallestPValue)
             << depth;
         const double scale = depth > 1.0 ? 0.5 / depth : 0.5;
         const double integral = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
-            [&](double x) { return length.pdfOffset(x); }, 0.0, std::min(40.0 * scale, 0.5), 15, 1e-10);
+            [&](double x) { return length.pdf(x); }, 0.0, std::min(40.0 * scale, 0.5), 15, 1e-10);
         EXPECT_NEAR(integral, 1.0, 1e-6) << depth;
     }
 }

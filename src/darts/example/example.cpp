@@ -19,11 +19,11 @@ int main() {
     constexpr int Samples = 1000000;
     for (int i = 0; i < Samples; ++i) {
         // The length first, then a direction that suits it, then the vertex that gives the path this length.
-        const float offset = length.sampleOffset(uniform(bits)), S = length.low + offset, delta = S - C;
+        const float offset = length.sample(uniform(bits)).offset, S = length.low + offset, delta = S - C;
         const auto contribution = [&](float h, float directionPdf) {
             const darts::Ellipse<float> connection{C, delta, h};
             const float r = connection.secondLeg(), t = connection.firstLeg();
-            const float vertexPdf = darts::controlVertexPdf(connection, length.pdfOffset(offset));
+            const float vertexPdf = darts::controlVertexPdf(connection, length.pdf(offset));
             return sigmaS / (2 * darts::TwoPi) * std::exp(-sigmaT * (t + r)) / (r * r) / (vertexPdf * directionPdf);
         };
         const auto lobe = darts::ConnectionLobe<float>::path(C, delta);
