@@ -71,9 +71,9 @@ class Guide {
     controlVertex(const Residual& residual, const ConnectionSample& connection, float h, float surface) const {
         const Ellipse<float> e{residual.C, connection.excess, h};
         if (!(connection.inversePdf > 0) || e.isNeedle()) return std::nullopt;
-        const float t = e.firstLeg();
-        if (!(t < surface)) return std::nullopt;
-        return ControlVertex{t, e.secondLeg(), e.firstLegPerLength() * connection.inversePdf};
+        const auto legs = e.legs();
+        if (!(legs.first < surface)) return std::nullopt;
+        return ControlVertex{legs.first, legs.second, legs.firstPerLength * connection.inversePdf};
     }
 
     /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a

@@ -64,6 +64,9 @@ TEST(Accuracy, Ellipse) {
         EXPECT_TRUE(near(e.secondLeg(), exact.r()));
         EXPECT_TRUE(near(e.firstLegPerLength(), exact.tPerLength()));
         EXPECT_TRUE(near(controlVertexPdf(e, 3.0f), 3 / exact.tPerLength()));
+        EXPECT_TRUE(near(e.legs().first, exact.t()));
+        EXPECT_TRUE(near(e.legs().second, exact.r()));
+        EXPECT_TRUE(near(e.legs().firstPerLength, exact.tPerLength()));
         for (const float part : {1e-6f, 0.3f, 0.9f}) {
             const float d = part * e.firstLeg();
             const Exact left = exact.S - d - exact.toTarget(d);
