@@ -76,6 +76,24 @@ void addDistanceAblations(List& list) {
     list.change("  roulette 1", [](Settings& s) { s.roulette = 1.0f; });
 }
 
+/// Path mode, direction RIS.
+void addResampledDirections(List& list) {
+    list.base.direction = Direction::Ris;
+    list.base.directionCandidates = 4;
+    list.change(
+        "R2", [](Settings&) {}, {569, 48, 93, 42, 486, 112, 70, 1.9, 2.9, 177, 22, 57, 16, 8.6, 2.3}, true);
+    list.change(
+        "  R2 M=2", [](Settings& s) { s.directionCandidates = 2; }, {}, true);
+    list.change(
+        "  R2 M=8", [](Settings& s) { s.directionCandidates = 8; }, {}, true);
+    list.change(
+        "  R2 diffusion", [](Settings& s) { s.greens = Greens::Diffusion; }, {}, true);
+    list.change(
+        "  R2 mixed quarter", [](Settings& s) { s.proposals = Proposals::MixedQuarter; }, {}, true);
+    list.change(
+        "  R2 exponential", [](Settings& s) { s.proposals = Proposals::Exponential; }, {}, true);
+}
+
 /// The preset, whose settings depend on the medium, and single changes of it.
 void addBest(List& list, Mode mode) {
     const auto add = [&](const char* name, Change apply) {
@@ -157,21 +175,7 @@ std::vector<Variant> pathVariants() {
     list.change("  no overlap", [](Settings& s) { s.overlap = false; });
     addDistanceAblations(list);
 
-    list.base.direction = Direction::Ris;
-    list.base.directionCandidates = 4;
-    list.change(
-        "R2", [](Settings&) {}, {569, 48, 93, 42, 486, 112, 70, 1.9, 2.9, 177, 22, 57, 16, 8.6, 2.3}, true);
-    list.change(
-        "  R2 M=2", [](Settings& s) { s.directionCandidates = 2; }, {}, true);
-    list.change(
-        "  R2 M=8", [](Settings& s) { s.directionCandidates = 8; }, {}, true);
-    list.change(
-        "  R2 diffusion", [](Settings& s) { s.greens = Greens::Diffusion; }, {}, true);
-    list.change(
-        "  R2 mixed quarter", [](Settings& s) { s.proposals = Proposals::MixedQuarter; }, {}, true);
-    list.change(
-        "  R2 exponential", [](Settings& s) { s.proposals = Proposals::Exponential; }, {}, true);
-
+    addResampledDirections(list);
     addBest(list, Mode::Path);
     return std::move(list.variants);
 }
