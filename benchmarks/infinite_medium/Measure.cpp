@@ -43,9 +43,16 @@ Sampler pathRandom(const Budget& budget, uint32_t pass, uint64_t index) {
     return Sampler(budget.seed, RandomStream::Test, pass, index);
 }
 
+/// Null: the library's.
+std::shared_ptr<const darts::EdaTable> ownTable(const Variant& variant, const darts::Medium& medium) {
+    if (!variant.table) return nullptr;
+    const float albedo = medium.sigmaS.x / medium.sigmaT().x;
+    return std::make_shared<const darts::EdaTable>(darts::EdaTable::build(albedo, medium.g, *variant.table, 1));
+}
+
 Measurement measurePath(const Case& c, const Variant& variant, const Budget& budget, uint32_t pass) {
     const darts::Medium medium = c.medium();
-    const darts::Guide guide(variant.settings(c), medium);
+    const darts::Guide guide(variant.settings(c), medium, ownTable(variant, medium));
     const Route route{{0, 0, 0}, {0, 0, 1}, {c.gateStart, c.gateEnd()}};
     const Walk<> walk(guide, route);
     const auto sine = float(std::sqrt(1 - ReceiverCosine * ReceiverCosine));
@@ -157,7 +164,7 @@ class ImageMoments {
 
 std::array<Measurement, 2> measurePhoton(const Case& c, const Variant& variant, const Budget& budget, uint32_t pass) {
     const darts::Medium medium = c.medium();
-    const darts::Guide guide(variant.settings(c), medium);
+    const darts::Guide guide(variant.settings(c), medium, ownTable(variant, medium));
     const darts::Vec3 emitter{0, float(std::sin(EmitterAngle)), float(std::cos(EmitterAngle))};
     const Route route{emitter, {0, 0, 0}, {c.gateStart, c.gateEnd()}};
     const Walk<> walk(guide, route);

@@ -46,13 +46,15 @@ void summarise(std::ostream& out, const Experiment& e) {
     double count = 0, sum = 0, squares = 0, extreme = 0;
     for (size_t c = 0; c < e.cases.size(); ++c)
         for (size_t v = 0; v < e.variants.size(); ++v) {
+            if (!e.measurements[c][v].converged()) continue;
             const double z = e.zScore(c, v);
             count += 1;
             sum += z;
             squares += z * z;
             if (std::abs(z) > std::abs(extreme)) extreme = z;
         }
-    out << "Agreement of the means: " << count << " comparisons, rms z = " << format("%.2f", std::sqrt(squares / count))
+    out << "Agreement of the means, where converged: " << count
+        << " comparisons, rms z = " << format("%.2f", std::sqrt(squares / count))
         << ", mean z = " << format("%.2f", sum / count) << ", extreme z = " << format("%.1f", extreme) << ".\n\n";
 }
 
@@ -95,10 +97,11 @@ double Experiment::ratio(size_t caseIndex, size_t variantIndex) const {
 
 void writeMarkdown(std::ostream& out, const Experiment& e) {
     out << "## " << e.title << "\n\nEfficiency relative to “" << e.baseline
-        << "”; the study's figures in brackets.\n\n";
+        << "”; the study's figures in brackets. * variance not converged "
+           "(kurtosis above a sixteenth of the paths).\n\n";
     writeTable(out, e, "variant", [&](size_t c, size_t v) {
         const std::vector<double>& study = e.variants[v].study;
-        std::string cell = digits(e.ratio(c, v));
+        std::string cell = digits(e.ratio(c, v)) + (e.measurements[c][v].converged() ? "" : "*");
         for (size_t k = 0; k < study.size(); ++k)
             if (e.cases[c].studyColumn == k && study[k] > 0) cell += " (" + digits(study[k]) + ")";
         return cell;
@@ -135,7 +138,7 @@ int reportDisagreements(std::ostream& out, const Experiment& e) {
     for (size_t c = 0; c < e.cases.size(); ++c)
         for (size_t v = 0; v < e.variants.size(); ++v) {
             const double z = e.zScore(c, v);
-            if (!(std::abs(z) > 5)) continue;
+            if (!(std::abs(z) > 5) || !e.measurements[c][v].converged()) continue;
             ++count;
             const Estimate expected = e.reference(c, v), found = e.measurements[c][v].estimate;
             out << "DISAGREES: " << e.title << ", case " << e.cases[c].name << ", " << e.variants[v].name << ": "

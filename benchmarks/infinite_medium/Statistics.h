@@ -86,6 +86,9 @@ struct Measurement {
 
     /// Inverse of the variance that a unit of time leaves.
     [[nodiscard]] double efficiency() const { return 1 / (variance * cost); }
+    /// The variance is known to a quarter, as far as the kurtosis tells; otherwise rare paths that carry most of the
+    /// mean may have been missed, and neither variance nor error can be trusted.
+    [[nodiscard]] bool converged() const { return 16 * kurtosis < paths; }
 };
 
 /// Processor time of the calling thread in seconds.

@@ -76,6 +76,53 @@ void addDistanceAblations(List& list) {
     list.change("  roulette 1", [](Settings& s) { s.roulette = 1.0f; });
 }
 
+/// Path mode, direction RIS.
+void addResampledDirections(List& list) {
+    list.base.direction = Direction::Ris;
+    list.base.directionCandidates = 4;
+    list.change(
+        "R2", [](Settings&) {}, {569, 48, 93, 42, 486, 112, 70, 1.9, 2.9, 177, 22, 57, 16, 8.6, 2.3}, true);
+    list.change(
+        "  R2 M=2", [](Settings& s) { s.directionCandidates = 2; }, {}, true);
+    list.change(
+        "  R2 M=8", [](Settings& s) { s.directionCandidates = 8; }, {}, true);
+    list.change(
+        "  R2 diffusion", [](Settings& s) { s.greens = Greens::Diffusion; }, {}, true);
+    list.change(
+        "  R2 mixed quarter", [](Settings& s) { s.proposals = Proposals::MixedQuarter; }, {}, true);
+    list.change(
+        "  R2 exponential", [](Settings& s) { s.proposals = Proposals::Exponential; }, {}, true);
+}
+
+/// The preset, whose settings depend on the medium, and single changes of it.
+void addBest(List& list, Mode mode) {
+    const auto add = [&](const char* name, Change apply) {
+        list.variants.push_back({name,
+                                 [mode, apply](const Case& c) {
+                                     Settings settings = darts::best(mode, float(c.g));
+                                     apply(settings);
+                                     return settings;
+                                 },
+                                 {},
+                                 true});
+    };
+    add("best", [](Settings&) {});
+    add("  8 candidates", [](Settings& s) { s.candidates = 8; });
+    add("  16 candidates", [](Settings& s) { s.candidates = 16; });
+    add("  roulette .1", [](Settings& s) { s.roulette = 0.1f; });
+    if (mode == Mode::Photon) add("  focus .1", [](Settings& s) { s.focus = s.thinFocus = 0.1f; });
+}
+
+/// The published sampler with a table that does not resolve the needle: one bin an octave, 1 - C / S not below 1 / 8.
+Variant coarseTable(Mode mode) {
+    darts::EdaResolution coarse;
+    coarse.excessOctaves = 3;
+    coarse.log2ExcessPerOctave = 0;
+    coarse.log2DepthPerOctave = 0;
+    const Settings settings = darts::published(mode);
+    return {"published, coarse table", [settings](const Case&) { return settings; }, {}, false, coarse};
+}
+
 } // namespace
 
 std::vector<Variant> pathVariants() {
@@ -88,6 +135,7 @@ std::vector<Variant> pathVariants() {
                 {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
     list.add("published", darts::published(Mode::Path),
              {1.2, 2.0, 1.2, 2.5, .8, 2.2, 2.4, 1.5, .7, .65, .7, 6.0, 1.3, .5, 5.3});
+    list.variants.push_back(coarseTable(Mode::Path));
 
     list.base = boundedOnly(Mode::Path);
     list.change("bounded phase", [](Settings& s) { s.direction = Direction::Phase; });
@@ -107,6 +155,8 @@ std::vector<Variant> pathVariants() {
 
     list.base = darts::best(Mode::Path, 0.0f);
     list.base.direction = Direction::Connection;
+    list.base.candidates = 8;
+    list.base.roulette = 0.1f;
     list.base.lobe = Lobe::Path;
     list.base.alpha = 0.1f;
     list.base.greens = Greens::Causal;
@@ -125,22 +175,8 @@ std::vector<Variant> pathVariants() {
     list.change("  no overlap", [](Settings& s) { s.overlap = false; });
     addDistanceAblations(list);
 
-    list.base.direction = Direction::Ris;
-    list.base.directionCandidates = 4;
-    list.change(
-        "R2", [](Settings&) {}, {569, 48, 93, 42, 486, 112, 70, 1.9, 2.9, 177, 22, 57, 16, 8.6, 2.3}, true);
-    list.change(
-        "  R2 M=2", [](Settings& s) { s.directionCandidates = 2; }, {}, true);
-    list.change(
-        "  R2 M=8", [](Settings& s) { s.directionCandidates = 8; }, {}, true);
-    list.change(
-        "  R2 diffusion", [](Settings& s) { s.greens = Greens::Diffusion; }, {}, true);
-    list.change(
-        "  R2 mixed quarter", [](Settings& s) { s.proposals = Proposals::MixedQuarter; }, {}, true);
-    list.change(
-        "  R2 exponential", [](Settings& s) { s.proposals = Proposals::Exponential; }, {}, true);
-
-    list.variants.push_back({"best", [](const Case& c) { return darts::best(Mode::Path, float(c.g)); }, {}, true});
+    addResampledDirections(list);
+    addBest(list, Mode::Path);
     return std::move(list.variants);
 }
 
@@ -152,6 +188,7 @@ std::vector<Variant> photonVariants() {
     list.change("P1 phase directions", [](Settings& s) { s.direction = Direction::Phase; },
                 {1, 1, 1, 1, 1, 1, 1, 1, 1});
     list.add("published", darts::published(Mode::Photon));
+    list.variants.push_back(coarseTable(Mode::Photon));
 
     list.base = boundedOnly(Mode::Photon);
     list.change("P2 bounded", [](Settings& s) { s.direction = Direction::Phase; },
@@ -198,7 +235,7 @@ std::vector<Variant> photonVariants() {
     list.change(
         "  RIS diffusion", [](Settings& s) { s.greens = Greens::Diffusion; }, {}, true);
 
-    list.variants.push_back({"best", [](const Case& c) { return darts::best(Mode::Photon, float(c.g)); }, {}, true});
+    addBest(list, Mode::Photon);
     return std::move(list.variants);
 }
 

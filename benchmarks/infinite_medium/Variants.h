@@ -3,7 +3,10 @@
 
 #include "Cases.h"
 
+#include "darts/EdaTable.h"
+
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,8 @@ struct Variant {
     std::vector<double> study{};
     /// Its mean serves as the reference of the others: finite variance in every case.
     bool reference = false;
+    /// Of the EDA table, when not the library's own.
+    std::optional<darts::EdaResolution> table{};
 };
 
 std::vector<Variant> pathVariants();

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <iostream>
@@ -66,18 +67,21 @@ int main(int argc, char** argv) {
         return 0;
     }
     std::vector<Experiment> experiments;
+    const auto start = std::chrono::steady_clock::now();
     if (mode != "photon")
         experiments.push_back(measurePaths(chosen(pathCases(), cases), chosen(pathVariants(), variants), budget));
     if (mode != "path")
         for (Experiment& e : measurePhotons(chosen(photonCases(), cases), chosen(photonVariants(), variants), budget))
             experiments.push_back(std::move(e));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::ofstream markdownFile, csvFile;
     if (!markdown.empty()) markdownFile.open(markdown);
     if (!csv.empty()) csvFile.open(csv);
     std::ostream& tables = markdown.empty() ? std::cout : markdownFile;
-    tables << "`infinite_medium";
+    tables << "# Sampling in an infinite medium\n\nWhat the figures say: "
+              "[benchmarks/README.md](../README.md#infinite-medium).\n\n`infinite_medium";
     for (int i = 1; i < argc; ++i) tables << ' ' << argv[i];
-    tables << "`, " << today() << ", " << machineKind() << ".\n\n";
+    tables << "`, " << today() << ", " << machineKind() << ", " << std::lround(seconds / 60) << " min.\n\n";
     int disagreements = 0;
     for (const Experiment& e : experiments) {
         if (e.cases.empty() || e.variants.empty()) continue;

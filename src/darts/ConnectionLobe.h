@@ -2,7 +2,7 @@
 // Directions matched to the weight of an elliptical connection of a length drawn beforehand. With phase-function
 // directions that weight has infinite variance; these lobes, in closed form, remove it.
 
-#include <cmath>
+#include "darts/FastMath.h"
 
 namespace darts {
 
@@ -20,14 +20,14 @@ class ConnectionLobe {
     static ConnectionLobe photon(Real C, Real delta) { return ConnectionLobe(delta / C); }
 
     /// u in [0, 1) -> h in [0, 2].
-    [[nodiscard]] Real sample(Real u) const { return std::fmin(kappa_ * std::expm1(u * range_), Real(2)); }
+    [[nodiscard]] Real sample(Real u) const { return std::fmin(kappa_ * fastExpm1(u * range_), Real(2)); }
     /// Density per solid angle.
     [[nodiscard]] Real pdf(Real h) const { return 1 / (Real(TwoPi) * (kappa_ + h) * range_); }
 
   private:
     /// Bounds: a target at the vertex (C = 0) is the uniform sphere, the needle (delta = 0) stays a density.
     explicit ConnectionLobe(Real kappa)
-        : kappa_(kappa < Real(1e30) ? std::fmax(kappa, Real(1e-30)) : Real(1e30)), range_(std::log1p(2 / kappa_)) {}
+        : kappa_(kappa < Real(1e30) ? std::fmax(kappa, Real(1e-30)) : Real(1e30)), range_(fastLog1p(2 / kappa_)) {}
 
     Real kappa_, range_;
 };

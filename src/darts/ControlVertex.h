@@ -2,6 +2,7 @@
 // Elliptical control vertices: the last scattering before the target, placed so that the path arrives inside the gate.
 
 #include "darts/Ellipse.h"
+#include "darts/FastMath.h"
 
 namespace darts {
 
@@ -11,19 +12,27 @@ template <typename Real>
 struct ConnectionLength {
     Real low = 0, width = 0, sigmaT = 0;
 
-    /// u in [0, 1) -> S - low.
-    [[nodiscard]] Real sampleOffset(Real u) const {
+    struct Draw {
+        Real offset, inversePdf; ///< S - low, and 1 / its density per length
+    };
+    /// u in [0, 1) -> S = low - log(1 - u (1 - e^{-sigmaT width})) / sigmaT.
+    [[nodiscard]] Draw sample(Real u) const {
         const Real depth = sigmaT * width;
-        if (depth < Real(1e-6)) return u * width; // the first-order difference is below depth
-        return std::fmin(-std::log1p(u * std::expm1(-depth)) / sigmaT, width);
+        if (depth < Shallow) return {u * width, width};
+        const Real all = -fastExpm1(-depth), gone = u * all;
+        return {std::fmin(-fastLog1p(-gone) / sigmaT, width), all / (sigmaT * (1 - gone))};
     }
-    /// Density per length of S.
-    [[nodiscard]] Real pdfOffset(Real offset) const {
+    /// Density per length of S: sigmaT e^{-sigmaT offset} / (1 - e^{-sigmaT width}) at offset = S - low.
+    [[nodiscard]] Real pdf(Real offset) const {
         if (!(offset >= 0) || offset > width) return 0;
         const Real depth = sigmaT * width;
-        if (depth < Real(1e-6)) return 1 / width;
-        return sigmaT * std::exp(-sigmaT * offset) / -std::expm1(-depth);
+        if (depth < Shallow) return 1 / width;
+        return sigmaT * std::exp(-sigmaT * offset) / -fastExpm1(-depth);
     }
+
+  private:
+    /// Depths of the range below which the density is uniform to as many digits as are kept.
+    static constexpr Real Shallow = Real(1e-6);
 };
 
 /// Density per length along the ray of the vertex of a connection whose length has density `lengthPdf`:

@@ -122,14 +122,16 @@ class DirectionSampler {
     [[nodiscard]] auto withGuided(const Residual& residual, float excess, const View& view, Use&& use) const {
         const float C = residual.C, delta = std::max(excess, 1e-6f * C);
         if (settings_.direction == Direction::Eda)
-            return use(GuidedDirections(table_->row(C, delta, sigmaT_), residual, delta, view, focus<View>()));
+            return use(GuidedDirections(table_->row(C, delta, sigmaT_), residual, delta, view, focus<View>(C + delta)));
         const auto lobe = settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, delta)
                                                        : ConnectionLobe<float>::photon(C, delta);
-        return use(GuidedDirections(lobe, residual, delta, view, focus<View>()));
+        return use(GuidedDirections(lobe, residual, delta, view, focus<View>(C + delta)));
     }
+    /// Share of the view's directions for connections of length S: long chains of scatterings forget where they began.
     template <typename View>
-    [[nodiscard]] float focus() const {
-        return std::is_same_v<View, NoView> ? 0.0f : settings_.focus;
+    [[nodiscard]] float focus(float S) const {
+        if (std::is_same_v<View, NoView>) return 0.0f;
+        return std::max(settings_.focus, std::min(settings_.thinFocus, 1.2f / (sigmaT_ * S)));
     }
     template <typename Scatterer, typename Random>
     static DirectionSample fromScatterer(const Residual& residual, const Scatterer& scatterer, Random& random) {

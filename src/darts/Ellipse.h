@@ -23,6 +23,14 @@ struct Ellipse {
     [[nodiscard]] Real secondLeg() const { return (delta * delta + 2 * length() * C * h) / (2 * denominator()); }
     /// dt/dS = r / (S - C cos).
     [[nodiscard]] Real firstLegPerLength() const { return secondLeg() / denominator(); }
+    struct Legs {
+        Real first, second, firstPerLength;
+    };
+    /// t, r and dt/dS together, with one division.
+    [[nodiscard]] Legs legs() const {
+        const Real inverse = 1 / denominator(), second = Real(0.5) * (delta * delta + 2 * length() * C * h) * inverse;
+        return {Real(0.5) * delta * (length() + C) * inverse, second, second * inverse};
+    }
     /// The needle: ray toward the target and no excess, where any t in [0, C] fits. Measure zero; such connections are
     /// skipped.
     [[nodiscard]] bool isNeedle() const {

@@ -53,18 +53,15 @@ class Guide {
         if (at.response) return sampleResponse(residual, u, at);
         if (!(residual.width > 0)) return {residual.low, 1.0f};
         const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
-        const float offset = density.sampleOffset(u);
-        return {residual.low + offset, 1.0f / density.pdfOffset(offset)};
+        const auto [offset, inversePdf] = density.sample(u);
+        return {residual.low + offset, inversePdf};
     }
     /// The part of the residual range whose connections along the ray end before the surface: for lengths drawn after
     /// the direction.
     [[nodiscard]] static Residual beforeSurface(const Residual& residual, float h, float surface) {
         Residual limited = residual;
-        const Ellipse<float> latest = residual.latest(h);
-        if (!(surface < latest.firstLeg())) return limited;
-        // Excess of S(d_s) = d_s + rho, from what is left of the latest excess beyond the surface.
-        const float beyond = 2 * latest.denominator() * (latest.firstLeg() - surface) /
-                             (latest.length() - surface + latest.distanceToTarget(surface));
+        const auto beyond = float(excessBeyond(residual, h, surface));
+        if (!(beyond > 0)) return limited;
         limited.width = std::max(residual.width - beyond, 0.0f);
         if (residual.width > 0 && !(limited.width > 0)) limited.excess = 0; // nothing left
         return limited;
@@ -74,23 +71,22 @@ class Guide {
     controlVertex(const Residual& residual, const ConnectionSample& connection, float h, float surface) const {
         const Ellipse<float> e{residual.C, connection.excess, h};
         if (!(connection.inversePdf > 0) || e.isNeedle()) return std::nullopt;
-        const float t = e.firstLeg();
-        if (!(t < surface)) return std::nullopt;
-        return ControlVertex{t, e.secondLeg(), e.firstLegPerLength() * connection.inversePdf};
+        const auto legs = e.legs();
+        if (!(legs.first < surface)) return std::nullopt;
+        return ControlVertex{legs.first, legs.second, legs.firstPerLength * connection.inversePdf};
     }
 
     /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a
     /// function of the ray alone, for the balance heuristic.
     [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance) const {
-        const Ellipse<float> latest = residual.latest(h);
-        const float left = latest.firstLeg() - distance;
-        if (!(left > 0)) return 0.0f;
-        const float beyond =
-            2 * latest.denominator() * left / (latest.length() - distance + latest.distanceToTarget(distance));
-        const float offset = residual.width - beyond; // excess of the connection through the point, less residual.low
-        if (!(offset >= 0)) return 0.0f;
+        // Of the connection through the point, from residual.low. The ends have the rounding of the excess lengths.
+        const double rounding = 2e-7 * double(residual.excess);
+        const double exact = double(residual.excess) - excessBeyond(residual, h, distance) - double(residual.low);
+        if (!(exact >= -rounding && exact <= double(residual.width) + rounding)) return 0.0f;
+        const float offset = std::clamp(float(exact), 0.0f, residual.width);
         const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
-        return density.pdfOffset(offset) / Ellipse<float>{residual.C, residual.low + offset, h}.firstLegPerLength();
+        const Ellipse<float> connection{residual.C, residual.low + offset, h};
+        return controlVertexPdf(connection, density.pdf(offset));
     }
 
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the latest arrival.
@@ -134,6 +130,14 @@ class Guide {
     }
 
   private:
+    /// What is left of the latest arrival's excess at a point of the ray; negative beyond it. In double: in short gates
+    /// it is a small part of the lengths.
+    [[nodiscard]] static double excessBeyond(const Residual& residual, float h, float distance) {
+        const Ellipse<double> latest{double(residual.C), double(residual.excess), double(h)};
+        const double d = distance, left = latest.firstLeg() - d;
+        if (!(left > 0)) return left;
+        return 2 * latest.denominator() * left / (latest.length() - d + latest.distanceToTarget(d));
+    }
     [[nodiscard]] float directionExcess(const Residual& residual, const ConnectionSample& connection) const {
         return settings_.lengthFirst ? connection.excess : residual.excess;
     }

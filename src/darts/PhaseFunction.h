@@ -11,18 +11,24 @@ struct HenyeyGreenstein {
     Vec3 before{0, 0, 1};
     float g = 0;
 
+    /// Per solid angle: (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^{3/2}).
     [[nodiscard]] float pdf(const Vec3& after) const {
         // 1 + g^2 - 2 g cos = (1 - |g|)^2 + 2 |g| h about the peak's direction: no cancellation there.
-        const float strength = std::abs(g), h = oneMinusCosine(g < 0 ? -before : before, after);
+        const float strength = std::abs(g), h = oneMinusCosine(peak(), after);
         const float d = (1.0f - strength) * (1.0f - strength) + 2.0f * strength * h;
-        return (1.0f - g * g) / (4.0f * Pi * d * std::sqrt(d));
+        return (1.0f - strength) * (1.0f + strength) / (4.0f * Pi * d * std::sqrt(d));
     }
+    /// u, v in [0, 1) -> unit direction.
     [[nodiscard]] Vec3 sample(float u, float v) const {
-        // h of the inverted distribution, with the difference of squares multiplied out.
-        const float b = 1.0f - g + 2.0f * g * u;
-        const float h = 2.0f * (1.0f - u) * (1.0f - g) * (1.0f - g) * (1.0f + g * u) / (b * b);
-        return directionAbout(before, std::clamp(h, 0.0f, 2.0f), v);
+        // h of the inverted distribution about the peak, with the difference of squares multiplied out: all terms
+        // positive.
+        const float strength = std::abs(g), b = 1.0f - strength + 2.0f * strength * u;
+        const float h = 2.0f * (1.0f - u) * (1.0f - strength) * (1.0f - strength) * (1.0f + strength * u) / (b * b);
+        return directionAbout(peak(), std::min(h, 2.0f), v);
     }
+
+  private:
+    [[nodiscard]] Vec3 peak() const { return g < 0 ? -before : before; }
 };
 
 } // namespace darts

@@ -57,6 +57,7 @@ struct Scheme {
         set(s.candidates, candidates);
         set(s.alpha, alpha);
         set(s.focus, focus);
+        set(s.thinFocus, focus);
         set(s.roulette, roulette);
         set(s.floor, floor);
         set(s.bounded, bounded);

@@ -52,7 +52,8 @@ struct Settings {
     int directionCandidates = 4; ///< of Direction::Ris: half phase function, half lobe; even, at most 8
     bool lengthFirst = true;     ///< the connection's length is drawn before the direction, and shapes it
     bool guideEmission = true;   ///< the emitted direction is guided as well
-    float focus = 0.0f;          ///< share of the guided directions drawn from the camera's view
+    float focus = 0.0f;          ///< share of the guided directions drawn from the camera's view, at least
+    float thinFocus = 0.0f;      ///< at most: max(focus, min(thinFocus, 1.2 / (sigmaT S)))
 
     bool bounded = true; ///< candidates end where no path can be in time any more
     Greens greens = Greens::Causal;
@@ -86,7 +87,8 @@ inline Settings published(Mode mode) {
     return s;
 }
 
-/// What the study of sampling targets found best, for a phase function of mean cosine g.
+/// What the study of sampling targets found best, for a phase function of mean cosine g; candidates, roulette and the
+/// camera's share as benchmarks/infinite_medium found them better still.
 inline Settings best(Mode mode, float g) {
     const bool peaked = std::abs(g) >= 0.5f;
     Settings s;
@@ -96,9 +98,13 @@ inline Settings best(Mode mode, float g) {
         s.lobe = Lobe::Photon;
         s.alpha = 0.2f;
         s.focus = 0.1f;
+        s.thinFocus = peaked ? 0.1f : 0.3f;
+        s.roulette = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
         s.mixDenseOnly = !peaked;
     } else {
+        s.candidates = 16;
+        s.roulette = 0.03f;
         s.greens = peaked ? Greens::Diffusion : Greens::Causal;
     }
     return s;

@@ -2,6 +2,7 @@
 // Rows of stratified numbers for the candidates of one draw.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace darts {
@@ -53,8 +54,9 @@ struct StratifiedTable {
             for (int dimension = 0; dimension < N; ++dimension) {
                 uint32_t bits = 0; // of the point, as a fraction with 5 binary digits
                 for (uint32_t k = 0; k < 5; ++k)
-                    if ((row >> k) & 1u) bits ^= detail::SobolNumbers[size_t(dimension)][k] << (4 - k);
-                rows[row][size_t(dimension)] = (float(stratum(dimension)) + (float(bits) + 0.5f) / 32.0f) / float(N);
+                    if ((row >> k) & 1u) bits ^= detail::SobolNumbers[std::size_t(dimension)][k] << (4 - k);
+                rows[row][std::size_t(dimension)] =
+                    (float(stratum(dimension)) + (float(bits) + 0.5f) / 32.0f) / float(N);
             }
     }
 };

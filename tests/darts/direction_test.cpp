@@ -64,18 +64,6 @@ TEST(HenyeyGreenstein, SamplesItsDensity) {
     }
 }
 
-TEST(HenyeyGreenstein, KeepsItsPeakInFloat) {
-    for (const float g : {0.99f, -0.99f})
-        for (const float h : {0.0f, 1e-6f, 1e-3f, 1.0f, 2.0f}) {
-            const Vec3 after = directionAbout({0, 0, 1}, h, 0.0f);
-            const float value = HenyeyGreenstein{{0, 0, 1}, g}.pdf(after);
-            const long double G = std::abs(g), H = oneMinusCosine(after, {0, 0, g < 0 ? -1.0f : 1.0f});
-            const long double exact =
-                (1 - G * G) / (4 * 3.14159265358979323846L * std::pow(1 + G * G - 2 * G * (1 - H), 1.5L));
-            EXPECT_NEAR(double(value / float(exact)), 1.0, 1e-5) << g << " " << h;
-        }
-}
-
 template <typename View>
 void expectSamplesDensity(const Settings& settings, const Case& c, const View& view) {
     const DirectionSampler sampler(settings, medium(c.g));
@@ -98,7 +86,7 @@ TEST(DirectionSampler, MixturesSampleTheirDensity) {
             Settings settings = best(Mode::Photon, 0.0f);
             settings.alpha = c.alpha;
             settings.lobe = lobe;
-            if (c.excess < 0.05f && lobe == Lobe::Path) continue; // narrower than the test's cells: see ConnectionLobe
+            if (c.excess < 0.05f && lobe == Lobe::Path) continue; // narrower than the cells: see NarrowMixtures
             expectSamplesDensity(settings, c, NoView{});
         }
 }
@@ -129,6 +117,39 @@ TEST(DirectionSampler, MixturesWithTheEdaTableSampleTheirDensity) {
                     expectSamplesDensity(settings, c, view);
                 else
                     expectSamplesDensity(settings, c, NoView{});
+            }
+}
+
+/// Needles need cells of their own, in h; isotropic, so that the density is a function of h alone.
+TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
+    for (const Direction direction : {Direction::Connection, Direction::Eda})
+        for (const Lobe lobe : {Lobe::Path, Lobe::Photon})
+            for (const float excess : {1e-4f, 1e-3f, 0.02f, 3.0f}) {
+                if (direction == Direction::Eda && lobe == Lobe::Photon) continue; // one table for both
+                Settings settings = best(Mode::Path, 0.0f);
+                settings.direction = direction;
+                settings.lobe = lobe;
+                const DirectionSampler sampler(settings, medium(0.0f));
+                const Residual residual = Residual::of(ToTarget, {1.0, 1.0 + double(excess)});
+                const auto density = [&](double h) {
+                    const Vec3 d = directionAbout(residual.axis, float(h), 0.3f);
+                    return 2.0 * double(Pi) * double(sampler.pdf(residual, excess, d, HenyeyGreenstein{}, NoView{}));
+                };
+                auto edges = tungsten::test::ratioEdges(1e-10, 2.0, 60);
+                edges.insert(edges.begin(), 0.0);
+                edges.back() = 2.0 + 1e-9; // h = 2 belongs to the last cell
+                double integral = 0.0;
+                for (size_t i = 0; i + 1 < edges.size(); ++i)
+                    integral += boost::math::quadrature::gauss_kronrod<double, 15>::integrate(density, edges[i],
+                                                                                              edges[i + 1], 8, 1e-6);
+                EXPECT_NEAR(integral, 1.0, 1e-3) << int(direction) << " " << excess;
+                const double p = tungsten::test::chiSquareInterval(
+                    [&](Sampler& s) {
+                        const auto random = [&s] { return s.next1D(); };
+                        return double(sampler.sample(residual, excess, HenyeyGreenstein{}, NoView{}, random).h);
+                    },
+                    density, edges);
+                EXPECT_GT(p, tungsten::test::SmallestPValue) << int(direction) << " " << int(lobe) << " " << excess;
             }
 }
 

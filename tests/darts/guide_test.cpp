@@ -2,7 +2,7 @@
 
 #include "darts/Guide.h"
 
-#include "tungsten/core/Random.h"
+#include "support/ChiSquare.h"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
@@ -67,6 +67,27 @@ TEST(Guide, OnceScatteredLightMatchesItsClosedForm) {
                     settings.uniformLength = mode == Mode::Photon && lengthFirst;
                     expectOnceScattered(settings, geometry, ++seed);
                 }
+}
+
+TEST(Guide, ControlVerticesFollowTheirDensityAlongTheRay) {
+    const Guide guides[] = {Guide(best(Mode::Photon, 0.0f), Medium{{0.1f, 0, 0.4f}, {1, 1.5f, 1}, 0.0f}),
+                            Guide(best(Mode::Path, 0.0f), Medium{{0, 0, 0}, {40, 40, 40}, 0.0f})};
+    for (const Guide& guide : guides)
+        for (const Geometry& geometry : Geometries)
+            for (const float h : {1e-3f, 0.4f, 2.0f}) {
+                const Residual residual = Residual::of({0, 0, float(geometry.C)}, {geometry.low, geometry.high});
+                const double begin = Ellipse<double>{residual.C, residual.low, h}.firstLeg();
+                const double end = double(residual.latest(h).firstLeg());
+                const double p = tungsten::test::chiSquareInterval(
+                    [&](Sampler& s) {
+                        const auto connection = guide.sampleConnection(residual, s.next1D());
+                        const auto vertex = guide.controlVertex(residual, connection, h, INFINITY);
+                        return vertex ? double(vertex->distance) : -1.0;
+                    },
+                    [&](double t) { return double(guide.pdfControlVertex(residual, h, float(t))); },
+                    tungsten::test::evenEdges(begin * 0.999999, end * 1.000001, 100));
+                EXPECT_GT(p, tungsten::test::SmallestPValue) << geometry.C << " " << geometry.low << " " << h;
+            }
 }
 
 TEST(Guide, LengthsBeforeASurfaceEndOnIt) {

@@ -21,7 +21,7 @@ function(run_example prefix)
   # Found here and nowhere else.
   configure_and_build(${WORK}/example ${prefix}-example -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
   run(${prefix}-example/darts-example)
-  if(NOT output MATCHES "connection lobe: 0\\.[0-9]+   EDA table: 0\\.[0-9]+")
+  if(NOT output MATCHES "best: 0\\.[0-9]+   published: 0\\.[0-9]+")
     message(FATAL_ERROR "the example printed:\n${output}")
   endif()
   file(GLOB_RECURSE installed RELATIVE ${prefix} ${prefix}/*)

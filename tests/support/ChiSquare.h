@@ -5,6 +5,7 @@
 #include "tungsten/core/Types.h"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include <functional>
 #include <optional>
@@ -83,6 +84,42 @@ inline double chiSquareUniform(const std::function<double(Sampler&)>& sample, ui
         observed[size_t(std::clamp(int(sample(sampler) * Bins), 0, Bins - 1))] += 1.0;
     }
     return chiSquarePValue(observed, expected);
+}
+
+/// p-value for numbers in cells between `edges`, against the density's integrals by adaptive quadrature; samples
+/// outside must match 1 minus the integral over all cells.
+inline double chiSquareInterval(const std::function<double(Sampler&)>& sample,
+                                const std::function<double(double)>& density, const std::vector<double>& edges,
+                                uint64_t seed = 13, int samples = 100000) {
+    using Quadrature = boost::math::quadrature::gauss_kronrod<double, 15>;
+    const size_t cells = edges.size() - 1;
+    std::vector<double> observed(cells + 1, 0.0), expected(cells + 1, 0.0);
+    double total = 0.0;
+    for (size_t i = 0; i < cells; ++i) {
+        expected[i] = samples * Quadrature::integrate(density, edges[i], edges[i + 1], 8, 1e-7);
+        total += expected[i];
+    }
+    expected[cells] = std::max(samples - total, 0.0);
+    for (int i = 0; i < samples; ++i) {
+        Sampler sampler(seed, RandomStream::Test, 0, uint64_t(i));
+        const double x = sample(sampler);
+        const auto above = std::upper_bound(edges.begin(), edges.end(), x);
+        const bool inside = above != edges.begin() && above != edges.end();
+        observed[inside ? size_t(above - edges.begin()) - 1 : cells] += 1.0;
+    }
+    return chiSquarePValue(observed, expected);
+}
+
+/// `cells` + 1 edges from low to high, in equal steps or (positive ones) in equal ratios.
+inline std::vector<double> evenEdges(double low, double high, int cells) {
+    std::vector<double> edges;
+    for (int i = 0; i <= cells; ++i) edges.push_back(low + (high - low) * i / cells);
+    return edges;
+}
+inline std::vector<double> ratioEdges(double low, double high, int cells) {
+    std::vector<double> edges;
+    for (int i = 0; i <= cells; ++i) edges.push_back(low * std::pow(high / low, double(i) / cells));
+    return edges;
 }
 
 } // namespace tungsten::test

@@ -1,36 +1,36 @@
 // Light that scatters once on its way from a vertex to a target 2 away, arriving after a path of length 2.5 to 2.6, in
-// a medium without boundaries: int int sigmaS / (4 pi) e^{-sigmaT S} dt / r^2 dw, by control vertices.
+// a medium without boundaries: int int sigmaS / (4 pi) e^{-sigmaT S} / r^2 dt dw, by either preset.
 
-#include "darts/ConnectionLobe.h"
-#include "darts/ControlVertex.h"
-#include "darts/EdaTable.h"
+#include "darts/Guide.h"
 
 #include <cstdio>
 #include <random>
 
 int main() {
-    const float C = 2.0f, sigmaT = 0.8f, sigmaS = 0.7f;
-    const darts::ConnectionLength<float> length{2.5f, 0.1f, sigmaT};
-    const darts::EdaTable table = darts::EdaTable::build(sigmaS / sigmaT, 0.0f);
-    std::mt19937 bits;
-    std::uniform_real_distribution<float> uniform;
-
-    double byLobe = 0.0, byTable = 0.0;
-    constexpr int Samples = 1000000;
-    for (int i = 0; i < Samples; ++i) {
-        // The length first, then a direction that suits it, then the vertex that gives the path this length.
-        const float offset = length.sampleOffset(uniform(bits)), S = length.low + offset, delta = S - C;
-        const auto contribution = [&](float h, float directionPdf) {
-            const darts::Ellipse<float> connection{C, delta, h};
-            const float r = connection.secondLeg(), t = connection.firstLeg();
-            const float vertexPdf = darts::controlVertexPdf(connection, length.pdfOffset(offset));
-            return sigmaS / (2 * darts::TwoPi) * std::exp(-sigmaT * (t + r)) / (r * r) / (vertexPdf * directionPdf);
-        };
-        const auto lobe = darts::ConnectionLobe<float>::path(C, delta);
-        const float hLobe = lobe.sample(uniform(bits)), hTable = table.sample(C, delta, sigmaT, uniform(bits));
-        byLobe += contribution(hLobe, lobe.pdf(hLobe)) / Samples;
-        byTable += contribution(hTable, table.pdf(C, delta, sigmaT, hTable)) / Samples;
-    }
-    std::printf("connection lobe: %.5f   EDA table: %.5f\n", byLobe, byTable);
-    return std::abs(byLobe - byTable) < 0.01 * byLobe ? 0 : 1;
+    const darts::Medium medium{{0.1f, 0.1f, 0.1f}, {0.7f, 0.7f, 0.7f}, 0.0f};
+    const darts::Residual residual = darts::Residual::of({0.0f, 0.0f, 2.0f}, {2.5, 2.6});
+    const darts::HenyeyGreenstein isotropic;
+    const auto estimate = [&](const darts::Settings& settings) {
+        const darts::Guide guide(settings, medium);
+        std::mt19937 bits;
+        const auto random = [&bits] { return float(bits() >> 8) * 0x1p-24f; };
+        constexpr int Samples = 1000000;
+        double sum = 0.0;
+        for (int i = 0; i < Samples; ++i) {
+            // The connection's length S, a direction that suits it, the vertex where the path has this length.
+            const auto connection = guide.sampleConnection(residual, random());
+            const auto sample = guide.sampleDirection(residual, connection, isotropic, darts::NoView{}, random);
+            const auto vertex = guide.controlVertex(residual, connection, sample.h, INFINITY);
+            if (!vertex) continue;
+            const float S = vertex->distance + vertex->toTarget, sigmaS = medium.sigmaS.x, sigmaT = medium.sigmaT().x;
+            const float contribution =
+                sigmaS / (4.0f * darts::Pi) * std::exp(-sigmaT * S) / (vertex->toTarget * vertex->toTarget);
+            sum += double(contribution * vertex->inversePdf * sample.inversePdf);
+        }
+        return sum / Samples;
+    };
+    const double best = estimate(darts::best(darts::Mode::Path, 0.0f));
+    const double published = estimate(darts::published(darts::Mode::Path));
+    std::printf("best: %.5f   published: %.5f\n", best, published);
+    return std::abs(best - published) < 0.01 * best ? 0 : 1;
 }

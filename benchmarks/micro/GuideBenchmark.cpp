@@ -1,0 +1,74 @@
+// Time of a vertex: the control vertex alone, and all that a walk asks a Guide.
+
+#include "darts/Guide.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace darts {
+namespace {
+
+struct Vertex {
+    Residual residual;
+    float h, u;
+};
+
+/// Between one and three mean free paths from the target, 2 % gates.
+std::vector<Vertex> vertices() {
+    std::mt19937 bits(3);
+    std::uniform_real_distribution<float> uniform;
+    std::vector<Vertex> result(512);
+    for (Vertex& v : result) {
+        const float C = 1.0f + 2.0f * uniform(bits), S = C * (1.03f + uniform(bits));
+        v = {Residual::of({0, 0, C}, {0.98 * double(S), double(S)}), 2.0f * uniform(bits), uniform(bits)};
+    }
+    return result;
+}
+
+const Medium Fog{{0.1f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f}, 0.0f};
+
+/// The connection's length, the place on the ray and the density of both.
+void controlVertex(benchmark::State& state) {
+    const Guide guide(best(Mode::Photon, 0.0f), Fog);
+    const auto walk = vertices();
+    size_t i = 0;
+    for (auto _ : state) {
+        const Vertex& v = walk[i++ & 511];
+        const ConnectionSample connection = guide.sampleConnection(v.residual, v.u);
+        benchmark::DoNotOptimize(guide.controlVertex(v.residual, connection, v.h, INFINITY));
+    }
+}
+BENCHMARK(controlVertex);
+
+/// Length, direction, control vertex, distance, roulette; the random numbers (about 1 ns each) included.
+void guideVertex(benchmark::State& state, const Settings& settings, float g) {
+    Medium medium = Fog;
+    medium.g = g;
+    const Guide guide(settings, medium);
+    const auto walk = vertices();
+    uint32_t bits = 1;
+    const auto random = [&bits] {
+        bits = bits * 1664525u + 1013904223u;
+        return float(bits >> 8) * 0x1p-24f;
+    };
+    const HenyeyGreenstein phase{Vec3{0.6f, 0, 0.8f}, g};
+    size_t i = 0;
+    for (auto _ : state) {
+        const Residual& residual = walk[i++ & 511].residual;
+        const ConnectionSample connection = guide.sampleConnection(residual, random());
+        const DirectionSample sample = guide.sampleDirection(residual, connection, phase, NoView{}, random);
+        benchmark::DoNotOptimize(guide.controlVertex(residual, connection, sample.h, INFINITY));
+        benchmark::DoNotOptimize(guide.sampleDistance(residual, sample.h, INFINITY, {1, 1, 1}, random));
+        benchmark::DoNotOptimize(guide.survival(guide.logUsefulness(residual, 1.0f), 0.0f));
+    }
+}
+BENCHMARK_CAPTURE(guideVertex, published, published(Mode::Path), 0.0f);
+BENCHMARK_CAPTURE(guideVertex, best_path, best(Mode::Path, 0.0f), 0.0f);
+BENCHMARK_CAPTURE(guideVertex, best_path_peaked, best(Mode::Path, 0.7f), 0.7f);
+BENCHMARK_CAPTURE(guideVertex, best_photon, best(Mode::Photon, 0.0f), 0.0f);
+
+} // namespace
+} // namespace darts

@@ -1,0 +1,126 @@
+// Switches read from a block of named fields; any host's block will do.
+
+#include "darts/Scheme.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <variant>
+
+namespace darts {
+namespace {
+
+class Block {
+  public:
+    using Value = std::variant<double, bool, std::string, std::shared_ptr<Block>>;
+
+    Block(std::map<std::string, Value> fields, std::vector<std::string>* problems)
+        : fields_(std::move(fields)), problems_(problems) {}
+
+    bool has(const std::string& field) const { return fields_.count(field) > 0; }
+    bool isObject(const std::string& field) const {
+        return has(field) && std::holds_alternative<std::shared_ptr<Block>>(fields_.at(field));
+    }
+    std::shared_ptr<Block> object(const std::string& field) const {
+        return std::get<std::shared_ptr<Block>>(fields_.at(field));
+    }
+    bool flag(const std::string& field, bool otherwise) const { return value(field, otherwise); }
+    double number(const std::string& field, double otherwise) const { return value(field, otherwise); }
+    int64_t integer(const std::string& field, int64_t otherwise) const {
+        return int64_t(value(field, double(otherwise)));
+    }
+    std::string choice(const std::string& field, const std::string& otherwise,
+                       const std::vector<std::string>& accepted) const {
+        const std::string word = value(field, otherwise);
+        if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return word;
+        problem(field, "unknown " + word);
+        return otherwise;
+    }
+    void problem(const std::string& field, const std::string& what) const { problems_->push_back(field + ": " + what); }
+    void warnAboutUnknown() const {}
+
+  private:
+    template <typename T>
+    T value(const std::string& field, T otherwise) const {
+        return has(field) ? std::get<T>(fields_.at(field)) : otherwise;
+    }
+
+    std::map<std::string, Value> fields_;
+    std::vector<std::string>* problems_;
+};
+
+using Fields = std::map<std::string, Block::Value>;
+
+struct Reading {
+    std::vector<std::string> problems;
+    Scheme scheme;
+    explicit Reading(Fields fields) : scheme(readScheme(Block(std::move(fields), &problems))) {}
+};
+struct SwitchReading {
+    std::vector<std::string> problems;
+    Scheme scheme;
+    explicit SwitchReading(Fields switches)
+        : scheme(readScheme(Block({{"darts", std::make_shared<Block>(std::move(switches), &problems)}}, &problems))) {}
+};
+
+TEST(Scheme, PresetsAndFlags) {
+    EXPECT_FALSE(Reading(Fields{}).scheme.on);
+    EXPECT_FALSE(Reading(Fields{{"darts", "off"}}).scheme.on);
+    EXPECT_TRUE(Reading(Fields{{"darts", "best"}}).scheme.on);
+    EXPECT_TRUE(Reading(Fields{{"enable_guiding", true}}).scheme.guideDistance);
+    EXPECT_FALSE(Reading(Fields{{"enable_guiding", true}}).scheme.elliptical);
+    const Reading published(Fields{{"darts", "published"}});
+    const Settings settings = published.scheme.settings(Mode::Path, 0.0f, true, true);
+    EXPECT_EQ(settings.direction, Direction::Eda);
+    EXPECT_FALSE(settings.bounded);
+    // A phase function that does not ask for the table gets none.
+    EXPECT_EQ(published.scheme.settings(Mode::Path, 0.0f, true, false).direction, Direction::Phase);
+    EXPECT_EQ(Reading(Fields{{"darts", "best"}}).scheme.settings(Mode::Photon, 0.7f, true, true).direction,
+              Direction::Ris);
+}
+
+TEST(Scheme, EverySwitchWorksAlone) {
+    const auto settings = [](Fields switches) {
+        const SwitchReading reading(std::move(switches));
+        EXPECT_TRUE(reading.problems.empty());
+        return reading.scheme.settings(Mode::Photon, 0.0f, false, false);
+    };
+    const Settings preset = best(Mode::Photon, 0.0f);
+    EXPECT_EQ(settings({}).alpha, preset.alpha);
+    EXPECT_EQ(settings({{"direction", "eda"}}).direction, Direction::Eda);
+    EXPECT_EQ(settings({{"direction", "ris"}}).direction, Direction::Ris);
+    EXPECT_EQ(settings({{"greens_function", "causal"}}).greens, Greens::Causal);
+    EXPECT_EQ(settings({{"proposals", "equiangular"}}).proposals, Proposals::Equiangular);
+    EXPECT_FALSE(settings({{"proposals", "mixed"}}).mixDenseOnly);
+    EXPECT_EQ(settings({{"candidates", 16.0}}).candidates, 16);
+    EXPECT_EQ(settings({{"alpha", 0.7}}).alpha, 0.7f);
+    EXPECT_EQ(settings({{"focus", 0.3}}).focus, 0.3f);
+    EXPECT_EQ(settings({{"roulette", 0.25}}).roulette, 0.25f);
+    EXPECT_EQ(settings({{"floor", 0.02}}).floor, 0.02f);
+    EXPECT_FALSE(settings({{"bounded", false}}).bounded);
+    EXPECT_FALSE(settings({{"length_first", false}}).lengthFirst);
+    EXPECT_FALSE(settings({{"overlap", false}}).overlap);
+    EXPECT_FALSE(settings({{"guide_emission", false}}).guideEmission);
+    const Settings plain = settings({{"distance", "plain"}});
+    EXPECT_EQ(plain.greens, Greens::None);
+    EXPECT_EQ(plain.candidates, 1);
+    EXPECT_EQ(SwitchReading(Fields{{"direct_view", "off"}}).scheme.directView, DirectView::Off);
+    EXPECT_FALSE(SwitchReading(Fields{{"surface_connections", false}}).scheme.connectsSurfaces());
+}
+
+TEST(Scheme, WrongValuesNameWhatIsAccepted) {
+    const auto problem = [](const char* field, Block::Value value) {
+        const SwitchReading reading(Fields{{field, std::move(value)}});
+        return reading.problems.size() == 1 ? reading.problems.front() : "not one problem";
+    };
+    EXPECT_EQ(problem("alpha", -1.0), "alpha: expected a number from 0 to 1000000");
+    EXPECT_EQ(problem("alpha", 2e6), "alpha: expected a number from 0 to 1000000");
+    EXPECT_EQ(problem("focus", 1.5), "focus: expected a number from 0 to 1");
+    EXPECT_EQ(problem("floor", 0.1), "floor: expected a number from 0 to 0.05");
+    EXPECT_EQ(problem("candidates", 3.0), "candidates: expected 1, 4, 8 or 16, found 3");
+    EXPECT_EQ(problem("direction", "sideways"), "direction: unknown sideways");
+}
+
+} // namespace
+} // namespace darts
