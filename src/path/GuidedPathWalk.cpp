@@ -117,8 +117,8 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, float s
     const darts::ConnectionLength<double> flights{chord.begin(), chord.end() - chord.begin(),
                                                   double(meanComponent(medium.sigmaT()))};
     const double u = sampler_.nextDouble();
-    const double t = next() < 0.5f ? chord.begin() + flights.sampleOffset(u) : chord.sample(u);
-    const double pdf = 0.5 * flights.pdfOffset(t - chord.begin()) + 0.5 * chord.pdf(t);
+    const double t = next() < 0.5f ? chord.begin() + flights.sample(u).offset : chord.sample(u);
+    const double pdf = 0.5 * flights.pdf(t - chord.begin()) + 0.5 * chord.pdf(t);
     if (!(pdf > 0.0)) return std::nullopt;
     throughput_ = throughput_ * medium.sigmaS * medium.transmittance(float(t)) * float(1.0 / pdf);
     return float(t);
