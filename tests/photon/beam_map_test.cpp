@@ -122,7 +122,7 @@ class CornellFog : public testing::Test {
 
 TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
     const auto beams = photons("beams", 32);
-    expectSame(*beams, *paths(16), 0.02, 0.15);
+    expectSame(*beams, *paths(20), 0.02, 0.15);
     // The same seed gives the same light paths and surface photons: only the fog's estimate differs.
     expectSame(*beams, *photons("points", 32), 0.01, 0.15);
     EXPECT_GT(beams->statistics.counter("gathered beams"), 100000u);

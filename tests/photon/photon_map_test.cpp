@@ -61,7 +61,7 @@ TEST(PhotonMap, SingleScatteringInAFoggedBox) {
 }
 
 TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
-    const auto rendered = renderPhotons(test::litFloor(20), {{"integrator.photon_count=25000"}, 40, 1});
+    const auto rendered = renderPhotons(test::litFloor(20), {{"integrator.photon_count=40000"}, 40, 1});
     const double expected = 0.5 / 3.14159265358979 * 3.0 * (1.0 / 1.25) / (1.25 * 1.25) / 0.25;
     EXPECT_NEAR(rendered->mean(15), expected, 4.0 * rendered->pixelError(15) + 0.01 * expected);
     EXPECT_LT(rendered->pixelError(15), 0.05 * expected);
