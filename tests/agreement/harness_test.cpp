@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(
     Harness, Faults,
     testing::Values(Fault{"SingleScatteringDropped", "backward-fog", {"integrator.min_bounces=3"}},
                     Fault{"OrdersAboveTheSecondDropped", "coloured-fog", {"integrator.max_bounces=4"}},
-                    Fault{"SpeedInVacuumOffByTwoPercent", "slow-cloud", {"integrator.vaccum_speed_of_light=1.02"}},
+                    Fault{"SpeedInVacuumOffByThreePercent", "slow-cloud", {"integrator.vaccum_speed_of_light=1.03"}},
                     Fault{"AnisotropyOff", "forward-fog", {"media.fog.phase_function.g=0.6"}},
                     Fault{"SecondPulseLate", "two-pulses", {"primitives.blue pulse.emission_time=1.65"}}),
     [](const auto& instance) { return instance.param.name; });
