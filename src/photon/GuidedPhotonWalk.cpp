@@ -195,7 +195,8 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     sinceVertex_ = 0.0f;
     connectable_ = true;
     if (!look(guide) || !survives(guide)) return false;
-    connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
+    if (flights_ < medium.maxBounces) // else no flight would leave here
+        connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
     const PhaseDirections phase{medium.phase, before};
     const float inversePdf = redirect(guide, phase);
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);

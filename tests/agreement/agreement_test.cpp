@@ -25,7 +25,7 @@ void expectAgreement(const BlockMeans& method, const BlockMeans& reference) {
 class MethodsAgree : public testing::TestWithParam<AgreementScene> {};
 
 TEST_P(MethodsAgree, WithThePathTracer) {
-    const std::vector<Method> methods = methodsUnderTest();
+    const std::vector<Method> methods = methodsInTests(GetParam().name);
     const BlockMeans reference = renderBlocks(GetParam(), methods.front());
     ASSERT_GT(channelMean(reference.whole(0)), 0.0);
     for (size_t i = 1; i < methods.size(); ++i) {

@@ -98,7 +98,7 @@ class GuidedRoom : public testing::TestWithParam<RoomCase> {};
 
 TEST_P(GuidedRoom, AgreesWithPlainPaths) {
     AgreementScene scene =
-        builtScene(GetParam().name, fogRoom(GetParam().light, GetParam().settings), 0.1, {32, 64, 0, 0, 0});
+        builtScene(GetParam().name, fogRoom(GetParam().light, GetParam().settings), 0.1, {32, 64, 0, 0});
     scene.overrides = GetParam().overrides;
     expectAgreement(scene, Best, renderBlocks(scene, Plain));
 }

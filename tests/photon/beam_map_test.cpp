@@ -1,118 +1,69 @@
 // Photon beams against verified values, closed forms, photon points and the path tracer.
 
-#include "path/PathTracer.h"
-#include "photon/PhotonIntegrator.h"
 #include "photon/ProgressiveSchedule.h"
 
-#include "support/GroundTruthScenes.h"
-#include "support/Render.h"
+#include "render_photons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::photon {
 namespace {
 
+using test::Overrides;
+using test::renderBeams;
 using test::Rendered;
 using test::RenderOptions;
+using test::renderPhotons;
+using test::setting;
+using test::VerifiedValue;
 
-using Overrides = std::vector<std::string>;
-
-std::unique_ptr<Rendered> renderFile(const std::filesystem::path& file, const RenderOptions& options) {
-    return test::render(file, options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<PhotonIntegrator>(std::move(scene), settings, true);
-    });
-}
-
-std::unique_ptr<Rendered> renderPoints(const std::string& json, const RenderOptions& options) {
-    return renderFile(test::SceneFile(json).path(), options);
-}
-
-std::unique_ptr<Rendered> renderBeams(const std::string& json, RenderOptions options) {
-    options.overrides.insert(options.overrides.begin(), "integrator.volume_photon_type=beams");
-    return renderPoints(json, options);
-}
-
-std::unique_ptr<Rendered> renderPaths(const std::filesystem::path& file, RenderOptions options) {
-    options.overrides.emplace_back("integrator.type=path_tracer");
-    return test::render(file, options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<path::PathTracer>(std::move(scene), settings);
-    });
-}
-
-std::string setting(const std::string& name, double value) {
-    return "integrator." + name + "=" + std::to_string(value);
-}
-
-/// Verified values, section 6.
 struct OrderCase {
-    char configuration;
-    int order;
-    bool unwarped, delta;
-    double expected;
-    uint32_t passes = 80;
+    VerifiedValue value;
+    uint32_t passes = 30;
 };
-
-/// Test names such as A2UnwarpedDelta.
-std::string nameOf(const testing::TestParamInfo<OrderCase>& info) {
-    const OrderCase& c = info.param;
-    return c.configuration + std::to_string(c.order) + (c.unwarped ? "Unwarped" : "Warped") +
-           (c.delta ? "Delta" : "Box");
-}
 
 class BeamOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(BeamOrders, MatchVerifiedValues) {
     const OrderCase& c = GetParam();
-    const bool laser = c.configuration == 'C';
-    const std::string json = test::configurationA(c.order, c.unwarped,
-                                                  laser                    ? 0.3
-                                                  : c.configuration == 'B' ? 0.6
-                                                                           : 0.0);
-    constexpr double Tau = 0.1, Radius = 0.1;
-    Overrides overrides{setting("volume_gather_radius", Radius), setting("photon_count", 25000)};
-    const double unwarpedCentre = laser ? 3.5 : c.delta ? 2.2 : 2.5;
-    overrides.push_back(setting("transient_time_center", c.unwarped ? unwarpedCentre : 5.5));
-    if (c.delta) {
-        overrides.emplace_back("integrator.delta_time_gate=true");
-        overrides.push_back(setting("transient_time_width", 2.0 * Tau));
-    }
-    const auto rendered = renderBeams(laser ? test::withLaser(json) : json, {overrides, c.passes, 1});
-    const double error = rendered->pixelError();
+    Overrides overrides = test::gateOf(c.value);
+    overrides.insert(overrides.end(), {setting("volume_gather_radius", 0.1), setting("photon_count", 25000)});
+    const auto rendered = renderBeams(test::sceneOf(c.value), {overrides, c.passes, 1});
+    const double error = rendered->pixelError(), exact = c.value.radiance;
     constexpr double KernelBias = 0.01;
-    EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + KernelBias * c.expected) << "standard error " << error;
-    EXPECT_LT(error, 0.1 * c.expected) << "the test would not see a wrong value";
-    RecordProperty("deviation in standard errors", std::to_string((rendered->mean() - c.expected) / error));
-    RecordProperty("relative standard error", std::to_string(error / c.expected));
+    EXPECT_NEAR(rendered->mean(), exact, 4.0 * error + KernelBias * exact) << "standard error " << error;
+    EXPECT_LT(error, 0.1 * exact) << "the test would not see a wrong value";
+    RecordProperty("deviation in standard errors", std::to_string((rendered->mean() - exact) / error));
+    RecordProperty("relative standard error", std::to_string(error / exact));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Configurations, BeamOrders,
-    testing::Values(OrderCase{'A', 1, false, false, 2.22436e-4}, OrderCase{'A', 1, true, false, 11.1009e-4},
-                    OrderCase{'A', 1, false, true, 2.1055e-4}, OrderCase{'A', 1, true, true, 26.6081e-4},
-                    OrderCase{'A', 2, false, false, 5.97962e-4}, OrderCase{'A', 2, true, false, 29.4416e-4},
-                    OrderCase{'A', 2, false, true, 5.79199e-4}, OrderCase{'A', 2, true, true, 40.7037e-4},
-                    OrderCase{'A', 3, false, false, 7.81135e-4}, OrderCase{'A', 3, true, false, 22.1036e-4},
-                    OrderCase{'A', 3, false, true, 7.70375e-4}, OrderCase{'A', 3, true, true, 24.0969e-4},
-                    OrderCase{'B', 2, false, false, 1.28207e-4, 160}, OrderCase{'B', 2, true, false, 36.250e-4},
-                    OrderCase{'B', 2, false, true, 1.22185e-4, 400}, OrderCase{'B', 2, true, true, 67.886e-4},
-                    OrderCase{'C', 2, false, false, 9.56707e-5}, OrderCase{'C', 2, true, false, 8.34604e-5},
-                    OrderCase{'C', 2, false, true, 8.55486e-5}, OrderCase{'C', 2, true, true, 7.63581e-5, 240}),
-    nameOf);
+    testing::Values(OrderCase{{'A', 1, false, false, 2.22436e-4}}, OrderCase{{'A', 1, true, false, 11.1009e-4}},
+                    OrderCase{{'A', 1, false, true, 2.1055e-4}}, OrderCase{{'A', 1, true, true, 26.6081e-4}},
+                    OrderCase{{'A', 2, false, false, 5.97962e-4}}, OrderCase{{'A', 2, true, false, 29.4416e-4}},
+                    OrderCase{{'A', 2, false, true, 5.79199e-4}}, OrderCase{{'A', 2, true, true, 40.7037e-4}},
+                    OrderCase{{'A', 3, false, false, 7.81135e-4}}, OrderCase{{'A', 3, true, false, 22.1036e-4}},
+                    OrderCase{{'A', 3, true, true, 24.0969e-4}}, OrderCase{{'B', 2, false, false, 1.28207e-4}, 60},
+                    OrderCase{{'B', 2, true, false, 36.250e-4}}, OrderCase{{'C', 2, false, false, 9.56707e-5}},
+                    OrderCase{{'C', 2, true, false, 8.34604e-5}}, OrderCase{{'C', 2, false, true, 8.55486e-5}}),
+    [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(BeamMap, SingleScatteringInAFoggedBox) {
-    const auto rendered = renderBeams(test::foggedBox(), {{setting("volume_gather_radius", 0.05)}, 60, 1});
+    const auto rendered =
+        renderBeams(test::foggedBox(), {{setting("volume_gather_radius", 0.05), setting("photon_count", 8000)}, 40, 1});
     const double expected = test::foggedBoxSingleScattering();
     EXPECT_NEAR(rendered->mean(), expected, 4.0 * rendered->pixelError() + 0.01 * expected);
     EXPECT_LT(rendered->pixelError(), 0.05 * expected);
 }
 
 TEST(BeamMap, ShrinkingKernelsConvergeOnTheDeltaGate) {
-    const auto rendered = renderBeams(
-        test::configurationA(1, true),
-        {{setting("volume_gather_radius", 0.2), setting("transient_time_width", 0.5),
-          setting("transient_time_center", 2.2), setting("volume_alpha", 0.4), "integrator.delta_time_gate=true"},
-         60,
-         1});
+    const auto rendered = renderBeams(test::configurationA(1, true),
+                                      {{setting("volume_gather_radius", 0.2), setting("transient_time_width", 0.5),
+                                        setting("transient_time_center", 2.2), setting("volume_alpha", 0.4),
+                                        setting("photon_count", 20000), "integrator.delta_time_gate=true"},
+                                       60,
+                                       1});
     constexpr double Exact = 26.6081e-4;
     EXPECT_NEAR(rendered->mean(), Exact, 4.0 * rendered->pixelError() + 0.01 * Exact);
     EXPECT_LT(rendered->pixelError(), 0.05 * Exact);
@@ -147,10 +98,10 @@ class CornellFog : public testing::Test {
     [[nodiscard]] std::unique_ptr<Rendered> photons(const std::string& primitive, uint32_t passes) const {
         Overrides all = overrides;
         all.push_back("integrator.volume_photon_type=" + primitive);
-        return renderFile(file, {all, passes, 256});
+        return test::renderPhotonFile(file, {all, passes, 256});
     }
     [[nodiscard]] std::unique_ptr<Rendered> paths(uint32_t passes) const {
-        return renderPaths(file, {overrides, passes, 4096});
+        return test::renderPathFile(file, {overrides, passes, 4096});
     }
     /// Every quarter, frame and channel; `bias` relative to the value.
     static void expectSame(const Rendered& a, const Rendered& b, double bias, double largestError) {
@@ -170,10 +121,10 @@ class CornellFog : public testing::Test {
 };
 
 TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
-    const auto beams = photons("beams", 40);
+    const auto beams = photons("beams", 32);
     expectSame(*beams, *paths(20), 0.02, 0.15);
     // The same seed gives the same light paths and surface photons: only the fog's estimate differs.
-    expectSame(*beams, *photons("points", 40), 0.01, 0.15);
+    expectSame(*beams, *photons("points", 32), 0.01, 0.15);
     EXPECT_GT(beams->statistics.counter("gathered beams"), 100000u);
     EXPECT_EQ(beams->statistics.counter("stored volume photons"), 0u);
 }
@@ -184,9 +135,9 @@ TEST_F(CornellFog, BeamsAgreeWithPathsAndPointsThroughAMirror) {
     overrides.emplace_back(
         R"(primitives.pulse={"type": "quad", "int_medium": "fog", "ext_medium": "fog", "emission": 40,
         "transform": {"position": [0.3, 1.7, 0.1], "scale": [0.5, 1, 0.5], "rotation": [180, 0, 0]}})");
-    const auto beams = photons("beams", 40);
-    expectSame(*beams, *paths(40), 0.02, 0.15);
-    expectSame(*beams, *photons("points", 40), 0.01, 0.15);
+    const auto beams = photons("beams", 24);
+    expectSame(*beams, *paths(16), 0.02, 0.15);
+    expectSame(*beams, *photons("points", 24), 0.01, 0.15);
 }
 
 TEST(BeamMap, FramesSumToTheSteadyState) {
@@ -228,24 +179,25 @@ TEST(BeamMap, SameImageOnOneAndTwoThreadsWithinAMillionth) {
 
 TEST(BeamMap, FullStoresStayUnbiased) {
     const std::string json = test::configurationA(2, false);
-    const auto big = renderBeams(json, {{}, 20, 1});
-    const auto small = renderBeams(json, {{"integrator.volume_photon_count=4000"}, 400, 1});
-    EXPECT_LE(small->statistics.counter("photon beams"), 400u * 4000u);
-    EXPECT_GT(small->statistics.counter("photon beams"), 400u * 3900u);
+    const auto big = renderBeams(json, {{setting("photon_count", 25000)}, 20, 1});
+    const auto small = renderBeams(json, {{"integrator.volume_photon_count=1000"}, 300, 1});
+    EXPECT_LE(small->statistics.counter("photon beams"), 300u * 1000u);
+    EXPECT_GT(small->statistics.counter("photon beams"), 300u * 950u);
     EXPECT_NEAR(small->mean(), big->mean(), 4.0 * std::hypot(small->pixelError(), big->pixelError()));
     EXPECT_LT(small->pixelError(), 0.1 * small->mean());
 }
 
 TEST(BeamMap, OrdersAndLimitsAsForPoints) {
-    const RenderOptions lowOrders{{"integrator.low_order_scattering=false"}, 2, 1};
+    const std::string few = setting("photon_count", 20000);
+    const RenderOptions lowOrders{{few, "integrator.low_order_scattering=false"}, 2, 1};
     EXPECT_EQ(renderBeams(test::configurationA(1, true), lowOrders)->statistics.counter("gathered beams"), 0u);
-    const auto all = renderBeams(test::configurationA(2, true), {{}, 2, 1});
+    const auto all = renderBeams(test::configurationA(2, true), {{few}, 2, 1});
     const auto high = renderBeams(test::configurationA(2, true), lowOrders);
     EXPECT_GT(all->mean(), 0.0);
     EXPECT_NEAR(high->mean(), all->mean(), 1e-6 * all->mean());
     EXPECT_LT(high->statistics.counter("photon beams"), all->statistics.counter("photon beams"));
     // One distance in the medium: single scattering alone.
-    const RenderOptions oneFlight{{"media.fog.max_bounces=1"}, 2, 1};
+    const RenderOptions oneFlight{{few, "media.fog.max_bounces=1"}, 2, 1};
     EXPECT_GT(renderBeams(test::configurationA(1, true), oneFlight)->mean(), 0.0);
     EXPECT_EQ(renderBeams(test::configurationA(2, true), oneFlight)->mean(), 0.0);
 }
@@ -254,7 +206,7 @@ TEST(BeamMap, UnusedStagesCostNothing) {
     const auto noMedium = renderBeams(test::litFloor(1), {{"integrator.transient_time_width=5"}, 1, 1});
     EXPECT_EQ(noMedium->statistics.counter("photon beams"), 0u);
     EXPECT_GT(noMedium->statistics.counter("stored surface photons"), 0u);
-    const auto points = renderPoints(test::configurationA(1, false), {{}, 1, 1});
+    const auto points = renderPhotons(test::configurationA(1, false), {{}, 1, 1});
     EXPECT_EQ(points->statistics.counter("photon beams"), 0u);
 }
 
@@ -262,7 +214,7 @@ TEST(BeamMap, WrongSettingsAreExplained) {
     const std::string delta = "integrator.delta_time_gate=true", noWidth = "integrator.transient_time_width=0";
     EXPECT_NO_THROW(renderBeams(test::configurationA(1, false), {{delta}, 1, 1}));
     EXPECT_THROW(renderBeams(test::configurationA(1, false), {{delta, noWidth}, 1, 1}), InputError);
-    EXPECT_THROW(renderPoints(test::configurationA(1, false), {{delta}, 1, 1}), InputError);
+    EXPECT_THROW(renderPhotons(test::configurationA(1, false), {{delta}, 1, 1}), InputError);
     EXPECT_THROW(renderBeams(test::configurationA(1, false), {{"integrator.volume_gather_radius=0"}, 1, 1}),
                  InputError);
     // Without any radius the kernel has no width.
@@ -278,8 +230,8 @@ TEST(BeamMap, SharedScenesLoadAndRender) {
     for (const char* name : {"cbox/transient-beams.json", "dragon/scene-beams-short.json",
                              "dragon/scene-beams-darts-long.json", "dragon/transient-beams.json"}) {
         SCOPED_TRACE(name);
-        const auto rendered =
-            renderFile(folder / name, {{"camera.resolution=[8, 8]", "integrator.photon_count=20000"}, 1, 1});
+        const auto rendered = test::renderPhotonFile(
+            folder / name, {{"camera.resolution=[8, 8]", "integrator.photon_count=20000"}, 1, 1});
         EXPECT_GT(rendered->statistics.counter("gathered beams"), 0u);
         EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
     }

@@ -1,34 +1,16 @@
 // Photon points and surface photons against closed forms, verified values and the path tracer.
 
-#include "path/PathTracer.h"
-#include "photon/PhotonIntegrator.h"
 #include "photon/ProgressiveSchedule.h"
 
-#include "support/GroundTruthScenes.h"
-#include "support/Render.h"
+#include "render_photons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::photon {
 namespace {
 
-using test::Rendered;
-using test::RenderOptions;
-
-std::unique_ptr<Rendered> renderPhotons(const std::string& json, const RenderOptions& options) {
-    const test::SceneFile file(json);
-    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<PhotonIntegrator>(std::move(scene), settings, true);
-    });
-}
-
-std::unique_ptr<Rendered> renderPaths(const std::string& json, RenderOptions options) {
-    options.overrides.emplace_back("integrator.type=path_tracer");
-    const test::SceneFile file(json);
-    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<path::PathTracer>(std::move(scene), settings);
-    });
-}
+using test::renderPaths;
+using test::renderPhotons;
 
 const std::string SteadyMap = "integrator.type=progressive_photon_map";
 
@@ -72,14 +54,14 @@ INSTANTIATE_TEST_SUITE_P(ConfigurationsAAndB, PointOrders,
                          nameOf);
 
 TEST(PhotonMap, SingleScatteringInAFoggedBox) {
-    const auto rendered = renderPhotons(test::foggedBox(), {{}, 60, 1});
+    const auto rendered = renderPhotons(test::foggedBox(), {{"integrator.photon_count=30000"}, 60, 1});
     const double expected = test::foggedBoxSingleScattering();
     EXPECT_NEAR(rendered->mean(), expected, 4.0 * rendered->pixelError() + 0.01 * expected);
     EXPECT_LT(rendered->pixelError(), 0.05 * expected);
 }
 
 TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
-    const auto rendered = renderPhotons(test::litFloor(20), {{}, 40, 1});
+    const auto rendered = renderPhotons(test::litFloor(20), {{"integrator.photon_count=40000"}, 40, 1});
     const double expected = 0.5 / 3.14159265358979 * 3.0 * (1.0 / 1.25) / (1.25 * 1.25) / 0.25;
     EXPECT_NEAR(rendered->mean(15), expected, 4.0 * rendered->pixelError(15) + 0.01 * expected);
     EXPECT_LT(rendered->pixelError(15), 0.05 * expected);

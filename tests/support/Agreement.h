@@ -22,6 +22,7 @@ struct Method {
     bool kernel = false;     ///< estimates density with a kernel: rendered with two radii, extrapolated to radius 0
     uint64_t seed = 1;       ///< methods with the same seed may share random numbers
     bool steadyState = true; ///< also renders without a gate
+    double share = 1.0;      ///< of the scene's light paths per pass: cheaper or less noisy paths
 };
 inline Method pathMethod(std::string name, std::vector<std::string> fields, uint64_t seed) {
     fields.insert(fields.begin(), "type=path_tracer");
@@ -38,21 +39,58 @@ inline Method photonMethod(std::string name, std::vector<std::string> fields, ui
     return {std::move(name), std::move(fields), true, seed, true};
 }
 
+/// Without a gate there is nothing to guide light paths to: plain ones.
+inline Method guidedPhotonMethod(std::string name, std::vector<std::string> fields, uint64_t seed, double share = 1.0) {
+    Method method = photonMethod(std::move(name), std::move(fields), seed);
+    method.steadyState = false;
+    method.share = share;
+    return method;
+}
+inline Method beamMethod(Method method, double share) {
+    method.fields.emplace_back("volume_photon_type=beams");
+    method.share = share;
+    return method;
+}
+
 /// The methods under test: one line each. The first is what the others are compared with.
 inline std::vector<Method> methodsUnderTest() {
     return {
         pathMethod("plain paths", {}, 1),
         photonMethod("plain points", {"volume_photon_type=points"}, 2),
-        guidedPathMethod("published paths", {"darts=published"}, 3),
-        guidedPathMethod("best paths", {"darts=best"}, 4),
+        guidedPhotonMethod("published points", {"darts=published"}, 3, 0.3),
+        guidedPhotonMethod("best points", {"darts=best"}, 4, 0.15),
+        beamMethod(photonMethod("plain beams", {}, 5), 0.15),
+        beamMethod(guidedPhotonMethod("published beams", {"darts=published"}, 6), 0.12),
+        beamMethod(guidedPhotonMethod("best beams", {"darts=best"}, 7), 0.08),
+        guidedPathMethod("published paths", {"darts=published"}, 8),
+        guidedPathMethod("best paths", {"darts=best"}, 9),
     };
+}
+/// Those that prove the harness itself.
+inline std::vector<Method> plainMethods() {
+    std::vector<Method> methods = methodsUnderTest();
+    methods.resize(2);
+    return methods;
+}
+
+/// Those that a test has the time for on a scene; benchmarks/agreement runs all. Guided light paths and beams take long
+/// through refraction and slow light.
+inline std::vector<Method> methodsInTests(const std::string& scene) {
+    const bool slow = scene == "slow-cloud" || scene == "glass-tank", every = scene == "mirror-fog";
+    std::vector<Method> methods;
+    for (Method& method : methodsUnderTest()) {
+        const bool plain = method.name.starts_with("plain p"), best = method.name.starts_with("best"),
+                   paths = method.name.ends_with("paths");
+        if (every || plain || (slow ? paths : best)) methods.push_back(std::move(method));
+    }
+    return methods;
 }
 
 /// Samples spent on one method.
 struct Effort {
-    uint32_t pathPasses, pathSamples;     ///< samples per pixel and pass
-    uint32_t photonPasses, photonSamples; ///< the same of a method with a kernel
-    int photons;                          ///< light paths per pass
+    uint32_t pathPasses, pathSamples; ///< samples per pixel and pass
+    uint32_t photonPasses;            ///< of a method with a kernel, one sample per pixel each
+    int photons;                      ///< light paths per pass
 };
 
 /// A scene file, how it is changed for the proof, and how much work it takes.
@@ -122,9 +160,10 @@ class PassRenderer {
         if (scene.steadyState) removeGate(overrides);
         const std::string r = std::to_string(radius);
         if (method.kernel)
-            overrides.insert(overrides.end(), {"integrator.gather_radius=" + r, "integrator.volume_gather_radius=" + r,
-                                               "integrator.photon_count=" + std::to_string(scene.effort.photons),
-                                               "integrator.volume_photon_count=100000000"});
+            overrides.insert(overrides.end(),
+                             {"integrator.gather_radius=" + r, "integrator.volume_gather_radius=" + r,
+                              "integrator.photon_count=" + std::to_string(int(scene.effort.photons * method.share)),
+                              "integrator.volume_photon_count=100000000"});
         overrides.push_back("camera.resolution=[" + std::to_string(scene.width) + "," + std::to_string(scene.height) +
                             "]");
         const LoadedScene loaded = loadScene(scene.file, {{}, overrides});
@@ -208,7 +247,7 @@ inline constexpr uint32_t ShrinkEvery = 4;
 inline BlockMeans renderBlocks(const AgreementScene& scene, const Method& method) {
     PassRenderer fine(scene, method, 0.5 * scene.radius), coarse(scene, method, scene.radius);
     const uint32_t passes = method.kernel ? scene.effort.photonPasses : scene.effort.pathPasses;
-    const uint32_t samples = method.kernel ? scene.effort.photonSamples : scene.effort.pathSamples;
+    const uint32_t samples = method.kernel ? 1 : scene.effort.pathSamples;
     const int frames = fine.film().frames(), blocks = blockCount(scene.width, scene.height);
     BlockFilm values(blocks, frames), shrink(blocks, frames);
     for (uint32_t pass = 0; pass < passes; ++pass) {

@@ -54,7 +54,7 @@ inline AgreementScene shippedScene(const std::string& name, std::vector<std::str
 /// Twenty frames that hold all scattered light there is; the ball itself is left out, which would outshine the rest.
 inline AgreementScene fogSequence() {
     AgreementScene scene =
-        builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 256, 32, 8, 20000});
+        builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 256, 40, 60000});
     scene.overrides = {"integrator.min_bounces=2", "integrator.start_time=5", "integrator.transient_time_width=0.5",
                        "integrator.frame_num=20"};
     return scene;
@@ -68,7 +68,7 @@ inline AgreementScene fogInSteadyState() {
 }
 
 /// Leaves errors of a few per cent in a block.
-inline constexpr Effort Plenty{32, 128, 32, 8, 40000};
+inline constexpr Effort Plenty{32, 128, 32, 40000};
 
 /// Every scene of the proofs, with the effort of a test.
 inline std::vector<AgreementScene> agreementScenes() {
@@ -77,16 +77,16 @@ inline std::vector<AgreementScene> agreementScenes() {
         "transform": {"position": [0.3, 1.65, 0.1], "scale": 0.12}})";
     return {
         shippedScene("cornell-fog", {ball}, 0.08, Plenty),
-        shippedScene("mirror-fog", {}, 0.12, {32, 192, 64, 8, 60000}),
+        shippedScene("mirror-fog", {}, 0.12, {32, 192, 64, 60000}),
         shippedScene(
             "two-pulses",
             {"integrator.frame_num=0", "integrator.transient_time_center=7.6", "integrator.transient_time_width=0.3"},
-            0.1, {32, 256, 64, 8, 50000}),
+            0.1, {32, 256, 64, 50000}),
         builtScene("forward-fog", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.7), 0.12, Plenty),
         builtScene("backward-fog", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", -0.4), 0.12, Plenty),
         builtScene("coloured-fog", fogCube(R"("sigma_a": [0.3, 0.15, 0.08], "sigma_s": [0.25, 0.5, 1])", 0.2), 0.12,
                    Plenty),
-        builtScene("slow-cloud", slowCloud(), 0.12, {32, 256, 48, 8, 60000}),
+        builtScene("slow-cloud", slowCloud(), 0.12, {32, 256, 48, 60000}),
         shippedScene("glass-tank", {}, 0.1, Plenty),
         fogSequence(),
         fogInSteadyState(),

@@ -1,0 +1,217 @@
+// Guided light paths in whole scenes: surfaces, mirrors, sequences, several pulses, full stores, threads.
+
+#include "render_photons.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+using test::Overrides;
+using test::renderBeams;
+using test::Rendered;
+using test::renderPaths;
+using test::renderPhotons;
+using test::setting;
+
+const std::string Published = "integrator.darts=published", Best = "integrator.darts=best";
+
+/// Block means of two renders, 8 x 8 pixels, each within its combined error and `bias`, relative to the image's mean.
+/// Pixels of a pass share photons: their errors add up at worst.
+void expectSameBlocks(const Rendered& a, const Rendered& b, int frame, double bias, double largestError) {
+    const Image va = a.film.mean(frame), vb = b.film.mean(frame);
+    const Image ea = a.film.standardError(frame), eb = b.film.standardError(frame);
+    const double average = b.mean(frame);
+    ASSERT_GT(average, 0.0);
+    double errors = 0.0;
+    const int columns = va.width / 8, blocks = columns * (va.height / 8);
+    for (int block = 0; block < blocks; ++block) {
+        double difference = 0.0, correlated = 0.0, independent = 0.0;
+        for (int i = 0; i < 64; ++i) {
+            const int x = 8 * (block % columns) + i % 8, y = 8 * (block / columns) + i / 8;
+            difference += double(va.at(x, y).y - vb.at(x, y).y) / 64.0;
+            correlated += double(ea.at(x, y).y) / 64.0;
+            independent += double(eb.at(x, y).y * eb.at(x, y).y) / (64.0 * 64.0);
+        }
+        const double error = std::sqrt(correlated * correlated + independent);
+        EXPECT_LT(std::abs(difference), 4.0 * error + bias * average) << "frame " << frame << " block " << block;
+        errors += error / blocks;
+    }
+    EXPECT_LT(errors, largestError * average) << "frame " << frame << ": the test would not see a wrong value";
+}
+
+struct MapCase {
+    const char* name;
+    std::string darts;
+    bool beams;
+};
+class GuidedMaps : public testing::TestWithParam<MapCase> {
+  protected:
+    /// Guided as the case says.
+    [[nodiscard]] static std::unique_ptr<Rendered> guided(const std::string& json, test::RenderOptions options) {
+        options.overrides.push_back(GetParam().darts);
+        return GetParam().beams ? renderBeams(json, options) : renderPhotons(json, options);
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Presets, GuidedMaps,
+                         testing::Values(MapCase{"PublishedPoints", Published, false},
+                                         MapCase{"BestPoints", Best, false}, MapCase{"PublishedBeams", Published, true},
+                                         MapCase{"BestBeams", Best, true}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST_P(GuidedMaps, SingleScatteringInAFoggedBox) {
+    const auto rendered = guided(
+        test::foggedBox(),
+        {{setting("volume_gather_radius", 0.05), setting("photon_count", GetParam().beams ? 8000 : 25000)}, 60, 1});
+    const double expected = test::foggedBoxSingleScattering();
+    EXPECT_NEAR(rendered->mean(), expected, 4.0 * rendered->pixelError() + 0.01 * expected);
+    EXPECT_LT(rendered->pixelError(), 0.08 * expected);
+}
+
+/// Two pulses, 2 apart in time; fog, floor, a boundary between them. Frames see one pulse or both.
+TEST_P(GuidedMaps, AgreeWithPathsInEveryFrame) {
+    const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
+    const auto photons = guided(json, {{setting("photon_count", GetParam().darts == Best ? 12000 : 24000)}, 40, 1});
+    const auto paths = renderPaths(json, {{}, 20, 64});
+    for (int frame = 0; frame < 3; ++frame) expectSameBlocks(*photons, *paths, frame, 0.05, 0.25);
+    EXPECT_EQ(photons->statistics.counter("non-finite samples"), 0u);
+}
+
+TEST_P(GuidedMaps, FullStoresStayUnbiased) {
+    const std::string json = test::configurationA(2, false);
+    // A wide view keeps more: the ray is the same.
+    const std::string wide = "camera.fov=60";
+    const auto big = guided(json, {{wide, setting("photon_count", 15000)}, 30, 1});
+    const auto small = guided(json, {{wide, "integrator.volume_photon_count=1000"}, 120, 1});
+    const char* counter = GetParam().beams ? "photon beams" : "stored volume photons";
+    EXPECT_LE(small->statistics.counter(counter), 120u * 1000u);
+    EXPECT_GT(small->statistics.counter(counter), 120u * 900u);
+    EXPECT_NEAR(small->mean(), big->mean(), 4.0 * std::hypot(small->pixelError(), big->pixelError()));
+    EXPECT_LT(small->pixelError(), 0.2 * small->mean());
+}
+
+TEST_P(GuidedMaps, SameImageOnOneAndTwoThreadsWithinAMillionth) {
+    const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 1, "frame_num": 4)");
+    for (const uint32_t samples : {1u, 2u}) {
+        const auto one = guided(json, {{setting("photon_count", 10000)}, 2, samples, 7, 1}),
+                   two = guided(json, {{setting("photon_count", 10000)}, 2, samples, 7, 2});
+        for (int frame = 0; frame < 4; ++frame) {
+            const Image a = one->film.mean(frame), b = two->film.mean(frame);
+            for (size_t i = 0; i < a.pixels.size(); ++i)
+                EXPECT_NEAR(a.pixels[i].y, b.pixels[i].y, 1e-6f * a.pixels[i].y);
+        }
+        EXPECT_EQ(one->statistics.counter("rays"), two->statistics.counter("rays"));
+        EXPECT_GT(one->mean(), 0.0);
+    }
+}
+
+/// Surfaces alone: in fog too thin to show, a lamp lights a corner of two walls and a block, first hand and from wall
+/// to wall, and one wall through a mirror.
+std::string room(const std::string& gate) {
+    return R"({"media": [{"name": "air", "type": "homogeneous", "sigma_a": 0.08, "sigma_s": 1e-5}],
+     "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.7}],
+     "primitives": [{"name": "floor", "type": "quad", "bsdf": "grey", "transform": {"scale": [6, 1, 6]}},
+                    {"name": "wall", "type": "cube", "bsdf": "grey", "transform": {"position": [0, 1.5, -2.1], "scale": [6, 3, 0.2]}},
+                    {"name": "block", "type": "cube", "bsdf": "grey", "transform": {"position": [-0.8, 0.4, -0.6], "scale": 0.8}},
+                    {"name": "lamp", "type": "sphere", "bsdf": {"type": "null"}, "ext_medium": "air", "emission": 30,
+                     "transform": {"position": [1.2, 1.8, -0.4], "scale": 0.2}}],
+     "camera": {"type": "pinhole", "resolution": [24, 24], "fov": 40, "medium": "air", "reconstruction_filter": "box",
+                "transform": {"position": [0, 1.4, 5], "look_at": [0, 0.8, -1], "up": [0, 1, 0]}},
+     "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 6, "enable_rr": false, "photon_count": 4000,
+                    "volume_photon_count": 200000, "gather_radius": 0.12, "gather_photon_count": 100000, "fixed_volume_radius": true,
+                    "volume_gather_radius": 0.05, "alpha": 1, "volume_alpha": 1, "min_bounces": 1, )" +
+           gate + "}}";
+}
+constexpr const char* RoomGate = R"("start_time": 7.5, "transient_time_width": 1.2, "frame_num": 2)";
+/// The block becomes a mirror, which shows the lit floor; the view is indirect.
+const std::string Mirror = R"(primitives.block.bsdf={"type": "mirror", "albedo": 0.9})";
+
+class SurfaceLight : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(WithoutAndWithAMirror, SurfaceLight, testing::Bool());
+
+TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
+    const Overrides change = GetParam() ? Overrides{Mirror} : Overrides{};
+    const auto with = [&](const std::string& darts) {
+        Overrides all = change;
+        all.push_back(darts);
+        return all;
+    };
+    const std::string json = room(RoomGate);
+    const auto paths = renderPaths(json, {change, 16, 128});
+    const auto connected = renderPhotons(json, {with(Best), 24, 1});
+    EXPECT_GT(connected->statistics.counter("surface connections"), 10000u);
+    for (int frame = 0; frame < 2; ++frame) {
+        SCOPED_TRACE(frame);
+        expectSameBlocks(*connected, *paths, frame, 0.03, 0.1);
+    }
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"surface_connections": false})"), 24, 1});
+    EXPECT_EQ(photons->statistics.counter("surface connections"), 0u);
+    for (int frame = 0; frame < 2; ++frame) {
+        SCOPED_TRACE(frame);
+        expectSameBlocks(*connected, *photons, frame, 0.05, 0.3);
+    }
+}
+
+/// Orders one by one: every path is counted with its own number of interactions, connected or not.
+TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
+    for (const int order : {1, 2}) {
+        SCOPED_TRACE(order);
+        const Overrides limits{setting("min_bounces", order), setting("max_bounces", order + 1),
+                               setting("photon_count", 4000)};
+        Overrides guided = limits;
+        guided.push_back(Best);
+        const std::string json = room(RoomGate);
+        expectSameBlocks(*renderPhotons(json, {guided, 24, 1}), *renderPaths(json, {limits, 8, 128}), 1, 0.05, 0.3);
+    }
+}
+
+/// A floor lit through scattering fog, seen beside it: with one flight allowed in the fog none of that light gets out,
+/// neither by flying on nor by a connection.
+TEST(SurfaceConnections, KeepTheMediumsLimit) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 9, "transient_time_width": 6)");
+    const auto mean = [&](const std::string& flights) {
+        const Overrides overrides{"camera.transform.look_at=[2.4, 0, 2.4]",
+                                  "camera.fov=15",
+                                  "media.fog.sigma_s=2",
+                                  "integrator.min_bounces=4",
+                                  "integrator.max_bounces=5",
+                                  setting("photon_count", 4000),
+                                  "media.fog.max_bounces=" + flights,
+                                  Best};
+        return renderPhotons(json, {overrides, 4, 1})->mean();
+    };
+    EXPECT_GT(mean("2"), 0.0);
+    EXPECT_EQ(mean("1"), 0.0);
+}
+
+/// One pixel within the mirror; the warm light of the fog that it shows.
+TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
+    struct Warm {
+        double mean, error;
+        explicit Warm(const Rendered& render)
+            : mean(double(render.film.mean(0).at(0, 0).x)), error(double(render.film.standardError(0).at(0, 0).x)) {}
+    };
+    const std::filesystem::path file = std::filesystem::path(PROJECT_DATA_DIR) / "scenes/mirror-fog/scene.json";
+    const Overrides mirror{"camera.resolution=[1, 1]", "camera.fov=14", "integrator.volume_alpha=1",
+                           "integrator.alpha=1", setting("photon_count", 8000)};
+    const auto render = [&](const std::string& darts) {
+        Overrides all = mirror;
+        all.push_back(darts);
+        return Warm(*test::renderPhotonFile(file, {all, 32, 128}));
+    };
+    const Warm paths(*test::renderPathFile(file, {mirror, 24, 4096}));
+    for (const std::string preset : {"published", "best"}) {
+        SCOPED_TRACE(preset);
+        const Warm right = render("integrator.darts=" + preset);
+        EXPECT_NEAR(right.mean, paths.mean, 4.0 * std::hypot(right.error, paths.error) + 0.03 * paths.mean);
+        EXPECT_LT(std::hypot(right.error, paths.error), 0.1 * paths.mean);
+        const Warm wrong = render(R"(integrator.darts={"direct_view": "on", "preset": ")" + preset + R"("})");
+        EXPECT_LT(wrong.mean + 4.0 * wrong.error, 0.7 * paths.mean) << wrong.mean << " +- " << wrong.error;
+        RecordProperty(preset + " right", std::to_string(right.mean / paths.mean));
+        RecordProperty(preset + " wrong", std::to_string(wrong.mean / paths.mean));
+    }
+}
+
+} // namespace
+} // namespace tungsten::photon

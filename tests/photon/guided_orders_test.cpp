@@ -1,0 +1,123 @@
+// Guided light paths against the verified values: every switch of the sampling changes the noise, never the mean.
+
+#include "render_photons.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+using test::Overrides;
+using test::setting;
+using test::VerifiedValue;
+
+/// How light paths are guided.
+struct Guiding {
+    const char* name;
+    Overrides overrides;
+};
+const Guiding Published{"Published", {"integrator.darts=published"}}, Best{"Best", {"integrator.darts=best"}},
+    GuidingOnly{"GuidingOnly", {"media.fog.type=guided_homo", "integrator.enable_guiding=true"}},
+    EllipticalOnly{"EllipticalOnly", {"integrator.enable_elliptical=true"}},
+    FlagsOfThePaper{
+        "Flags", {"media.fog.type=guided_homo", "integrator.enable_guiding=true", "integrator.enable_elliptical=true"}},
+    Phase{"Phase", {R"(integrator.darts={"direction": "phase"})"}},
+    Eda{"Eda", {R"(integrator.darts={"direction": "eda"})"}},
+    Connection{"Connection", {R"(integrator.darts={"direction": "connection"})"}},
+    Ris{"Ris", {R"(integrator.darts={"direction": "ris"})"}},
+    IndirectView{"IndirectView", {R"(integrator.darts={"direct_view": "off"})"}},
+    PublishedIndirectView{"PublishedIndirectView",
+                          {R"(integrator.darts={"preset": "published", "direct_view": "off"})"}},
+    DirectView{"DirectView", {R"(integrator.darts={"direct_view": "on"})"}},
+    NoConnections{"NoConnections", {R"(integrator.darts={"surface_connections": false})"}},
+    NotElliptical{"NotElliptical", {"integrator.enable_elliptical=false", "integrator.darts=best"}};
+
+struct OrderCase {
+    VerifiedValue value;
+    Guiding guiding;
+    bool beams = false;
+    uint32_t passes = 30;
+};
+
+std::string caseName(const testing::TestParamInfo<OrderCase>& info) {
+    return test::nameOf(info.param.value) + info.param.guiding.name + (info.param.beams ? "Beams" : "");
+}
+
+class GuidedOrders : public testing::TestWithParam<OrderCase> {};
+
+TEST_P(GuidedOrders, MatchVerifiedValues) {
+    const OrderCase& c = GetParam();
+    Overrides overrides = test::gateOf(c.value);
+    overrides.push_back(setting("volume_gather_radius", 0.1));
+    overrides.push_back(setting("photon_count", c.beams ? 6000 : 15000));
+    if (c.beams) overrides.emplace_back("integrator.volume_photon_type=beams");
+    overrides.insert(overrides.end(), c.guiding.overrides.begin(), c.guiding.overrides.end());
+    const auto rendered = test::renderPhotons(test::sceneOf(c.value), {overrides, c.passes, 1});
+    const double error = rendered->pixelError(), exact = c.value.radiance;
+    constexpr double KernelBias = 0.01;
+    EXPECT_NEAR(rendered->mean(), exact, 4.0 * error + KernelBias * exact) << "standard error " << error;
+    EXPECT_LT(error, 0.1 * exact) << "the test would not see a wrong value";
+    EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
+    RecordProperty("deviation in standard errors", std::to_string((rendered->mean() - exact) / error));
+    RecordProperty("relative standard error", std::to_string(error / exact));
+}
+
+constexpr VerifiedValue A1{'A', 1, false, false, 2.22436e-4}, A1Unwarped{'A', 1, true, false, 11.1009e-4},
+    A2{'A', 2, false, false, 5.97962e-4}, A2Unwarped{'A', 2, true, false, 29.4416e-4},
+    A3{'A', 3, false, false, 7.81135e-4}, A3Unwarped{'A', 3, true, false, 22.1036e-4},
+    B2{'B', 2, false, false, 1.28207e-4}, B2Unwarped{'B', 2, true, false, 36.250e-4},
+    B3{'B', 3, false, false, 1.900e-4}, C2{'C', 2, false, false, 9.56707e-5},
+    C2Unwarped{'C', 2, true, false, 8.34604e-5}, C3{'C', 3, false, false, 10.6284e-5},
+    A1Delta{'A', 1, false, true, 2.1055e-4}, A1UnwarpedDelta{'A', 1, true, true, 26.6081e-4},
+    A2Delta{'A', 2, false, true, 5.79199e-4}, A2UnwarpedDelta{'A', 2, true, true, 40.7037e-4},
+    A3Delta{'A', 3, false, true, 7.70375e-4}, C2Delta{'C', 2, false, true, 8.55486e-5};
+
+/// The published sampler has no finite variance where B's forward scattering needs it most: warped B is left out.
+INSTANTIATE_TEST_SUITE_P(
+    PublishedPreset, GuidedOrders,
+    testing::Values(OrderCase{A1, Published}, OrderCase{A1Unwarped, Published}, OrderCase{A2, Published, false, 50},
+                    OrderCase{A2Unwarped, Published}, OrderCase{A3, Published}, OrderCase{A3Unwarped, Published},
+                    OrderCase{B2Unwarped, Published, false, 80}, OrderCase{C2, Published, false, 50},
+                    OrderCase{C2Unwarped, Published, false, 80}, OrderCase{A2, Published, true},
+                    OrderCase{A3, Published, true}, OrderCase{C2, Published, true},
+                    OrderCase{A1Delta, Published, true, 100}, OrderCase{A1UnwarpedDelta, Published, true, 80},
+                    OrderCase{A2UnwarpedDelta, Published, true}),
+    caseName);
+INSTANTIATE_TEST_SUITE_P(
+    BestPreset, GuidedOrders,
+    testing::Values(OrderCase{A1, Best}, OrderCase{A1Unwarped, Best}, OrderCase{A2, Best}, OrderCase{A2Unwarped, Best},
+                    OrderCase{A3, Best}, OrderCase{A3Unwarped, Best}, OrderCase{B2, Best},
+                    OrderCase{B2Unwarped, Best, false, 60}, OrderCase{B3, Best, false, 60}, OrderCase{C2, Best},
+                    OrderCase{C2Unwarped, Best, false, 60}, OrderCase{C3, Best}, OrderCase{A1, Best, true, 60},
+                    OrderCase{A2, Best, true}, OrderCase{A2Unwarped, Best, true}, OrderCase{A3, Best, true},
+                    OrderCase{C2, Best, true}, OrderCase{A1Delta, Best, true, 100},
+                    OrderCase{A1UnwarpedDelta, Best, true, 60}, OrderCase{A2UnwarpedDelta, Best, true},
+                    OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true}),
+    caseName);
+INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
+                         testing::Values(OrderCase{A2, GuidingOnly, false, 60}, OrderCase{A2, EllipticalOnly},
+                                         OrderCase{B2, EllipticalOnly, false, 60}, OrderCase{A2, Phase},
+                                         OrderCase{A2, Eda}, OrderCase{B2, Eda, false, 60}, OrderCase{A2, Ris},
+                                         OrderCase{B2, Connection, false, 100}, OrderCase{A2, IndirectView},
+                                         OrderCase{C2, IndirectView}, OrderCase{A2, PublishedIndirectView},
+                                         OrderCase{A2, Eda, true}, OrderCase{A2, Ris, true}),
+                         caseName);
+
+/// In a scene without mirrors and surfaces these change nothing at all.
+TEST(GuidedSwitches, WithoutAnObjectHaveNoEffect) {
+    const auto mean = [](const Guiding& guiding) {
+        Overrides overrides = test::gateOf(A2);
+        overrides.emplace_back("integrator.photon_count=5000");
+        overrides.insert(overrides.end(), guiding.overrides.begin(), guiding.overrides.end());
+        return test::renderPhotons(test::sceneOf(A2), {overrides, 2, 1})->mean();
+    };
+    const double best = mean(Best);
+    EXPECT_GT(best, 0.0);
+    for (const Guiding& same : {FlagsOfThePaper, Connection, DirectView, NoConnections}) EXPECT_EQ(mean(same), best);
+    for (const Guiding& other : {Published, GuidingOnly, EllipticalOnly, Phase, Eda, Ris, IndirectView})
+        EXPECT_NE(mean(other), best) << other.name;
+    EXPECT_EQ(mean(NotElliptical), mean(GuidingOnly));
+}
+
+} // namespace
+} // namespace tungsten::photon
