@@ -4,9 +4,9 @@
 
 namespace tungsten::photon {
 
-SurfaceConnections::SurfaceConnections(const Scene& scene, const TimeGate& frames, const SensorRecord& record,
+SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
                                        const PassInfo& pass)
-    : scene_(scene), frames_(frames), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
+    : scene_(scene), sensor_(sensor), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
     order_.resize(points_.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -54,11 +54,17 @@ void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& 
     int total = 0;
     for (size_t i = 0; i < Tested; ++i) {
         if (!inTime[i]) continue;
+        const Vec3f offset(x[i] - vertex.position.x, y[i] - vertex.position.y, z[i] - vertex.position.z);
+        if (sensor_.response) {
+            const float length = offset.length() + camera[i];
+            if (!sensor_.mayWeigh(vertex.time + double(length - slack) / speed_,
+                                  vertex.time + double(length + slack) / speed_))
+                continue;
+        }
         // Of more than fit, every one with the same probability.
         const int slot = total < int(MostCandidates) ? total : int(sampler.next1D() * float(total + 1));
         ++total;
         if (slot >= int(MostCandidates)) continue;
-        const Vec3f offset(x[i] - vertex.position.x, y[i] - vertex.position.y, z[i] - vertex.position.z);
         const float squared = offset.length2(), distance = std::sqrt(squared);
         candidates.list[size_t(slot)] = {uint32_t(first + i), distance,
                                          distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f)};
@@ -83,12 +89,12 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return;
     const double arrival = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
     if (!(arrival >= gate.begin && arrival < gate.end)) return;
-    const int frame = frames_.frameOf(arrival);
+    const int frame = sensor_.gate.frameOf(arrival);
     if (frame < 0) return;
-    const float geometry = 1.0f / (candidate.distance * candidate.distance + nearField_);
-    contributions.push_back(
-        {point.pixel, frame,
-         scale * scattering * visibility.transmittance * point.throughput * (geometry / float(frames_.frameWidth))});
+    const float geometry = sensor_.weight(arrival) / (candidate.distance * candidate.distance + nearField_);
+    contributions.push_back({point.pixel, frame,
+                             scale * scattering * visibility.transmittance * point.throughput *
+                                 (geometry / float(sensor_.gate.frameWidth))});
 }
 
 } // namespace tungsten::photon
