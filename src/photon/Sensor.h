@@ -1,11 +1,13 @@
 #pragma once
 // How the sensor weighs times of arrival.
 
+#include "darts/ResidualRange.h"
 #include "darts/TemporalResponse.h"
 
 #include "tungsten/scene/Scene.h"
 
 #include <memory>
+#include <vector>
 
 namespace tungsten::photon {
 
@@ -13,6 +15,7 @@ namespace tungsten::photon {
 struct Sensor {
     TimeGate gate;
     std::shared_ptr<const darts::TemporalResponse> response; ///< null: evenly
+    std::vector<darts::TimeGate> openTimes;                  ///< where the response is above 0; empty without one
 
     Sensor(const TimeGate& openDuring, std::shared_ptr<const darts::TemporalResponse> weighedBy = nullptr)
         : gate(openDuring), response(std::move(weighedBy)) {}
@@ -20,7 +23,15 @@ struct Sensor {
     static Sensor of(const Scene& scene, const TimeGate& gate) {
         const TemporalResponse& r = scene.transport.response;
         if (r.empty()) return {gate};
-        return {gate, std::make_shared<darts::TemporalResponse>(darts::TemporalResponse::tabulated(r.times, r.values))};
+        Sensor sensor{gate,
+                      std::make_shared<darts::TemporalResponse>(darts::TemporalResponse::tabulated(r.times, r.values))};
+        auto& open = sensor.openTimes;
+        for (size_t i = 0; i + 1 < r.times.size(); ++i) {
+            if (r.values[i] <= 0.0 && r.values[i + 1] <= 0.0) continue;
+            if (open.empty() || open.back().end < r.times[i]) open.push_back({r.times[i], r.times[i]});
+            open.back().end = r.times[i + 1];
+        }
+        return sensor;
     }
 
     /// W(time) times the gate's width, W having the integral 1: relative to an even sensor, whose image is a mean over

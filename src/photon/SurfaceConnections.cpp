@@ -41,30 +41,30 @@ void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& 
     if (!(high > 0.0)) return;
     // A little wide: arrive() tests exactly.
     const float slack = 4e-6f * float(high) + 1e-5f * float(high - low);
-    const float least = float(low) - slack, most = float(high) + slack;
     const size_t first = std::min(size_t(double(sampler.next1D()) * double(points_.size())), points_.size() - 1);
-    std::array<uint8_t, Tested> inTime;
+    std::array<uint8_t, Tested> inTime{};
     const float *x = x_.data() + first, *y = y_.data() + first, *z = z_.data() + first,
                 *camera = cameraLength_.data() + first;
-    for (size_t i = 0; i < Tested; ++i) {
-        const float dx = x[i] - vertex.position.x, dy = y[i] - vertex.position.y, dz = z[i] - vertex.position.z;
-        const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + camera[i];
-        inTime[i] = uint8_t(length >= least) & uint8_t(length < most);
-    }
+    const auto test = [&](const darts::TimeGate& open) {
+        const float least = float(speed_ * (open.begin - vertex.time)) - slack,
+                    most = float(speed_ * (open.end - vertex.time)) + slack;
+        for (size_t i = 0; i < Tested; ++i) {
+            const float dx = x[i] - vertex.position.x, dy = y[i] - vertex.position.y, dz = z[i] - vertex.position.z;
+            const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + camera[i];
+            inTime[i] |= uint8_t(length >= least) & uint8_t(length < most);
+        }
+    };
+    if (!sensor_.response) test(gate);
+    for (const darts::TimeGate& open : sensor_.openTimes)
+        if (open.end > vertex.time) test(open);
     int total = 0;
     for (size_t i = 0; i < Tested; ++i) {
         if (!inTime[i]) continue;
-        const Vec3f offset(x[i] - vertex.position.x, y[i] - vertex.position.y, z[i] - vertex.position.z);
-        if (sensor_.response) {
-            const float length = offset.length() + camera[i];
-            if (!sensor_.mayWeigh(vertex.time + double(length - slack) / speed_,
-                                  vertex.time + double(length + slack) / speed_))
-                continue;
-        }
         // Of more than fit, every one with the same probability.
         const int slot = total < int(MostCandidates) ? total : int(sampler.next1D() * float(total + 1));
         ++total;
         if (slot >= int(MostCandidates)) continue;
+        const Vec3f offset(x[i] - vertex.position.x, y[i] - vertex.position.y, z[i] - vertex.position.z);
         const float squared = offset.length2(), distance = std::sqrt(squared);
         candidates.list[size_t(slot)] = {uint32_t(first + i), distance,
                                          distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f)};

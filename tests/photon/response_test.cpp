@@ -56,7 +56,7 @@ class PhotonResponse : public testing::TestWithParam<Case> {
   protected:
     static std::unique_ptr<Rendered> renderOrder(int order, bool unwarped, const std::string& response,
                                                  uint32_t passes) {
-        Overrides overrides{response, setting("volume_gather_radius", 0.06), setting("photon_count", 20000)};
+        Overrides overrides{response, setting("volume_gather_radius", 0.12), setting("photon_count", 20000)};
         const Overrides& own = GetParam().overrides;
         overrides.insert(overrides.end(), own.begin(), own.end());
         return test::renderPhotons(test::configurationA(order, unwarped), {overrides, passes, 1});
@@ -91,14 +91,17 @@ TEST_P(PhotonResponse, AgreesWithPathsInDoubleScattering) {
     }
 }
 
-const std::string Beams = "integrator.volume_photon_type=beams", Many = "integrator.photon_count=150000";
+const std::string Beams = "integrator.volume_photon_type=beams", Narrow = "integrator.volume_gather_radius=0.06";
 INSTANTIATE_TEST_SUITE_P(
     Sampling, PhotonResponse,
-    testing::Values(Case{"PlainPoints", {Many}}, Case{"PublishedPoints", {"integrator.darts=published"}},
+    testing::Values(Case{"PlainPoints", {"integrator.photon_count=300000"}},
+                    Case{"PublishedPoints", {"integrator.darts=published", "integrator.photon_count=80000"}},
                     Case{"BestPoints", {"integrator.darts=best"}},
-                    Case{"IndirectViewPoints", {R"(integrator.darts={"direct_view": "off"})", Many}},
-                    Case{"PlainBeams", {Beams}}, Case{"PublishedBeams", {Beams, "integrator.darts=published"}},
-                    Case{"BestBeams", {Beams, "integrator.darts=best"}}),
+                    Case{"IndirectViewPoints",
+                         {R"(integrator.darts={"direct_view": "off"})", "integrator.photon_count=60000"}},
+                    Case{"PlainBeams", {Beams, Narrow}},
+                    Case{"PublishedBeams", {Beams, Narrow, "integrator.darts=published"}},
+                    Case{"BestBeams", {Beams, Narrow, "integrator.darts=best"}}),
     caseName);
 
 /// Walls, floor and emitter seen: surface photons, surface connections, visible emission.
@@ -138,7 +141,7 @@ TEST(PhotonResponseOnSurfaces, VisibleEmissionIsWeighedByItsArrival) {
 TEST(PhotonResponseBox, IsAGate) {
     const std::string box = R"(integrator.temporal_response={"type": "box", "start": 5, "end": 6})";
     for (const char* darts : {"integrator.darts=off", "integrator.darts=published"}) {
-        const Overrides common{darts, setting("volume_gather_radius", 0.1), setting("photon_count", 20000)};
+        const Overrides common{darts, setting("volume_gather_radius", 0.12), setting("photon_count", 40000)};
         Overrides withBox = common;
         withBox.push_back(box);
         const std::string json = test::configurationA(1, false);
@@ -155,7 +158,7 @@ TEST(PhotonResponseRejection, ControlVerticesHitTwoPeaksThatPlainPhotonsMiss) {
     const auto outside = [](const std::string& darts) {
         const auto rendered = test::renderPhotons(test::configurationA(1, false),
                                                   {{"integrator.min_bounces=0", "integrator.max_bounces=1000", TwoPeaks,
-                                                    "integrator.darts=" + darts, setting("photon_count", 20000)},
+                                                    "integrator.darts=" + darts, setting("photon_count", 60000)},
                                                    1,
                                                    1});
         const Statistics& statistics = rendered->statistics;
