@@ -18,8 +18,9 @@ std::string identifier(std::string name) {
 void expectAgreement(const BlockMeans& method, const BlockMeans& reference) {
     const Agreement agreement = compare(method, reference);
     EXPECT_LE(agreement.score(), 1.0) << agreement;
-    EXPECT_LT(agreement.wholeError, 0.04) << "too noisy to be a proof: " << agreement;
-    EXPECT_LT(agreement.shrink, 0.08) << "too large a radius to be a proof: " << agreement;
+    const double few = method.frames > 1 ? 2.0 : 1.0; // paths for the first and last frames of a sequence
+    EXPECT_LT(agreement.wholeError, few * 0.04) << "too noisy to be a proof: " << agreement;
+    EXPECT_LT(agreement.shrink, few * 0.08) << "too large a radius to be a proof: " << agreement;
 }
 
 class MethodsAgree : public testing::TestWithParam<AgreementScene> {};

@@ -16,7 +16,7 @@ void expectAgreement(const AgreementScene& scene, const Method& method, const Bl
     SCOPED_TRACE(scene.name + ", " + method.name);
     const Agreement agreement = compare(renderBlocks(scene, method), reference);
     EXPECT_LE(agreement.score(), 1.0) << agreement;
-    EXPECT_LT(agreement.wholeError, 0.05) << "too noisy to be a proof: " << agreement;
+    EXPECT_LT(agreement.wholeError, 0.1) << "too noisy to be a proof: " << agreement;
 }
 
 const Method Plain = pathMethod("plain", {}, 1), Best = guidedPathMethod("best", {"darts=best"}, 4);

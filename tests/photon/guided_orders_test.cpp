@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
                     OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true}),
     caseName);
 INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
-                         testing::Values(OrderCase{A2, GuidingOnly, false, 60}, OrderCase{A2, EllipticalOnly},
+                         testing::Values(OrderCase{A2, GuidingOnly, false, 150}, OrderCase{A2, EllipticalOnly},
                                          OrderCase{B2, EllipticalOnly, false, 60}, OrderCase{A2, Phase},
                                          OrderCase{A2, Eda}, OrderCase{B2, Eda, false, 60}, OrderCase{A2, Ris},
                                          OrderCase{B2, Connection, false, 100}, OrderCase{A2, IndirectView},

@@ -77,7 +77,7 @@ inline std::vector<AgreementScene> agreementScenes() {
         "transform": {"position": [0.3, 1.65, 0.1], "scale": 0.12}})";
     return {
         shippedScene("cornell-fog", {ball}, 0.08, Plenty),
-        shippedScene("mirror-fog", {}, 0.12, {32, 192, 64, 60000}),
+        shippedScene("mirror-fog", {}, 0.12, {32, 192, 48, 50000}),
         shippedScene(
             "two-pulses",
             {"integrator.frame_num=0", "integrator.transient_time_center=7.6", "integrator.transient_time_width=0.3"},
