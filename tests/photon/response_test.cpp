@@ -109,7 +109,7 @@ TEST(PhotonResponseOnSurfaces, AgreesWithPaths) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 6, "transient_time_width": 1)");
     const std::string response =
         R"(integrator.temporal_response={"times": [6, 6.2, 6.4, 7.5, 7.7, 7.9], "values": [0, 3, 0, 0, 1, 0]})";
-    const auto paths = test::renderPaths(json, {{response, "integrator.darts=best"}, 40, 64});
+    const auto paths = test::renderPaths(json, {{response, "integrator.darts=best"}, 20, 32});
     const double expected = paths->mean();
     for (const char* darts : {"off", "published", "best"}) {
         // Passes are independent: the error of the image's mean from the spread of groups of them.
@@ -117,7 +117,7 @@ TEST(PhotonResponseOnSurfaces, AgreesWithPaths) {
         double mean = 0.0, squares = 0.0;
         for (int group = 0; group < Groups; ++group) {
             const auto photons = test::renderPhotons(
-                json, {{response, std::string("integrator.darts=") + darts}, 6, 1, uint64_t(group + 1)});
+                json, {{response, std::string("integrator.darts=") + darts}, 3, 1, uint64_t(group + 1)});
             mean += photons->mean() / Groups;
             squares += photons->mean() * photons->mean() / Groups;
         }
