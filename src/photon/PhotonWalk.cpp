@@ -1,5 +1,7 @@
 #include "photon/PhotonWalk.h"
 
+#include "photon/SurfaceConnections.h"
+
 namespace tungsten::photon {
 
 void PhotonWalk::run() {
@@ -81,7 +83,7 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     const float shading = std::abs(ray_.direction.dot(surface_.frame.n)),
                 geometric = std::abs(ray_.direction.dot(hit.ng));
     // Where vertices connect to surfaces too, photons count for what is near.
-    const float nearField = connectable_ ? context_.nearField : 0.0f;
+    const float nearField = connectable_ && receivesConnections(*surface_.bsdf) ? context_.nearField : 0.0f;
     const float share = nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
     if (geometric > 0.0f) deposit(deposits_.surface, hit.position, power_ * (share * shading / geometric), -1);
     return true;

@@ -1,5 +1,7 @@
 #include "photon/SensorRecord.h"
 
+#include "photon/SurfaceConnections.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -48,7 +50,7 @@ struct Recorder {
         behind += length;
     }
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
-        if (!includeSurfaces || (surface.bsdf->lobes() & lobe::Smooth) == 0) return;
+        if (!includeSurfaces || !receivesConnections(*surface.bsdf)) return;
         points.push_back({surface.hit, state.ray.direction, state.throughput,
                           state.time + double(surface.hit.t) / double(state.region.speed), pixel, state.interactions,
                           state.region});

@@ -10,7 +10,7 @@
 
 namespace tungsten::photon {
 
-/// A point on a smooth surface that a pixel sees, directly or in mirrors.
+/// A point on a surface that receivesConnections() and that a pixel sees, directly or in mirrors.
 struct SensorPoint {
     SurfaceHit hit;
     Vec3f direction; ///< of the camera ray that found it
