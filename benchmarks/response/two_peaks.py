@@ -54,7 +54,7 @@ def main():
         cell.imshow(tone_map(results[method][0], white))
         cell.set_title(f"{method}, {options.seconds:g} s", fontsize=9)
         cell.axis("off")
-    figure.savefig(options.folder / "two-peaks.png", dpi=110)
+    figure.savefig(options.folder / "two-peaks.png", dpi=85)
 
     print("| method | passes | outside the response | relative standard error | mean |")
     print("| --- | --- | --- | --- | --- |")
