@@ -19,11 +19,11 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
 } // namespace
 
 ArrivalTest::ArrivalTest(const Scene& scene, const EffectPlan& plan)
-    : gate_(scene.transport.gate), unwarped_(scene.transport.cameraUnwarped),
+    : sensor_(Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
       highestSpeed_(double(highestSpeed(scene))) {
     const Vec3f position = scene.camera.position();
     camera_ = Vec3d(position.x, position.y, position.z);
-    straightTimesKnown_ = !gate_.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;
+    straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;
     directView_ = straightTimesKnown_ && !plan.specularSensorPaths;
     if (const auto* lens = std::get_if<ThinLens>(&scene.camera.model)) slack_ = double(lens->apertureRadius);
     if (std::holds_alternative<Orthographic>(scene.camera.model)) slack_ = std::numeric_limits<double>::infinity();
@@ -40,11 +40,13 @@ double ArrivalTest::soonestArrival(const Vec3f& position, double time) const {
 bool ArrivalTest::insideGate(double arrival, bool testStart) const {
     // Rounding at the gate's ends must not lose what the gather would accept.
     const double tolerance = 1e-6 * std::abs(arrival);
-    return arrival < gate_.end() + tolerance && (!testStart || arrival >= gate_.start - tolerance);
+    if (!(arrival < sensor_.gate.end() + tolerance)) return false;
+    if (!testStart) return true;
+    return arrival >= sensor_.gate.start - tolerance && sensor_.mayWeigh(arrival - tolerance, arrival + tolerance);
 }
 
 bool ArrivalTest::mayCount(const Vec3f& position, double time) const {
-    return gate_.steadyState || insideGate(soonestArrival(position, time), directView_ || unwarped_);
+    return sensor_.gate.steadyState || insideGate(soonestArrival(position, time), directView_ || unwarped_);
 }
 
 bool ArrivalTest::seenStraight(const Vec3f& position, double time) const {
@@ -53,9 +55,9 @@ bool ArrivalTest::seenStraight(const Vec3f& position, double time) const {
 
 FlightPart ArrivalTest::part(const Vec3f& position, const Vec3f& direction, double time, double speed,
                              bool testStart) const {
-    if (gate_.steadyState) return {0.0, std::numeric_limits<double>::infinity()};
-    const double tolerance = 1e-6 * std::abs(gate_.end());
-    const double untilStart = gate_.start - tolerance - time, untilEnd = gate_.end() + tolerance - time;
+    if (sensor_.gate.steadyState) return {0.0, std::numeric_limits<double>::infinity()};
+    const double tolerance = 1e-6 * std::abs(sensor_.gate.end());
+    const double untilStart = sensor_.gate.start - tolerance - time, untilEnd = sensor_.gate.end() + tolerance - time;
     if (unwarped_) return {std::max(untilStart * speed, 0.0), untilEnd * speed};
     const Vec3d from(position.x, position.y, position.z), along(direction.x, direction.y, direction.z);
     const auto distance = [&](double duration) {
@@ -75,7 +77,7 @@ FlightPart ArrivalTest::straightPart(const Vec3f& position, const Vec3f& directi
 }
 
 bool ArrivalTest::mayContinue(const Vec3f& position, double time) const {
-    return gate_.steadyState || soonestArrival(position, time) < gate_.end();
+    return sensor_.gate.steadyState || soonestArrival(position, time) < sensor_.gate.end();
 }
 
 } // namespace tungsten::photon

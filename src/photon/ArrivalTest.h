@@ -1,6 +1,8 @@
 #pragma once
 // Which photons can still be seen inside the time gate.
 
+#include "photon/Sensor.h"
+
 #include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/Scene.h"
 
@@ -16,8 +18,9 @@ class ArrivalTest {
   public:
     ArrivalTest(const Scene& scene, const EffectPlan& plan);
 
-    /// A deposit at `position` and `time` may be gathered. In direct view (one straight segment chain at one speed from
-    /// one point) its arrival is known exactly; otherwise only what arrives too late can be dropped.
+    /// A deposit at `position` and `time` may be gathered, with a weight above 0. In direct view (one straight segment
+    /// chain at one speed from one point) its arrival is known exactly; otherwise only what arrives too late can be
+    /// dropped.
     [[nodiscard]] bool mayCount(const Vec3f& position, double time) const;
     /// A light path that has got to `position` at `time` may still contribute.
     [[nodiscard]] bool mayContinue(const Vec3f& position, double time) const;
@@ -35,7 +38,7 @@ class ArrivalTest {
     [[nodiscard]] FlightPart straightPart(const Vec3f& position, const Vec3f& direction, double time,
                                           double speed) const;
     /// Tests against this gate from now on instead of the scene's.
-    void setGate(const TimeGate& gate) { gate_ = gate; }
+    void setGate(const TimeGate& gate) { sensor_.gate = gate; }
 
   private:
     /// With or without the gate's start.
@@ -44,7 +47,7 @@ class ArrivalTest {
     [[nodiscard]] bool insideGate(double arrival, bool testStart) const;
     [[nodiscard]] double soonestArrival(const Vec3f& position, double time) const;
 
-    TimeGate gate_;
+    Sensor sensor_;
     bool straightTimesKnown_ = false;
     bool directView_ = false;
     bool unwarped_ = false;

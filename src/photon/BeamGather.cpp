@@ -8,7 +8,7 @@ namespace {
 struct Query {
     RTCIntersectContext context;
     const Scene* scene;
-    const TimeGate* gate;
+    const Sensor* sensor;
     const PhotonBeam* beams;
     const EmbreeBeams::Piece* pieces;
     const CameraSegment* segment;
@@ -31,15 +31,18 @@ void evaluate(Query& query, uint32_t index) {
     const int interactions = segment.interactions + beam.bounce + 1;
     if (interactions < transport.minBounces || interactions >= transport.maxBounces) return;
     int frame = 0;
-    if (!query.gate->steadyState) {
+    float weight = 1.0f;
+    if (!query.sensor->gate.steadyState) {
         // Through the beam's point, as for photon points: then ArrivalTest's parts of beams are exact.
         const float toCamera = transport.cameraUnwarped ? 0.0f : std::sqrt(sqr(t) + sqr(approach->distance));
         const double cameraTime = transport.cameraUnwarped ? 0.0 : segment.time;
-        frame = query.gate->frameOf(beam.time + cameraTime + (double(s) + double(toCamera)) * segment.inverseSpeed);
+        const double arrival = beam.time + cameraTime + (double(s) + double(toCamera)) * segment.inverseSpeed;
+        frame = query.sensor->gate.frameOf(arrival);
         if (frame < 0) return;
+        weight = query.sensor->weight(arrival);
     }
     const Medium& medium = query.scene->media[size_t(segment.medium)];
-    const float weight = medium.phase.eval(beam.direction, -segment.direction) / (2.0f * query.radius * approach->sine);
+    weight *= medium.phase.eval(beam.direction, -segment.direction) / (2.0f * query.radius * approach->sine);
     const Rgb value = beam.power * medium.sigmaS * medium.transmittance(s + t) * weight;
     (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
     ++query.gathered;
@@ -54,12 +57,12 @@ void filter(const RTCFilterFunctionNArguments* arguments) {
 
 } // namespace
 
-BeamGather::BeamGather(const Scene& scene, const TimeGate& gate, const std::vector<PhotonBeam>& beams, float radius)
-    : scene_(scene), gate_(gate), beams_(beams), radius_(radius), structure_(beams, radius) {}
+BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius)
+    : scene_(scene), sensor_(sensor), beams_(beams), radius_(radius), structure_(beams, radius) {}
 
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;
-    Query query{{}, &scene_, &gate_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, 0};
+    Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, 0};
     rtcInitIntersectContext(&query.context);
     query.context.filter = filter;
     // Embree skips ribbons that hold or nearly touch the ray's origin: start two radii behind it and test exactly in

@@ -29,16 +29,16 @@ inline std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& d
 
 class BeamGather {
   public:
-    /// `beams` must stay alive. `gate` is the pass's: a delta gate's temporal kernel is a narrow box.
-    BeamGather(const Scene& scene, const TimeGate& gate, const std::vector<PhotonBeam>& beams, float radius);
+    /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
+    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius);
 
-    /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin) to the frames they
-    /// fall in (photon-primitives, eq. 4). Returns how many were gathered.
+    /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the
+    /// sensor, to the frames they fall in (photon-primitives, eq. 4). Returns how many were gathered.
     uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
 
   private:
     const Scene& scene_;
-    TimeGate gate_;
+    Sensor sensor_;
     const std::vector<PhotonBeam>& beams_;
     float radius_;
     EmbreeBeams structure_;

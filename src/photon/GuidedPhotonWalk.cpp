@@ -134,8 +134,9 @@ bool GuidedPhotonWalk::look(const darts::Guide& guide) {
     residual_ = guidance_.residual(ray_.origin, time_, gate_);
     looked_ = true;
     connected_ = guide.settings().lengthFirst;
-    if (connected_) connection_ = guide.sampleConnection(residual_, sampler_.next1D());
-    return residual_.alive();
+    if (connected_) connection_ = guide.sampleConnection(residual_, sampler_.next1D(), guidance_.response(time_));
+    // A density of 0: the response is over.
+    return residual_.alive() && (!connected_ || connection_.inversePdf > 0.0f);
 }
 
 template <typename Scatterer>
@@ -210,7 +211,7 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     if (!connected_) {
         reachable_ = darts::Guide::beforeSurface(residual_, h, surface);
         if (!reachable_.alive()) return;
-        connection_ = guide.sampleConnection(reachable_, sampler_.next1D());
+        connection_ = guide.sampleConnection(reachable_, sampler_.next1D(), guidance_.response(time_));
     }
     const auto vertex = guide.controlVertex(residual_, connection_, h, surface);
     if (!vertex) return;
@@ -236,7 +237,9 @@ void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& g
 void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
     if (isBlack(power) || bounce > MostPhotonBounces) return;
     if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
+    ++counters_.volumeDeposits;
     if (!arrival_->mayCount(position, time)) return;
+    ++counters_.countingDeposits;
     deposits_.volume.photons.push_back(
         {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
 }

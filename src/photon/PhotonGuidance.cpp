@@ -30,12 +30,14 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, 
     : view_(scene.camera), camera_(scene.camera.position()),
       speed_(double(plan.speedsDiffer ? highestSpeed(scene) : scene.cameraRegion.speed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : aperture(scene.camera) / speed_),
-      unwarped_(scene.transport.cameraUnwarped) {
+      unwarped_(scene.transport.cameraUnwarped), sensor_(Sensor::of(scene, scene.transport.gate)) {
     const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
     directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
     const TimeGate& gate = scene.transport.gate;
     setGate(gate);
-    choosesFrames_ = gate.frames > 1 && directView_ && straight && slack_ == 0.0;
+    const bool exact = directView_ && straight && slack_ == 0.0;
+    choosesFrames_ = exact && gate.frames > 1;
+    drawsByResponse_ = exact && sensor_.response;
     for (const Medium& medium : scene.media) {
         guides_.emplace_back();
         if (!medium.scatters()) continue;

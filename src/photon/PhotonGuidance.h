@@ -2,6 +2,7 @@
 // What guides the photon pass: the camera as the target of every light path.
 
 #include "photon/CameraView.h"
+#include "photon/Sensor.h"
 
 #include "darts/Guide.h"
 #include "darts/Scheme.h"
@@ -38,6 +39,12 @@ class PhotonGuidance {
     [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
     /// Aims at this gate from now on (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);
+    /// For connections from a vertex reached at `elapsed`, where a straight way to the camera's one position tells the
+    /// time of arrival. None elsewhere, nor where photons share with control vertices (darts::Guide::pdfControlVertex):
+    /// there only the gather weighs.
+    [[nodiscard]] darts::ResponseAt response(double elapsed) const {
+        return {drawsByResponse_ ? sensor_.response.get() : nullptr, elapsed, unwarped_ ? 2.0 * speed_ : speed_};
+    }
     [[nodiscard]] const CameraView& view() const { return view_; }
 
   private:
@@ -48,7 +55,8 @@ class PhotonGuidance {
     Vec3f camera_;
     double speed_;
     double slack_; ///< of arrival times, from the aperture
-    bool unwarped_, directView_, choosesFrames_;
+    bool unwarped_, directView_, choosesFrames_, drawsByResponse_;
+    Sensor sensor_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;
 };

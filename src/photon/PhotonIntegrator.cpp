@@ -116,17 +116,17 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const
         const StageTimer timer(statistics, "build");
         radii = volumeRadii(maps.volume, pass);
         selectStraight(photonPass_->arrival(), maps.volume, radii, straight.points, straight.radii);
-        const TimeGate& gate = structures.gate;
+        const Sensor& sensor = structures.sensor;
         if (!structures.splatted || foldedRays_)
-            structures.points = std::make_unique<PointGather>(*scene_, gate, maps.volume, radii);
+            structures.points = std::make_unique<PointGather>(*scene_, sensor, maps.volume, radii);
         if (!structures.splatted && straight.points.paths > 0)
-            structures.straightPoints = std::make_unique<PointGather>(*scene_, gate, straight.points, straight.radii);
+            structures.straightPoints = std::make_unique<PointGather>(*scene_, sensor, straight.points, straight.radii);
     }
     if (!structures.splatted) return;
     const StageTimer timer(statistics, "splat");
     const bool all = straight.points.paths == 0;
-    const double width = structures.gate.steadyState ? 1.0 : structures.gate.frameWidth;
-    const uint64_t gathered = splatPhotons(*scene_, structures.gate, record, all ? maps.volume : straight.points,
+    const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
+    const uint64_t gathered = splatPhotons(*scene_, structures.sensor, record, all ? maps.volume : straight.points,
                                            all ? radii : straight.radii, double(maps.volume.scale()) / width, film);
     statistics.add("gathered photons", gathered);
 }
@@ -137,17 +137,17 @@ void PhotonIntegrator::buildBeams(const PhotonMaps& maps, uint32_t pass, Straigh
     const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
                                                       : beamRadiusFactor(pass, settings_.alpha);
     const float radius = settings_.volumeRadius * factor;
-    structures.beams = std::make_unique<BeamGather>(*scene_, structures.gate, maps.beams.beams, radius);
+    structures.beams = std::make_unique<BeamGather>(*scene_, structures.sensor, maps.beams.beams, radius);
     if (arrival.directView() || !arrival.straightTimesKnown()) return;
     straight.beams = straightParts(*scene_, arrival, maps.beams.beams);
-    structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.gate, straight.beams, radius);
+    structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.sensor, straight.beams, radius);
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     // Without progression every pass looks at the photons of the first.
     PassInfo photons = pass;
     if (!settings_.progressive) photons.index = 0;
-    const TimeGate passGate = gate(photons.index);
+    const Sensor sensor = Sensor::of(*scene_, gate(photons.index));
     const bool recordable = straightRays_ && pass.samples == 1;
     const bool splat = recordable && photonPass_->storesVolume();
     const bool connect =
@@ -157,16 +157,16 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     if (splat || connect) {
         const StageTimer timer(statistics, "sensor record");
         record = recordSensorPaths(*scene_, connect, pass, statistics);
-        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, passGate, record, pass);
+        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass);
     }
     PhotonMaps maps;
     {
         const StageTimer timer(statistics, "photon pass");
-        photonPass_->setGate(passGate);
+        photonPass_->setGate(sensor.gate);
         maps = photonPass_->trace(photons, connections.get(), statistics);
     }
     StraightStores straight;
-    GatherStructures structures{maps, passGate, splat, settings_.includeSurfaces, settings_.gatherCount};
+    GatherStructures structures{maps, sensor, splat, settings_.includeSurfaces, settings_.gatherCount};
     if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, straight, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");

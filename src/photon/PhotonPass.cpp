@@ -128,6 +128,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* con
             append(maps, batch.deposits, settings_);
             statistics.add("rays", batch.counters.rays);
             statistics.add("control vertices", batch.counters.controlVertices);
+            statistics.add("volume deposits", batch.counters.volumeDeposits);
+            statistics.add("volume deposits that may count", batch.counters.countingDeposits);
         }
         traced += wave;
     }

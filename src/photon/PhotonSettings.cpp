@@ -54,8 +54,6 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
     settings.includeSurfaces = block.flag("include_surfaces", true);
     settings.alpha = float(block.number("alpha", 0.3, Range::unit()));
     settings.volumeAlpha = float(block.number("volume_alpha", double(settings.alpha), Range::unit()));
-    if (!scene.transport.response.empty())
-        block.problem("temporal_response", "photon integrators weigh the gate evenly; path_tracer knows responses");
     settings.scheme = darts::readScheme(block);
     // Ways of building the published structures; the gathers here need no such choice.
     block.accept({"use_grid", "grid_memory", "use_frustum_grid", "exclude_non_mis", "strict_time_width",

@@ -20,9 +20,9 @@ struct Footprint {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
              const std::vector<float>& radii, double scale, Film& film)
-        : scene_(scene), gate_(gate), record_(record), photons_(store.photons), radii_(radii), scale_(float(scale)),
+        : scene_(scene), sensor_(sensor), record_(record), photons_(store.photons), radii_(radii), scale_(float(scale)),
           film_(film),
           // Rays leave pixel centres by the filter, whose samples may reach a little beyond its half width.
           margin_(scene.camera.filter.halfWidth() + 0.1f) {
@@ -67,18 +67,21 @@ class Splatter {
         const TransportSettings& transport = scene_.transport;
         const Vec3f offset = photon.position - record_.origin;
         int frame = 0;
-        if (!gate_.steadyState) {
+        float weight = scale_;
+        if (!sensor_.gate.steadyState) {
             const Vec3d way(double(photon.position.x) - double(record_.origin.x),
                             double(photon.position.y) - double(record_.origin.y),
                             double(photon.position.z) - double(record_.origin.z));
             const double cameraTime = transport.cameraUnwarped ? 0.0 : way.length() / double(scene_.cameraRegion.speed);
-            frame = gate_.frameOf(photon.time + cameraTime);
+            const double arrival = photon.time + cameraTime;
+            frame = sensor_.gate.frameOf(arrival);
             if (frame < 0) return 0;
+            weight *= sensor_.weight(arrival);
         }
         const Medium& medium = scene_.media[size_t(photon.medium)];
         const float g = medium.phase.g();
         const bool rayleigh = std::holds_alternative<Rayleigh>(medium.phase.model);
-        const Rgb power = photon.power * (scale_ * 3.0f * InvPi / (radius * radius));
+        const Rgb power = photon.power * (weight * 3.0f * InvPi / (radius * radius));
         const Spot spot{
             photon,           medium, offset, power, 1.0f / (radius * radius), frame, g, medium.isGrey() && !rayleigh,
             medium.sigmaT().x};
@@ -172,7 +175,7 @@ class Splatter {
     }
 
     const Scene& scene_;
-    TimeGate gate_;
+    Sensor sensor_;
     const SensorRecord& record_;
     const std::vector<Photon>& photons_;
     const std::vector<float>& radii_;
@@ -184,9 +187,9 @@ class Splatter {
 
 } // namespace
 
-uint64_t splatPhotons(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
                       const std::vector<float>& radii, double scale, Film& film) {
-    const Splatter splatter(scene, gate, record, store, radii, scale, film);
+    const Splatter splatter(scene, sensor, record, store, radii, scale, film);
     const size_t bands = size_t((record.height + BandRows - 1) / BandRows);
     std::vector<std::optional<Footprint>> footprints(store.photons.size());
     tbb::parallel_for(size_t(0), footprints.size(), [&](size_t i) {

@@ -2,6 +2,7 @@
 // Volume photons brought to the pixels instead of pixels to the photons: for straight rays from one point.
 
 #include "photon/PhotonStore.h"
+#include "photon/Sensor.h"
 #include "photon/SensorRecord.h"
 
 #include "tungsten/film/Film.h"
@@ -11,8 +12,8 @@ namespace tungsten::photon {
 /// Adds what PointGather would gather along the recorded straight rays to the pass image, times `scale`. Each photon
 /// visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons and a
 /// traversal per ray (benchmarks/micro, gather). `radii`: one per photon, or one for all. Returns the number of photons
-/// gathered, one per pixel and photon. `gate` is the pass's.
-uint64_t splatPhotons(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
+/// gathered, one per pixel and photon. `sensor` has the pass's gate.
+uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
                       const std::vector<float>& radii, double scale, Film& film);
 
 } // namespace tungsten::photon

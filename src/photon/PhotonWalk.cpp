@@ -42,9 +42,10 @@ bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
 }
 
-void PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
-    if (arrival_->mayCount(position, time_))
-        list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
+bool PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
+    if (!arrival_->mayCount(position, time_)) return false;
+    list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
+    return true;
 }
 
 void PhotonWalk::depositBeam(const Medium& medium, float reach) {
@@ -60,7 +61,10 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     ++consecutiveMedium_;
     if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
-    if (context_.storeVolume && orderCounts) deposit(deposits_.volume, position, power_, region_.medium);
+    if (context_.storeVolume && orderCounts) {
+        ++counters_.volumeDeposits;
+        if (deposit(deposits_.volume, position, power_, region_.medium)) ++counters_.countingDeposits;
+    }
     sinceVertex_ = 0.0f;
     connectable_ = true;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};

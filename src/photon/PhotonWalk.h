@@ -13,6 +13,8 @@ namespace tungsten::photon {
 
 struct WalkCounters {
     uint64_t rays = 0, controlVertices = 0;
+    /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
+    uint64_t volumeDeposits = 0, countingDeposits = 0;
 };
 
 /// What every walk of a pass shares.
@@ -47,7 +49,8 @@ class PhotonWalk {
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
-    void deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
+    /// False if it cannot be gathered.
+    bool deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 
     const WalkContext& context_;
     const Scene& scene_;

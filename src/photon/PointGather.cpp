@@ -12,7 +12,7 @@ namespace {
 struct Query {
     RTCIntersectContext context;
     const Scene* scene;
-    const TimeGate* gate;
+    const Sensor* sensor;
     const std::vector<Photon>* photons;
     const std::vector<float>* squaredRadii;
     const CameraSegment* segment;
@@ -35,16 +35,19 @@ void evaluate(Query& query, uint32_t index) {
     const int interactions = segment.interactions + photon.bounce;
     if (interactions < transport.minBounces || interactions >= transport.maxBounces) return;
     int frame = 0;
-    if (!query.gate->steadyState) {
+    float weight = kernel;
+    if (!query.sensor->gate.steadyState) {
         // The photon's own distance to the segment's origin: the exact time of the path through the photon.
         const double cameraTime =
             transport.cameraUnwarped ? 0.0 : segment.time + double(offset.length()) * segment.inverseSpeed;
-        frame = query.gate->frameOf(photon.time + cameraTime);
+        const double arrival = photon.time + cameraTime;
+        frame = query.sensor->gate.frameOf(arrival);
         if (frame < 0) return;
+        weight *= query.sensor->weight(arrival);
     }
     const Medium& medium = query.scene->media[size_t(segment.medium)];
     const Rgb value =
-        photon.power * medium.transmittance(along) * (kernel * medium.phase.eval(photon.direction, -segment.direction));
+        photon.power * medium.transmittance(along) * (weight * medium.phase.eval(photon.direction, -segment.direction));
     (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
     ++query.gathered;
 }
@@ -58,9 +61,9 @@ void filter(const RTCFilterFunctionNArguments* arguments) {
 
 } // namespace
 
-PointGather::PointGather(const Scene& scene, const TimeGate& gate, const PhotonStore& store,
+PointGather::PointGather(const Scene& scene, const Sensor& sensor, const PhotonStore& store,
                          const std::vector<float>& radii)
-    : scene_(scene), gate_(gate), store_(store) {
+    : scene_(scene), sensor_(sensor), store_(store) {
     std::vector<PointWithRadius> points;
     points.reserve(store.photons.size());
     for (size_t i = 0; i < store.photons.size(); ++i)
@@ -71,7 +74,7 @@ PointGather::PointGather(const Scene& scene, const TimeGate& gate, const PhotonS
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (store_.photons.empty()) return 0;
-    Query query{{}, &scene_, &gate_, &store_.photons, &squaredRadii_, &segment, &sums, 0};
+    Query query{{}, &scene_, &sensor_, &store_.photons, &squaredRadii_, &segment, &sums, 0};
     rtcInitIntersectContext(&query.context);
     query.context.filter = filter;
     // Embree skips discs that hold or nearly touch the ray's origin: start two radii behind it and test exactly in

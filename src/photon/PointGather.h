@@ -3,6 +3,7 @@
 
 #include "photon/EmbreePoints.h"
 #include "photon/PhotonStore.h"
+#include "photon/Sensor.h"
 
 #include "tungsten/scene/Scene.h"
 
@@ -32,17 +33,17 @@ using FrameSums = std::vector<Vec3d>;
 
 class PointGather {
   public:
-    /// `radii` holds one radius per photon, or one for all. `gate` is the pass's: a delta gate's temporal kernel is a
-    /// narrow box.
-    PointGather(const Scene& scene, const TimeGate& gate, const PhotonStore& store, const std::vector<float>& radii);
+    /// `radii` holds one radius per photon, or one for all. `sensor` has the pass's gate: a delta gate's temporal
+    /// kernel is a narrow box.
+    PointGather(const Scene& scene, const Sensor& sensor, const PhotonStore& store, const std::vector<float>& radii);
 
-    /// Adds sum of power K f_p T over the photons near the segment to the frames they fall in. Returns how many were
-    /// gathered.
+    /// Adds sum of power K f_p T, weighed by the sensor, over the photons near the segment to the frames they fall in.
+    /// Returns how many were gathered.
     uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
 
   private:
     const Scene& scene_;
-    TimeGate gate_;
+    Sensor sensor_;
     const PhotonStore& store_;
     std::vector<float> squaredRadii_;
     std::unique_ptr<EmbreePoints> points_;

@@ -72,10 +72,11 @@ class SensorGather {
     }
 
     void add(const Rgb& radiance, double time) {
-        const TimeGate& gate = structures_.gate;
-        const int frame = gate.steadyState ? 0 : gate.frameOf(time);
-        if (frame >= 0)
-            workspace_.sums[size_t(frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
+        const Sensor& sensor = structures_.sensor;
+        const int frame = sensor.gate.steadyState ? 0 : sensor.gate.frameOf(time);
+        if (frame < 0) return;
+        const Rgb weighed = radiance * sensor.weight(time);
+        workspace_.sums[size_t(frame)] += Vec3d(double(weighed.x), double(weighed.y), double(weighed.z));
     }
 
     [[nodiscard]] bool rendered(int interactions) const {
@@ -124,7 +125,7 @@ class SensorGather {
 void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
                       Statistics& statistics) {
     const auto width = size_t(scene.camera.resolution.x), height = size_t(scene.camera.resolution.y);
-    const TimeGate& gate = structures.gate;
+    const TimeGate& gate = structures.sensor.gate;
     const double scale = 1.0 / (double(pass.samples) * (gate.steadyState ? 1.0 : gate.frameWidth));
     const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {
         std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));

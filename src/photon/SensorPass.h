@@ -11,7 +11,7 @@ namespace tungsten::photon {
 /// Structures over one pass's photons, and the pass's radii.
 struct GatherStructures {
     const PhotonMaps& maps;
-    TimeGate gate;         ///< the pass's: the scene's, or a delta gate's temporal kernel
+    Sensor sensor;         ///< its gate is the pass's: the scene's, or a delta gate's temporal kernel
     bool splatted = false; ///< straight rays have their volume photons already
     bool includeSurfaces = true;
     uint32_t gatherCount = 0;

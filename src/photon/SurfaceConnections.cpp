@@ -4,9 +4,9 @@
 
 namespace tungsten::photon {
 
-SurfaceConnections::SurfaceConnections(const Scene& scene, const TimeGate& frames, const SensorRecord& record,
+SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
                                        const PassInfo& pass)
-    : scene_(scene), frames_(frames), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
+    : scene_(scene), sensor_(sensor), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
     order_.resize(points_.size());
     std::iota(order_.begin(), order_.end(), 0u);
@@ -41,16 +41,22 @@ void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& 
     if (!(high > 0.0)) return;
     // A little wide: arrive() tests exactly.
     const float slack = 4e-6f * float(high) + 1e-5f * float(high - low);
-    const float least = float(low) - slack, most = float(high) + slack;
     const size_t first = std::min(size_t(double(sampler.next1D()) * double(points_.size())), points_.size() - 1);
-    std::array<uint8_t, Tested> inTime;
+    std::array<uint8_t, Tested> inTime{};
     const float *x = x_.data() + first, *y = y_.data() + first, *z = z_.data() + first,
                 *camera = cameraLength_.data() + first;
-    for (size_t i = 0; i < Tested; ++i) {
-        const float dx = x[i] - vertex.position.x, dy = y[i] - vertex.position.y, dz = z[i] - vertex.position.z;
-        const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + camera[i];
-        inTime[i] = uint8_t(length >= least) & uint8_t(length < most);
-    }
+    const auto test = [&](const darts::TimeGate& open) {
+        const float least = float(speed_ * (open.begin - vertex.time)) - slack,
+                    most = float(speed_ * (open.end - vertex.time)) + slack;
+        for (size_t i = 0; i < Tested; ++i) {
+            const float dx = x[i] - vertex.position.x, dy = y[i] - vertex.position.y, dz = z[i] - vertex.position.z;
+            const float length = std::sqrt(dx * dx + dy * dy + dz * dz) + camera[i];
+            inTime[i] |= uint8_t(length >= least) & uint8_t(length < most);
+        }
+    };
+    if (!sensor_.response) test(gate);
+    for (const darts::TimeGate& open : sensor_.openTimes)
+        if (open.end > vertex.time) test(open);
     int total = 0;
     for (size_t i = 0; i < Tested; ++i) {
         if (!inTime[i]) continue;
@@ -83,12 +89,12 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return;
     const double arrival = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
     if (!(arrival >= gate.begin && arrival < gate.end)) return;
-    const int frame = frames_.frameOf(arrival);
+    const int frame = sensor_.gate.frameOf(arrival);
     if (frame < 0) return;
-    const float geometry = 1.0f / (candidate.distance * candidate.distance + nearField_);
-    contributions.push_back(
-        {point.pixel, frame,
-         scale * scattering * visibility.transmittance * point.throughput * (geometry / float(frames_.frameWidth))});
+    const float geometry = sensor_.weight(arrival) / (candidate.distance * candidate.distance + nearField_);
+    contributions.push_back({point.pixel, frame,
+                             scale * scattering * visibility.transmittance * point.throughput *
+                                 (geometry / float(sensor_.gate.frameWidth))});
 }
 
 } // namespace tungsten::photon

@@ -3,6 +3,7 @@
 // just in time, vertices look for surface points that the camera sees at the right time.
 
 #include "photon/Deposits.h"
+#include "photon/Sensor.h"
 #include "photon/SensorRecord.h"
 
 #include "darts/ResidualRange.h"
@@ -34,8 +35,8 @@ struct LightVertex {
 /// point equally often: a^2 = NearFieldShare (area per sensor point) (points) / (4 pi points tested).
 class SurfaceConnections {
   public:
-    /// `frames` is the pass's gate.
-    SurfaceConnections(const Scene& scene, const TimeGate& frames, const SensorRecord& record, const PassInfo& pass);
+    /// `sensor` has the pass's gate.
+    SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PassInfo& pass);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
     /// a^2; 0 when there is no sensor point.
@@ -75,7 +76,7 @@ class SurfaceConnections {
                 std::vector<PixelContribution>& contributions, uint64_t& rays) const;
 
     const Scene& scene_;
-    TimeGate frames_;
+    Sensor sensor_;
     const std::vector<SensorPoint>& points_;
     double speed_;
     float nearField_ = 0.0f, perTested_ = 0.0f;

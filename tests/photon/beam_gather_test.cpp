@@ -63,7 +63,7 @@ TEST(BeamGather, EvaluatesEveryBeamOnTheRayOnce) {
     constexpr float Radius = 0.03f;
     // Up to 100 radii long, so that most are cut in pieces.
     const std::vector<PhotonBeam> beams = randomBeams(3000, 3.0f);
-    const BeamGather gather(scene, {}, beams, Radius);
+    const BeamGather gather(scene, TimeGate{}, beams, Radius);
     Sampler sampler(4, RandomStream::Test, 0, 0);
     uint64_t total = 0, expectedTotal = 0;
     for (int i = 0; i < 400; ++i) {
@@ -110,7 +110,7 @@ TEST(BeamGather, ParallelBeamsStayFinite) {
         for (const float sign : {-1.0f, 1.0f})
             beams.push_back({0.0, Vec3f(0.001f - 2.0f * tilt, 0.0f, sign > 0.0f ? 0.0f : 4.0f),
                              (Vec3f(tilt, 0.0f, sign)).normalized(), Rgb(1.0f), 0.0f, 20.0f, 0, 0});
-    const BeamGather gather(scene, {}, beams, 0.05f);
+    const BeamGather gather(scene, TimeGate{}, beams, 0.05f);
     FrameSums sums(1, Vec3d(0.0));
     const uint64_t gathered = gather.gather({Vec3f(0, 0, -1), along, 10.0f, 0.0, 1.0, 0, 0}, sums);
     EXPECT_GT(gathered, 0u) << "the steeper ones";

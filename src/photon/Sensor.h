@@ -1,0 +1,48 @@
+#pragma once
+// How the sensor weighs times of arrival.
+
+#include "darts/ResidualRange.h"
+#include "darts/TemporalResponse.h"
+
+#include "tungsten/scene/Scene.h"
+
+#include <memory>
+#include <vector>
+
+namespace tungsten::photon {
+
+/// When the sensor is open, and how it weighs that time: evenly, or by a response W(T) whose support is the gate.
+struct Sensor {
+    TimeGate gate;
+    std::shared_ptr<const darts::TemporalResponse> response; ///< null: evenly
+    std::vector<darts::TimeGate> openTimes;                  ///< where the response is above 0; empty without one
+
+    Sensor(const TimeGate& openDuring, std::shared_ptr<const darts::TemporalResponse> weighedBy = nullptr)
+        : gate(openDuring), response(std::move(weighedBy)) {}
+    /// As the scene says; `gate` is the pass's, which is the scene's or a delta gate's temporal kernel.
+    static Sensor of(const Scene& scene, const TimeGate& gate) {
+        const TemporalResponse& r = scene.transport.response;
+        if (r.empty()) return {gate};
+        Sensor sensor{gate,
+                      std::make_shared<darts::TemporalResponse>(darts::TemporalResponse::tabulated(r.times, r.values))};
+        auto& open = sensor.openTimes;
+        for (size_t i = 0; i + 1 < r.times.size(); ++i) {
+            if (r.values[i] <= 0.0 && r.values[i + 1] <= 0.0) continue;
+            if (open.empty() || open.back().end < r.times[i]) open.push_back({r.times[i], r.times[i]});
+            open.back().end = r.times[i + 1];
+        }
+        return sensor;
+    }
+
+    /// W(time) times the gate's width, W having the integral 1: relative to an even sensor, whose image is a mean over
+    /// the gate. `time` is the total time of flight, emission time included.
+    [[nodiscard]] float weight(double time) const {
+        return response ? float(response->pdf(time) * gate.frameWidth) : 1.0f;
+    }
+    /// Something that arrives at a time in [from, to] may count, as far as the response is concerned.
+    [[nodiscard]] bool mayWeigh(double from, double to) const {
+        return !response || response->distribution(to) > response->distribution(from);
+    }
+};
+
+} // namespace tungsten::photon
