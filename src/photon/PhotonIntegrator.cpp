@@ -84,12 +84,29 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
     plan.describe("photons beside control vertices", !guidance->directView(),
                   guidance->directView() ? "direct view: control vertices alone are complete"
                                          : "mirrors, refraction or different speeds: both, by the balance heuristic");
+    const std::string notConnected = connectionObstacle(plan);
+    plan.describe("surface connections", notConnected.empty(),
+                  notConnected.empty() ? "light paths connect to the surface points that the camera sees in time"
+                                       : notConnected);
+}
+
+std::string PhotonIntegrator::connectionObstacle(const EffectPlan& plan) const {
+    // Photons are shared by pixels, connections are not: at equal time they win by 2 to 3 with 25 000 pixels and lose
+    // by as much with 230 000 (cbox and staircase, benchmarks/study).
+    constexpr int MostPixels = 1 << 16;
+    const auto& resolution = scene_->camera.resolution;
+    if (!settings_.includeSurfaces || !plan.surfaceScattering) return "no surface is gathered";
+    if (!scene_->camera.hasSinglePosition() || plan.speedsDiffer) return "a thin lens, or different speeds of light";
+    if (!settings_.scheme.surfaceConnections && resolution.x * resolution.y > MostPixels)
+        return "more than 65536 pixels: surface photons, which pixels share, cost less";
+    return settings_.scheme.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
 }
 
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
     straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
-    foldedRays_ = plan.specularSensorPaths;
+    foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
+    connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }
 
 std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
@@ -150,8 +167,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     const Sensor sensor = Sensor::of(*scene_, gate(photons.index));
     const bool recordable = straightRays_ && pass.samples == 1;
     const bool splat = recordable && photonPass_->storesVolume();
-    const bool connect =
-        recordable && settings_.includeSurfaces && photonPass_->guidance() && settings_.scheme.connectsSurfaces();
+    const bool connect = recordable && connects_;
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {

@@ -23,6 +23,8 @@ class PhotonIntegrator : public Integrator {
     [[nodiscard]] TimeGate gate(uint32_t pass) const;
     void planVolume(EffectPlan& plan) const;
     void describeGuidance(EffectPlan& plan) const;
+    /// Why guided light paths do not connect to surfaces; empty if they do.
+    [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
     /// Photons to pixels, or structures over them; `straight` holds what only straight sensor paths look at.
     struct StraightStores;
     void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
@@ -34,6 +36,7 @@ class PhotonIntegrator : public Integrator {
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     std::unique_ptr<PhotonPass> photonPass_;
+    bool connects_ = false;     ///< light paths to visible surface points
     bool straightRays_ = false; ///< of one origin and speed: volume photons can be splatted, surfaces connected
     bool foldedRays_ = false;   ///< mirrors or refraction can be seen
 };
