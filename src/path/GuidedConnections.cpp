@@ -118,8 +118,7 @@ void GuidedPathWalk::connectToLightVertex(const SurfaceInteraction* surface) {
     if (scene_.geometry->occluded({ray_.origin, direction, ray_.tMin, distance - scene_.rayEpsilon})) return;
     const float perArea = std::abs(direction.dot(vertex.surface.hit.ng)) / sqr(distance);
     const float share = lightVertexShare(vertex.areaPdf, scattering.pdf * perArea);
-    const Medium* beyond =
-        scene_.medium(regionBeyond(vertex.surface, vertex.toLight, region_));
+    const Medium* beyond = scene_.medium(regionBeyond(vertex.surface, vertex.toLight, region_));
     Rgb transmittance = medium ? medium->transmittance(distance) : Rgb(1.0f);
     if (beyond) transmittance = transmittance * beyond->transmittance(vertex.distance);
     sink_.add(throughput_ * scattering.value * transmittance * onward * (perArea * choice.weight * share),

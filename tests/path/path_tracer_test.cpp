@@ -152,8 +152,7 @@ TEST(PathTracer, DeltaGatesAreRefusedWhereNoControlVertexCanMeetThem) {
                   .find("plain paths"),
               std::string::npos);
     EXPECT_NE(problem({best}).find("diffuse, glossy or emitting surfaces"), std::string::npos);
-    EXPECT_NE(problem({best, black, "media.0.speed_of_light=0.5"}).find("different speeds"),
-              std::string::npos);
+    EXPECT_NE(problem({best, black, "media.0.speed_of_light=0.5"}).find("different speeds"), std::string::npos);
     EXPECT_EQ(problem({best, black}), "");
 }
 

@@ -21,12 +21,15 @@ std::string readText(const std::filesystem::path& file) {
 
 /// One of several kinds of damage, chosen and placed by the sampler.
 std::string mutate(std::string text, Sampler& sampler) {
-    static const std::array<const char*, 12> values{"null",  "-1",     "1e999", "NaN", "[]",        "{}",
+    static const std::array<const char*, 12> values{"null", "-1",        "1e999", "NaN",  "[]",           "{}",
                                                     "\"\"", "[1,2,3,4]", "true",  "1e30", "\"nonsense\"", "-0.0"};
     const auto position = [&] { return size_t(sampler.next1D() * float(text.size())); };
     switch (sampler.nextBits() % 5) {
-    case 0: return text.substr(0, position());
-    case 1: text[position()] = char(sampler.nextBits() % 256); return text;
+    case 0:
+        return text.substr(0, position());
+    case 1:
+        text[position()] = char(sampler.nextBits() % 256);
+        return text;
     case 2: { // another value for some field
         const size_t colon = text.find(':', position());
         if (colon == std::string::npos) return text;

@@ -48,7 +48,8 @@ TEST(Duration, SumsTokensAndDefaultsToMinutes) {
 
 TEST(Json, AcceptsCommentsTrailingCommasNanAndByteOrderMark) {
     auto diagnostics = std::make_shared<Diagnostics>();
-    const auto reader = readerOf("\xEF\xBB\xBF{ /* a */ \"x\": 1e4, // b\n \"y\": [1, 2, 3,], \"n\": NaN, }", diagnostics);
+    const auto reader =
+        readerOf("\xEF\xBB\xBF{ /* a */ \"x\": 1e4, // b\n \"y\": [1, 2, 3,], \"n\": NaN, }", diagnostics);
     EXPECT_EQ(reader.integer("x", 0), 10000);
     EXPECT_EQ(reader.vec3("y", Vec3f(0.0f)), Vec3f(1, 2, 3));
     EXPECT_TRUE(diagnostics->problems.empty());
@@ -111,7 +112,8 @@ TEST(ObjectReader, TransformsInBothForms) {
 }
 
 TEST(Override, SetsByIndexByNameAndNewFields) {
-    const JsonFile file(R"({"media": [{"name": "gas.a", "sigma_s": 1}], "integrator": {}, "camera": {"transform": {}}})");
+    const JsonFile file(
+        R"({"media": [{"name": "gas.a", "sigma_s": 1}], "integrator": {}, "camera": {"transform": {}}})");
     const auto document = parseJsonFile(file.path());
     applyOverride(*document, "media.0.type=homogeneous");
     applyOverride(*document, "media.gas.a.sigma_s=[1,2,3]");
@@ -126,7 +128,8 @@ TEST(Override, SetsByIndexByNameAndNewFields) {
 TEST(Override, PathsThatLeadNowhereNameTheNearest) {
     const JsonFile file(R"({"media": [{"name": "gas", "sigma_s": 1}], "integrator": {}})");
     const auto document = parseJsonFile(file.path());
-    for (const char* bad : {"media.gaz.sigma_s=1", "media.7.sigma_s=1", "nothing", "=3", "integrator.a.b=2", "media.0.sigma_s.x=1", ""})
+    for (const char* bad :
+         {"media.gaz.sigma_s=1", "media.7.sigma_s=1", "nothing", "=3", "integrator.a.b=2", "media.0.sigma_s.x=1", ""})
         EXPECT_THROW(applyOverride(*document, bad), UsageError) << bad;
     try {
         applyOverride(*document, "media.gaz.sigma_s=1");

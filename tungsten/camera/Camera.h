@@ -22,7 +22,8 @@ struct Orthographic {
     float size = 1.0f; ///< half the image height
 };
 
-/// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated (scene format, section 3).
+/// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated (scene
+/// format, section 3).
 class Camera {
   public:
     std::variant<Pinhole, ThinLens, Orthographic> model;
@@ -34,8 +35,8 @@ class Camera {
     [[nodiscard]] Ray generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const;
     [[nodiscard]] Vec3f position() const { return toWorld.translation; }
     [[nodiscard]] Vec3f forward() const { return toWorld.z.normalized(); }
-    /// Raster position of a world point (pinhole and thin lens: through the lens centre; orthographic: along the axis); none behind
-    /// the camera. May lie outside the image.
+    /// Raster position of a world point (pinhole and thin lens: through the lens centre; orthographic: along the axis);
+    /// none behind the camera. May lie outside the image.
     [[nodiscard]] std::optional<Vec2f> project(const Vec3f& point) const;
     /// Every sensor ray leaves the same point.
     [[nodiscard]] bool hasSinglePosition() const { return std::holds_alternative<Pinhole>(model); }

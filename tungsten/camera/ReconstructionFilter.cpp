@@ -23,10 +23,13 @@ const std::map<std::string, FilterType>& filterTypes() {
 float cubic(float x, float b, float c) {
     x = std::abs(x);
     if (x < 1.0f)
-        return ((12.0f - 9.0f * b - 6.0f * c) * x * x * x + (-18.0f + 12.0f * b + 6.0f * c) * x * x + (6.0f - 2.0f * b)) / 6.0f;
+        return ((12.0f - 9.0f * b - 6.0f * c) * x * x * x + (-18.0f + 12.0f * b + 6.0f * c) * x * x +
+                (6.0f - 2.0f * b)) /
+               6.0f;
     if (x < 2.0f)
         return ((-b - 6.0f * c) * x * x * x + (6.0f * b + 30.0f * c) * x * x + (-12.0f * b - 48.0f * c) * x +
-                (8.0f * b + 24.0f * c)) / 6.0f;
+                (8.0f * b + 24.0f * c)) /
+               6.0f;
     return 0.0f;
 }
 
@@ -46,22 +49,33 @@ ReconstructionFilter::ReconstructionFilter(FilterType type) : type_(type) {
 
 float ReconstructionFilter::halfWidth() const {
     switch (type_) {
-    case FilterType::Dirac: return 0.0f;
-    case FilterType::Box: return 0.5f;
-    case FilterType::Tent: return 1.0f;
-    default: return 2.0f;
+    case FilterType::Dirac:
+        return 0.0f;
+    case FilterType::Box:
+        return 0.5f;
+    case FilterType::Tent:
+        return 1.0f;
+    default:
+        return 2.0f;
     }
 }
 
 float ReconstructionFilter::eval(float x) const {
     switch (type_) {
-    case FilterType::Dirac: return 0.0f;
-    case FilterType::Box: return std::abs(x) <= 0.5f ? 1.0f : 0.0f;
-    case FilterType::Tent: return std::max(1.0f - std::abs(x), 0.0f);
-    case FilterType::Gaussian: return std::max(std::exp(-2.0f * x * x) - std::exp(-8.0f), 0.0f);
-    case FilterType::MitchellNetravali: return cubic(x, 1.0f / 3.0f, 1.0f / 3.0f);
-    case FilterType::CatmullRom: return cubic(x, 0.0f, 0.5f);
-    case FilterType::Lanczos: return std::abs(x) < 2.0f ? sinc(x) * sinc(0.5f * x) : 0.0f;
+    case FilterType::Dirac:
+        return 0.0f;
+    case FilterType::Box:
+        return std::abs(x) <= 0.5f ? 1.0f : 0.0f;
+    case FilterType::Tent:
+        return std::max(1.0f - std::abs(x), 0.0f);
+    case FilterType::Gaussian:
+        return std::max(std::exp(-2.0f * x * x) - std::exp(-8.0f), 0.0f);
+    case FilterType::MitchellNetravali:
+        return cubic(x, 1.0f / 3.0f, 1.0f / 3.0f);
+    case FilterType::CatmullRom:
+        return cubic(x, 0.0f, 0.5f);
+    case FilterType::Lanczos:
+        return std::abs(x) < 2.0f ? sinc(x) * sinc(0.5f * x) : 0.0f;
     }
     return 0.0f;
 }
@@ -72,7 +86,8 @@ Vec2f ReconstructionFilter::sample(const Vec2f& u) const {
     const auto axis = [this](float v) {
         const float sign = v < 0.5f ? -1.0f : 1.0f;
         const auto bin = bins_.sample(v < 0.5f ? 2.0f * v : 2.0f * v - 1.0f);
-        // The format's table is off by one: bin i spans (i + 1, i + 2) / 31, so nothing falls within 1/31 of the centre.
+        // The format's table is off by one: bin i spans (i + 1, i + 2) / 31, so nothing falls within 1/31 of the
+        // centre.
         return sign * (float(bin.index) + 1.0f + bin.remapped) / float(Bins) * halfWidth();
     };
     return {axis(u.x), axis(u.y)};

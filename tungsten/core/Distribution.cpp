@@ -3,8 +3,7 @@
 namespace tungsten {
 
 Distribution1D::Distribution1D(const std::vector<float>& weights) : cumulative_(weights.size() + 1, 0.0) {
-    for (size_t i = 0; i < weights.size(); ++i)
-        cumulative_[i + 1] = cumulative_[i] + std::max(double(weights[i]), 0.0);
+    for (size_t i = 0; i < weights.size(); ++i) cumulative_[i + 1] = cumulative_[i] + std::max(double(weights[i]), 0.0);
     total_ = cumulative_.back();
     const double count = double(weights.size());
     for (size_t i = 1; i < cumulative_.size(); ++i)

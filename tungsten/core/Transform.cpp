@@ -44,17 +44,22 @@ Transform composeTransform(const TransformRecipe& recipe) {
     Vec3f x = recipe.xAxis, y = recipe.yAxis, z = recipe.zAxis;
     const bool hasX = recipe.hasX, hasY = recipe.hasY, hasZ = recipe.hasZ;
     if (!hasX || (hasX && hasY && hasZ)) {
-        if (hasY && !hasX && !hasZ) orthogonalise(y, z, x);
-        else orthogonalise(z, y, x);
+        if (hasY && !hasX && !hasZ)
+            orthogonalise(y, z, x);
+        else
+            orthogonalise(z, y, x);
     } else if (hasY) {
         orthogonalise(y, x, z);
     } else {
         hasZ ? orthogonalise(z, x, y) : orthogonalise(x, z, y);
     }
     if (x.cross(y).dot(z) < 0.0f) {
-        if (!hasX) x = -x;
-        else if (!hasY) y = -y;
-        else z = -z;
+        if (!hasX)
+            x = -x;
+        else if (!hasY)
+            y = -y;
+        else
+            z = -z;
     }
     Transform transform;
     transform.x = rotate(x * recipe.scale.x, recipe.rotationDegrees);

@@ -50,12 +50,12 @@ struct InfiniteSphereEmitter {
     Frame frame; ///< rotation part of the transform
     bool samplable = true;
     std::shared_ptr<const Distribution2D> distribution; ///< over uv for bitmaps
-    Vec3f sceneCentre{0, 0, 0}; ///< set when the scene is complete, for photon emission
+    Vec3f sceneCentre{0, 0, 0};                         ///< set when the scene is complete, for photon emission
     float sceneRadius = 1.0f;
 };
 
-using EmitterModel =
-    std::variant<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter, InfiniteSphereEmitter>;
+using EmitterModel = std::variant<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter,
+                                  InfiniteSphereEmitter>;
 
 struct Emitter {
     std::string name;
@@ -75,24 +75,25 @@ struct Emitter {
 /// A photon leaving an emitter.
 struct EmissionSample {
     Ray ray;
-    Rgb power;           ///< L |cos| / (p_position p_direction): the power of the one photon that stands for the emitter
-    float pdfDirection;  ///< per solid angle; 0 for a single direction
-    Vec3f normal;        ///< of the emitting surface; equals the direction for points
+    Rgb power;          ///< L |cos| / (p_position p_direction): the power of the one photon that stands for the emitter
+    float pdfDirection; ///< per solid angle; 0 for a single direction
+    Vec3f normal;       ///< of the emitting surface; equals the direction for points
 };
 EmissionSample sampleEmission(const Emitter& emitter, const Vec2f& uPosition, const Vec2f& uDirection);
-/// The same with the start fixed and the direction chosen by the caller: power per steradian that leaves along `direction`
-/// (intensity for points, radiance times cosine divided by the density of the position for areas). Zero for single directions.
+/// The same with the start fixed and the direction chosen by the caller: power per steradian that leaves along
+/// `direction` (intensity for points, radiance times cosine divided by the density of the position for areas). Zero for
+/// single directions.
 Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction);
 /// A starting point for the above: position, normal (points: position only).
 SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u);
 
 /// A connection from a receiver to an emitter.
 struct DirectSample {
-    Vec3f direction;     ///< from the receiver, unit
-    float distance;      ///< Infinity for the environment
-    Rgb weight;          ///< radiance / pdf (area, environment) or intensity / distance^2 (points); visibility not included
-    float pdf;           ///< per solid angle at the receiver; 0 for point-like emitters (no MIS with directions)
-    Vec3f position;      ///< on the emitter
+    Vec3f direction; ///< from the receiver, unit
+    float distance;  ///< Infinity for the environment
+    Rgb weight;      ///< radiance / pdf (area, environment) or intensity / distance^2 (points); visibility not included
+    float pdf;       ///< per solid angle at the receiver; 0 for point-like emitters (no MIS with directions)
+    Vec3f position;  ///< on the emitter
 };
 /// None when the emitter cannot light the point (behind it, outside the cone, single direction).
 std::optional<DirectSample> sampleDirect(const Emitter& emitter, const Vec3f& receiver, const Vec2f& u);

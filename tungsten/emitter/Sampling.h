@@ -1,5 +1,6 @@
 #pragma once
-// Per-model sampling, dispatched by Emitter.cpp: point-like sources in Point.cpp, surfaces in Area.cpp, environments in Infinite.cpp.
+// Per-model sampling, dispatched by Emitter.cpp: point-like sources in Point.cpp, surfaces in Area.cpp, environments in
+// Infinite.cpp.
 
 #include "tungsten/emitter/Emitter.h"
 

@@ -5,7 +5,8 @@
 
 namespace tungsten {
 
-/// A temporary file beside its target: write to path(), then commit() renames it over the target. Removed if never committed.
+/// A temporary file beside its target: write to path(), then commit() renames it over the target. Removed if never
+/// committed.
 class AtomicFile {
   public:
     /// Throws InputError naming the target when its folder does not exist.

@@ -1,5 +1,6 @@
 #pragma once
-// The accumulator: frames x pixels, with the mean and second moment of pass images, so every render knows its standard error.
+// The accumulator: frames x pixels, with the mean and second moment of pass images, so every render knows its standard
+// error.
 
 #include "tungsten/core/Types.h"
 
@@ -21,8 +22,8 @@ struct Image {
     [[nodiscard]] const Rgb& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
 };
 
-/// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently (by
-/// samples per pixel). Mean and second moment follow West (1979), so adding in the same order gives the same bits.
+/// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
+/// (by samples per pixel). Mean and second moment follow West (1979), so adding in the same order gives the same bits.
 class Film {
   public:
     Film() = default;
@@ -34,7 +35,8 @@ class Film {
     [[nodiscard]] uint32_t passes() const { return passes_; }
     [[nodiscard]] double totalWeight() const { return weight_; }
 
-    /// The image of the pass in progress (zeroed by beginPass): integrators write each pixel's mean over the pass's samples.
+    /// The image of the pass in progress (zeroed by beginPass): integrators write each pixel's mean over the pass's
+    /// samples.
     void beginPass();
     [[nodiscard]] Rgb& passPixel(int frame, int x, int y) {
         return pass_[(size_t(frame) * size_t(height_) + size_t(y)) * size_t(width_) + size_t(x)];
@@ -50,7 +52,8 @@ class Film {
     /// Mean over the frames: the image of the whole gate.
     [[nodiscard]] Image meanOverFrames() const;
     [[nodiscard]] Image standardErrorOverFrames() const;
-    /// rms over pixels and frames of the standard error, relative to the mean pixel value (0 for a black film or one pass).
+    /// rms over pixels and frames of the standard error, relative to the mean pixel value (0 for a black film or one
+    /// pass).
     [[nodiscard]] double relativeStandardError() const;
     [[nodiscard]] size_t memoryBytes() const;
 

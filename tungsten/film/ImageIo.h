@@ -1,6 +1,6 @@
 #pragma once
-// Image files. Every writer writes to a temporary file beside the target and renames it: an interrupted write never destroys an
-// earlier result. All throw InputError naming the file.
+// Image files. Every writer writes to a temporary file beside the target and renames it: an interrupted write never
+// destroys an earlier result. All throw InputError naming the file.
 
 #include "tungsten/film/Film.h"
 #include "tungsten/film/ToneMap.h"
@@ -21,9 +21,9 @@ Image readPfm(const std::filesystem::path& file);
 
 /// One part of an EXR file: an image with its standard error and the interval of time it covers.
 struct ExrPart {
-    std::string name;      ///< such as "frame.0007"; unused for single parts
-    Image colour;          ///< channels R, G, B
-    Image standardError;   ///< layer stderr.R, stderr.G, stderr.B; may be empty
+    std::string name;    ///< such as "frame.0007"; unused for single parts
+    Image colour;        ///< channels R, G, B
+    Image standardError; ///< layer stderr.R, stderr.G, stderr.B; may be empty
     bool hasTime = false;
     double timeStart = 0.0, timeEnd = 0.0; ///< attributes timeStart and timeEnd
 };

@@ -14,9 +14,9 @@ struct Medium {
     Rgb sigmaA{0.0f}, sigmaS{0.0f};
     PhaseFunction phase;
     float speedOfLight = 1.0f;
-    int maxBounces = 1024;     ///< distances sampled since the last surface before a path ends
-    bool guided = false;       ///< `guided_homo`: asks for DARTS distance sampling
-    bool guidedPhase = false;  ///< phase function `ida` / `integrated_da`: asks for EDA direction sampling
+    int maxBounces = 1024;    ///< distances sampled since the last surface before a path ends
+    bool guided = false;      ///< `guided_homo`: asks for DARTS distance sampling
+    bool guidedPhase = false; ///< phase function `ida` / `integrated_da`: asks for EDA direction sampling
 
     [[nodiscard]] Rgb sigmaT() const { return sigmaA + sigmaS; }
     [[nodiscard]] bool isVacuum() const { return isBlack(sigmaT()); }
@@ -28,13 +28,14 @@ struct Medium {
 
 /// Outcome of a plain free flight up to `tMax`.
 struct FlightSample {
-    float distance;   ///< of the collision, or tMax
-    bool exited;      ///< reached tMax
-    Rgb weight;       ///< sigmaS T / pdf at a collision; T / probability when exited (channel-averaged density)
-    float pdf;        ///< per length at a collision; probability when exited
+    float distance; ///< of the collision, or tMax
+    bool exited;    ///< reached tMax
+    Rgb weight;     ///< sigmaS T / pdf at a collision; T / probability when exited (channel-averaged density)
+    float pdf;      ///< per length at a collision; probability when exited
 };
 
-/// Draws a free flight: one channel chosen uniformly, weighted by the channel-averaged density. Absorbing-only media always exit.
+/// Draws a free flight: one channel chosen uniformly, weighted by the channel-averaged density. Absorbing-only media
+/// always exit.
 FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler);
 /// Density per length of a collision at `distance` (channel average).
 float pdfFlight(const Medium& medium, float distance);

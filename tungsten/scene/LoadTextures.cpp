@@ -25,7 +25,8 @@ Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const st
     try {
         const auto bitmap = cachedBitmap(context, file, gammaCorrect, interpolate, clamp, scale);
         if (bitmap->placeholder)
-            owner.warn(field, "'" + file + "' is a git-lfs placeholder: the picture was not fetched, a checker stands for it");
+            owner.warn(field,
+                       "'" + file + "' is a git-lfs placeholder: the picture was not fetched, a checker stands for it");
         return Texture(bitmap);
     } catch (const InputError& error) {
         owner.problem(field, error.what());

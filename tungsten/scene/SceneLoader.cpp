@@ -73,9 +73,10 @@ void throwIfProblems(const Diagnostics& diagnostics) {
 }
 
 std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes() {
-    return {{"media", mediumTypes()},     {"phase functions", phaseFunctionTypes()}, {"bsdfs", bsdfTypes()},
-            {"textures", textureTypes()}, {"primitives", primitiveTypes()},          {"cameras", cameraTypes()},
-            {"filters", filterNames()},   {"tone maps", toneMapNames()}};
+    return {{"media", mediumTypes()},         {"phase functions", phaseFunctionTypes()},
+            {"bsdfs", bsdfTypes()},           {"textures", textureTypes()},
+            {"primitives", primitiveTypes()}, {"cameras", cameraTypes()},
+            {"filters", filterNames()},       {"tone maps", toneMapNames()}};
 }
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
