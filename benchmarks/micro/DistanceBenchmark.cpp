@@ -1,42 +1,22 @@
 // Time of one draw of a distance: candidates, Green's functions, proposals; SIMD against scalar.
 
+#include "Walk.h"
+
 #include "darts/DistanceSampler.h"
 
 #include <benchmark/benchmark.h>
 
-#include <random>
-
 namespace {
-
-struct Draw {
-    darts::Residual residual;
-    float h;
-    darts::DistanceRandom random;
-};
-
-/// Vertices between one and three mean free paths from the target, 2 % gates.
-std::vector<Draw> draws() {
-    std::mt19937 engine(7);
-    std::uniform_real_distribution<float> u;
-    std::vector<Draw> result(1024);
-    for (Draw& draw : result) {
-        const float C = 1.0f + 2.0f * u(engine), S = C * (1.02f + u(engine));
-        draw.residual = darts::Residual::of({0, 0, C}, {0.98 * double(S), double(S)});
-        draw.h = 2.0f * u(engine);
-        draw.random = {u(engine), u(engine), u(engine), u(engine)};
-    }
-    return result;
-}
 
 void distance(benchmark::State& state, darts::Settings settings, int candidates, bool coloured, bool scalar) {
     settings.candidates = candidates;
     const darts::Medium medium{{0, 0, 0}, coloured ? darts::Vec3{1, 1.5f, 0.7f} : darts::Vec3{1, 1, 1}};
     const darts::DistanceSampler sampler(settings, medium, scalar);
-    const std::vector<Draw> inputs = draws();
+    const auto walk = darts::benchmarks::walk();
     size_t i = 0;
     for (auto _ : state) {
-        const Draw& draw = inputs[i++ & 1023];
-        benchmark::DoNotOptimize(sampler.sample(draw.residual, draw.h, 10.0f, {1, 1, 1}, draw.random));
+        const auto& [residual, h, u] = walk[i++ % walk.size()];
+        benchmark::DoNotOptimize(sampler.sample(residual, h, 10.0f, {1, 1, 1}, {u[0], u[1], u[2], u[3]}));
     }
 }
 

@@ -1,44 +1,27 @@
 // Time of a vertex: the control vertex alone, and all that a walk asks a Guide.
 
+#include "Walk.h"
+
 #include "darts/Guide.h"
 
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <random>
-#include <vector>
 
 namespace darts {
 namespace {
-
-struct Vertex {
-    Residual residual;
-    float h, u;
-};
-
-/// Between one and three mean free paths from the target, 2 % gates.
-std::vector<Vertex> vertices() {
-    std::mt19937 bits(3);
-    std::uniform_real_distribution<float> uniform;
-    std::vector<Vertex> result(512);
-    for (Vertex& v : result) {
-        const float C = 1.0f + 2.0f * uniform(bits), S = C * (1.03f + uniform(bits));
-        v = {Residual::of({0, 0, C}, {0.98 * double(S), double(S)}), 2.0f * uniform(bits), uniform(bits)};
-    }
-    return result;
-}
 
 const Medium Fog{{0.1f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f}, 0.0f};
 
 /// The connection's length, the place on the ray and the density of both.
 void controlVertex(benchmark::State& state) {
     const Guide guide(best(Mode::Photon, 0.0f), Fog);
-    const auto walk = vertices();
+    const auto walk = benchmarks::walk();
     size_t i = 0;
     for (auto _ : state) {
-        const Vertex& v = walk[i++ & 511];
-        const ConnectionSample connection = guide.sampleConnection(v.residual, v.u);
-        benchmark::DoNotOptimize(guide.controlVertex(v.residual, connection, v.h, INFINITY));
+        const auto& [residual, h, u] = walk[i++ % walk.size()];
+        const ConnectionSample connection = guide.sampleConnection(residual, u[0]);
+        benchmark::DoNotOptimize(guide.controlVertex(residual, connection, h, INFINITY));
     }
 }
 BENCHMARK(controlVertex);
@@ -48,7 +31,7 @@ void guideVertex(benchmark::State& state, const Settings& settings, float g) {
     Medium medium = Fog;
     medium.g = g;
     const Guide guide(settings, medium);
-    const auto walk = vertices();
+    const auto walk = benchmarks::walk();
     uint32_t bits = 1;
     const auto random = [&bits] {
         bits = bits * 1664525u + 1013904223u;
@@ -57,7 +40,7 @@ void guideVertex(benchmark::State& state, const Settings& settings, float g) {
     const HenyeyGreenstein phase{Vec3{0.6f, 0, 0.8f}, g};
     size_t i = 0;
     for (auto _ : state) {
-        const Residual& residual = walk[i++ & 511].residual;
+        const Residual& residual = walk[i++ % walk.size()].residual;
         const ConnectionSample connection = guide.sampleConnection(residual, random());
         const DirectionSample sample = guide.sampleDirection(residual, connection, phase, NoView{}, random);
         benchmark::DoNotOptimize(guide.controlVertex(residual, connection, sample.h, INFINITY));

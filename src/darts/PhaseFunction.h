@@ -1,12 +1,26 @@
 #pragma once
-// Henyey-Greenstein: the phase function that needs no table. Hosts bring their own by the same two members.
+// Phase functions as what DirectionSampler calls a scatterer: sample(u, v) -> unit direction, pdf(direction) per solid
+// angle, and exactly that density.
 
 #include "darts/Vec3.h"
 
 namespace darts {
 
-/// Scattering of light that travels along `before`; g in (-1, 1) is the mean cosine. Models what DirectionSampler calls
-/// a scatterer: sample(u, v) -> unit direction, pdf(direction) per solid angle, and exactly that density.
+/// A host's phase function, for light that travels along `before`: its sample(before, {u, v}) and pdf(before, after)
+/// are of the host's own vectors.
+template <typename Phase, typename Vector>
+struct PhaseScatterer {
+    const Phase& phase;
+    Vector before;
+
+    [[nodiscard]] Vec3 sample(float u, float v) const { return vec3(phase.sample(before, {u, v})); }
+    [[nodiscard]] float pdf(const Vec3& after) const { return phase.pdf(before, to<Vector>(after)); }
+};
+template <typename Phase, typename Vector>
+PhaseScatterer(const Phase&, const Vector&) -> PhaseScatterer<Phase, Vector>;
+
+/// Henyey-Greenstein: the phase function that needs no table, for light that travels along `before`; g in (-1, 1) is
+/// the mean cosine.
 struct HenyeyGreenstein {
     Vec3 before{0, 0, 1};
     float g = 0;

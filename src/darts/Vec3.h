@@ -26,6 +26,11 @@ template <typename Vector>
 Vec3 vec3(const Vector& v) {
     return {v.x, v.y, v.z};
 }
+/// To a host's own vector, made of three floats.
+template <typename Vector>
+Vector to(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
 
 inline float dot(const Vec3& a, const Vec3& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;

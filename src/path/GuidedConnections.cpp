@@ -1,7 +1,6 @@
 // The ways in which a guided walk finds light: control vertices, ordinary connections, light vertices, emitters met.
 
 #include "path/Connection.h"
-#include "path/DartsVectors.h"
 #include "path/GuidedPathWalk.h"
 #include "path/ShellChord.h"
 

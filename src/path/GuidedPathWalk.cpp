@@ -2,7 +2,6 @@
 
 #include "path/GuidedPathWalk.h"
 
-#include "path/DartsVectors.h"
 #include "path/ShellChord.h"
 
 namespace tungsten::path {
@@ -37,7 +36,7 @@ void GuidedPathWalk::lookAhead(const Vec3f& position) {
     const TimeGate& gate = context_.sensor.gate;
     const darts::TimeGate open{gate.start - target_->start, gate.end() - target_->start};
     const auto range = darts::ResidualRange::of(open, time_, double(region_.speed));
-    residual_ = darts::Residual::of(toDarts(target_->point.position - position), range);
+    residual_ = darts::Residual::of(darts::vec3(target_->point.position - position), range);
     reachable_ = residual_;
     const float faster = context_.arrival.oneSpeed() ? 0.0f : context_.arrival.highestSpeed() / region_.speed - 1.0f;
     const float more = target_->reach + faster * std::max(float(range.high), 0.0f);
@@ -48,7 +47,7 @@ void GuidedPathWalk::lookAhead(const Vec3f& position) {
 bool GuidedPathWalk::crossEmpty() {
     if (timed()) {
         if (!reachable_.alive()) return false;
-        ray_.tMax = reachable_.latest(darts::oneMinusCosine(toDarts(ray_.direction), reachable_.axis)).firstLeg();
+        ray_.tMax = reachable_.latest(darts::oneMinusCosine(darts::vec3(ray_.direction), reachable_.axis)).firstLeg();
     }
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
@@ -63,7 +62,7 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     ++flights_;
     const darts::Guide& guide = guideOf(region_);
     startRoulette(guide);
-    const float h = darts::oneMinusCosine(toDarts(ray_.direction), residual_.axis);
+    const float h = darts::oneMinusCosine(darts::vec3(ray_.direction), residual_.axis);
     ray_.tMax = guide.distance().bound(reachable_, h);
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
@@ -73,8 +72,8 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     if (hit) findAt(*hit, throughput_ * medium.transmittance(surface));
     const darts::Guide& flights = mediumScatters_ == 0 ? context_.guides.view[size_t(region_.medium)] : guide;
     const darts::DistanceSample flight =
-        flights.sampleDistance(reachable_, h, surface, toDarts(throughput_), [this] { return next(); });
-    throughput_ = throughput_ * colourFrom(flight.transmittanceOverPdf);
+        flights.sampleDistance(reachable_, h, surface, darts::vec3(throughput_), [this] { return next(); });
+    throughput_ = throughput_ * darts::to<Rgb>(flight.transmittanceOverPdf);
     if (isBlack(throughput_)) return false;
     if (flight.surface) return scatterOnSurface(*hit);
     throughput_ = throughput_ * medium.sigmaS;

@@ -8,6 +8,7 @@
 // against emitters that the walk meets; specular, or none: emitters that the walk meets.
 
 #include "path/ArrivalBound.h"
+#include "path/CameraPath.h"
 #include "path/LightVertices.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
@@ -34,10 +35,10 @@ struct GuidedContext {
     bool forwardBoundaries; ///< connections must look through index-matched surfaces
 };
 
-class GuidedPathWalk {
+class GuidedPathWalk : private CameraPath {
   public:
     GuidedPathWalk(const GuidedContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler)
-        : context_(context), scene_(context.scene), sink_(sink), counters_(counters), sampler_(sampler) {}
+        : CameraPath(context.scene, sink, counters, sampler), context_(context) {}
 
     void run(const Ray& ray, const PathTarget& target);
 
@@ -116,8 +117,6 @@ class GuidedPathWalk {
     [[nodiscard]] double timeAfter(float length) const {
         return timed() ? time_ + double(length) / double(region_.speed) : time_;
     }
-    /// Camera segments count, or are over.
-    [[nodiscard]] bool timed() const { return scattered_ || !scene_.transport.cameraUnwarped; }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
         return context_.guides.media[size_t(region.medium)];
     }
@@ -127,20 +126,7 @@ class GuidedPathWalk {
     [[nodiscard]] float next() { return sampler_.next1D(); }
 
     const GuidedContext& context_;
-    const Scene& scene_;
-    PixelSink& sink_;
-    PathCounters& counters_;
-    Sampler sampler_;
     const PathTarget* target_ = nullptr;
-
-    Ray ray_;
-    Region region_;
-    Rgb throughput_{1.0f};
-    double time_ = 0.0; ///< from the sensor so far
-    int interactions_ = 0;
-    int flights_ = 0; ///< distances sampled in media since the last surface
-    int mediumScatters_ = 0;
-    bool scattered_ = false; ///< a smooth vertex exists: the camera side of the path is over
     Last last_ = Last::Specular;
     float scatteringPdf_ = 0.0f;    ///< of the last vertex's own sampling, for the present direction
     Vec3f vertex_{0.0f};            ///< the last vertex on a surface

@@ -1,9 +1,28 @@
 // The walk's vertices: directions drawn for the connections that follow.
 
-#include "path/DartsVectors.h"
 #include "path/GuidedPathWalk.h"
 
 namespace tungsten::path {
+
+namespace {
+
+/// A surface whose lobes are all smooth and reflect. Directions into it stand for absorption: their density is 0.
+struct SurfaceScatterer {
+    const SurfaceInteraction& surface;
+    Sampler& sampler; ///< chooses among lobes
+
+    [[nodiscard]] darts::Vec3 sample(float u, float v) const {
+        const BsdfRandom random{{u, v}, sampler.next1D()};
+        const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance), surface.wi, random);
+        return darts::vec3(sample ? surface.frame.toWorld(sample->wo).normalized() : -surface.frame.n);
+    }
+    [[nodiscard]] float pdf(const darts::Vec3& direction) const {
+        return surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi,
+                                 surface.frame.toLocal(darts::to<Vec3f>(direction)));
+    }
+};
+
+} // namespace
 
 darts::ConnectionSample GuidedPathWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
     return guide.sampleConnection(residual, next(),
@@ -52,8 +71,8 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
         scatteringPdf_ = medium.phase.pdf(before, ray_.direction);
         return true;
     }
-    const darts::DirectionSample sample = sampleDirection(guide, PhaseScatterer{medium.phase, before});
-    ray_.direction = directionFrom(sample.direction);
+    const darts::DirectionSample sample = sampleDirection(guide, darts::PhaseScatterer{medium.phase, before});
+    ray_.direction = darts::to<Vec3f>(sample.direction);
     scatteringPdf_ = medium.phase.eval(before, ray_.direction);
     throughput_ = throughput_ * (scatteringPdf_ * sample.inversePdf);
     return !isBlack(throughput_);
@@ -99,7 +118,7 @@ bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts:
     forgetConnection();
     connectToLightVertex(&surface);
     const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, sampler_});
-    ray_.direction = directionFrom(sample.direction);
+    ray_.direction = darts::to<Vec3f>(sample.direction);
     const Scattering scattering = scatteringTowards(ray_.direction, &surface);
     throughput_ = throughput_ * scattering.value * sample.inversePdf;
     scatteringPdf_ = scattering.pdf;
@@ -107,24 +126,21 @@ bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts:
 }
 
 bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
-    const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
-    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance), surface.wi, random);
-    if (!sample) return false;
-    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
-    const bool straight = sample->lobe == lobe::Forward;
-    if (!straight && !surface.consistent(direction, scene_.transport.consistencyChecks)) return false;
-    throughput_ = throughput_ * sample->weight;
+    const auto exit =
+        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, sampler_);
+    if (!exit) return false;
+    throughput_ = throughput_ * exit->weight;
     if (isBlack(throughput_)) return false;
-    if ((sample->lobe & lobe::Smooth) != 0) {
+    if ((exit->lobe & lobe::Smooth) != 0) {
         scattered_ = true;
         last_ = Last::Surface;
-        scatteringPdf_ = sample->pdf;
+        scatteringPdf_ = exit->pdf;
         vertex_ = surface.hit.position;
-    } else if (!straight) {
+    } else if (!exit->straight()) {
         last_ = Last::Specular;
     }
-    passBoundary(surface, direction, straight);
-    ray_ = Ray{surface.hit.position, direction, scene_.rayEpsilon};
+    passBoundary(surface, exit->direction, exit->straight());
+    ray_ = Ray{surface.hit.position, exit->direction, scene_.rayEpsilon};
     if (timed()) lookAhead(ray_.origin);
     return true;
 }

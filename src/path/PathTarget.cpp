@@ -120,15 +120,12 @@ bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit&
         return true;
     }
     if (onward == 0) return false;
-    const BsdfRandom random{sampler.next2D(), sampler.next1D()};
-    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Photons, onward), surface.wi, random);
-    if (!sample) return false;
-    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
-    const float shading =
-        sample->lobe == lobe::Forward ? 1.0f : surface.photonShadingFactor(-beam.ray.direction, direction);
-    target.power = target.power * sample->weight * (shading / (1.0f - scatters));
-    beam.region = regionBeyond(surface, direction, beam.region);
-    beam.ray = Ray{hit.position, direction, scene_.rayEpsilon};
+    const auto exit = sampleExit(surface, surface.query(TransportMode::Photons, onward), false, sampler);
+    if (!exit) return false;
+    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-beam.ray.direction, exit->direction);
+    target.power = target.power * exit->weight * (shading / (1.0f - scatters));
+    beam.region = regionBeyond(surface, exit->direction, beam.region);
+    beam.ray = Ray{hit.position, exit->direction, scene_.rayEpsilon};
     return true;
 }
 

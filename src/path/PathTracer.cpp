@@ -1,6 +1,5 @@
 #include "path/PathTracer.h"
 
-#include "path/DartsVectors.h"
 #include "path/PathWalk.h"
 
 #include <tbb/blocked_range2d.h>
@@ -51,14 +50,15 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
         // Directions are guided for the sake of control vertices.
         if (!medium.scatters() || (!settings.elliptical && !scheme.direction))
             settings.direction = darts::Direction::Phase;
-        guides.media.emplace_back(settings, toDarts(medium));
+        const darts::Medium coefficients{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()};
+        guides.media.emplace_back(settings, coefficients);
         darts::Settings view = settings, surface = settings;
         if (!scheme.published) {
             view.surfaceOdds = ViewSurfaceOdds;
             surface.alpha = std::max(surface.alpha, SurfaceAlpha);
         }
-        guides.view.emplace_back(view, toDarts(medium));
-        guides.surfaces.emplace_back(surface, toDarts(medium));
+        guides.view.emplace_back(view, coefficients);
+        guides.surfaces.emplace_back(surface, coefficients);
     }
     return guides;
 }

@@ -55,14 +55,14 @@ bool PathWalk<TimeResolved, Media>::arriveAt(const std::optional<SurfaceHit>& hi
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::advanceClock(float length) {
     if constexpr (TimeResolved)
-        if (scattered_ || !scene_.transport.cameraUnwarped) time_ += double(length) / double(region_.speed);
+        if (timed()) time_ += double(length) / double(region_.speed);
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
     // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
     if constexpr (TimeResolved)
-        if (scattered_ || !scene_.transport.cameraUnwarped) {
+        if (timed()) {
             if (arrival_.mayArrive(position, time_)) return false;
             return !source_ ||
                    !arrival_.beforeEnd(time_, (source_->point.position - position).length(), source_->start);
@@ -114,24 +114,21 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     const bool smooth = (lobes & lobe::Smooth) != 0;
     if (smooth && settings_.lightSampling && orderCounts()) connectFromSurface(surface);
     if (smooth && settings_.lightSampling && source_) connectSurfaceToSource(surface);
-    const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
-    const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance), surface.wi, random);
-    if (!sample) return false;
-    const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
-    const bool straight = sample->lobe == lobe::Forward;
-    if (!straight && !surface.consistent(direction, scene_.transport.consistencyChecks)) return false;
-    throughput_ = throughput_ * sample->weight;
+    const auto exit =
+        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, sampler_);
+    if (!exit) return false;
+    throughput_ = throughput_ * exit->weight;
     if (isBlack(throughput_)) return false;
-    if ((sample->lobe & lobe::Smooth) != 0) {
+    if ((exit->lobe & lobe::Smooth) != 0) {
         scattered_ = true;
         weighted_ = settings_.lightSampling;
-        directionPdf_ = sample->pdf;
+        directionPdf_ = exit->pdf;
         vertex_ = hit.position;
-    } else if (!straight) {
+    } else if (!exit->straight()) {
         weighted_ = false; // emitters seen in a mirror cannot be connected to
     }
-    region_ = regionBeyond(surface, direction, region_);
-    ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
+    region_ = regionBeyond(surface, exit->direction, region_);
+    ray_ = Ray{hit.position, exit->direction, scene_.rayEpsilon};
     return continueRoulette();
 }
 

@@ -2,6 +2,7 @@
 // One path from the camera: plain free flights and directions, connected to an emitter at every vertex.
 
 #include "path/ArrivalBound.h"
+#include "path/CameraPath.h"
 #include "path/LightChoice.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
@@ -21,13 +22,12 @@ struct WalkContext {
 /// the virtual point source `source`, if there is one. The two flags choose a specialised loop: `TimeResolved`
 /// off leaves out every clock, `Media` off every free flight.
 template <bool TimeResolved, bool Media>
-class PathWalk {
+class PathWalk : private CameraPath {
   public:
     PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler,
              const PathTarget* source)
-        : scene_(context.scene), settings_(context.settings), lights_(context.lights), arrival_(context.arrival),
-          forwardBoundaries_(context.forwardBoundaries), sink_(sink), counters_(counters), sampler_(sampler),
-          source_(source) {}
+        : CameraPath(context.scene, sink, counters, sampler), settings_(context.settings), lights_(context.lights),
+          arrival_(context.arrival), forwardBoundaries_(context.forwardBoundaries), source_(source) {}
 
     void run(Ray ray);
 
@@ -71,24 +71,11 @@ class PathWalk {
         return settings_.lowOrderScattering || mediumScatters_ + further > 1;
     }
 
-    const Scene& scene_;
     const PathSettings& settings_;
     const LightChoice& lights_;
     const ArrivalBound& arrival_;
     bool forwardBoundaries_;
-    PixelSink& sink_;
-    PathCounters& counters_;
-    Sampler sampler_;
     const PathTarget* source_;
-
-    Ray ray_;
-    Region region_;
-    Rgb throughput_{1.0f};
-    double time_ = 0.0; ///< from the sensor so far
-    int interactions_ = 0;
-    int flights_ = 0; ///< distances sampled in media since the last surface
-    int mediumScatters_ = 0;
-    bool scattered_ = false; ///< a smooth vertex exists: the camera side of the path is over
     /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while
     /// specular.
     bool weighted_ = false;

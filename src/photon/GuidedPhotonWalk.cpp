@@ -6,21 +6,6 @@ namespace tungsten::photon {
 
 namespace {
 
-/// A phase function as a scatterer of the sampling library.
-struct PhaseDirections {
-    const PhaseFunction& phase;
-    Vec3f before;
-
-    [[nodiscard]] darts::Vec3 sample(float u, float v) const { return darts::vec3(phase.sample(before, {u, v})); }
-    [[nodiscard]] float pdf(const darts::Vec3& after) const {
-        return phase.pdf(before, Vec3f(after.x, after.y, after.z));
-    }
-};
-
-Vec3f host(const darts::Vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
 /// Between points as they are stored, so that times are those of the path that is gathered.
 double distanceBetween(const Vec3f& a, const Vec3f& b) {
     const Vec3d d(double(b.x) - double(a.x), double(b.y) - double(a.y), double(b.z) - double(a.z));
@@ -97,7 +82,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     } else {
         const float u = sampler_.next1D(), v = sampler_.next1D();
         const darts::Vec3 direction = own.sample(u, v);
-        ray_.direction = host(direction);
+        ray_.direction = darts::to<Vec3f>(direction);
         inversePdf = 1.0f / own.pdf(direction);
     }
     power_ = power_ * emittedIntensity(emitter, start, ray_.direction) * inversePdf;
@@ -144,7 +129,7 @@ float GuidedPhotonWalk::redirect(const darts::Guide& guide, const Scatterer& sca
     const auto random = [this] { return sampler_.next1D(); };
     const darts::DirectionSample next =
         guide.sampleDirection(residual_, connection_, scatterer, guidance_.view(), random);
-    ray_.direction = host(next.direction);
+    ray_.direction = darts::to<Vec3f>(next.direction);
     return next.inversePdf;
 }
 
@@ -198,8 +183,7 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     if (!look(guide) || !survives(guide)) return false;
     if (flights_ < medium.maxBounces) // else no flight would leave here
         connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
-    const PhaseDirections phase{medium.phase, before};
-    const float inversePdf = redirect(guide, phase);
+    const float inversePdf = redirect(guide, darts::PhaseScatterer{medium.phase, before});
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);
     return !isBlack(power_);
 }

@@ -90,23 +90,20 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
 }
 
 bool PhotonWalk::leaveSurface() {
-    const SurfaceHit& hit = surface_.hit;
-    const BsdfRandom random{sampler_.next2D(), sampler_.next1D()};
-    const auto sample = surface_.bsdf->sample(surface_.query(TransportMode::Photons), surface_.wi, random);
-    if (!sample) return false;
-    const Vec3f direction = surface_.frame.toWorld(sample->wo).normalized();
-    const Region ahead = regionBeyond(surface_, direction, region_);
-    if (sample->lobe != lobe::Forward) {
-        if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return false;
-        power_ = power_ * surface_.photonShadingFactor(-ray_.direction, direction);
+    const auto exit =
+        sampleExit(surface_, surface_.query(TransportMode::Photons), scene_.transport.consistencyChecks, sampler_);
+    if (!exit) return false;
+    const Region ahead = regionBeyond(surface_, exit->direction, region_);
+    if (!exit->straight()) {
+        power_ = power_ * surface_.photonShadingFactor(-ray_.direction, exit->direction);
         sinceVertex_ = 0.0f;
         connectable_ =
-            (sample->lobe & lobe::Smooth) != 0 && ahead.medium == region_.medium && ahead.speed == region_.speed;
+            (exit->lobe & lobe::Smooth) != 0 && ahead.medium == region_.medium && ahead.speed == region_.speed;
     }
-    power_ = power_ * sample->weight;
+    power_ = power_ * exit->weight;
     if (isBlack(power_)) return false;
     region_ = ahead;
-    ray_ = Ray{hit.position, direction, scene_.rayEpsilon};
+    ray_ = Ray{surface_.hit.position, exit->direction, scene_.rayEpsilon};
     return true;
 }
 

@@ -41,16 +41,13 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, bool specular, 
         state.time += double(length) / double(state.region.speed);
         ++state.interactions;
         const LobeMask followed = specular ? lobe::Specular | lobe::Forward : lobe::Forward;
-        const BsdfRandom random{sampler.next2D(), sampler.next1D()};
-        const auto sample = surface.bsdf->sample(surface.query(TransportMode::Radiance, followed), surface.wi, random);
-        if (!sample) return rays;
-        const Vec3f direction = surface.frame.toWorld(sample->wo).normalized();
-        if (sample->lobe != lobe::Forward && !surface.consistent(direction, scene.transport.consistencyChecks))
-            return rays;
-        state.folded = state.folded || sample->lobe != lobe::Forward;
-        state.throughput = state.throughput * sample->weight;
-        state.region = regionBeyond(surface, direction, state.region);
-        state.ray = Ray{hit->position, direction, scene.rayEpsilon};
+        const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, followed),
+                                     scene.transport.consistencyChecks, sampler);
+        if (!exit) return rays;
+        state.folded = state.folded || !exit->straight();
+        state.throughput = state.throughput * exit->weight;
+        state.region = regionBeyond(surface, exit->direction, state.region);
+        state.ray = Ray{hit->position, exit->direction, scene.rayEpsilon};
     }
     return rays;
 }

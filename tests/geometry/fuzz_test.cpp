@@ -1,22 +1,18 @@
 // Damaged mesh files: each loads or is an InputError; nothing crashes, hangs or allocates absurd sizes.
 
 #include "mesh_files.h"
+#include "support/Fuzz.h"
 #include "support/LargestAllocation.h"
-#include "support/Mutations.h"
-#include "tungsten/core/Errors.h"
 #include "tungsten/geometry/SceneGeometry.h"
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <sstream>
 
 namespace tungsten {
 namespace {
 
-using test::MeshFolder;
-
-constexpr unsigned MutationsPerFile = 300;
+using test::FileFolder;
 
 std::string sampleObj() {
     std::ostringstream out;
@@ -42,29 +38,12 @@ void useMesh(TriangleMesh mesh) {
     EXPECT_FALSE(std::isnan(sample.normal.length()));
 }
 
-/// Loads all mutations of a file; returns how many were accepted.
-int fuzz(const MeshFolder& folder, const std::string& name, const std::string& original) {
-    useMesh(loadMesh(folder.write(name, original)));
-    int accepted = 0;
-    for (unsigned i = 0; i < MutationsPerFile; ++i) {
-        const auto file = folder.write(name, test::mutate(original, i));
-        const auto start = std::chrono::steady_clock::now();
-        try {
-            useMesh(loadMesh(file));
-            ++accepted;
-        } catch (const InputError& error) {
-            EXPECT_EQ(error.problems().front().file, file.string());
-            EXPECT_FALSE(error.problems().front().message.empty());
-        } catch (const std::exception& error) {
-            ADD_FAILURE() << name << ", mutation " << i << ": " << error.what();
-        }
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << name << ", mutation " << i;
-    }
-    return accepted;
+int fuzz(const FileFolder& folder, const std::string& name, const std::string& original) {
+    return test::fuzz(folder, name, original, [](const auto& file) { useMesh(loadMesh(file)); });
 }
 
 TEST(MeshFuzz, DamagedFilesLoadOrAreInputErrors) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const TriangleMesh pyramid = test::samplePyramid();
     folder.write("beside.bin", test::gltfBuffer());
     test::largestAllocation = 0;
@@ -78,7 +57,7 @@ TEST(MeshFuzz, DamagedFilesLoadOrAreInputErrors) {
     accepted += fuzz(folder, "a.gltf", test::gltfJson("beside.bin"));
     // Both outcomes happen: the mutations are neither harmless nor all fatal.
     EXPECT_GT(accepted, 50);
-    EXPECT_LT(accepted, int(7 * MutationsPerFile) - 500);
+    EXPECT_LT(accepted, int(7 * test::MutationsPerFile) - 500);
     EXPECT_LT(test::largestAllocation, size_t(1) << 26); // bytes; the files have some hundred
 }
 

@@ -6,7 +6,7 @@
 namespace tungsten {
 namespace {
 
-using test::MeshFolder;
+using test::FileFolder;
 
 void expectNear(const Vec3f& found, const Vec3f& expected, float tolerance = 1e-5f) {
     EXPECT_LT((found - expected).length(), tolerance) << "found " << found << ", expected " << expected;
@@ -36,13 +36,13 @@ std::string messageOf(const std::filesystem::path& file) {
 }
 
 TEST(Wo3, RoundTripKeepsRawMaterials) {
-    const MeshFolder folder;
+    const FileFolder folder;
     expectSamePyramid(loadMesh(folder.write("a.wo3", test::wo3(test::samplePyramid()))), true);
     expectSamePyramid(loadMesh(folder.write("B.WO3", test::wo3(test::samplePyramid()))), true);
 }
 
 TEST(Wo3, CountsAreCheckedBeforeAnythingIsAllocated) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const std::string good = test::wo3(test::samplePyramid());
     for (const uint64_t count : {~uint64_t(0), uint64_t(1) << 59, uint64_t(5), (uint64_t(1) << 59) + 4}) {
         std::string bad = good; // 2^59 · 32 wraps around to 0
@@ -58,7 +58,7 @@ TEST(Wo3, CountsAreCheckedBeforeAnythingIsAllocated) {
 }
 
 TEST(Wo3, BadIndicesAndPositionsAreErrorsBadNormalsAreNot) {
-    const MeshFolder folder;
+    const FileFolder folder;
     TriangleMesh mesh = test::samplePyramid();
     mesh.triangles[2].v[1] = 4;
     EXPECT_NE(messageOf(folder.write("i.wo3", test::wo3(mesh))).find("triangle 2 refers to vertex 4"),
@@ -72,12 +72,12 @@ TEST(Wo3, BadIndicesAndPositionsAreErrorsBadNormalsAreNot) {
 }
 
 TEST(Wo3, EmptyMeshesLoad) {
-    const MeshFolder folder;
+    const FileFolder folder;
     EXPECT_TRUE(loadMesh(folder.write("e.wo3", std::string(16, '\0'))).triangles.empty());
 }
 
 TEST(Obj, PolygonsNegativeIndicesAndSharedCorners) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const TriangleMesh mesh = loadMesh(folder.write("a.obj", R"(# a square and a triangle
 mtllib none.mtl
 V 0 0 0
@@ -110,7 +110,7 @@ f -4 -3 \
 }
 
 TEST(Obj, CornersAreShared) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const TriangleMesh mesh =
         loadMesh(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 1 2\n"));
     EXPECT_EQ(mesh.positions.size(), 4u);
@@ -119,7 +119,7 @@ TEST(Obj, CornersAreShared) {
 }
 
 TEST(Obj, ErrorsNameTheLine) {
-    const MeshFolder folder;
+    const FileFolder folder;
     EXPECT_NE(messageOf(folder.write("a.obj", "v 0 0 0\nf 1 2 3\n")).find("line 2: position 2"), std::string::npos);
     EXPECT_NE(messageOf(folder.write("b.obj", "v 0 0 0\nf 0 1 1\n")).find("line 2"), std::string::npos);
     EXPECT_NE(messageOf(folder.write("c.obj", "v 0 0 zero\n")).find("found 'zero'"), std::string::npos);
@@ -129,13 +129,13 @@ TEST(Obj, ErrorsNameTheLine) {
 }
 
 TEST(Ply, AllEncodingsAndAnyPropertyOrder) {
-    const MeshFolder folder;
+    const FileFolder folder;
     for (const auto encoding : {test::PlyEncoding::Ascii, test::PlyEncoding::Little, test::PlyEncoding::Big})
         expectSamePyramid(loadMesh(folder.write("a.ply", test::ply(test::samplePyramid(), encoding))), false);
 }
 
 TEST(Ply, PolygonsAreFannedAndUvNamesVary) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const TriangleMesh mesh =
         loadMesh(folder.write("a.ply", "ply\nformat ascii 1.0\nelement face 2\n"
                                        "property list uchar int vertex_index\nelement vertex 5\n"
@@ -152,7 +152,7 @@ TEST(Ply, PolygonsAreFannedAndUvNamesVary) {
 }
 
 TEST(Ply, BadFilesAreErrors) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const std::string head = "ply\nformat ascii 1.0\nelement vertex ", tail = "\nproperty float x\nproperty float y\n"
                                                                               "property float z\n";
     messageOf(folder.write("a.ply", "plx\n"));
@@ -192,19 +192,19 @@ void expectSampleScene(const TriangleMesh& mesh) {
 }
 
 TEST(Gltf, GlbWithHierarchyMirrorAndStrip) {
-    const MeshFolder folder;
+    const FileFolder folder;
     expectSampleScene(loadMesh(folder.write("a.glb", test::glb(test::gltfJson(), test::gltfBuffer()))));
 }
 
 TEST(Gltf, GltfWithItsBufferBesideIt) {
-    const MeshFolder folder;
+    const FileFolder folder;
     folder.write("beside.bin", test::gltfBuffer());
     expectSampleScene(loadMesh(folder.write("a.gltf", test::gltfJson("beside.bin"))));
     EXPECT_NE(messageOf(folder.write("b.gltf", test::gltfJson("missing.bin"))).find("missing.bin"), std::string::npos);
 }
 
 TEST(Gltf, BoundsCyclesAndDepthAreChecked) {
-    const MeshFolder folder;
+    const FileFolder folder;
     const auto broken = [&](const std::string& from, const std::string& to) {
         std::string json = test::gltfJson();
         const size_t at = json.find(from);
@@ -235,7 +235,7 @@ TEST(Gltf, BoundsCyclesAndDepthAreChecked) {
 }
 
 TEST(LoadMesh, MissingFilesFoldersAndUnknownTypes) {
-    const MeshFolder folder;
+    const FileFolder folder;
     EXPECT_NE(messageOf(folder.path("none.wo3")).find("no such file"), std::string::npos);
     EXPECT_NE(messageOf(folder.write("a.stl", "solid")).find("accepted: .wo3"), std::string::npos);
     std::filesystem::create_directory(folder.path("folder.ply"));

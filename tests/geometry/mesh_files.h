@@ -11,19 +11,6 @@
 
 namespace tungsten::test {
 
-class MeshFolder {
-  public:
-    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        const auto path = folder_.path() / name;
-        std::ofstream(path, std::ios::binary) << bytes;
-        return path;
-    }
-    [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
-
-  private:
-    TemporaryFolder folder_;
-};
-
 template <typename Value>
 void append(std::string& out, Value value, bool bigEndian = false) {
     char raw[sizeof(Value)];

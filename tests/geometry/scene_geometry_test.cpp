@@ -1,5 +1,7 @@
 #include "tungsten/geometry/SceneGeometry.h"
 
+#include "support/Turned.h"
+
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"
 
@@ -7,6 +9,8 @@
 
 namespace tungsten {
 namespace {
+
+using test::turned;
 
 /// Shapes that stay put, and their Embree scene.
 struct TestScene {
@@ -21,14 +25,6 @@ struct TestScene {
         return result;
     }
 };
-
-Transform turned(const Vec3f& degrees, const Vec3f& scale, const Vec3f& position) {
-    TransformRecipe recipe;
-    recipe.rotationDegrees = degrees;
-    recipe.scale = scale;
-    recipe.position = position;
-    return composeTransform(recipe);
-}
 
 void expectNear(const Vec3f& found, const Vec3f& expected, float tolerance) {
     EXPECT_LT((found - expected).length(), tolerance) << "found " << found << ", expected " << expected;

@@ -1,5 +1,7 @@
 #include "tungsten/geometry/Shape.h"
 
+#include "support/Turned.h"
+
 #include "tungsten/core/Random.h"
 
 #include <boost/math/special_functions/gamma.hpp>
@@ -10,13 +12,7 @@
 namespace tungsten {
 namespace {
 
-Transform turned(const Vec3f& degrees, const Vec3f& scale, const Vec3f& position) {
-    TransformRecipe recipe;
-    recipe.rotationDegrees = degrees;
-    recipe.scale = scale;
-    recipe.position = position;
-    return composeTransform(recipe);
-}
+using test::turned;
 
 /// Probability of a chi-square at least this large when the counts follow `expected` (which sums to the same total).
 double chiSquarePValue(const std::vector<double>& counts, const std::vector<double>& expected) {

@@ -2,6 +2,8 @@
 
 #include "photon/BeamGather.h"
 
+#include "support/FogScene.h"
+
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"
 
@@ -23,16 +25,6 @@ std::vector<PhotonBeam> randomBeams(size_t count, float longest) {
     std::vector<PhotonBeam> beams;
     for (size_t i = 0; i < count; ++i) beams.push_back(randomBeam(sampler, longest));
     return beams;
-}
-
-Scene fogScene() {
-    Scene scene;
-    Medium fog;
-    fog.sigmaA = Rgb(0.2f);
-    fog.sigmaS = Rgb(0.5f, 1.0f, 2.0f);
-    fog.phase.model = HenyeyGreenstein{0.4f};
-    scene.media.push_back(fog);
-    return scene;
 }
 
 /// (4) by solving for the two distances directly, in double.
@@ -59,7 +51,7 @@ TEST(ClosestApproach, MatchesTheVerifiedVector) {
 }
 
 TEST(BeamGather, EvaluatesEveryBeamOnTheRayOnce) {
-    const Scene scene = fogScene();
+    const Scene scene = test::fogScene();
     constexpr float Radius = 0.03f;
     // Up to 100 radii long, so that most are cut in pieces.
     const std::vector<PhotonBeam> beams = randomBeams(3000, 3.0f);
@@ -103,7 +95,7 @@ TEST(BeamGather, EvaluatesEveryBeamOnTheRayOnce) {
 }
 
 TEST(BeamGather, ParallelBeamsStayFinite) {
-    const Scene scene = fogScene();
+    const Scene scene = test::fogScene();
     const Vec3f along(0, 0, 1);
     std::vector<PhotonBeam> beams;
     for (const float tilt : {0.0f, 1e-7f, 1e-5f, 9e-5f, 2e-4f, 1e-3f, 1e-2f})
@@ -120,7 +112,7 @@ TEST(BeamGather, ParallelBeamsStayFinite) {
 }
 
 TEST(BeamGather, OnlyItsMediumItsOrdersAndItsFrames) {
-    Scene scene = fogScene();
+    Scene scene = test::fogScene();
     scene.media.push_back(scene.media[0]);
     scene.transport.minBounces = 3;
     scene.transport.maxBounces = 5;
@@ -161,7 +153,7 @@ class FlightParts : public testing::TestWithParam<PartCase> {};
 
 TEST_P(FlightParts, AreWhereDepositsCount) {
     const PartCase& c = GetParam();
-    Scene scene = fogScene();
+    Scene scene = test::fogScene();
     scene.media[0].speedOfLight = c.flightSpeed;
     scene.transport.gate = {false, false, 4.0, 0.5, 2};
     scene.transport.cameraUnwarped = c.unwarped;

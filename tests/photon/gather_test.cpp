@@ -3,6 +3,8 @@
 #include "photon/NearestPhotons.h"
 #include "photon/PointGather.h"
 
+#include "support/FogScene.h"
+
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"
 
@@ -23,16 +25,6 @@ PhotonStore randomStore(size_t count) {
     store.paths = count;
     for (size_t i = 0; i < count; ++i) store.photons.push_back(randomPhoton(sampler));
     return store;
-}
-
-Scene fogScene() {
-    Scene scene;
-    Medium fog;
-    fog.sigmaA = Rgb(0.2f);
-    fog.sigmaS = Rgb(0.5f, 1.0f, 2.0f);
-    fog.phase.model = HenyeyGreenstein{0.4f};
-    scene.media.push_back(fog);
-    return scene;
 }
 
 Vec3d bruteForce(const Scene& scene, const PhotonStore& store, float radius, const CameraSegment& segment,
@@ -63,7 +55,7 @@ TEST(Biweight, IntegratesToOneOverItsDisc) {
 }
 
 TEST(PointGather, LosesNoPhotonNotEvenAtTheOrigin) {
-    const Scene scene = fogScene();
+    const Scene scene = test::fogScene();
     const PhotonStore store = randomStore(20000);
     constexpr float Radius = 0.05f;
     const PointGather gather(scene, scene.transport.gate, store, {Radius});

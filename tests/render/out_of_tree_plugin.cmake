@@ -1,14 +1,7 @@
 # Installs the host to a temporary folder, builds the example plugin against it, lists it and renders with it.
 #   cmake -DHOST_BUILD=... -DEXAMPLE=... -DSCENE=... -DWORK=... -P out_of_tree_plugin.cmake
 
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT code EQUAL 0)
-    list(JOIN ARGN " " command)
-    message(FATAL_ERROR "failed (${code}): ${command}\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/../support/run.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${HOST_BUILD} --prefix ${WORK}/host)

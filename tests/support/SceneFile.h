@@ -29,14 +29,27 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-class SceneFile {
+/// Files written byte by byte, in a folder of their own.
+class FileFolder {
   public:
-    explicit SceneFile(const std::string& json) { write(json); }
-    void write(const std::string& json) const { std::ofstream(path(), std::ios::binary) << json; }
-    [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "scene.json"; }
+    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(path(name), std::ios::binary) << bytes;
+        return path(name);
+    }
+    [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
 
   private:
     TemporaryFolder folder_;
+};
+
+class SceneFile {
+  public:
+    explicit SceneFile(const std::string& json) { write(json); }
+    void write(const std::string& json) const { folder_.write("scene.json", json); }
+    [[nodiscard]] std::filesystem::path path() const { return folder_.path("scene.json"); }
+
+  private:
+    FileFolder folder_;
 };
 
 } // namespace tungsten::test

@@ -1,9 +1,8 @@
 // Damaged image files: each loads or is an InputError; nothing crashes, hangs or allocates absurd sizes.
 
 #include "image_files.h"
+#include "support/Fuzz.h"
 #include "support/LargestAllocation.h"
-#include "support/Mutations.h"
-#include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/texture/Texture.h"
 
@@ -22,16 +21,13 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <chrono>
 #include <iterator>
 
 namespace tungsten {
 namespace {
 
-using test::ImageFolder;
+using test::FileFolder;
 using test::Texel;
-
-constexpr unsigned MutationsPerFile = 300;
 
 long peakKilobytes() {
     rusage usage{};
@@ -73,27 +69,12 @@ std::string gif() {
     return {reinterpret_cast<const char*>(bytes), sizeof(bytes)};
 }
 
-int fuzz(const ImageFolder& folder, const std::string& name, const std::string& original) {
-    useBitmap(loadBitmap(folder.write(name, original)));
-    int accepted = 0;
-    for (unsigned i = 0; i < MutationsPerFile; ++i) {
-        const auto file = folder.write(name, test::mutate(original, i));
-        const auto start = std::chrono::steady_clock::now();
-        try {
-            useBitmap(loadBitmap(file));
-            ++accepted;
-        } catch (const InputError& error) {
-            EXPECT_EQ(error.problems().front().file, file.string());
-        } catch (const std::exception& error) {
-            ADD_FAILURE() << name << ", mutation " << i << ": " << error.what();
-        }
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << name << ", mutation " << i;
-    }
-    return accepted;
+int fuzz(const FileFolder& folder, const std::string& name, const std::string& original) {
+    return test::fuzz(folder, name, original, [](const auto& file) { useBitmap(loadBitmap(file)); });
 }
 
 TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
-    const ImageFolder folder;
+    const FileFolder folder;
     std::vector<Texel> texels;
     std::vector<float> values;
     Image image(16, 8);
@@ -118,7 +99,7 @@ TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
     accepted += fuzz(folder, "a.bmp", bmp(16, 8, texels));
     accepted += fuzz(folder, "a.gif", gif());
     EXPECT_GT(accepted, 50);
-    EXPECT_LT(accepted, int(10 * MutationsPerFile) - 500);
+    EXPECT_LT(accepted, int(10 * test::MutationsPerFile) - 500);
     EXPECT_LT(test::largestAllocation, size_t(1) << 28); // bytes
 #ifndef __SANITIZE_ADDRESS__
     EXPECT_LT(peakKilobytes(), 1L << 20);

@@ -15,20 +15,6 @@ namespace tungsten::test {
 /// One 8-bit texel.
 using Texel = std::array<uint8_t, 4>;
 
-/// A scratch folder and the files in it.
-class ImageFolder {
-  public:
-    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        const auto path = folder_.path() / name;
-        std::ofstream(path, std::ios::binary) << bytes;
-        return path;
-    }
-    [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
-
-  private:
-    TemporaryFolder folder_;
-};
-
 inline void append16(std::string& out, int value) {
     out += char(value & 255);
     out += char(value >> 8);

@@ -9,7 +9,7 @@
 namespace tungsten {
 namespace {
 
-using test::ImageFolder;
+using test::FileFolder;
 using test::Texel;
 
 /// 2 x 2: red, green over blue, a grey with alpha.
@@ -19,7 +19,7 @@ void expectRgb(const Rgb& found, const Rgb& expected, float tolerance = 1e-6f) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << "channel " << c;
 }
 
-std::shared_ptr<Bitmap> loadCorners(const ImageFolder& folder, bool interpolate) {
+std::shared_ptr<Bitmap> loadCorners(const FileFolder& folder, bool interpolate) {
     auto bitmap = loadBitmap(folder.write("corners.tga", test::tga(2, 2, Corners, false)));
     bitmap->interpolate = interpolate;
     return bitmap;
@@ -27,7 +27,7 @@ std::shared_ptr<Bitmap> loadCorners(const ImageFolder& folder, bool interpolate)
 
 TEST(Bitmap, GammaIsRequantisedToEightBitsByTruncation) {
     // Expected values from an independent evaluation of floor(255 (i / 255)^2.2).
-    const ImageFolder folder;
+    const FileFolder folder;
     std::vector<Texel> ramp;
     for (int i = 0; i < 256; ++i) ramp.push_back({uint8_t(i), uint8_t(i), uint8_t(i), 255});
     const auto bitmap = loadBitmap(folder.write("ramp.tga", test::tga(256, 1, ramp, false)));
@@ -47,7 +47,7 @@ TEST(Bitmap, GammaIsRequantisedToEightBitsByTruncation) {
 }
 
 TEST(Bitmap, VOneIsTheTopAndUZeroTheLeft) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadCorners(folder, false);
     expectRgb(bitmap->rgb({0.25f, 0.75f}), {1, 0, 0});
     expectRgb(bitmap->rgb({0.75f, 0.75f}), {0, 1, 0});
@@ -55,13 +55,13 @@ TEST(Bitmap, VOneIsTheTopAndUZeroTheLeft) {
 }
 
 TEST(Bitmap, ScalarIsTheIntegerMean) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadCorners(folder, false);
     EXPECT_FLOAT_EQ(bitmap->scalar({0.75f, 0.25f}), 150.0f / 255.0f); // (100 + 150 + 201) / 3 = 150.33
 }
 
 TEST(Bitmap, BilinearWithCentresAtHalfIntegers) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadCorners(folder, true);
     expectRgb(bitmap->rgb({0.25f, 0.75f}), {1, 0, 0}); // a centre
     expectRgb(bitmap->rgb({0.5f, 0.75f}), {0.5f, 0.5f, 0});
@@ -70,7 +70,7 @@ TEST(Bitmap, BilinearWithCentresAtHalfIntegers) {
 }
 
 TEST(Bitmap, RepeatsOrClampsAtItsEdges) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadCorners(folder, true);
     expectRgb(bitmap->rgb({0.0f, 0.75f}), {0.5f, 0.5f, 0}); // half of the texel across the edge
     expectRgb(bitmap->rgb({1.25f, -0.25f}), {1, 0, 0});
@@ -88,7 +88,7 @@ TEST(Bitmap, RepeatsOrClampsAtItsEdges) {
 }
 
 TEST(Bitmap, ScaleActsOnlyWithInterpolation) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadCorners(folder, true);
     bitmap->scale = 3.0f;
     expectRgb(bitmap->rgb({0.25f, 0.75f}), {3, 0, 0});
@@ -99,7 +99,7 @@ TEST(Bitmap, ScaleActsOnlyWithInterpolation) {
 }
 
 TEST(Bitmap, AutoAlphaFollowsTheReportedChannels) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const Vec2f greenTexel(0.75f, 0.75f);
     const auto read = [&](const std::string& name, const std::string& bytes) {
         auto bitmap = loadBitmap(folder.write(name, bytes));
@@ -113,7 +113,7 @@ TEST(Bitmap, AutoAlphaFollowsTheReportedChannels) {
 }
 
 TEST(Bitmap, EveryFormatShowsTheSameTexels) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const std::vector<float> values{1, 0, 0, 0, 1, 0, 0, 0, 1, 0.25f, 0.5f, 2.0f};
     Image image(2, 2);
     image.pixels = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.25f, 0.5f, 2.0f}};
@@ -133,7 +133,7 @@ TEST(Bitmap, EveryFormatShowsTheSameTexels) {
 }
 
 TEST(Bitmap, RunLengthTga) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadBitmap(folder.write("rle.tga", test::tgaRle(7, {{255, 0, 0, 255}, {0, 0, 255, 255}})));
     EXPECT_EQ(bitmap->width, 7);
     EXPECT_EQ(bitmap->height, 2);
@@ -144,20 +144,20 @@ TEST(Bitmap, RunLengthTga) {
 }
 
 TEST(Bitmap, NonFiniteFloatsAreReplaced) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto bitmap = loadBitmap(folder.write("a.pfm", test::pfm(1, 1, {nan, Infinity, -Infinity})));
     expectRgb(bitmap->rgb({0.5f, 0.5f}), {0.0f, 65504.0f, -65504.0f});
 }
 
 TEST(Bitmap, AverageIsTheMeanOfTheTexels) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap = loadBitmap(folder.write("a.pfm", test::pfm(2, 1, {1, 2, 3, 3, 2, 1})));
     expectRgb(bitmap->average(), {2, 2, 2});
 }
 
 TEST(Bitmap, BadFilesAreInputErrorsThatNameThem) {
-    const ImageFolder folder;
+    const FileFolder folder;
     std::string absurd = test::tga(2, 2, Corners, false);
     absurd[12] = absurd[13] = absurd[14] = absurd[15] = char(0xff);
     const std::string good = test::tga(2, 2, Corners, false);
@@ -192,7 +192,7 @@ TEST(Bitmap, BadFilesAreInputErrorsThatNameThem) {
 }
 
 TEST(Bitmap, GitLfsPointerBecomesTheFormatsPlaceholder) {
-    const ImageFolder folder;
+    const FileFolder folder;
     const auto bitmap =
         loadBitmap(folder.write("a.tga", "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n"));
     EXPECT_TRUE(bitmap->placeholder);
@@ -242,7 +242,7 @@ TEST(Texture, ConstantsAndScaling) {
     EXPECT_TRUE(constant.isConstant());
     EXPECT_FLOAT_EQ(constant.scalar({0, 0}), 0.5f);
     expectRgb(constant.scaled({2, 1, 0}).rgb({0, 0}), {0.4f, 0.4f, 0});
-    const ImageFolder folder;
+    const FileFolder folder;
     const Texture bitmap(std::shared_ptr<const Bitmap>(loadCorners(folder, true)));
     expectRgb(bitmap.scaled({2, 3, 4}).rgb({0.25f, 0.25f}), {0, 0, 4});
     EXPECT_FALSE(bitmap.scaled(Rgb(2.0f)).isConstant());
@@ -250,7 +250,7 @@ TEST(Texture, ConstantsAndScaling) {
 
 TEST(Texture, BumpDerivativesAreCentralTexelDifferences) {
     // A height linear in the texels: 10 levels a column, 20 a row (downward); differences span two texels.
-    const ImageFolder folder;
+    const FileFolder folder;
     std::vector<Texel> texels;
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) {
