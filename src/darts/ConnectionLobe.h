@@ -4,6 +4,8 @@
 
 #include "darts/FastMath.h"
 
+#include <algorithm>
+
 namespace darts {
 
 inline constexpr double TwoPi = 6.283185307179586476925;
@@ -19,15 +21,16 @@ class ConnectionLobe {
     /// Photon pass: proportional to 1 / (delta + C h); the image's second moment goes with 1 / (delta + C h)^2.
     static ConnectionLobe photon(Real C, Real delta) { return ConnectionLobe(delta / C); }
 
-    /// u in [0, 1) -> h in [0, 2].
-    [[nodiscard]] Real sample(Real u) const { return std::fmin(kappa_ * fastExpm1(u * range_), Real(2)); }
+    /// u in [0, 1) -> h in [0, 2]. Never NaN (kappa has bounds), so std::min serves: fmin would be a call.
+    [[nodiscard]] Real sample(Real u) const { return std::min(kappa_ * fastExpm1(u * range_), Real(2)); }
     /// Density per solid angle.
     [[nodiscard]] Real pdf(Real h) const { return 1 / (Real(TwoPi) * (kappa_ + h) * range_); }
 
   private:
-    /// Bounds: a target at the vertex (C = 0) is the uniform sphere, the needle (delta = 0) stays a density.
+    /// Bounds: a target at the vertex (C = 0, kappa infinite or NaN) is the uniform sphere, the needle (delta = 0)
+    /// stays a density.
     explicit ConnectionLobe(Real kappa)
-        : kappa_(kappa < Real(1e30) ? std::fmax(kappa, Real(1e-30)) : Real(1e30)), range_(fastLog1p(2 / kappa_)) {}
+        : kappa_(kappa < Real(1e30) ? std::max(kappa, Real(1e-30)) : Real(1e30)), range_(fastLog1p(2 / kappa_)) {}
 
     Real kappa_, range_;
 };

@@ -4,6 +4,8 @@
 #include "darts/Ellipse.h"
 #include "darts/FastMath.h"
 
+#include <algorithm>
+
 namespace darts {
 
 /// Density of the connection length on [low, low + width): exponential of rate sigmaT, truncated; uniform for sigmaT =
@@ -20,7 +22,8 @@ struct ConnectionLength {
         const Real depth = sigmaT * width;
         if (depth < Shallow) return {u * width, width};
         const Real all = -fastExpm1(-depth), gone = u * all;
-        return {std::fmin(-fastLog1p(-gone) / sigmaT, width), all / (sigmaT * (1 - gone))};
+        // gone < 1 and sigmaT > 0: never NaN, so std::min serves; fmin would be a call.
+        return {std::min(-fastLog1p(-gone) / sigmaT, width), all / (sigmaT * (1 - gone))};
     }
     /// Density per length of S: sigmaT e^{-sigmaT offset} / (1 - e^{-sigmaT width}) at offset = S - low.
     [[nodiscard]] Real pdf(Real offset) const {
