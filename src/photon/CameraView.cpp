@@ -3,14 +3,14 @@
 namespace tungsten::photon {
 
 CameraView::CameraView(const Camera& camera) : position_(camera.position()), frame_(camera.toWorld.rotation()) {
-    float fov = 60.0f;
-    if (const auto* pinhole = std::get_if<Pinhole>(&camera.model)) fov = pinhole->fovDegrees;
+    FieldOfView fov;
+    if (const auto* pinhole = std::get_if<Pinhole>(&camera.model)) fov = *pinhole;
     if (const auto* lens = std::get_if<ThinLens>(&camera.model)) {
-        fov = lens->fovDegrees;
+        fov = *lens;
         aperture_ = lens->apertureRadius * (1.0f + 1.0f / std::max(lens->focusDistance, 1e-6f));
     }
     const float width = float(camera.resolution.x), height = float(camera.resolution.y);
-    halfWidth_ = std::tan(0.5f * fov * Pi / 180.0f);
+    halfWidth_ = 1.0f / fov.planeDistance;
     halfHeight_ = halfWidth_ * height / width;
     // Pixel centres lie inside the image; filters reach a little beyond, the thin lens is off by half a pixel.
     const float pixel = 2.0f * halfWidth_ / width, reach = (camera.filter.halfWidth() + 1.0f) * pixel;

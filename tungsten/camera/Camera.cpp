@@ -6,11 +6,6 @@ namespace tungsten {
 
 namespace {
 
-/// Distance of the image plane that spans [-1, 1] horizontally.
-float planeDistance(float fovDegrees) {
-    return 1.0f / std::tan(0.5f * fovDegrees * Pi / 180.0f);
-}
-
 /// Local, unnormalised direction through a raster position.
 Vec3f rasterDirection(const Vec2f& p, const Vec2i& resolution, float distance) {
     const float w = float(resolution.x), h = float(resolution.y);
@@ -30,7 +25,7 @@ Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& u
     const Vec2f corner(float(pixel.x) + offset.x, float(pixel.y) + offset.y);
     const Vec2f centre(corner.x + 0.5f, corner.y + 0.5f);
     if (const auto* pinhole = std::get_if<Pinhole>(&model)) {
-        const Vec3f local = rasterDirection(centre, resolution, planeDistance(pinhole->fovDegrees));
+        const Vec3f local = rasterDirection(centre, resolution, pinhole->planeDistance);
         return {position(), toWorld.vector(local.normalized()).normalized()};
     }
     if (const auto* orthographic = std::get_if<Orthographic>(&model)) {
@@ -41,7 +36,7 @@ Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& u
     }
     // The format's thin lens leaves out the half pixel when it generates rays.
     const auto& lens = std::get<ThinLens>(model);
-    const Vec3f through = rasterDirection(corner, resolution, planeDistance(lens.fovDegrees));
+    const Vec3f through = rasterDirection(corner, resolution, lens.planeDistance);
     const Vec3f focus = through * (lens.focusDistance / through.z);
     const Vec2f disk = warp::squareToDisk(uLens);
     const Vec3f start(disk.x * lens.apertureRadius, disk.y * lens.apertureRadius, 0.0f);
@@ -58,8 +53,8 @@ std::optional<Vec2f> Camera::project(const Vec3f& point) const {
         return Vec2f(local.x / step + 0.5f * w, 0.5f * h - local.y / step);
     }
     const auto* pinhole = std::get_if<Pinhole>(&model);
-    const float fov = pinhole ? pinhole->fovDegrees : std::get<ThinLens>(model).fovDegrees;
-    const float scale = planeDistance(fov) / local.z;
+    const float distance = pinhole ? pinhole->planeDistance : std::get<ThinLens>(model).planeDistance;
+    const float scale = distance / local.z;
     return Vec2f(0.5f * w * (1.0f + local.x * scale), 0.5f * h - 0.5f * w * local.y * scale);
 }
 

@@ -4,16 +4,21 @@
 #include "tungsten/camera/ReconstructionFilter.h"
 #include "tungsten/core/Transform.h"
 
+#include <cmath>
 #include <optional>
 #include <variant>
 
 namespace tungsten {
 
-struct Pinhole {
-    float fovDegrees = 60.0f; ///< horizontal
+/// Horizontal; both are set by the constructor alone.
+struct FieldOfView {
+    float fovDegrees;
+    float planeDistance; ///< of the image plane that spans [-1, 1]: 1 / tan(fov / 2)
+
+    FieldOfView(float degrees = 60.0f) : fovDegrees(degrees), planeDistance(1.0f / std::tan(degrees * Pi / 360.0f)) {}
 };
-struct ThinLens {
-    float fovDegrees = 60.0f;
+struct Pinhole : FieldOfView {};
+struct ThinLens : FieldOfView {
     float focusDistance = 1.0f; ///< along the axis
     float apertureRadius = 0.001f;
     float catEye = 0.0f;

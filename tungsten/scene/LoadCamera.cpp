@@ -6,9 +6,12 @@ namespace {
 
 constexpr double LargestSide = 65536;
 
+FieldOfView fieldOfView(const ObjectReader& reader) {
+    return {float(reader.number("fov", 60.0, {1e-3, 179.0}))};
+}
+
 ThinLens readThinLens(const ObjectReader& reader) {
-    ThinLens lens;
-    lens.fovDegrees = float(reader.number("fov", 60.0, {1e-3, 179.0}));
+    ThinLens lens{fieldOfView(reader)};
     lens.focusDistance = float(reader.number("focus_distance", 1.0, Range::positive()));
     lens.apertureRadius = float(reader.number("aperture_size", 0.001, Range::nonNegative()));
     lens.catEye = float(reader.number("cateye", 0.0, Range::nonNegative()));
@@ -43,7 +46,7 @@ void readModel(const ObjectReader& root, const ObjectReader& reader, Camera& cam
         camera.model = Orthographic{float(reader.number("orthographic_size", 1.0, Range::positive()))};
         reader.accept({"fov"});
     } else {
-        camera.model = Pinhole{float(reader.number("fov", 60.0, {1e-3, 179.0}))};
+        camera.model = Pinhole{fieldOfView(reader)};
         reader.accept({"orthographic_size"});
     }
 }
