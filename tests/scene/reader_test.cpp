@@ -128,13 +128,19 @@ TEST(Override, SetsByIndexByNameAndNewFields) {
 TEST(Override, PathsThatLeadNowhereNameTheNearest) {
     const JsonFile file(R"({"media": [{"name": "gas", "sigma_s": 1}], "integrator": {}})");
     const auto document = parseJsonFile(file.path());
-    for (const char* bad :
-         {"media.gaz.sigma_s=1", "media.7.sigma_s=1", "nothing", "=3", "integrator.a.b=2", "media.0.sigma_s.x=1", ""})
+    for (const char* bad : {"media.gaz.sigma_s=1", "media.7.sigma_s=1", "nothing", "=3", "integrator.a.b=2",
+                            "media.0.sigma_s.x=1", "render.spp=4", "spp=4", ""})
         EXPECT_THROW(applyOverride(*document, bad), UsageError) << bad;
     try {
         applyOverride(*document, "media.gaz.sigma_s=1");
     } catch (const UsageError& error) {
         EXPECT_NE(std::string(error.what()).find("did you mean 'gas'"), std::string::npos) << error.what();
+    }
+    try { // a block that the file leaves out is known all the same
+        applyOverride(*document, "rendrer.spp=4");
+        FAIL() << "accepted";
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("did you mean 'renderer'"), std::string::npos) << error.what();
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <rapidjson/error/en.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -34,9 +35,14 @@ std::vector<std::string> memberNames(const rapidjson::Value& value) {
     return names;
 }
 
-[[noreturn]] void failOverride(const std::string& assignment, const std::string& step, const rapidjson::Value& at) {
+/// What a scene may consist of, whether or not the file has it.
+const std::vector<std::string> Blocks{"media", "bsdfs", "primitives", "camera", "integrator", "renderer"};
+
+[[noreturn]] void failOverride(const std::string& assignment, const std::string& step, const rapidjson::Value& at,
+                               std::vector<std::string> names) {
     std::string message = "--set " + assignment + ": nothing is called '" + step + "' there";
-    const std::vector<std::string> names = memberNames(at);
+    const std::vector<std::string> members = memberNames(at);
+    names.insert(names.end(), members.begin(), members.end());
     const std::string near = nearestName(step, names);
     if (!near.empty()) message += "; did you mean '" + near + "'?";
     if (at.IsArray()) message += " (the array has " + std::to_string(at.Size()) + " elements, from index 0)";
@@ -111,7 +117,7 @@ void applyOverride(rapidjson::Document& document, const std::string& assignment)
         if (at->IsArray()) {
             std::string consumed;
             rapidjson::Value* next = namedWithDots(*at, rest, consumed);
-            if (!next) failOverride(assignment, rest.substr(0, rest.find('.')), *at);
+            if (!next) failOverride(assignment, rest.substr(0, rest.find('.')), *at, {});
             at = next;
             if (consumed.size() == rest.size()) break;
             rest.erase(0, consumed.size() + 1);
@@ -119,11 +125,12 @@ void applyOverride(rapidjson::Document& document, const std::string& assignment)
         }
         const size_t dot = rest.find('.');
         const std::string step = rest.substr(0, dot);
-        if (!at->IsObject() || step.empty()) failOverride(assignment, step, *at);
+        if (!at->IsObject() || step.empty()) failOverride(assignment, step, *at, {});
         if (!at->HasMember(step.c_str())) {
-            // Only the last step may be new: a field the scene leaves at its default. A block (top level) may be new
-            // too.
-            if (dot != std::string::npos && at != &document) failOverride(assignment, step, *at);
+            // A whole block may be new, and of other paths the last step: a field the scene leaves at its default.
+            if (at == &document && std::find(Blocks.begin(), Blocks.end(), step) == Blocks.end())
+                failOverride(assignment, step, *at, Blocks);
+            if (dot != std::string::npos && at != &document) failOverride(assignment, step, *at, {});
             rapidjson::Value name(step.c_str(), rapidjson::SizeType(step.size()), allocator);
             at->AddMember(name, rapidjson::Value(rapidjson::kObjectType), allocator);
         }
