@@ -3,6 +3,8 @@
 #include "render/fake_integrator.h"
 
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/film/ToneMap.h"
+#include "tungsten/texture/Texture.h"
 
 #include <gtest/gtest.h>
 
@@ -72,28 +74,28 @@ TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {
 
 TEST(Outputs, UnknownExtensionsNameTheAcceptedOnes) {
     const test::TemporaryFolder folder;
-    EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
+    EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
     EXPECT_NE(
-        errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}}).find("accepted: .exr, .pfm or .npy"),
+        errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}, {}}).find("accepted: .exr, .pfm or .npy"),
         std::string::npos);
-    EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}}), "");
+    EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}, {}}), "");
 }
 
 TEST(Outputs, MissingFoldersAreCreatedAndImpossibleOnesReported) {
     const test::TemporaryFolder folder;
-    EXPECT_EQ(errorOf({folder.path() / "x" / "y" / "a.png", {}, {}, {}, {}}), "");
+    EXPECT_EQ(errorOf({folder.path() / "x" / "y" / "a.png", {}, {}, {}, {}, {}}), "");
     EXPECT_TRUE(fs::is_directory(folder.path() / "x" / "y"));
     std::ofstream(folder.path() / "file") << "not a folder";
-    const std::string text = errorOf({folder.path() / "file" / "a.png", {}, {}, {}, {}});
+    const std::string text = errorOf({folder.path() / "file" / "a.png", {}, {}, {}, {}, {}});
     EXPECT_NE(text.find("cannot be created or written to"), std::string::npos) << text;
     EXPECT_NE(text.find("-d DIRECTORY"), std::string::npos) << text;
-    EXPECT_NE(errorOf({folder.path() / "x", {}, {}, {}, {}}), "") << "no extension";
+    EXPECT_NE(errorOf({folder.path() / "x", {}, {}, {}, {}, {}}), "") << "no extension";
 }
 
 TEST(Outputs, AFolderInTheWayIsReported) {
     const test::TemporaryFolder folder;
     fs::create_directories(folder.path() / "a.png");
-    EXPECT_NE(errorOf({folder.path() / "a.png", {}, {}, {}, {}}).find("a folder has this name"), std::string::npos);
+    EXPECT_NE(errorOf({folder.path() / "a.png", {}, {}, {}, {}, {}}).find("a folder has this name"), std::string::npos);
 }
 
 TEST(Outputs, ASteadyStateExrHoldsTheImageAndItsStandardError) {
@@ -138,6 +140,20 @@ TEST(Outputs, TransientsBuffersNameTheSeries) {
     EXPECT_EQ(readExr(session.folder() / "t" / "hdr_2.exr").pixels, result.film.mean(2).pixels);
     EXPECT_EQ(readExr(session.folder() / "t" / "hdr_2.exr", 0, "stderr.").pixels, result.film.standardError(2).pixels);
     EXPECT_FALSE(session.has("TungstenRender_0.png"));
+}
+
+TEST(Outputs, ColorBuffersAreFurtherFilesOfTheImageWithoutItsToneMap) {
+    SessionFixture session(tinyScene("", R"("spp": 4, "output_buffers": [{"type": "color",
+        "ldr_output_file": "c/linear.png", "hdr_output_file": "c/color.pfm", "sample_variance": true}])"));
+    const SessionResult& result = session.run();
+    EXPECT_EQ(readPfm(session.folder() / "c/color.pfm").pixels, result.film.mean(0).pixels);
+    const auto linear = loadBitmap(session.folder() / "c/linear.png"),
+               toned = loadBitmap(session.folder() / "TungstenRender.png");
+    const Image image = result.film.mean(0);
+    for (size_t i = 0; i < image.pixels.size(); ++i) EXPECT_EQ(linear->ldr[4 * i], toLdr(image.pixels[i])[0]) << i;
+    EXPECT_NE(linear->ldr, toned->ldr);
+    ASSERT_EQ(session.loaded.diagnostics->warnings.size(), 1u);
+    EXPECT_NE(session.loaded.diagnostics->warnings[0].path.find("sample_variance"), std::string::npos);
 }
 
 TEST(Outputs, IntegralsAreMeansTimesTheFrameWidth) {

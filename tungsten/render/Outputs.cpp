@@ -53,7 +53,8 @@ class ImageWriter {
                      : 1.0f) {}
 
     /// The image of the whole gate; formats that hold several frames get all of them.
-    void whole(const fs::path& file) {
+    void whole(const fs::path& file) { whole(file, scene_.toneMap); }
+    void whole(const fs::path& file, ToneMap toneMap) {
         attempt(file, [&] {
             const std::string extension = extensionOf(file);
             if (extension == ".exr")
@@ -63,7 +64,7 @@ class ImageWriter {
             else if (extension == ".pfm")
                 writePfm(file, wholeImage());
             else
-                writePng(file, wholeImage(), scene_.toneMap);
+                writePng(file, wholeImage(), toneMap);
         });
     }
     /// One file per frame.
@@ -170,8 +171,11 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
     if (outputs.ldr.empty()) outputs.ldr = base / "TungstenRender.png";
     if (!renderer.overwriteOutputFiles && !overrides.ldr) outputs.ldr = freeName(outputs.ldr);
     if (!renderer.overwriteOutputFiles && !overrides.hdr && !outputs.hdr.empty()) outputs.hdr = freeName(outputs.hdr);
-    for (const TransientsBuffer& buffer : renderer.transients)
-        outputs.series.push_back({rebase(buffer.ldrFile, base).string(), rebase(buffer.hdrFile, base).string()});
+    const auto resolved = [&](const OutputBuffer& buffer) {
+        return OutputBuffer{rebase(buffer.ldrFile, base).string(), rebase(buffer.hdrFile, base).string()};
+    };
+    for (const OutputBuffer& buffer : renderer.colors) outputs.colors.push_back(resolved(buffer));
+    for (const OutputBuffer& buffer : renderer.transients) outputs.series.push_back(resolved(buffer));
     return outputs;
 }
 
@@ -180,11 +184,13 @@ void checkOutputs(const OutputFiles& outputs, bool withState) {
     checkExtension(outputs.hdr, HdrExtensions);
     std::vector<fs::path> files{outputs.ldr, outputs.hdr, outputs.statistics};
     if (withState) files.push_back(outputs.state);
-    for (const TransientsBuffer& buffer : outputs.series) {
+    const auto add = [&files](const OutputBuffer& buffer, const std::vector<std::string>& hdrExtensions) {
         checkExtension(buffer.ldrFile, {".png"});
-        checkExtension(buffer.hdrFile, {".exr", ".pfm"});
+        checkExtension(buffer.hdrFile, hdrExtensions);
         files.insert(files.end(), {fs::path(buffer.ldrFile), fs::path(buffer.hdrFile)});
-    }
+    };
+    for (const OutputBuffer& buffer : outputs.colors) add(buffer, HdrExtensions);
+    for (const OutputBuffer& buffer : outputs.series) add(buffer, {".exr", ".pfm"});
     for (const fs::path& file : files)
         if (!file.empty()) checkFolder(file);
 }
@@ -195,14 +201,19 @@ std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const Ou
     writer.whole(withSuffix(outputs.ldr, suffix));
     const fs::path hdr = outputs.hdr.empty() ? fs::path() : withSuffix(outputs.hdr, suffix);
     if (!hdr.empty()) writer.whole(hdr);
-    if (film.frames() <= 1 || !suffix.empty()) return writer.finish();
+    if (!suffix.empty()) return writer.finish();
+    for (const OutputBuffer& buffer : outputs.colors) {
+        if (!buffer.ldrFile.empty()) writer.whole(buffer.ldrFile, ToneMap::Linear);
+        if (!buffer.hdrFile.empty()) writer.whole(buffer.hdrFile);
+    }
+    if (film.frames() <= 1) return writer.finish();
 
     if (!hdr.empty() && extensionOf(hdr) != ".npy") writer.cube(fs::path(hdr).replace_extension(".npy"));
     if (outputs.series.empty()) {
         writer.series(outputs.ldr);
         if (extensionOf(hdr) == ".pfm") writer.series(hdr);
     }
-    for (const TransientsBuffer& buffer : outputs.series) {
+    for (const OutputBuffer& buffer : outputs.series) {
         if (!buffer.ldrFile.empty()) writer.series(buffer.ldrFile);
         if (!buffer.hdrFile.empty()) writer.series(buffer.hdrFile);
     }

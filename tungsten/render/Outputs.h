@@ -12,11 +12,12 @@ namespace tungsten {
 
 /// Where results go; relative paths are relative to the process directory.
 struct OutputFiles {
-    std::filesystem::path ldr;            ///< PNG, always written
-    std::filesystem::path hdr;            ///< .exr, .pfm or .npy; empty: none
-    std::vector<TransientsBuffer> series; ///< per-frame files of sequences (resolved names)
-    std::filesystem::path state;          ///< resume state
-    std::filesystem::path statistics;     ///< JSON; empty: none
+    std::filesystem::path ldr;        ///< PNG, always written
+    std::filesystem::path hdr;        ///< .exr, .pfm or .npy; empty: none
+    std::vector<OutputBuffer> colors; ///< further files of the image, the LDR ones not tone-mapped (resolved names)
+    std::vector<OutputBuffer> series; ///< per-frame files of sequences (resolved names)
+    std::filesystem::path state;      ///< resume state
+    std::filesystem::path statistics; ///< JSON; empty: none
 };
 
 /// What the command line says about files (-d, -o, -e, --stats).

@@ -15,11 +15,15 @@ void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
     static const std::vector<std::string> types{"color", "depth", "normal", "albedo", "visibility", "transients"};
     const std::string type = buffer.choice("type", "color", types);
     if (!buffer.has("type")) buffer.problem("type", "an output buffer needs a type: " + listOf(types));
-    const TransientsBuffer files{buffer.text("ldr_output_file", ""), buffer.text("hdr_output_file", "")};
-    buffer.accept({"two_buffer_variance", "sample_variance"});
+    const OutputBuffer files{buffer.text("ldr_output_file", ""), buffer.text("hdr_output_file", "")};
+    for (const char* variance : {"two_buffer_variance", "sample_variance"})
+        if (buffer.flag(variance, false))
+            buffer.warn(variance, "not produced; the stderr layer of an EXR holds each pixel's standard error");
     if (type == "transients")
         renderer.transients.push_back(files);
-    else if (type != "color")
+    else if (type == "color")
+        renderer.colors.push_back(files);
+    else
         buffer.warn("type", "the " + type + " buffer is not produced");
     buffer.warnAboutUnknown();
 }

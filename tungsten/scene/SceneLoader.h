@@ -11,8 +11,8 @@
 
 namespace tungsten {
 
-/// `output_buffers` entry of type `transients`: the per-frame file series.
-struct TransientsBuffer {
+/// An entry of `output_buffers`.
+struct OutputBuffer {
     std::string ldrFile, hdrFile; ///< empty: not written
 };
 
@@ -26,9 +26,10 @@ struct RendererSettings {
     bool enableResume = false;
     int64_t spp = 32;
     int64_t sppStep = 16;
-    double checkpointSeconds = 0.0; ///< 0: none
-    double timeoutSeconds = 0.0;    ///< 0: none
-    std::vector<TransientsBuffer> transients;
+    double checkpointSeconds = 0.0;       ///< 0: none
+    double timeoutSeconds = 0.0;          ///< 0: none
+    std::vector<OutputBuffer> colors;     ///< further files of the image
+    std::vector<OutputBuffer> transients; ///< per-frame file series
 };
 
 struct LoadOptions {
