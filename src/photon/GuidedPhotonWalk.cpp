@@ -119,9 +119,14 @@ bool GuidedPhotonWalk::look(const darts::Guide& guide) {
     residual_ = guidance_.residual(ray_.origin, time_, gate_);
     looked_ = true;
     connected_ = guide.settings().lengthFirst;
-    if (connected_) connection_ = guide.sampleConnection(residual_, sampler_.next1D(), guidance_.response(time_));
-    // A density of 0: the response is over.
-    return residual_.alive() && (!connected_ || connection_.inversePdf > 0.0f);
+    if (connected_) connection_ = drawConnection(guide, residual_);
+    // A density of 0: the response is over, or the delta gate, but surfaces may still be seen in its kernel.
+    return residual_.alive() && (!connected_ || connection_.inversePdf > 0.0f || guidance_.meetsDeltaGate());
+}
+
+darts::ConnectionSample GuidedPhotonWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
+    if (guidance_.meetsDeltaGate() && context_.storeVolume) return guidance_.onDeltaGate(residual);
+    return guide.sampleConnection(residual, sampler_.next1D(), guidance_.response(time_));
 }
 
 template <typename Scatterer>
@@ -195,7 +200,7 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     if (!connected_) {
         reachable_ = darts::Guide::beforeSurface(residual_, h, surface);
         if (!reachable_.alive()) return;
-        connection_ = guide.sampleConnection(reachable_, sampler_.next1D(), guidance_.response(time_));
+        connection_ = drawConnection(guide, reachable_);
     }
     const auto vertex = guide.controlVertex(residual_, connection_, h, surface);
     if (!vertex) return;

@@ -34,6 +34,8 @@ class GuidedPhotonWalk : private PhotonWalk {
     bool survives(const darts::Guide& guide);
     /// Residual at the ray's origin, and the length of the next connection.
     bool look(const darts::Guide& guide);
+    /// From a vertex with this residual.
+    darts::ConnectionSample drawConnection(const darts::Guide& guide, const darts::Residual& residual);
     /// Draws the direction of the flight ahead; the ray's origin and residual_ are set.
     template <typename Scatterer>
     float redirect(const darts::Guide& guide, const Scatterer& scatterer);

@@ -43,19 +43,32 @@ class PhotonGuidance {
     /// time of arrival. None elsewhere, nor where photons share with control vertices (darts::Guide::pdfControlVertex):
     /// there only the gather weighs.
     [[nodiscard]] darts::ResponseAt response(double elapsed) const {
-        return {drawsByResponse_ ? sensor_.response.get() : nullptr, elapsed, unwarped_ ? 2.0 * speed_ : speed_};
+        return {drawsByResponse_ ? sensor_.response.get() : nullptr, elapsed, lengthPerTime()};
+    }
+    /// Control vertices lie on the delta gate itself, not anywhere in its temporal kernel: where response() would tell
+    /// the time.
+    [[nodiscard]] bool meetsDeltaGate() const { return meetsDeltaGate_; }
+    /// The connection that arrives at the delta gate, to be averaged over the kernel; 1 / density is 0 if there is
+    /// none.
+    [[nodiscard]] darts::ConnectionSample onDeltaGate(const darts::Residual& residual) const {
+        const double kernel = lengthPerTime() * frames_.width;
+        const float excess = residual.excess - float(0.5 * kernel);
+        return excess > 0.0f ? darts::ConnectionSample{excess, float(kernel)}
+                             : darts::ConnectionSample{residual.excess, 0.0f};
     }
     [[nodiscard]] const CameraView& view() const { return view_; }
 
   private:
     PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
+    /// Of connections by time of arrival: without camera segments residual() has twice the length.
+    [[nodiscard]] double lengthPerTime() const { return unwarped_ ? 2.0 * speed_ : speed_; }
 
     std::vector<std::unique_ptr<darts::Guide>> guides_; ///< by medium
     CameraView view_;
     Vec3f camera_;
     double speed_;
     double slack_; ///< of arrival times, from the aperture
-    bool unwarped_, directView_, choosesFrames_, drawsByResponse_;
+    bool unwarped_, directView_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
     Sensor sensor_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;

@@ -50,14 +50,18 @@ struct PhotonIntegrator::StraightStores {
 void PhotonIntegrator::planVolume(EffectPlan& plan) const {
     const bool beams = settings_.primitive == VolumePrimitive::Beams;
     const std::string none = "no medium scatters: no volume photon is stored or gathered";
-    if (!beams)
-        return plan.describe("volume photon points", plan.mediumScattering,
-                             plan.mediumScattering ? "a medium scatters" : none);
-    plan.describe("photon beams", plan.mediumScattering,
-                  plan.mediumScattering ? "a medium scatters, volume_photon_type is beams" : none);
+    plan.describe(beams ? "photon beams" : "volume photon points", plan.mediumScattering,
+                  !plan.mediumScattering ? none
+                  : beams                ? "a medium scatters, volume_photon_type is beams"
+                                         : "a medium scatters");
     const bool delta = scene_->transport.gate.delta;
-    plan.describe("temporal kernel", delta,
-                  delta ? "delta gate: a box about it that narrows with the radius" : "the gate has a width, or none");
+    const auto guidance = beams ? nullptr : PhotonGuidance::make(*scene_, settings_.scheme, plan);
+    plan.describe(
+        "temporal kernel", delta,
+        !delta ? "the gate has a width, or none"
+        : guidance && guidance->meetsDeltaGate()
+            ? "delta gate: a box about it that narrows with the radius; control vertices lie on the gate itself"
+            : "delta gate: a box about it that narrows with the radius");
 }
 
 void PhotonIntegrator::plan(EffectPlan& plan) const {

@@ -30,12 +30,9 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
         block.problem("volume_gather_radius",
                       "a fixed radius (fixed_volume_radius) needs a volume_gather_radius or gather_radius");
     if (!scene.transport.gate.delta) return;
-    if (!beams)
-        block.problem("delta_time_gate", "photon points meet a delta gate with probability zero; give the gate a "
-                                         "width, or gather beams (volume_photon_type)");
     settings.temporalRadius = 0.5 * block.number("transient_time_width", 0.1, Range::nonNegative());
-    if (beams && settings.temporalRadius <= 0.0)
-        block.problem("transient_time_width", "beams see a delta gate through a temporal kernel, which starts with "
+    if (settings.temporalRadius <= 0.0)
+        block.problem("transient_time_width", "photons see a delta gate through a temporal kernel, which starts with "
                                               "this width: it must be above 0");
 }
 

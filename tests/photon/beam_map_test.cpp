@@ -98,7 +98,7 @@ class CornellFog : public testing::Test {
     [[nodiscard]] std::unique_ptr<Rendered> photons(const std::string& primitive, uint32_t passes) const {
         Overrides all = overrides;
         all.push_back("integrator.volume_photon_type=" + primitive);
-        return test::renderPhotonFile(file, {all, passes, 256});
+        return test::renderPhotonFile(file, {all, passes, 64});
     }
     [[nodiscard]] std::unique_ptr<Rendered> paths(uint32_t passes) const {
         return test::renderPathFile(file, {overrides, passes, 4096});
@@ -214,7 +214,7 @@ TEST(BeamMap, WrongSettingsAreExplained) {
     const std::string delta = "integrator.delta_time_gate=true", noWidth = "integrator.transient_time_width=0";
     EXPECT_NO_THROW(renderBeams(test::configurationA(1, false), {{delta}, 1, 1}));
     EXPECT_THROW(renderBeams(test::configurationA(1, false), {{delta, noWidth}, 1, 1}), InputError);
-    EXPECT_THROW(renderPhotons(test::configurationA(1, false), {{delta}, 1, 1}), InputError);
+    EXPECT_THROW(renderPhotons(test::configurationA(1, false), {{delta, noWidth}, 1, 1}), InputError);
     EXPECT_THROW(renderBeams(test::configurationA(1, false), {{"integrator.volume_gather_radius=0"}, 1, 1}),
                  InputError);
     // Without any radius the kernel has no width.

@@ -16,7 +16,8 @@ struct Guiding {
     const char* name;
     Overrides overrides;
 };
-const Guiding Published{"Published", {"integrator.darts=published"}}, Best{"Best", {"integrator.darts=best"}},
+const Guiding Plain{"Plain", {}}, Published{"Published", {"integrator.darts=published"}},
+    Best{"Best", {"integrator.darts=best"}},
     GuidingOnly{"GuidingOnly", {"media.fog.type=guided_homo", "integrator.enable_guiding=true"}},
     EllipticalOnly{"EllipticalOnly", {"integrator.enable_elliptical=true"}},
     FlagsOfThePaper{
@@ -102,6 +103,35 @@ INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
                                          OrderCase{C2, IndirectView}, OrderCase{A2, PublishedIndirectView},
                                          OrderCase{A2, Eda, true}, OrderCase{A2, Ris, true}),
                          caseName);
+
+/// Control vertices lie on the gate; the rest (plain photons, those that share with them) are seen through its kernel.
+INSTANTIATE_TEST_SUITE_P(PointsAtDeltaGates, GuidedOrders,
+                         testing::Values(OrderCase{A1Delta, Best}, OrderCase{A1UnwarpedDelta, Best},
+                                         OrderCase{A2Delta, Best}, OrderCase{A2UnwarpedDelta, Best},
+                                         OrderCase{A3Delta, Best}, OrderCase{C2Delta, Best},
+                                         OrderCase{A1Delta, Published}, OrderCase{A1UnwarpedDelta, Published},
+                                         OrderCase{A2Delta, Published, false, 50},
+                                         OrderCase{A2UnwarpedDelta, Published}, OrderCase{A3Delta, Published},
+                                         OrderCase{A2Delta, IndirectView, false, 60},
+                                         OrderCase{A1UnwarpedDelta, Plain, false, 400}),
+                         caseName);
+
+/// The kernel's width is for what cannot lie on the gate: control vertices do, whatever it is.
+TEST(PointsAtDeltaGates, HaveNoTemporalBias) {
+    for (const VerifiedValue& value : {A1Delta, A1UnwarpedDelta})
+        for (const Guiding& guiding : {Best, Published}) {
+            const auto mean = [&](double width) {
+                Overrides overrides = test::gateOf(value);
+                overrides.insert(overrides.end(), {setting("transient_time_width", width), "integrator.volume_alpha=1",
+                                                   setting("photon_count", 5000)});
+                overrides.insert(overrides.end(), guiding.overrides.begin(), guiding.overrides.end());
+                return test::renderPhotons(test::sceneOf(value), {overrides, 4, 1})->mean();
+            };
+            const double narrow = mean(0.001);
+            EXPECT_GT(narrow, 0.0);
+            EXPECT_NEAR(mean(0.8), narrow, 2e-4 * narrow) << guiding.name;
+        }
+}
 
 /// In a scene without mirrors and surfaces these change nothing at all.
 TEST(GuidedSwitches, WithoutAnObjectHaveNoEffect) {
