@@ -16,7 +16,7 @@ void expectAgreement(const AgreementScene& scene, const Method& method, const Bl
     SCOPED_TRACE(scene.name + ", " + method.name);
     const Agreement agreement = compare(renderBlocks(scene, method), reference);
     EXPECT_LE(agreement.score(), 1.0) << agreement;
-    EXPECT_LT(agreement.wholeError, 0.1) << "too noisy to be a proof: " << agreement;
+    EXPECT_LT(agreement.wholeError, 0.05) << "too noisy to be a proof: " << agreement;
 }
 
 const Method Plain = pathMethod("plain", {}, 1), Best = guidedPathMethod("best", {"darts=best"}, 4);
@@ -24,14 +24,18 @@ const Method Plain = pathMethod("plain", {}, 1), Best = guidedPathMethod("best",
 class SwitchesAlone : public testing::TestWithParam<const char*> {};
 
 TEST_P(SwitchesAlone, AgreeWithPlainPaths) {
-    std::vector<AgreementScene> scenes = agreementScenes();
+    std::vector<AgreementScene> scenes = singleGateScenes();
     AgreementScene& scene =
         *std::find_if(scenes.begin(), scenes.end(), [](const AgreementScene& s) { return s.name == GetParam(); });
-    scene.effort.pathSamples = 64;
+    const bool glass = scene.name == "glass-tank";
+    scene.effort.pathSamples = glass ? 64 : 32;
     const BlockMeans reference = renderBlocks(scene, Plain);
+    // Connections through its boundary are left to chance without control vertices.
+    AgreementScene longer = scene;
+    if (glass) longer.effort.pathSamples = 256;
+    expectAgreement(longer, guidedPathMethod("guiding only", {"enable_guiding=true"}, 2), reference);
     for (const Method& method :
-         {guidedPathMethod("guiding only", {"enable_guiding=true"}, 2),
-          guidedPathMethod("elliptical only", {"enable_elliptical=true"}, 3),
+         {guidedPathMethod("elliptical only", {"enable_elliptical=true"}, 3),
           switched("phase directions", R"("direction": "phase")"), switched("EDA directions", R"("direction": "eda")"),
           switched("direction RIS", R"("direction": "ris")"), switched("unbounded", R"("bounded": false)"),
           switched("no light vertices", R"("surface_connections": false)"),
@@ -43,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SwitchesAlone, testing::Values("cornell-fog", "
                          [](const auto& instance) { return instance.param[0] == 'c' ? "CornellFog" : "GlassTank"; });
 
 /// Fog with a wall and a floor that scatter, an index-matched glass pane across, and `light`; colours on purpose.
-std::string fogRoom(const std::string& light, const std::string& settings) {
+std::string fogRoom(const std::string& light) {
     return R"({"media": [{"name": "fog", "type": "guided_homo", "sigma_a": [0.05, 0.1, 0.15], "sigma_s": [0.4, 0.3, 0.25]}],
      "bsdfs": [{"name": "grey", "type": "lambert", "albedo": [0.7, 0.6, 0.5]},
                {"name": "gloss", "type": "rough_conductor", "roughness": 0.4, "material": "Al"}],
@@ -54,8 +58,7 @@ std::string fogRoom(const std::string& light, const std::string& settings) {
            light + R"(],
      "camera": {"type": "pinhole", "fov": 40, "reconstruction_filter": "box",
                 "transform": {"position": [0, 0.5, 6], "look_at": [0, -0.3, 0], "up": [0, 1, 0]}},
-     "integrator": {"max_bounces": 12, "transient_time_center": 8.5, "transient_time_width": 0.6)" +
-           settings + "}}";
+     "integrator": {"max_bounces": 12, "transient_time_center": 8.5, "transient_time_width": 0.6}})";
 }
 const std::string Ball = R"({"type": "sphere", "ext_medium": "fog", "bsdf": {"type": "null"}, "emission": 20,
     "transform": {"position": [0.7, 0.3, 0.4], "scale": 0.25}})";
@@ -64,42 +67,42 @@ const std::string Ball = R"({"type": "sphere", "ext_medium": "fog", "bsdf": {"ty
 struct RoomCase {
     const char* name;
     std::string light;
-    std::string settings;
-    std::vector<std::string> overrides;
+    std::vector<std::string> settings;  ///< of the integrator, "field=value"
+    std::vector<std::string> overrides; ///< elsewhere
 };
 
 // Outside the fog, where connections to points have finite variance.
 const std::string Above = R"("transform": {"position": [1.5, 3.2, 1], "look_at": [0, -0.5, 0], "up": [0, 0, 1]}})";
-const std::string Unwarped = R"(, "camera_unwarped": true, "transient_time_center": 3.5)";
+const std::string Unwarped = "camera_unwarped=true", UnwarpedCentre = "transient_time_center=3.5";
 
 std::vector<RoomCase> roomCases() {
     return {
-        {"FewBounces", Ball, R"(, "max_bounces": 4)", {}},
-        {"ThreeBounces", Ball, R"(, "min_bounces": 3, "max_bounces": 4)", {}},
-        {"FourBounces", Ball, R"(, "min_bounces": 4, "max_bounces": 5)", {}},
-        {"TwoFlights", Ball, "", {"media.0.max_bounces=2"}},
-        {"HighOrders", Ball, R"(, "low_order_scattering": false)", {}},
-        {"NoSurfaces", Ball, R"(, "include_surfaces": false)", {}},
-        {"Unwarped", Ball, Unwarped, {}},
-        {"UnwarpedThreeBounces", Ball, Unwarped + R"(, "min_bounces": 3, "max_bounces": 4)", {}},
-        {"ConsistencyChecks", Ball, R"(, "enable_consistency_checks": true, "enable_two_sided_shading": false)", {}},
-        {"Point", R"({"type": "point", "emission": 30, )" + Above, "", {}},
-        {"Spot", R"({"type": "spot", "emission": 60, "cone_angle": 25, )" + Above, "", {}},
+        {"FewBounces", Ball, {"max_bounces=4"}, {}},
+        {"ThreeBounces", Ball, {"min_bounces=3", "max_bounces=4"}, {}},
+        {"FourBounces", Ball, {"min_bounces=4", "max_bounces=5"}, {}},
+        {"TwoFlights", Ball, {}, {"media.0.max_bounces=2"}},
+        {"HighOrders", Ball, {"low_order_scattering=false"}, {}},
+        {"NoSurfaces", Ball, {"include_surfaces=false"}, {}},
+        {"Unwarped", Ball, {Unwarped, UnwarpedCentre}, {}},
+        {"UnwarpedThreeBounces", Ball, {Unwarped, UnwarpedCentre, "min_bounces=3", "max_bounces=4"}, {}},
+        {"ConsistencyChecks", Ball, {"enable_consistency_checks=true", "enable_two_sided_shading=false"}, {}},
+        {"Point", R"({"type": "point", "emission": 30, )" + Above, {}, {}},
+        {"Spot", R"({"type": "spot", "emission": 60, "cone_angle": 25, )" + Above, {}, {}},
         {"Disk",
          R"({"type": "disk", "bsdf": {"type": "null"}, "emission": 60,
                  "transform": {"position": [0, 3, 0.5], "rotation": [180, 0, 0], "scale": 0.5}})",
-         "",
+         {},
          {}},
-        {"Laser", R"({"type": "collimated", "emission": 30, )" + Above, "", {}},
-        {"BallAndLatePoint", Ball + R"(, {"type": "point", "emission": 30, "emission_time": 0.8, )" + Above, "", {}}};
+        {"Laser", R"({"type": "collimated", "emission": 30, )" + Above, {}, {}},
+        {"BallAndLatePoint", Ball + R"(, {"type": "point", "emission": 30, "emission_time": 0.8, )" + Above, {}, {}}};
 }
 
 class GuidedRoom : public testing::TestWithParam<RoomCase> {};
 
 TEST_P(GuidedRoom, AgreesWithPlainPaths) {
-    AgreementScene scene =
-        builtScene(GetParam().name, fogRoom(GetParam().light, GetParam().settings), 0.1, {32, 64, 0, 0});
+    AgreementScene scene = builtScene(GetParam().name, fogRoom(GetParam().light), 0.1, {32, 32, 0, 0});
     scene.overrides = GetParam().overrides;
+    for (const std::string& field : GetParam().settings) scene.overrides.push_back("integrator." + field);
     expectAgreement(scene, Best, renderBlocks(scene, Plain));
 }
 

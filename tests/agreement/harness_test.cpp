@@ -14,7 +14,7 @@ struct Fault {
 };
 
 AgreementScene sceneCalled(const std::string& name) {
-    for (AgreementScene& scene : agreementScenes())
+    for (AgreementScene& scene : singleGateScenes())
         if (scene.name == name) return scene;
     throw std::logic_error("no scene " + name);
 }

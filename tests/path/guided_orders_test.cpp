@@ -23,6 +23,7 @@ struct Sampling {
     std::vector<std::string> fields;
     /// Relative allowance beside the standard error: directions that ignore the connection's weight have a heavy tail.
     double slack;
+    uint32_t samples = 5000; ///< per pass
 };
 
 std::string switches(const std::string& fields) {
@@ -35,7 +36,7 @@ const std::vector<Sampling> Presets{{"Best", {"integrator.darts=best"}, 0.0},
 const std::vector<Sampling> Switches{
     {"GuidingOnly", {"integrator.enable_guiding=true", "media.0.type=guided_homo"}, 0.03},
     {"EllipticalOnly", {"integrator.enable_elliptical=true"}, 0.02},
-    {"PhaseDirections", {switches(R"("direction": "phase")")}, 0.02},
+    {"PhaseDirections", {switches(R"("direction": "phase")")}, 0.02, 40000},
     {"EdaDirections", {switches(R"("direction": "eda")")}, 0.01},
     {"ConnectionLobe", {switches(R"("direction": "connection")")}, 0.0},
     {"DirectionRis", {switches(R"("direction": "ris")")}, 0.0},
@@ -65,12 +66,12 @@ class GuidedOrders : public testing::TestWithParam<std::tuple<Sampling, Order>> 
 
 TEST_P(GuidedOrders, MatchVerifiedValues) {
     const auto& [sampling, c] = GetParam();
-    const auto rendered = renderOrder(c, sampling, {{}, 40, 5000});
+    const auto rendered = renderOrder(c, sampling, {{}, 40, sampling.samples});
     const double error = rendered->pixelError();
     constexpr double Rounding = 2e-4; // of the printed values, and of the pixel's width
     EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + (sampling.slack + c.uncertainty + Rounding) * c.expected)
         << "standard error " << error;
-    EXPECT_LT(error, (sampling.slack > 0.0 ? 0.15 : 0.015) * c.expected) << "the test would not see a wrong value";
+    EXPECT_LT(error, (sampling.slack > 0.0 ? 0.07 : 0.015) * c.expected) << "the test would not see a wrong value";
     EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
 }
 
