@@ -38,7 +38,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, 
     const bool exact = directView_ && straight && slack_ == 0.0;
     choosesFrames_ = exact && gate.frames > 1;
     drawsByResponse_ = exact && sensor_.response;
-    meetsDeltaGate_ = exact && gate.delta;
+    meetsDeltaGate_ = exact && gate.delta && scheme.elliptical;
     for (const Medium& medium : scene.media) {
         guides_.emplace_back();
         if (!medium.scatters()) continue;

@@ -40,6 +40,16 @@ bool inside(const Range& range, double number) {
     return std::isfinite(number) && number >= range.low && number <= range.high;
 }
 
+/// One number repeated, or the numbers of an array of `count`; another number of them where it is neither.
+std::vector<double> oneOrSeveral(const rapidjson::Value& value, rapidjson::SizeType count) {
+    if (value.IsNumber()) return std::vector<double>(count, value.GetDouble());
+    std::vector<double> values;
+    if (value.IsArray() && value.Size() == count)
+        for (const auto& entry : value.GetArray())
+            if (entry.IsNumber()) values.push_back(entry.GetDouble());
+    return values;
+}
+
 } // namespace
 
 ObjectReader::ObjectReader(std::shared_ptr<const void> document, const Node* node, std::string path,
@@ -166,11 +176,7 @@ std::vector<double> ObjectReader::numbers(const std::string& name) const {
 Vec3f ObjectReader::vec3(const std::string& name, const Vec3f& fallback, Range range) const {
     const Node* node = find(name);
     if (!node) return fallback;
-    std::vector<double> values;
-    if (valueOf(node).IsNumber()) values.assign(3, valueOf(node).GetDouble());
-    if (valueOf(node).IsArray() && valueOf(node).Size() == 3)
-        for (const auto& entry : valueOf(node).GetArray())
-            if (entry.IsNumber()) values.push_back(entry.GetDouble());
+    const std::vector<double> values = oneOrSeveral(valueOf(node), 3);
     const bool valid = values.size() == 3 && std::all_of(values.begin(), values.end(), [&](double v) {
                            return inside(range, v) && std::abs(v) <= double(std::numeric_limits<float>::max());
                        });
@@ -187,11 +193,7 @@ Rgb ObjectReader::rgb(const std::string& name, const Rgb& fallback, Range range)
 Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, Range range) const {
     const Node* node = find(name);
     if (!node) return fallback;
-    std::vector<double> values;
-    if (valueOf(node).IsNumber()) values.assign(2, valueOf(node).GetDouble());
-    if (valueOf(node).IsArray() && valueOf(node).Size() == 2)
-        for (const auto& entry : valueOf(node).GetArray())
-            if (entry.IsNumber()) values.push_back(entry.GetDouble());
+    const std::vector<double> values = oneOrSeveral(valueOf(node), 2);
     const bool valid = values.size() == 2 && inside(range, values[0]) && inside(range, values[1]) && values[0] < 2e9 &&
                        values[1] < 2e9;
     if (valid) return {int(values[0]), int(values[1])};
