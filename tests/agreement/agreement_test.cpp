@@ -76,8 +76,8 @@ TEST(Sequence, FramesAgreeAndSumToTheSteadyStateOfThePathTracer) {
     for (Method& method : methods) {
         SCOPED_TRACE(method.name);
         const bool plain = method.name.starts_with("plain"), best = method.name.starts_with("best");
-        // Guided photons aim at one of the twenty frames each.
-        if (best && method.kernel) method.share *= 3.0;
+        // Guided photons aim at one of the twenty frames each, guided paths at all of them.
+        if (best) method.share *= method.kernel ? 3.0 : 2.0;
         const BlockMeans frames = renderBlocks(fogSequence(), method);
         EXPECT_EQ(frames.frames, 20);
         expectAgreement(summedOverFrames(frames, SequenceFrameWidth), steady);
@@ -85,7 +85,7 @@ TEST(Sequence, FramesAgreeAndSumToTheSteadyStateOfThePathTracer) {
             pathFrames = frames;
         else if (plain || best)
             expectAgreement(frames, pathFrames);
-        if (plain && method.kernel) expectAgreement(renderBlocks(fogInSteadyState(), method), steady);
+        if (method.name == "plain points") expectAgreement(renderBlocks(fogInSteadyState(), method), steady);
     }
 }
 

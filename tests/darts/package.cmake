@@ -1,11 +1,11 @@
 # Installs the sampling library to temporary folders, once as a project of its own and once as a component of this build,
 # and builds and runs the example against each.
-#   cmake -DHOST_BUILD=... -DLIBRARY=<src/darts> -DWORK=... -DGENERATOR=... -DCOMPILER=... -P package.cmake
+#   cmake -DHOST_BUILD=... -DLIBRARY=<src/darts> -DWORK=... -DGENERATOR=... -DCOMPILER=... [-DLAUNCHER=...] -P package.cmake
 
 include(${CMAKE_CURRENT_LIST_DIR}/../support/run.cmake)
 
 function(configure_and_build source build)
-  run(${CMAKE_COMMAND} -S ${source} -B ${build} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER}
+  run(${CMAKE_COMMAND} -S ${source} -B ${build} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
     -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror" ${ARGN})
   run(${CMAKE_COMMAND} --build ${build})
 endfunction()

@@ -22,15 +22,16 @@ struct Method {
     bool kernel = false;     ///< estimates density with a kernel: rendered with two radii, extrapolated to radius 0
     uint64_t seed = 1;       ///< methods with the same seed may share random numbers
     bool steadyState = true; ///< also renders without a gate
-    double share = 1.0;      ///< of the scene's light paths per pass: cheaper or less noisy paths
+    double share = 1.0; ///< of the scene's samples or light paths per pass, for methods with less noise or dear paths
 };
 inline Method pathMethod(std::string name, std::vector<std::string> fields, uint64_t seed) {
     fields.insert(fields.begin(), "type=path_tracer");
     return {std::move(name), std::move(fields), false, seed, true};
 }
-inline Method guidedPathMethod(std::string name, std::vector<std::string> fields, uint64_t seed) {
+inline Method guidedPathMethod(std::string name, std::vector<std::string> fields, uint64_t seed, double share = 1.0) {
     Method method = pathMethod(std::move(name), std::move(fields), seed);
     method.steadyState = false;
+    method.share = share;
     return method;
 }
 inline Method photonMethod(std::string name, std::vector<std::string> fields, uint64_t seed) {
@@ -62,8 +63,8 @@ inline std::vector<Method> methodsUnderTest() {
         beamMethod(photonMethod("plain beams", {}, 5), 0.15),
         beamMethod(guidedPhotonMethod("published beams", {"darts=published"}, 6), 0.12),
         beamMethod(guidedPhotonMethod("best beams", {"darts=best"}, 7), 0.08),
-        guidedPathMethod("published paths", {"darts=published"}, 8),
-        guidedPathMethod("best paths", {"darts=best"}, 9),
+        guidedPathMethod("published paths", {"darts=published"}, 8, 0.5),
+        guidedPathMethod("best paths", {"darts=best"}, 9, 0.5),
     };
 }
 /// Those that prove the harness itself.
@@ -247,7 +248,7 @@ inline constexpr uint32_t ShrinkEvery = 4;
 inline BlockMeans renderBlocks(const AgreementScene& scene, const Method& method) {
     PassRenderer fine(scene, method, 0.5 * scene.radius), coarse(scene, method, scene.radius);
     const uint32_t passes = method.kernel ? scene.effort.photonPasses : scene.effort.pathPasses;
-    const uint32_t samples = method.kernel ? 1 : scene.effort.pathSamples;
+    const uint32_t samples = method.kernel ? 1 : uint32_t(scene.effort.pathSamples * method.share);
     const int frames = fine.film().frames(), blocks = blockCount(scene.width, scene.height);
     BlockFilm values(blocks, frames), shrink(blocks, frames);
     for (uint32_t pass = 0; pass < passes; ++pass) {

@@ -64,6 +64,7 @@ inline AgreementScene fogInSteadyState() {
     AgreementScene scene = fogSequence();
     scene.name = "steady-state";
     scene.steadyState = true;
+    scene.effort.photonPasses = 16;
     return scene;
 }
 
