@@ -15,7 +15,7 @@ struct Vertex {
     float h;
     std::array<float, 4> random;
 };
-inline constexpr size_t Vertices = 1024;
+inline constexpr size_t Vertices = 512; ///< few enough to stay in the nearest cache
 
 inline std::array<Vertex, Vertices> walk() {
     std::mt19937 bits(7);
