@@ -75,9 +75,9 @@ TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {
 TEST(Outputs, UnknownExtensionsNameTheAcceptedOnes) {
     const test::TemporaryFolder folder;
     EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
-    EXPECT_NE(
-        errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}, {}}).find("accepted: .exr, .pfm or .npy"),
-        std::string::npos);
+    EXPECT_NE(errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}, {}})
+                  .find("accepted: .exr, .pfm or .npy"),
+              std::string::npos);
     EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}, {}}), "");
 }
 
