@@ -1,5 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
+#include "photon/BeamSplat.h"
 #include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
 
@@ -152,16 +153,29 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const
     statistics.add("gathered photons", gathered);
 }
 
-void PhotonIntegrator::buildBeams(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
-                                  GatherStructures& structures) const {
+void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
+                                   StraightStores& straight, GatherStructures& structures, Film& film,
+                                   Statistics& statistics) const {
     const ArrivalTest& arrival = photonPass_->arrival();
     const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
                                                       : beamRadiusFactor(pass, settings_.alpha);
     const float radius = settings_.volumeRadius * factor;
-    structures.beams = std::make_unique<BeamGather>(*scene_, structures.sensor, maps.beams.beams, radius);
-    if (arrival.directView() || !arrival.straightTimesKnown()) return;
-    straight.beams = straightParts(*scene_, arrival, maps.beams.beams);
-    structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.sensor, straight.beams, radius);
+    const std::vector<PhotonBeam>& all = maps.beams.beams;
+    const bool single = arrival.directView() || !arrival.straightTimesKnown();
+    {
+        const StageTimer timer(statistics, "build");
+        if (!single) straight.beams = straightParts(*scene_, arrival, all);
+        if (!structures.splatted || foldedRays_)
+            structures.beams = std::make_unique<BeamGather>(*scene_, structures.sensor, all, radius);
+        if (!structures.splatted && !single)
+            structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.sensor, straight.beams, radius);
+    }
+    if (!structures.splatted) return;
+    const StageTimer timer(statistics, "splat");
+    const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
+    const uint64_t gathered = splatBeams(*scene_, structures.sensor, record, single ? all : straight.beams, radius,
+                                         double(maps.beams.scale()) / width, film);
+    statistics.add("gathered beams", gathered);
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
@@ -170,7 +184,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     if (!settings_.progressive) photons.index = 0;
     const Sensor sensor = Sensor::of(*scene_, gate(photons.index));
     const bool recordable = straightRays_ && pass.samples == 1;
-    const bool splat = recordable && photonPass_->storesVolume();
+    const bool splat = recordable && (photonPass_->storesVolume() || photonPass_->storesBeams());
     const bool connect = recordable && connects_;
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
@@ -188,9 +202,9 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     StraightStores straight;
     GatherStructures structures{maps, sensor, splat, settings_.includeSurfaces, settings_.gatherCount};
     if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, straight, structures, film, statistics);
+    if (!maps.beams.beams.empty()) gatherBeams(maps, photons.index, record, straight, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
-        if (!maps.beams.beams.empty()) buildBeams(maps, photons.index, straight, structures);
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
         structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
     }

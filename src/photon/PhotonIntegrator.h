@@ -29,16 +29,17 @@ class PhotonIntegrator : public Integrator {
     struct StraightStores;
     void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
                       GatherStructures& structures, Film& film, Statistics& statistics) const;
-    void buildBeams(const PhotonMaps& maps, uint32_t pass, StraightStores& straight,
-                    GatherStructures& structures) const;
+    void gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
+                     GatherStructures& structures, Film& film, Statistics& statistics) const;
     [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     std::unique_ptr<PhotonPass> photonPass_;
-    bool connects_ = false;     ///< light paths to visible surface points
-    bool straightRays_ = false; ///< of one origin and speed: volume photons can be splatted, surfaces connected
-    bool foldedRays_ = false;   ///< mirrors or refraction can be seen
+    bool connects_ = false; ///< light paths to visible surface points
+    bool straightRays_ =
+        false;                ///< of one origin and speed: volume photons and beams can be splatted, surfaces connected
+    bool foldedRays_ = false; ///< mirrors or refraction can be seen
 };
 
 } // namespace tungsten::photon

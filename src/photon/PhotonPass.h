@@ -36,6 +36,7 @@ class PhotonPass {
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
     [[nodiscard]] bool storesVolume() const { return storeVolume_; }
+    [[nodiscard]] bool storesBeams() const { return storeBeams_; }
     [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 
   private:

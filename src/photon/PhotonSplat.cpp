@@ -1,5 +1,6 @@
 #include "photon/PhotonSplat.h"
 
+#include "photon/ImageFootprint.h"
 #include "photon/PointGather.h"
 
 #include <tbb/parallel_for.h>
@@ -13,57 +14,14 @@ using Batch = xsimd::batch<float>;
 constexpr int Lanes = int(Batch::size);
 constexpr int BandRows = 4; ///< rows of the image that one task draws
 
-/// Rows and columns of the pixels whose rays can come within the kernel.
-struct Footprint {
-    int left, right, top, bottom; ///< inclusive
-};
-
 class Splatter {
   public:
     Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
              const std::vector<float>& radii, double scale, Film& film)
         : scene_(scene), sensor_(sensor), record_(record), photons_(store.photons), radii_(radii), scale_(float(scale)),
-          film_(film),
-          // Rays leave pixel centres by the filter, whose samples may reach a little beyond its half width.
-          margin_(scene.camera.filter.halfWidth() + 0.1f) {
-        const Frame frame = scene.camera.toWorld.rotation();
-        frame_ = frame;
-        const auto& pinhole = std::get<Pinhole>(scene.camera.model);
-        pixelsPerSlope_ = 0.5f * float(record.width) / std::tan(0.5f * pinhole.fovDegrees * Pi / 180.0f);
-    }
+          film_(film) {}
 
-    [[nodiscard]] std::optional<Footprint> footprint(const Photon& photon, float radius) const {
-        const Vec3f local = frame_.toLocal(photon.position - record_.origin);
-        const float squaredDistance = local.length2();
-        Footprint all{0, record_.width - 1, 0, record_.height - 1};
-        if (squaredDistance <= radius * radius * 1.0001f) return all;
-        if (local.z < -radius) return std::nullopt;
-        // Rays within asin(r / distance) of the photon's direction; tangent planes bound the slopes x / z and y / z.
-        const auto range = [&](float sideways, float& low, float& high) {
-            const float c = std::sqrt(sideways * sideways + local.z * local.z);
-            if (c <= radius * 1.0001f) return false;
-            const float angle = std::atan2(sideways, local.z), spread = std::asin(radius / c);
-            if (angle - spread < -1.5f || angle + spread > 1.5f) return false;
-            low = std::tan(angle - spread) * pixelsPerSlope_;
-            high = std::tan(angle + spread) * pixelsPerSlope_;
-            return true;
-        };
-        float low = 0.0f, high = 0.0f;
-        const float centreX = 0.5f * float(record_.width), centreY = 0.5f * float(record_.height);
-        const auto clampPixel = [](float v, int size) { return int(std::clamp(v, -1.0f, float(size))); };
-        if (range(local.x, low, high)) {
-            all.left = std::max(all.left, clampPixel(std::floor(centreX + low - 0.5f - margin_), record_.width));
-            all.right = std::min(all.right, clampPixel(std::ceil(centreX + high - 0.5f + margin_), record_.width));
-        }
-        if (range(local.y, low, high)) {
-            all.top = std::max(all.top, clampPixel(std::floor(centreY - high - 0.5f - margin_), record_.height));
-            all.bottom = std::min(all.bottom, clampPixel(std::ceil(centreY - low - 0.5f + margin_), record_.height));
-        }
-        if (all.left > all.right || all.top > all.bottom) return std::nullopt;
-        return all;
-    }
-
-    uint64_t draw(const Photon& photon, float radius, const Footprint& area, int firstRow, int lastRow) const {
+    uint64_t draw(const Photon& photon, float radius, const PixelArea& area, int firstRow, int lastRow) const {
         const TransportSettings& transport = scene_.transport;
         const Vec3f offset = photon.position - record_.origin;
         int frame = 0;
@@ -181,8 +139,6 @@ class Splatter {
     const std::vector<float>& radii_;
     float scale_;
     Film& film_;
-    Frame frame_;
-    float margin_, pixelsPerSlope_;
 };
 
 } // namespace
@@ -191,9 +147,10 @@ uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorReco
                       const std::vector<float>& radii, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, store, radii, scale, film);
     const size_t bands = size_t((record.height + BandRows - 1) / BandRows);
-    std::vector<std::optional<Footprint>> footprints(store.photons.size());
+    const ImageFootprint footprint(scene.camera);
+    std::vector<std::optional<PixelArea>> footprints(store.photons.size());
     tbb::parallel_for(size_t(0), footprints.size(), [&](size_t i) {
-        footprints[i] = splatter.footprint(store.photons[i], radii[radii.size() == 1 ? 0 : i]);
+        footprints[i] = footprint.around(store.photons[i].position, radii[radii.size() == 1 ? 0 : i]);
     });
     // Photons by band, in their own order: the sums do not depend on the threads.
     std::vector<std::vector<uint32_t>> byBand(bands);

@@ -29,7 +29,8 @@ class SensorGather {
 
     void segment(const SensorState& state, float length) {
         if (!scene_.medium(state.region)) return;
-        if (structures_.points && !(structures_.splatted && !state.folded))
+        if (structures_.splatted && !state.folded) return;
+        if (structures_.points)
             gatherVolume(state, length, structures_.points, structures_.straightPoints, structures_.maps.volume.scale(),
                          counters_.gathered);
         if (structures_.beams)

@@ -12,7 +12,7 @@ namespace tungsten::photon {
 struct GatherStructures {
     const PhotonMaps& maps;
     Sensor sensor;         ///< its gate is the pass's: the scene's, or a delta gate's temporal kernel
-    bool splatted = false; ///< straight rays have their volume photons already
+    bool splatted = false; ///< straight rays have their volume photons or beams already
     bool includeSurfaces = true;
     uint32_t gatherCount = 0;
     float surfaceRadius = 0.0f;

@@ -1,5 +1,7 @@
-// Splatted photons against gathered ones, and the record of camera paths.
+// Splatted photons and beams against gathered ones, and the record of camera paths.
 
+#include "photon/BeamGather.h"
+#include "photon/BeamSplat.h"
 #include "photon/PhotonSplat.h"
 #include "photon/PointGather.h"
 
@@ -88,10 +90,26 @@ SensorRecord randomRecord(const Scene& scene, size_t pieces) {
     return record;
 }
 
-/// What PointGather finds along every recorded piece.
-uint64_t gatherRecord(const Scene& scene, const TimeGate& gate, const SensorRecord& record, const PhotonStore& store,
-                      const std::vector<float>& radii, Film& film) {
-    const PointGather gather(scene, gate, store, radii);
+/// Beams of all lengths around the camera: some run through it, some along its rays, every tenth is as good as endless.
+std::vector<PhotonBeam> beamsAround(const Vec3f& camera, size_t count) {
+    Sampler sampler(5, RandomStream::Test, 0, 0);
+    std::vector<PhotonBeam> beams;
+    for (size_t i = 0; i < count; ++i) {
+        const float reach = i % 4 == 0 ? 0.3f : 4.0f;
+        const Vec3f position = camera + warp::squareToSphere(sampler.next2D()) * (reach * sampler.next1D());
+        const Vec3f towards = (camera - position).normalized(), anywhere = warp::squareToSphere(sampler.next2D());
+        const Vec3f direction = i % 8 == 7 ? (towards + anywhere * 0.02f).normalized() : anywhere;
+        const Rgb power(sampler.next1D(), sampler.next1D(), 1.0f);
+        const float start = 0.3f * sampler.next1D(), length = i % 10 == 9 ? 60.0f : 2.0f * sampler.next1D();
+        beams.push_back({double(3.0f * sampler.next1D()), position, direction, power, start, start + length,
+                         uint16_t(i % 4), int16_t(i / 4 % 3)});
+    }
+    return beams;
+}
+
+/// What a PointGather or BeamGather finds along every recorded piece.
+template <typename Gather>
+uint64_t gatherRecord(const Gather& gather, const TimeGate& gate, const SensorRecord& record, Film& film) {
     uint64_t gathered = 0;
     for (const StraightPiece& piece : record.pieces)
         for (size_t i = 0; i < record.x.size(); ++i) {
@@ -113,6 +131,27 @@ uint64_t gatherRecord(const Scene& scene, const TimeGate& gate, const SensorReco
 
 class Splat : public testing::TestWithParam<SplatCase> {};
 
+/// Frames, or steady state.
+TimeGate gateOf(const SplatCase& c) {
+    return c.steady ? TimeGate{} : TimeGate{false, false, 1.0, 0.7, 4};
+}
+
+/// The splatted image is `scale` times the gathered one, to `relative` of the larger; returns how many channels are
+/// lit.
+int expectScaled(Film& splatted, Film& gathered, int frames, float scale, float relative) {
+    int lit = 0;
+    for (int frame = 0; frame < frames; ++frame)
+        for (int y = 0; y < splatted.height(); ++y)
+            for (int x = 0; x < splatted.width(); ++x)
+                for (int k = 0; k < 3; ++k) {
+                    const float value = splatted.passPixel(frame, x, y)[k],
+                                right = scale * gathered.passPixel(frame, x, y)[k];
+                    EXPECT_NEAR(value, right, relative * right + 1e-4f) << x << ' ' << y << ' ' << frame;
+                    if (right > 0.01f) ++lit;
+                }
+    return lit;
+}
+
 TEST_P(Splat, AddsWhatGatheringFinds) {
     const SplatCase& c = GetParam();
     const Scene scene = foggyScene(c);
@@ -121,26 +160,60 @@ TEST_P(Splat, AddsWhatGatheringFinds) {
     std::vector<float> radii{0.15f};
     if (c.radiusEach)
         for (size_t i = 1; i < store.photons.size(); ++i) radii.push_back(0.02f + 0.3f * float(i % 7) / 7.0f);
-    const TimeGate gate = c.steady ? TimeGate{} : TimeGate{false, false, 1.0, 0.7, 4};
+    const TimeGate gate = gateOf(c);
     Film splatted(record.width, record.height, gate.frames), gathered = splatted;
     splatted.beginPass();
     gathered.beginPass();
     const uint64_t count = splatPhotons(scene, gate, record, store, radii, 3.0, splatted);
-    const uint64_t expected = gatherRecord(scene, gate, record, store, radii, gathered);
+    const uint64_t expected = gatherRecord(PointGather(scene, gate, store, radii), gate, record, gathered);
     // At the kernel's edge rounding decides.
     EXPECT_NEAR(double(count), double(expected), 1e-4 * double(expected) + 2.0);
     EXPECT_GT(expected, 1000u);
-    int lit = 0;
-    for (int frame = 0; frame < gate.frames; ++frame)
-        for (int y = 0; y < record.height; ++y)
-            for (int x = 0; x < record.width; ++x)
-                for (int k = 0; k < 3; ++k) {
-                    const float value = splatted.passPixel(frame, x, y)[k],
-                                right = 3.0f * gathered.passPixel(frame, x, y)[k];
-                    EXPECT_NEAR(value, right, 1e-4f * right + 1e-4f) << x << ' ' << y << ' ' << frame;
-                    if (right > 0.01f) ++lit;
-                }
-    EXPECT_GT(lit, gate.frames * record.width * record.height);
+    EXPECT_GT(expectScaled(splatted, gathered, gate.frames, 3.0f, 1e-4f), gate.frames * record.width * record.height);
+}
+
+/// Beam by beam, as a beam's edge is a step: where rounding puts a ray on the other side, the beam's image differs in
+/// whole pixels, and is left out.
+TEST_P(Splat, AddsTheBeamsThatGatheringFinds) {
+    const SplatCase& c = GetParam();
+    const Scene scene = foggyScene(c);
+    const SensorRecord record = randomRecord(scene, c.pieces);
+    const TimeGate gate = gateOf(c);
+    Film splatted(record.width, record.height, gate.frames), gathered = splatted;
+    uint64_t total = 0;
+    int lit = 0, compared = 0, different = 0;
+    for (const PhotonBeam& beam : beamsAround(scene.camera.position(), 400)) {
+        splatted.beginPass();
+        gathered.beginPass();
+        const uint64_t count = splatBeams(scene, gate, record, {beam}, 0.1f, 3.0, splatted);
+        const std::vector<PhotonBeam> single{beam};
+        const uint64_t expected = gatherRecord(BeamGather(scene, gate, single, 0.1f), gate, record, gathered);
+        EXPECT_NEAR(double(count), double(expected), 2.0);
+        total += expected;
+        if (count != expected)
+            ++different;
+        else if (++compared > 0)
+            lit += expectScaled(splatted, gathered, gate.frames, 3.0f, 1e-4f);
+    }
+    EXPECT_GT(total, record.x.size());
+    EXPECT_GT(lit, 100);
+    EXPECT_LT(different, compared / 20);
+}
+
+/// Threads, bands and registers: all at once as one by one.
+TEST_P(Splat, AddsUpBeams) {
+    const SplatCase& c = GetParam();
+    const Scene scene = foggyScene(c);
+    const SensorRecord record = randomRecord(scene, c.pieces);
+    const TimeGate gate = gateOf(c);
+    Film together(record.width, record.height, gate.frames), singly = together;
+    together.beginPass();
+    singly.beginPass();
+    const auto beams = beamsAround(scene.camera.position(), 2000);
+    uint64_t count = 0;
+    for (const PhotonBeam& beam : beams) count += splatBeams(scene, gate, record, {beam}, 0.1f, 1.0, singly);
+    EXPECT_EQ(splatBeams(scene, gate, record, beams, 0.1f, 1.0, together), count);
+    expectScaled(together, singly, gate.frames, 1.0f, 1e-5f);
 }
 
 // Beyond the first piece a gather takes a photon's time from the piece's start, which is a detour: no gate there.

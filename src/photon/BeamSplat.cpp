@@ -1,0 +1,218 @@
+#include "photon/BeamSplat.h"
+
+#include "photon/ImageFootprint.h"
+
+#include <tbb/parallel_for.h>
+#include <xsimd/xsimd.hpp>
+
+namespace tungsten::photon {
+
+namespace {
+
+using Batch = xsimd::batch<float>;
+constexpr int Lanes = int(Batch::size);
+constexpr int BandRows = 4; ///< rows of the image that one task draws
+constexpr float LeastSine = 1e-4f;
+
+/// A beam as the camera sees it. Its line comes closest to the camera at `foot`, relative to the camera; distances
+/// along the beam count from there, which leaves no difference of large numbers (closestApproach).
+struct Ribbon {
+    Vec3f direction, foot;
+    Vec3f normal; ///< foot x direction: of the plane through camera and beam, as long as foot
+    float low, high, fromBase;
+    double time; ///< at the foot, where a flight from the base would pass or would have passed
+    Rgb power;   ///< with the kernel's constant and the flight's transmittance up to the foot
+    ImageHalfPlane sides[2];
+    bool surrounds; ///< the camera lies inside the beam's cylinder: there are no sides
+    float g, sigmaT;
+    bool simple; ///< grey, isotropic or Henyey-Greenstein: a register at a time
+    int medium, bounce;
+    PixelArea area;
+};
+
+class Splatter {
+  public:
+    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, float radius, double scale,
+             Film& film)
+        : scene_(scene), sensor_(sensor), record_(record), footprint_(scene.camera), radius_(radius),
+          scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
+          timeless_(sensor.gate.steadyState) {}
+
+    [[nodiscard]] std::optional<Ribbon> ribbon(const PhotonBeam& beam) const {
+        const auto area = footprint_.around(beam.base + beam.direction * beam.tStart,
+                                            beam.base + beam.direction * beam.tEnd, radius_);
+        if (!area) return std::nullopt;
+        const auto inDouble = [](const Vec3f& v) { return Vec3d(double(v.x), double(v.y), double(v.z)); };
+        const Vec3d base = inDouble(beam.base) - inDouble(record_.origin), along = inDouble(beam.direction);
+        const double toFoot = -base.dot(along) / along.length2();
+        const Vec3d foot = base + along * toFoot;
+        const Medium& medium = scene_.media[size_t(beam.medium)];
+        Ribbon r{};
+        r.direction = beam.direction;
+        r.foot = Vec3f(float(foot.x), float(foot.y), float(foot.z));
+        r.normal = r.foot.cross(r.direction);
+        r.low = float(double(beam.tStart) - toFoot);
+        r.high = float(double(beam.tEnd) - toFoot);
+        r.fromBase = float(toFoot);
+        r.time = beam.time + toFoot / speed_;
+        r.power = beam.power * medium.sigmaS * (scale_ / (2.0f * radius_));
+        r.g = medium.phase.g();
+        r.sigmaT = medium.sigmaT().x;
+        r.simple = medium.isGrey() && !std::holds_alternative<Rayleigh>(medium.phase.model);
+        r.medium = beam.medium;
+        r.bounce = beam.bounce;
+        r.area = *area;
+        const double distance = foot.length();
+        r.surrounds = distance <= 1.0001 * double(radius_);
+        if (!r.surrounds) {
+            // The planes through the camera that touch the cylinder; both hold the beam's direction.
+            const float sine = radius_ / float(distance), cosine = std::sqrt(1.0f - sine * sine);
+            const Vec3f towards = r.foot * (sine / float(distance)), aside = r.normal * (cosine / float(distance));
+            r.sides[0] = footprint_.halfPlane(towards + aside);
+            r.sides[1] = footprint_.halfPlane(towards - aside);
+        }
+        return r;
+    }
+
+    uint64_t draw(const Ribbon& ribbon, int firstRow, int lastRow) const {
+        uint64_t gathered = 0;
+        for (int y = std::max(ribbon.area.top, firstRow); y <= std::min(ribbon.area.bottom, lastRow); ++y) {
+            int left = ribbon.area.left, right = ribbon.area.right;
+            if (!ribbon.surrounds)
+                for (const ImageHalfPlane& side : ribbon.sides) footprint_.narrow(side, y, left, right);
+            if (left > right) continue;
+            for (const StraightPiece& piece : record_.pieces) gathered += drawRow(ribbon, piece, y, left, right);
+        }
+        return gathered;
+    }
+
+  private:
+    /// Where a ray comes closest to the beam, and what it gathers there.
+    struct Approaches {
+        alignas(64) float alongBeam[Lanes], alongRay[Lanes], toCamera[Lanes];
+        alignas(64) float weight[Lanes]; ///< 0 for rays that miss
+    };
+
+    uint64_t drawRow(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right) const {
+        const size_t row = size_t(y) * size_t(record_.width), pixels = record_.x.size();
+        uint64_t gathered = 0;
+        Approaches found;
+        for (int x = left; x <= right; x += Lanes) {
+            const int count = std::min(Lanes, right - x + 1);
+            // The last registers of the image begin early; their first lanes have been drawn or lie outside.
+            const size_t wanted = row + size_t(x), first = std::min(wanted, pixels - std::min(pixels, size_t(Lanes)));
+            if (pixels < size_t(Lanes)) return gathered + drawSmallImage(ribbon, piece, y, x, right);
+            const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
+            if (!approach(ribbon, load(record_.x), load(record_.y), load(record_.z), load(piece.start), load(piece.end),
+                          found))
+                continue;
+            const int skipped = int(wanted - first);
+            for (int lane = skipped; lane < skipped + count; ++lane)
+                if (found.weight[lane] > 0.0f) gathered += add(ribbon, piece, y, x + lane - skipped, found, lane);
+        }
+        return gathered;
+    }
+    /// Fewer pixels than lanes.
+    uint64_t drawSmallImage(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right) const {
+        uint64_t gathered = 0;
+        Approaches found;
+        for (int x = left; x <= right; ++x) {
+            const size_t i = size_t(y) * size_t(record_.width) + size_t(x);
+            if (approach(ribbon, record_.x[i], record_.y[i], record_.z[i], piece.start[i], piece.end[i], found))
+                gathered += add(ribbon, piece, y, x, found, 0);
+        }
+        return gathered;
+    }
+
+    /// False if no ray meets the ribbon.
+    bool approach(const Ribbon& r, const Batch& dx, const Batch& dy, const Batch& dz, const Batch& start,
+                  const Batch& end, Approaches& found) const {
+        const Vec3f &w = r.direction, &a = r.foot, &n = r.normal;
+        const Batch cosine = dx * w.x + dy * w.y + dz * w.z;
+        const Batch px = dx - cosine * w.x, py = dy - cosine * w.y, pz = dz - cosine * w.z;
+        const Batch squaredSine = px * px + py * py + pz * pz, inverse = 1.0f / squaredSine;
+        const Batch t = (dx * a.x + dy * a.y + dz * a.z) * inverse, s = cosine * t;
+        const Batch across = dx * n.x + dy * n.y + dz * n.z, squaredDistance = across * across * inverse;
+        const auto inside = squaredSine > LeastSine * LeastSine && squaredDistance < radius_ * radius_ && s >= r.low &&
+                            s < r.high && t > start && t <= end;
+        if (!xsimd::any(inside)) return false;
+        Batch weight = xsimd::sqrt(inverse);
+        if (r.simple) weight = weight * xsimd::exp((start - t - s - r.fromBase) * r.sigmaT) * phase(r, cosine);
+        xsimd::select(inside, weight, Batch(0.0f)).store_aligned(found.weight);
+        s.store_aligned(found.alongBeam);
+        t.store_aligned(found.alongRay);
+        if (!timeless_) xsimd::sqrt(t * t + squaredDistance).store_aligned(found.toCamera);
+        return true;
+    }
+    /// Henyey-Greenstein between the beam's direction and the way back along the rays.
+    static Batch phase(const Ribbon& r, const Batch& cosine) {
+        const float g = r.g;
+        if (g == 0.0f) return Batch(0.25f * InvPi);
+        const Batch d =
+            xsimd::max(1.0f + g * g + 2.0f * g * cosine, Batch((1.0f - std::abs(g)) * (1.0f - std::abs(g))));
+        return (1.0f - g * g) * 0.25f * InvPi / (d * xsimd::sqrt(d));
+    }
+
+    uint64_t add(const Ribbon& ribbon, const StraightPiece& piece, int y, int x, const Approaches& found,
+                 int lane) const {
+        const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
+        if (piece.medium[pixel] != ribbon.medium) return 0;
+        const int interactions = int(piece.interactions[pixel]) + ribbon.bounce + 1;
+        if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return 0;
+        float weight = found.weight[lane];
+        int frame = 0;
+        if (!timeless_) {
+            const double toCamera = scene_.transport.cameraUnwarped ? 0.0 : double(found.toCamera[lane]);
+            const double arrival = ribbon.time + (double(found.alongBeam[lane]) + toCamera) / speed_;
+            frame = sensor_.gate.frameOf(arrival);
+            if (frame < 0) return 0;
+            weight *= sensor_.weight(arrival);
+        }
+        Rgb radiance = ribbon.power * piece.throughput[pixel] * weight;
+        if (!ribbon.simple) {
+            const Medium& medium = scene_.media[size_t(ribbon.medium)];
+            const Vec3f back(-record_.x[pixel], -record_.y[pixel], -record_.z[pixel]);
+            radiance = radiance *
+                       medium.transmittance(ribbon.fromBase + found.alongBeam[lane] + found.alongRay[lane] -
+                                            piece.start[pixel]) *
+                       medium.phase.eval(ribbon.direction, back);
+        }
+        film_.passPixel(frame, x, y) += radiance;
+        return 1;
+    }
+
+    const Scene& scene_;
+    Sensor sensor_;
+    const SensorRecord& record_;
+    ImageFootprint footprint_;
+    float radius_, scale_;
+    Film& film_;
+    double speed_;
+    bool timeless_;
+};
+
+} // namespace
+
+uint64_t splatBeams(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film) {
+    const Splatter splatter(scene, sensor, record, radius, scale, film);
+    const size_t bands = size_t((record.height + BandRows - 1) / BandRows);
+    std::vector<std::optional<Ribbon>> ribbons(beams.size());
+    tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) { ribbons[i] = splatter.ribbon(beams[i]); });
+    // Beams by band, in their own order: the sums do not depend on the threads.
+    std::vector<std::vector<uint32_t>> byBand(bands);
+    for (size_t i = 0; i < ribbons.size(); ++i)
+        if (ribbons[i])
+            for (int band = ribbons[i]->area.top / BandRows; band <= ribbons[i]->area.bottom / BandRows; ++band)
+                byBand[size_t(std::clamp(band, 0, int(bands) - 1))].push_back(uint32_t(i));
+    std::vector<uint64_t> gathered(bands, 0);
+    tbb::parallel_for(size_t(0), bands, [&](size_t band) {
+        const int first = int(band) * BandRows, last = std::min(first + BandRows, record.height) - 1;
+        for (const uint32_t i : byBand[band]) gathered[band] += splatter.draw(*ribbons[i], first, last);
+    });
+    uint64_t total = 0;
+    for (const uint64_t count : gathered) total += count;
+    return total;
+}
+
+} // namespace tungsten::photon

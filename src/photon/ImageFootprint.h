@@ -1,0 +1,49 @@
+#pragma once
+// Which pixels of a pinhole camera's image have rays near something.
+
+#include "tungsten/camera/Camera.h"
+
+#include <optional>
+
+namespace tungsten::photon {
+
+/// Rows and columns, inclusive.
+struct PixelArea {
+    int left, right, top, bottom;
+};
+
+/// Directions p with normal . p >= 0, by columns X and rows Y of the image plane: a X + b Y + c >= 0.
+struct ImageHalfPlane {
+    float a, b, c;
+};
+
+/// Projects onto the image of a pinhole camera. Its answers hold every ray that the pixel filter can draw.
+class ImageFootprint {
+  public:
+    explicit ImageFootprint(const Camera& camera);
+
+    /// Pixels whose rays can come within `radius` of the line from `start` to `end`; none if there are none.
+    [[nodiscard]] std::optional<PixelArea> around(const Vec3f& start, const Vec3f& end, float radius) const;
+    [[nodiscard]] std::optional<PixelArea> around(const Vec3f& point, float radius) const {
+        return around(point, point, radius);
+    }
+    /// Where directions from the camera have a component along `normal`.
+    [[nodiscard]] ImageHalfPlane halfPlane(const Vec3f& normal) const;
+    /// Narrows columns [left, right] to those whose pixels in row y can lie in the half-plane.
+    void narrow(const ImageHalfPlane& half, int y, int& left, int& right) const;
+
+  private:
+    struct Slopes {
+        float low, high;
+    };
+    /// Of rays within `radius`, sideways against forward; none where they have no bounds.
+    [[nodiscard]] static std::optional<Slopes> slopes(float sideways, float forward, float radius);
+
+    Frame frame_;
+    Vec3f origin_;
+    int width_, height_;
+    float margin_; ///< rays leave pixel centres by the filter, whose samples may reach a little beyond its half width
+    float pixelsPerSlope_;
+};
+
+} // namespace tungsten::photon
