@@ -30,7 +30,9 @@ inline std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& d
 class BeamGather {
   public:
     /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
-    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius);
+    /// `fewRays`: few segments will be asked for.
+    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius,
+               bool fewRays = false);
 
     /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the
     /// sensor, to the frames they fall in (photon-primitives, eq. 4). Returns how many were gathered.

@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <xsimd/xsimd.hpp>
 
+#include <array>
+
 namespace tungsten::photon {
 
 namespace {
@@ -13,6 +15,7 @@ using Batch = xsimd::batch<float>;
 constexpr int Lanes = int(Batch::size);
 constexpr int BandRows = 4; ///< rows of the image that one task draws
 constexpr float LeastSine = 1e-4f;
+alignas(64) constexpr float LaneNumbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A beam as the camera sees it. Its line comes closest to the camera at `foot`, relative to the camera; distances
 /// along the beam count from there, which leaves no difference of large numbers (closestApproach).
@@ -20,8 +23,9 @@ struct Ribbon {
     Vec3f direction, foot;
     Vec3f normal; ///< foot x direction: of the plane through camera and beam, as long as foot
     float low, high, fromBase;
-    double time; ///< at the foot, where a flight from the base would pass or would have passed
-    Rgb power;   ///< with the kernel's constant and the flight's transmittance up to the foot
+    float shortest, longest; ///< from the foot over the beam to the camera, inside the gate
+    double time;             ///< at the foot, where a flight from the base would pass or would have passed
+    Rgb power;               ///< with the kernel's constant and the flight's transmittance up to the foot
     ImageHalfPlane sides[2];
     bool surrounds; ///< the camera lies inside the beam's cylinder: there are no sides
     float g, sigmaT;
@@ -30,13 +34,39 @@ struct Ribbon {
     PixelArea area;
 };
 
+/// What every pixel with this piece of the rays shares.
+struct SharedPiece {
+    bool shared = true;
+    int medium = -1, interactions = 0;
+
+    explicit SharedPiece(const StraightPiece& piece) {
+        for (size_t i = 0; i < piece.end.size(); ++i) {
+            if (!(piece.end[i] > piece.start[i])) continue;
+            if (medium < 0) {
+                medium = piece.medium[i];
+                interactions = piece.interactions[i];
+            }
+            shared = shared && piece.medium[i] == medium && piece.interactions[i] == interactions;
+        }
+    }
+};
+
+/// Sums of a few rows' pixels by piece and channel, for what needs no look at the single pixel: without the rays'
+/// throughput.
+struct BandSums {
+    size_t firstPixel, pixels;
+    std::vector<std::array<std::vector<float>, 3>> pieces;
+};
+
 class Splatter {
   public:
     Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, float radius, double scale,
              Film& film)
         : scene_(scene), sensor_(sensor), record_(record), footprint_(scene.camera), radius_(radius),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
-          timeless_(sensor.gate.steadyState) {}
+          timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {
+        for (const StraightPiece& piece : record.pieces) shared_.emplace_back(piece);
+    }
 
     [[nodiscard]] std::optional<Ribbon> ribbon(const PhotonBeam& beam) const {
         const auto area = footprint_.around(beam.base + beam.direction * beam.tStart,
@@ -55,6 +85,8 @@ class Splatter {
         r.high = float(double(beam.tEnd) - toFoot);
         r.fromBase = float(toFoot);
         r.time = beam.time + toFoot / speed_;
+        r.shortest = float((sensor_.gate.start - r.time) * speed_);
+        r.longest = float((sensor_.gate.end() - r.time) * speed_);
         r.power = beam.power * medium.sigmaS * (scale_ / (2.0f * radius_));
         r.g = medium.phase.g();
         r.sigmaT = medium.sigmaT().x;
@@ -74,16 +106,42 @@ class Splatter {
         return r;
     }
 
-    uint64_t draw(const Ribbon& ribbon, int firstRow, int lastRow) const {
+    [[nodiscard]] BandSums newBand(int firstRow, int lastRow) const {
+        const size_t width = size_t(record_.width);
+        BandSums band{size_t(firstRow) * width, size_t(lastRow - firstRow + 1) * width, {}};
+        band.pieces.resize(shared_.size());
+        for (size_t k = 0; k < shared_.size(); ++k)
+            if (oneFrame_ && shared_[k].shared)
+                for (auto& channel : band.pieces[k]) channel.resize(band.pixels + size_t(Lanes));
+        return band;
+    }
+    uint64_t draw(const Ribbon& ribbon, int firstRow, int lastRow, BandSums& band) const {
         uint64_t gathered = 0;
         for (int y = std::max(ribbon.area.top, firstRow); y <= std::min(ribbon.area.bottom, lastRow); ++y) {
             int left = ribbon.area.left, right = ribbon.area.right;
             if (!ribbon.surrounds)
                 for (const ImageHalfPlane& side : ribbon.sides) footprint_.narrow(side, y, left, right);
             if (left > right) continue;
-            for (const StraightPiece& piece : record_.pieces) gathered += drawRow(ribbon, piece, y, left, right);
+            for (size_t k = 0; k < shared_.size(); ++k) {
+                const StraightPiece& piece = record_.pieces[k];
+                if (!(ribbon.simple && oneFrame_ && shared_[k].shared))
+                    gathered += drawRow(ribbon, piece, y, left, right, nullptr, band.firstPixel);
+                else if (shared_[k].medium == ribbon.medium && rendered(shared_[k].interactions + ribbon.bounce + 1))
+                    gathered += drawRow(ribbon, piece, y, left, right, &band.pieces[k], band.firstPixel);
+            }
         }
         return gathered;
+    }
+    void addToFilm(const BandSums& band) const {
+        const size_t width = size_t(record_.width);
+        for (size_t k = 0; k < band.pieces.size(); ++k) {
+            const auto& sums = band.pieces[k];
+            for (size_t i = 0; i < band.pixels && !sums[0].empty(); ++i) {
+                const size_t pixel = band.firstPixel + i;
+                film_.passPixel(0, int(pixel % width), int(pixel / width)) +=
+                    Rgb(sums[0][i], sums[1][i], sums[2][i]) * record_.pieces[k].throughput[pixel];
+            }
+        }
     }
 
   private:
@@ -93,24 +151,47 @@ class Splatter {
         alignas(64) float weight[Lanes]; ///< 0 for rays that miss
     };
 
-    uint64_t drawRow(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right) const {
+    /// Into `sums`, or pixel by pixel into the film.
+    uint64_t drawRow(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right,
+                     std::array<std::vector<float>, 3>* sums, size_t firstPixel) const {
         const size_t row = size_t(y) * size_t(record_.width), pixels = record_.x.size();
+        if (pixels < size_t(Lanes)) return drawSmallImage(ribbon, piece, y, left, right);
         uint64_t gathered = 0;
         Approaches found;
         for (int x = left; x <= right; x += Lanes) {
             const int count = std::min(Lanes, right - x + 1);
             // The last registers of the image begin early; their first lanes have been drawn or lie outside.
-            const size_t wanted = row + size_t(x), first = std::min(wanted, pixels - std::min(pixels, size_t(Lanes)));
-            if (pixels < size_t(Lanes)) return gathered + drawSmallImage(ribbon, piece, y, x, right);
+            const size_t wanted = row + size_t(x), first = std::min(wanted, pixels - size_t(Lanes));
             const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
             if (!approach(ribbon, load(record_.x), load(record_.y), load(record_.z), load(piece.start), load(piece.end),
                           found))
                 continue;
             const int skipped = int(wanted - first);
+            if (sums && skipped == 0) {
+                gathered += collect(ribbon, found, count, *sums, first - firstPixel);
+                continue;
+            }
             for (int lane = skipped; lane < skipped + count; ++lane)
                 if (found.weight[lane] > 0.0f) gathered += add(ribbon, piece, y, x + lane - skipped, found, lane);
         }
         return gathered;
+    }
+    /// The first `count` lanes.
+    uint64_t collect(const Ribbon& ribbon, const Approaches& found, int count, std::array<std::vector<float>, 3>& sums,
+                     size_t at) const {
+        auto weight = Batch::load_aligned(found.weight);
+        auto inside = weight > 0.0f && Batch::load_aligned(LaneNumbers) < float(count);
+        if (!timeless_) {
+            Batch length = Batch::load_aligned(found.alongBeam);
+            if (!scene_.transport.cameraUnwarped) length += Batch::load_aligned(found.toCamera);
+            inside = inside && length >= ribbon.shortest && length < ribbon.longest;
+        }
+        weight = xsimd::select(inside, weight, Batch(0.0f));
+        for (int k = 0; k < 3; ++k) {
+            float* sum = sums[size_t(k)].data() + at;
+            (Batch::load_unaligned(sum) + weight * ribbon.power[k]).store_unaligned(sum);
+        }
+        return uint64_t(xsimd::hadd(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
     }
     /// Fewer pixels than lanes.
     uint64_t drawSmallImage(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right) const {
@@ -153,12 +234,14 @@ class Splatter {
         return (1.0f - g * g) * 0.25f * InvPi / (d * xsimd::sqrt(d));
     }
 
+    [[nodiscard]] bool rendered(int interactions) const {
+        return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
+    }
     uint64_t add(const Ribbon& ribbon, const StraightPiece& piece, int y, int x, const Approaches& found,
                  int lane) const {
         const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
         if (piece.medium[pixel] != ribbon.medium) return 0;
-        const int interactions = int(piece.interactions[pixel]) + ribbon.bounce + 1;
-        if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return 0;
+        if (!rendered(int(piece.interactions[pixel]) + ribbon.bounce + 1)) return 0;
         float weight = found.weight[lane];
         int frame = 0;
         if (!timeless_) {
@@ -188,7 +271,8 @@ class Splatter {
     float radius_, scale_;
     Film& film_;
     double speed_;
-    bool timeless_;
+    bool timeless_, oneFrame_; ///< without a gate; no frame to choose and no response to weigh by
+    std::vector<SharedPiece> shared_;
 };
 
 } // namespace
@@ -208,7 +292,9 @@ uint64_t splatBeams(const Scene& scene, const Sensor& sensor, const SensorRecord
     std::vector<uint64_t> gathered(bands, 0);
     tbb::parallel_for(size_t(0), bands, [&](size_t band) {
         const int first = int(band) * BandRows, last = std::min(first + BandRows, record.height) - 1;
-        for (const uint32_t i : byBand[band]) gathered[band] += splatter.draw(*ribbons[i], first, last);
+        BandSums sums = splatter.newBand(first, last);
+        for (const uint32_t i : byBand[band]) gathered[band] += splatter.draw(*ribbons[i], first, last, sums);
+        splatter.addToFilm(sums);
     });
     uint64_t total = 0;
     for (const uint64_t count : gathered) total += count;

@@ -46,4 +46,23 @@ bool CameraView::sees(const Vec3f& point, float radius) const {
            std::abs(local.y) <= marginY_ * local.z + slantY_ * reach;
 }
 
+FlightPart CameraView::seenPart(const Vec3f& origin, const Vec3f& direction, float radius) const {
+    FlightPart part{0.0, std::numeric_limits<double>::infinity()};
+    if (aperture_ > 0.0f) return part;
+    const Vec3f from = frame_.toLocal(origin - position_), along = frame_.toLocal(direction);
+    // value + s slope >= 0, a little wide against rounding.
+    const auto clip = [&](double value, double slope) {
+        value += 1e-5 * (std::abs(value) + double(radius));
+        if (slope > 0.0) part.start = std::max(part.start, -value / slope);
+        if (slope < 0.0) part.end = std::min(part.end, -value / slope);
+        if (slope == 0.0 && value < 0.0) part.end = -1.0;
+    };
+    clip(double(from.z + radius), double(along.z));
+    for (const float side : {-1.0f, 1.0f}) {
+        clip(double(marginX_ * from.z + side * from.x + slantX_ * radius), double(marginX_ * along.z + side * along.x));
+        clip(double(marginY_ * from.z + side * from.y + slantY_ * radius), double(marginY_ * along.z + side * along.y));
+    }
+    return part;
+}
+
 } // namespace tungsten::photon

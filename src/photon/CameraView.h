@@ -1,6 +1,8 @@
 #pragma once
 // What the camera can see: a distribution of directions into its image, and a test for points.
 
+#include "photon/ArrivalTest.h"
+
 #include "darts/Vec3.h"
 
 #include "tungsten/camera/Camera.h"
@@ -19,6 +21,8 @@ class CameraView {
     [[nodiscard]] float pdf(const darts::Vec3& direction) const;
     /// False when no sensor ray comes within `radius` of the point. Margins hold the pixel filter and the aperture.
     [[nodiscard]] bool sees(const Vec3f& point, float radius) const;
+    /// The part of a ray whose points it sees: an interval, as what a pinhole sees is convex. A thin lens: all of it.
+    [[nodiscard]] FlightPart seenPart(const Vec3f& origin, const Vec3f& direction, float radius) const;
 
   private:
     static constexpr float SphereShare = 0.1f;

@@ -25,9 +25,9 @@ Element* newBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, s
 
 } // namespace
 
-EmbreeBeams::EmbreeBeams(const std::vector<PhotonBeam>& beams, float radius)
+EmbreeBeams::EmbreeBeams(const std::vector<PhotonBeam>& beams, float radius, bool fewRays)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    cut(beams, radius);
+    cut(beams, radius, fewRays ? 1.0f : MostPieces);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE);
     auto* vertices = newBuffer<CurveVertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * pieces_.size());
     auto* firstVertices = newBuffer<uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, pieces_.size());
@@ -45,12 +45,12 @@ EmbreeBeams::EmbreeBeams(const std::vector<PhotonBeam>& beams, float radius)
     rtcCommitScene(scene_);
 }
 
-void EmbreeBeams::cut(const std::vector<PhotonBeam>& beams, float radius) {
+void EmbreeBeams::cut(const std::vector<PhotonBeam>& beams, float radius, float mostPieces) {
     pieces_.reserve(beams.size());
     for (uint32_t i = 0; i < beams.size(); ++i) {
         const PhotonBeam& beam = beams[i];
         const float length = beam.tEnd - beam.tStart;
-        const float count = std::clamp(std::ceil(length / (PieceInRadii * radius)), 1.0f, MostPieces);
+        const float count = std::clamp(std::ceil(length / (PieceInRadii * radius)), 1.0f, mostPieces);
         float start = beam.tStart;
         for (float k = 1.0f; k <= count; ++k) {
             const float end = k == count ? beam.tEnd : beam.tStart + length * (k / count);

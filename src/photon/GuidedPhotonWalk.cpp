@@ -163,7 +163,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     ray_.tMax = Infinity;
     const float surface = hit ? hit->t : Infinity;
     if (context_.storeVolume) placeControlVertex(medium, guide, h, surface);
-    if (context_.storeBeams) depositBeam(medium, surface);
+    if (context_.storeBeams) depositSeenBeam(medium, surface);
 
     const auto random = [this] { return sampler_.next1D(); };
     const darts::DistanceSample step = guide.sampleDistance(residual_, h, surface, darts::vec3(power_), random);
@@ -210,6 +210,17 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     if (!guidance_.directView())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
     store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power, bounce_ + 1);
+}
+
+void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
+    if (!guidance_.directView()) return depositBeam(medium, surface);
+    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeRadius);
+    const float end = std::min(surface, float(seen.end));
+    if (!(float(seen.start) < end)) return;
+    storeBeam(deposits_.beams, *arrival_, medium,
+              {time_, ray_.origin, ray_.direction, power_, float(seen.start), end, uint16_t(bounce_),
+               int16_t(region_.medium)});
 }
 
 void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h) {

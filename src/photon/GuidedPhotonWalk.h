@@ -28,6 +28,8 @@ class GuidedPhotonWalk : private PhotonWalk {
     bool crossMedium(const Medium& medium, const darts::Guide& guide);
     bool scatter(const Medium& medium, const darts::Guide& guide, float distance);
     void placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface);
+    /// In direct view only what the camera's image shows: the store's room is for what can count.
+    void depositSeenBeam(const Medium& medium, float surface);
     /// Ordinary photons share with control vertices where sensor paths can fold.
     void depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h);
     void store(const Vec3f& position, double time, const Rgb& power, int bounce);

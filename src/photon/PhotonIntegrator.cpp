@@ -166,7 +166,8 @@ void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const 
         const StageTimer timer(statistics, "build");
         if (!single) straight.beams = straightParts(*scene_, arrival, all);
         if (!structures.splatted || foldedRays_)
-            structures.beams = std::make_unique<BeamGather>(*scene_, structures.sensor, all, radius);
+            structures.beams =
+                std::make_unique<BeamGather>(*scene_, structures.sensor, all, radius, structures.splatted);
         if (!structures.splatted && !single)
             structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.sensor, straight.beams, radius);
     }

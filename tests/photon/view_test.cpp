@@ -77,6 +77,35 @@ TEST_P(Sight, MissesNoPointNearASensorRay) {
     EXPECT_GT(hidden, 25000) << "the test must also say no";
 }
 
+TEST_P(Sight, HoldsAnIntervalOfARay) {
+    const Camera camera = slantedCamera(GetParam().model, GetParam().filter);
+    const bool pinhole = std::holds_alternative<Pinhole>(camera.model);
+    const CameraView view(camera);
+    Sampler sampler(5, RandomStream::Test, 0, 0);
+    int inside = 0, outside = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const Vec3f origin = camera.position() + warp::squareToSphere(sampler.next2D()) * (5.0f * sampler.next1D());
+        const Vec3f direction = warp::squareToSphere(sampler.next2D());
+        const float radius = i % 3 == 0 ? 1.0f : 0.05f;
+        const FlightPart part = view.seenPart(origin, direction, radius);
+        for (int k = 0; k < 20; ++k) {
+            const float s = 8.0f * sampler.next1D();
+            const bool sees = view.sees(origin + direction * s, radius),
+                       held = double(s) >= part.start && double(s) <= part.end;
+            EXPECT_TRUE(held || !sees) << "lost: " << i << ' ' << s << " of " << part.start << " .. " << part.end;
+            const bool wellInside = double(s) > part.start + 0.01 && double(s) < part.end - 0.01;
+            if (pinhole && wellInside) {
+                EXPECT_TRUE(view.sees(origin + direction * s, radius + 0.001f)) << i << ' ' << s;
+            }
+            ++(held ? inside : outside);
+        }
+    }
+    EXPECT_GT(inside, 1000);
+    if (pinhole) {
+        EXPECT_GT(outside, 5000);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Cameras, Sight,
                          testing::Values(ViewCase{"Pinhole", Pinhole{60.0f}, FilterType::Box},
                                          ViewCase{"Tele", Pinhole{5.0f}, FilterType::Lanczos},
