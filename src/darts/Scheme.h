@@ -26,6 +26,10 @@ struct Scheme {
     /// first; by default not in the paper's preset.
     std::optional<bool> surfaceConnections;
     [[nodiscard]] bool connectsSurfaces() const { return surfaceConnections.value_or(!published); }
+    /// Sensor paths of a photon map go on along the lobes of glossy surfaces, as they do along mirrors; by default not
+    /// in the paper's preset.
+    std::optional<bool> glossySensorPaths;
+    [[nodiscard]] bool followsGlossy() const { return on && glossySensorPaths.value_or(!published); }
 
     std::optional<Direction> direction;
     std::optional<Greens> greens;
@@ -137,6 +141,7 @@ void readSwitches(const Block& block, Scheme& scheme) {
     scheme.overlap = flag(block, "overlap");
     scheme.guideEmission = flag(block, "guide_emission");
     scheme.surfaceConnections = flag(block, "surface_connections");
+    scheme.glossySensorPaths = flag(block, "glossy_sensor_paths");
 }
 
 } // namespace detail

@@ -1,15 +1,10 @@
 #pragma once
-// Straight connections between a path's vertices and emitters, and weights among ways to make them.
+// Straight connections between a path's vertices and emitters.
 
 #include "tungsten/scene/Interaction.h"
+#include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::path {
-
-/// Power heuristic with exponent 2 (Veach 1997).
-inline float powerHeuristic(float a, float b) {
-    const float aa = a * a, bb = b * b;
-    return aa + bb > 0.0f ? aa / (aa + bb) : 0.0f;
-}
 
 /// A connection that starts in `region`; its ray's tMin is above 0 when it leaves a surface, `toSurface` says whether
 /// it ends on one. Without forward boundaries in the scene every surface is opaque: one ray, one region.

@@ -2,7 +2,7 @@
 // The integrators `path_tracer` and `transient_path_tracer`: unbiased, steady state or time-resolved.
 
 #include "path/GuidedPathWalk.h"
-#include "path/LightChoice.h"
+#include "tungsten/scene/LightChoice.h"
 
 #include "darts/TemporalResponse.h"
 

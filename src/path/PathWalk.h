@@ -3,9 +3,9 @@
 
 #include "path/ArrivalBound.h"
 #include "path/CameraPath.h"
-#include "path/LightChoice.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
+#include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::path {
 

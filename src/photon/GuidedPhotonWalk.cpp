@@ -185,6 +185,7 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     ray_ = Ray{position, before};
     sinceVertex_ = 0.0f;
     connectable_ = true;
+    fromLight_ = false;
     if (!look(guide) || !survives(guide)) return false;
     if (flights_ < medium.maxBounces) // else no flight would leave here
         connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });

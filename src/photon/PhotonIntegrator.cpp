@@ -72,6 +72,7 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
                   surfaces
                       ? "smooth surfaces are gathered"
                       : (settings_.includeSurfaces ? "no surface has a smooth lobe" : "include_surfaces is false"));
+    planGlossyPaths(plan);
     describeGuidance(plan);
     const bool direct = ArrivalTest(*scene_, plan).directView();
     plan.describe(
@@ -79,6 +80,23 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
         !plan.timeResolved ? "steady state: every photon counts"
         : direct           ? "direct view: photons that arrive outside the gate are not stored"
                  : "sensor paths can fold, change speed or start at many points: photons are tested when gathered");
+}
+
+void PhotonIntegrator::planGlossyPaths(EffectPlan& plan) const {
+    if (!PhotonGuidance::obstacle(*scene_, settings_.scheme, plan).empty()) return;
+    const auto glossy = [](const BsdfPtr& bsdf) { return isGlossyOnly(*bsdf); };
+    const bool any = std::any_of(scene_->primitives.begin(), scene_->primitives.end(), [&](const Primitive& primitive) {
+        return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), glossy);
+    });
+    // Time without camera segments ends at the first surface that is no mirror.
+    const bool unwarped = scene_->transport.cameraUnwarped;
+    plan.glossySensorPaths = any && settings_.includeSurfaces && !unwarped && settings_.scheme.followsGlossy();
+    plan.specularSensorPaths = plan.specularSensorPaths || plan.glossySensorPaths;
+    plan.describe("glossy sensor paths", plan.glossySensorPaths,
+                  !any                        ? "no surface is glossy without being diffuse"
+                  : plan.glossySensorPaths    ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
+                  : settings_.includeSurfaces ? "the preset or glossy_sensor_paths leaves glossy surfaces to photons"
+                                              : "include_surfaces is false");
 }
 
 void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
@@ -110,6 +128,8 @@ std::string PhotonIntegrator::connectionObstacle(const EffectPlan& plan) const {
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
     straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
+    rules_ = {settings_.includeSurfaces, plan.glossySensorPaths};
+    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_);
     foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }
@@ -191,7 +211,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
         const StageTimer timer(statistics, "sensor record");
-        record = recordSensorPaths(*scene_, connect, pass, statistics);
+        record = recordSensorPaths(*scene_, connect, rules_, pass, statistics);
         if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass);
     }
     PhotonMaps maps;
@@ -201,7 +221,8 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         maps = photonPass_->trace(photons, connections.get(), statistics);
     }
     StraightStores straight;
-    GatherStructures structures{maps, sensor, splat, settings_.includeSurfaces, settings_.gatherCount};
+    GatherStructures structures{
+        maps, sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(), settings_.gatherCount};
     if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, straight, structures, film, statistics);
     if (!maps.beams.beams.empty()) gatherBeams(maps, photons.index, record, straight, structures, film, statistics);
     {

@@ -22,6 +22,7 @@ class PhotonIntegrator : public Integrator {
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
     [[nodiscard]] TimeGate gate(uint32_t pass) const;
     void planVolume(EffectPlan& plan) const;
+    void planGlossyPaths(EffectPlan& plan) const;
     void describeGuidance(EffectPlan& plan) const;
     /// Why guided light paths do not connect to surfaces; empty if they do.
     [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
@@ -36,10 +37,11 @@ class PhotonIntegrator : public Integrator {
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     std::unique_ptr<PhotonPass> photonPass_;
-    bool connects_ = false; ///< light paths to visible surface points
-    bool straightRays_ =
-        false;                ///< of one origin and speed: volume photons and beams can be splatted, surfaces connected
-    bool foldedRays_ = false; ///< mirrors or refraction can be seen
+    SensorPathRules rules_;
+    std::unique_ptr<GlossyLight> glossy_; ///< with rules_.glossy
+    bool connects_ = false;               ///< light paths to visible surface points
+    bool straightRays_ = false; ///< of one origin and speed: photons and beams can be splatted, surfaces connected
+    bool foldedRays_ = false;   ///< mirrors, refraction or followed glossy surfaces can be seen
 };
 
 } // namespace tungsten::photon

@@ -72,7 +72,7 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
       storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
       storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
-      storeSurface_(settings.includeSurfaces && plan.surfaceScattering) {
+      storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     const TimeGate& gate = scene.transport.gate;
     for (int frame = 0; frame < gate.frames; ++frame) {
@@ -109,7 +109,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* con
                                   !maps.surface.full,
                                   !maps.volume.full,
                                   !maps.beams.full,
-                                  connections ? connections->nearField() : 0.0f};
+                                  connections ? connections->nearField() : 0.0f,
+                                  glossySensorPaths_};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];

@@ -67,6 +67,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     }
     sinceVertex_ = 0.0f;
     connectable_ = true;
+    fromLight_ = false;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
     return true;
 }
@@ -82,11 +83,17 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     if (!context_.storeSurface || (surface_.bsdf->lobes() & lobe::Smooth) == 0) return true;
     const float shading = std::abs(ray_.direction.dot(surface_.frame.n)),
                 geometric = std::abs(ray_.direction.dot(hit.ng));
+    const float share = photonShare();
+    if (share > 0.0f && geometric > 0.0f)
+        deposit(deposits_.surface, hit.position, power_ * (share * shading / geometric), -1);
+    return true;
+}
+
+float PhotonWalk::photonShare() const {
+    if (context_.glossySensorPaths && isGlossyOnly(*surface_.bsdf)) return fromLight_ && !connectable_ ? 1.0f : 0.0f;
     // Where vertices connect to surfaces too, photons count for what is near.
     const float nearField = connectable_ && receivesConnections(*surface_.bsdf) ? context_.nearField : 0.0f;
-    const float share = nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
-    if (geometric > 0.0f) deposit(deposits_.surface, hit.position, power_ * (share * shading / geometric), -1);
-    return true;
+    return nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
 }
 
 bool PhotonWalk::leaveSurface() {
@@ -99,6 +106,7 @@ bool PhotonWalk::leaveSurface() {
         sinceVertex_ = 0.0f;
         connectable_ =
             (exit->lobe & lobe::Smooth) != 0 && ahead.medium == region_.medium && ahead.speed == region_.speed;
+        fromLight_ = fromLight_ && (exit->lobe & lobe::Smooth) == 0;
     }
     power_ = power_ * exit->weight;
     if (isBlack(power_)) return false;

@@ -27,6 +27,7 @@ struct WalkContext {
     bool storeSurface, storeVolume, storeBeams;
     /// a^2 of SurfaceConnections where light paths also connect to surfaces; else 0.
     float nearField = 0.0f;
+    bool glossySensorPaths = false; ///< SensorPathRules::glossy
 };
 
 class PhotonWalk {
@@ -49,6 +50,8 @@ class PhotonWalk {
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
+    /// Part of the light arriving on surface_ that photons bring; sensor paths and connections find the rest.
+    [[nodiscard]] float photonShare() const;
     /// False if it cannot be gathered.
     bool deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 
@@ -69,6 +72,7 @@ class PhotonWalk {
     int consecutiveMedium_ = 0; ///< medium vertices since the last light or surface
     float sinceVertex_ = 0.0f;  ///< way since the last vertex that scattered
     bool connectable_ = false;  ///< that vertex has no single direction
+    bool fromLight_ = true;     ///< nothing has scattered since the light but mirrors and refraction
 };
 
 } // namespace tungsten::photon

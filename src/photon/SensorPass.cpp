@@ -1,7 +1,5 @@
 #include "photon/SensorPass.h"
 
-#include "photon/SensorPath.h"
-
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
@@ -24,8 +22,11 @@ struct Workspace {
 /// Gathers on a camera path.
 class SensorGather {
   public:
-    SensorGather(const Scene& scene, const GatherStructures& structures, Workspace& workspace, SensorCounters& counters)
-        : scene_(scene), structures_(structures), workspace_(workspace), counters_(counters) {}
+    /// `sampler` draws lights. `oversampled`: highlights are left to HighlightGather.
+    SensorGather(const Scene& scene, const GatherStructures& structures, Sampler sampler, bool oversampled,
+                 Workspace& workspace, SensorCounters& counters)
+        : scene_(scene), structures_(structures), sampler_(sampler), oversampled_(oversampled), workspace_(workspace),
+          counters_(counters) {}
 
     void segment(const SensorState& state, float length) {
         if (!scene_.medium(state.region)) return;
@@ -40,16 +41,26 @@ class SensorGather {
 
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
         if (!structures_.includeSurfaces) return;
-        if (surface.primitive->emitter >= 0) addEmission(state, surface);
+        if (surface.primitive->emitter >= 0 && !state.glossy) addEmission(state, surface, 1.0f);
+        if (structures_.glossy && !oversampled_) highlight(state, surface, 1.0f);
         if (structures_.surfaces && (surface.bsdf->lobes() & lobe::Smooth) != 0) gatherSurface(state, surface);
     }
 
     void escaped(const SensorState& state) {
         if (!structures_.includeSurfaces || scene_.infiniteEmitters.empty() || scene_.medium(state.region) ||
-            !rendered(state.interactions))
+            state.glossy || !rendered(state.interactions))
             return;
         const Emitter& environment = scene_.emitters[size_t(scene_.infiniteEmitters.back())];
         add(state.throughput * environmentRadiance(environment, state.ray.direction), Infinity);
+    }
+
+    /// Light from the lights by way of glossy surfaces, times `share`.
+    void highlight(const SensorState& state, const SurfaceInteraction& surface, float share) {
+        if (surface.primitive->emitter >= 0 && state.glossy)
+            addEmission(state, surface, share * structures_.glossy->emissionWeight(state, surface));
+        if (!isGlossyOnly(*surface.bsdf)) return;
+        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, sampler_, counters_.rays);
+        if (light) add(light->radiance * share, light->time);
     }
 
   private:
@@ -84,13 +95,14 @@ class SensorGather {
         return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
     }
 
-    void addEmission(const SensorState& state, const SurfaceInteraction& surface) {
+    void addEmission(const SensorState& state, const SurfaceInteraction& surface, float weight) {
         if (!rendered(state.interactions)) return;
         const SurfaceHit& hit = surface.hit;
         const Emitter& emitter = scene_.emitters[size_t(surface.primitive->emitter)];
         const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -state.ray.direction);
         const double time = state.time + double(hit.t) / double(state.region.speed);
-        add(state.throughput * radiance, emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
+        add(state.throughput * radiance * weight,
+            emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
     }
 
     /// Density estimate with a constant kernel over the k nearest photons (scene format, section 10.4).
@@ -117,8 +129,20 @@ class SensorGather {
 
     const Scene& scene_;
     const GatherStructures& structures_;
+    Sampler sampler_;
+    bool oversampled_;
     Workspace& workspace_;
     SensorCounters& counters_;
+};
+
+/// Light from the lights on glossy surfaces, one of GlossyLight::Samples paths.
+struct HighlightGather {
+    SensorGather& gather;
+    void segment(const SensorState&, float) const {}
+    void surface(const SensorState& state, const SurfaceInteraction& surface) const {
+        gather.highlight(state, surface, 1.0f / float(GlossyLight::Samples));
+    }
+    void escaped(const SensorState&) const {}
 };
 
 } // namespace
@@ -135,8 +159,17 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                             size_t(y) * width + size_t(x));
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
-            counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.includeSurfaces, sampler,
-                                              SensorGather(scene, structures, workspace, counters));
+            const size_t pixel = size_t(y) * width + size_t(x);
+            Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
+            const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
+            SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
+            counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, gather);
+            for (uint32_t k = 0; oversampled && k < GlossyLight::Samples; ++k) {
+                const Vec2f uAgain = sampler.next2D(), uLensAgain = sampler.next2D();
+                const Ray again = scene.camera.generateRay({x, y}, uAgain, uLensAgain);
+                counters.rays += followSensorPath(scene, {again, scene.cameraRegion}, structures.rules, sampler,
+                                                  HighlightGather{gather});
+            }
         }
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;

@@ -2,6 +2,7 @@
 // The sensor pass: camera rays gather what the photon pass has left.
 
 #include "photon/BeamGather.h"
+#include "photon/GlossyLight.h"
 #include "photon/NearestPhotons.h"
 #include "photon/PhotonPass.h"
 #include "photon/PointGather.h"
@@ -14,6 +15,8 @@ struct GatherStructures {
     Sensor sensor;         ///< its gate is the pass's: the scene's, or a delta gate's temporal kernel
     bool splatted = false; ///< straight rays have their volume photons or beams already
     bool includeSurfaces = true;
+    SensorPathRules rules{};
+    const GlossyLight* glossy = nullptr; ///< with rules.glossy
     uint32_t gatherCount = 0;
     float surfaceRadius = 0.0f;
     std::unique_ptr<PointGather> points{}; ///< null when there is no volume photon

@@ -6,6 +6,24 @@
 
 namespace tungsten::photon {
 
+/// Surfaces with glossy lobes alone: almost mirrors.
+inline bool isGlossyOnly(const Bsdf& bsdf) {
+    return (bsdf.lobes() & lobe::Smooth) != 0 && (bsdf.lobes() & lobe::DiffuseReflection) == 0;
+}
+
+/// What a camera path follows besides going straight on.
+struct SensorPathRules {
+    bool specular = true; ///< mirrors and refraction
+    /// Surfaces that are glossy only, along a sampled direction. They look for light themselves; photons bring only
+    /// what comes from lights through mirrors and refraction, or from lights of a single direction.
+    bool glossy = false;
+
+    [[nodiscard]] LobeMask followed(const Bsdf& bsdf) const {
+        if (glossy && isGlossyOnly(bsdf)) return lobe::All;
+        return specular ? lobe::Specular | lobe::Forward : lobe::Forward;
+    }
+};
+
 /// Where a camera path has got to.
 struct SensorState {
     Ray ray;
@@ -13,16 +31,20 @@ struct SensorState {
     Rgb throughput{1.0f};
     double time = 0.0; ///< of flight from the camera to the ray's origin
     int interactions = 0;
-    bool folded = false; ///< a mirror or refraction lies behind
+    bool folded = false;    ///< a mirror, refraction or glossy surface lies behind
+    bool glossy = false;    ///< a glossy surface lies behind
+    float glossyPdf = 0.0f; ///< of the ray's direction, per solid angle, if the path has only gone straight since there
+    Vec3f glossyVertex{0.0f};
 };
 
-/// Follows the path from `state`. `specular`: along specular lobes too, not only straight on. The visitor has
+/// Follows the path from `state`. The visitor has
 ///   segment(state, length): the ray ahead up to `length`, possibly infinite, in state.region
 ///   surface(state, interaction): the end of the segment; the throughput includes the way there, the time does not
 ///   escaped(state)
 /// Returns the number of rays.
 template <typename Visitor>
-uint64_t followSensorPath(const Scene& scene, SensorState state, bool specular, Sampler& sampler, Visitor&& visitor) {
+uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPathRules& rules, Sampler& sampler,
+                          Visitor&& visitor) {
     uint64_t rays = 0;
     while (state.interactions < scene.transport.maxBounces) {
         ++rays;
@@ -40,11 +62,17 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, bool specular, 
         visitor.surface(state, surface);
         state.time += double(length) / double(state.region.speed);
         ++state.interactions;
-        const LobeMask followed = specular ? lobe::Specular | lobe::Forward : lobe::Forward;
-        const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, followed),
+        const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, rules.followed(*surface.bsdf)),
                                      scene.transport.consistencyChecks, sampler);
         if (!exit) return rays;
         state.folded = state.folded || !exit->straight();
+        if ((exit->lobe & lobe::Smooth) != 0) {
+            state.glossy = true;
+            state.glossyPdf = exit->pdf;
+            state.glossyVertex = hit->position;
+        } else if (!exit->straight()) {
+            state.glossyPdf = 0.0f;
+        }
         state.throughput = state.throughput * exit->weight;
         state.region = regionBeyond(surface, exit->direction, state.region);
         state.ray = Ray{hit->position, exit->direction, scene.rayEpsilon};

@@ -60,7 +60,8 @@ struct Recorder {
 
 } // namespace
 
-SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const PassInfo& pass, Statistics& statistics) {
+SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
+                               const PassInfo& pass, Statistics& statistics) {
     SensorRecord record;
     record.width = scene.camera.resolution.x;
     record.height = scene.camera.resolution.y;
@@ -79,7 +80,7 @@ SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const P
             record.y[pixel] = ray.direction.y;
             record.z[pixel] = ray.direction.z;
             rows[y].begin(uint32_t(pixel));
-            rays += followSensorPath(scene, {ray, scene.cameraRegion}, includeSurfaces, sampler, rows[y]);
+            rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
         }
         statistics.add("rays", rays);
     });

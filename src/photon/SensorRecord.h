@@ -39,6 +39,7 @@ struct SensorRecord {
 
 /// Traces the pass's camera rays; they are those of the sensor pass that follows. One sample per pixel, from a camera
 /// with a single position.
-SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const PassInfo& pass, Statistics& statistics);
+SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
+                               const PassInfo& pass, Statistics& statistics);
 
 } // namespace tungsten::photon

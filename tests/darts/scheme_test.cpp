@@ -107,6 +107,8 @@ TEST(Scheme, EverySwitchWorksAlone) {
     EXPECT_EQ(plain.candidates, 1);
     EXPECT_EQ(SwitchReading(Fields{{"direct_view", "off"}}).scheme.directView, DirectView::Off);
     EXPECT_FALSE(SwitchReading(Fields{{"surface_connections", false}}).scheme.connectsSurfaces());
+    EXPECT_TRUE(SwitchReading(Fields{}).scheme.followsGlossy());
+    EXPECT_FALSE(SwitchReading(Fields{{"glossy_sensor_paths", false}}).scheme.followsGlossy());
 }
 
 TEST(Scheme, WrongValuesNameWhatIsAccepted) {

@@ -153,6 +153,24 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     }
 }
 
+/// A block and a wall of rough metal, which show lamp, floor and each other; and a mirror that lights them.
+TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
+    const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
+    const Overrides metal{R"(primitives.block.bsdf={"type": "rough_conductor", "material": "Ag", "roughness": 0.3})",
+                          R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})",
+                          "integrator.min_bounces=0"};
+    const auto with = [&](const std::string& darts) {
+        Overrides all = metal;
+        all.push_back(darts);
+        return all;
+    };
+    const auto paths = renderPaths(json, {metal, 16, 256});
+    const auto followed = renderPhotons(json, {with(Best), 64, 1});
+    expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 64, 1});
+    expectSameBlocks(*photons, *paths, 0, 0.1, 0.3);
+}
+
 /// Orders one by one: every path is counted with its own number of interactions, connected or not.
 TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
     for (const int order : {1, 2}) {

@@ -246,7 +246,7 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
     const test::SceneFile file(Bench);
     const LoadedScene loaded = loadScene(file.path(), {});
     Statistics statistics;
-    const SensorRecord record = recordSensorPaths(*loaded.scene, true, {0, 0, 1, 1}, statistics);
+    const SensorRecord record = recordSensorPaths(*loaded.scene, true, {true, false}, {0, 0, 1, 1}, statistics);
     ASSERT_EQ(record.x.size(), 12u);
     ASSERT_EQ(record.pieces.size(), 2u) << "nothing scatters in the ink, and behind the mirror the ray is not straight";
     ASSERT_EQ(record.points.size(), 12u);
@@ -271,11 +271,12 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
         EXPECT_LT(point.direction.z, 0.0f);
         EXPECT_NEAR(point.throughput.x, 0.9f * std::exp(-2.0f * (0.3f * 2.0f + 0.5f * 0.5f + 0.5f) * slant), 1e-3f);
     }
-    const SensorRecord volumeOnly = recordSensorPaths(*loaded.scene, false, {0, 0, 1, 1}, statistics);
+    const SensorRecord volumeOnly = recordSensorPaths(*loaded.scene, false, {false, false}, {0, 0, 1, 1}, statistics);
     EXPECT_TRUE(volumeOnly.points.empty());
     EXPECT_EQ(volumeOnly.pieces.size(), 2u);
     EXPECT_EQ(volumeOnly.x, record.x) << "the same rays";
-    EXPECT_NE(recordSensorPaths(*loaded.scene, false, {1, 1, 1, 1}, statistics).x, record.x) << "another pass";
+    EXPECT_NE(recordSensorPaths(*loaded.scene, false, {false, false}, {1, 1, 1, 1}, statistics).x, record.x)
+        << "another pass";
 }
 
 } // namespace

@@ -22,6 +22,7 @@ struct EffectPlan {
     bool mediumScattering = false;    ///< some medium a path can reach scatters
     bool surfaceScattering = false;   ///< some surface has a smooth lobe
     bool specularSensorPaths = false; ///< mirrors or refraction exist: sensor paths can fold
+    bool glossySensorPaths = false;   ///< they go on at glossy surfaces too: an integrator's choice
     bool speedsDiffer = false;        ///< light travels at different speeds in different regions
     bool greyMedia = true;            ///< all media have equal coefficients in all channels
     bool forwardBoundaries = false;   ///< index-matched boundaries: shadow rays must look through them

@@ -1,11 +1,17 @@
 #pragma once
-// Which emitter a vertex connects to.
+// Which emitter a vertex connects to, and how to weigh that against finding the emitter by chance.
 
 #include "tungsten/scene/Scene.h"
 
 #include <optional>
 
-namespace tungsten::path {
+namespace tungsten {
+
+/// Power heuristic with exponent 2 (Veach 1997).
+inline float powerHeuristic(float a, float b) {
+    const float aa = a * a, bb = b * b;
+    return aa + bb > 0.0f ? aa / (aa + bb) : 0.0f;
+}
 
 /// Emitters that can be connected to, chosen half by power and half uniformly.
 class LightChoice {
@@ -28,4 +34,4 @@ class LightChoice {
     bool any_ = false;
 };
 
-} // namespace tungsten::path
+} // namespace tungsten

@@ -1,6 +1,6 @@
-#include "path/LightChoice.h"
+#include "tungsten/scene/LightChoice.h"
 
-namespace tungsten::path {
+namespace tungsten {
 
 LightChoice::LightChoice(const Scene& scene) : scene_(scene), probabilities_(scene.emitters.size(), 0.0f) {
     std::vector<float> powers;
@@ -26,4 +26,4 @@ std::optional<LightChoice::Choice> LightChoice::sample(float u) const {
     return Choice{&scene_.emitters[chosen.index], chosen.probability};
 }
 
-} // namespace tungsten::path
+} // namespace tungsten

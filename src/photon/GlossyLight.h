@@ -1,0 +1,39 @@
+#pragma once
+// Light that reaches glossy surfaces straight from the lights, where sensor paths follow their lobes
+// (SensorPathRules::glossy).
+
+#include "photon/Sensor.h"
+#include "photon/SensorPath.h"
+
+#include "tungsten/scene/LightChoice.h"
+
+namespace tungsten::photon {
+
+struct ArrivedLight {
+    Rgb radiance{0.0f}; ///< at the sensor
+    double time = 0.0;  ///< of arrival
+};
+
+class GlossyLight {
+  public:
+    explicit GlossyLight(const Scene& scene);
+
+    /// By a point on a light, weighed against sensor paths that hit the light. `state` is the path up to the glossy
+    /// surface. None when it arrives outside the sensor's gate. Adds the rays traced to `rays`.
+    [[nodiscard]] std::optional<ArrivedLight> connect(const Sensor& sensor, const SensorState& state,
+                                                      const SurfaceInteraction& surface, Sampler& sampler,
+                                                      uint64_t& rays) const;
+    /// Weight of emission that a path hits behind a glossy surface: 0 in mirrors, which photons see to.
+    [[nodiscard]] float emissionWeight(const SensorState& state, const SurfaceInteraction& light) const;
+    /// Highlights are finer than pixels, and a narrow gate leaves lines of them: such pixels look for them along
+    /// `Samples` paths, which gather nothing else.
+    [[nodiscard]] bool oversampled(size_t pixel) const { return oversampled_[pixel] != 0; }
+    static constexpr uint32_t Samples = 16;
+
+  private:
+    const Scene& scene_;
+    LightChoice lights_;
+    std::vector<uint8_t> oversampled_; ///< by pixel
+};
+
+} // namespace tungsten::photon
