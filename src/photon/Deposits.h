@@ -12,17 +12,18 @@ struct DepositList {
     void endPath() { pathEnds.push_back(uint32_t(photons.size())); }
 };
 
-/// Light that a pixel receives.
-struct PixelContribution {
-    uint32_t pixel;
+/// Light that a connection brought to a sensor point.
+struct SurfaceArrival {
+    uint32_t point; ///< index in the SensorRecord
     int32_t frame;
-    Rgb radiance; ///< of one path, averaged over the frame
+    Vec3f from; ///< unit direction it came from
+    Rgb light;  ///< of one path: times BSDF and cosine, radiance times the frame's width
 };
 
 struct Deposits {
     DepositList surface, volume;
     BeamList beams;
-    std::vector<PixelContribution> contributions;
+    std::vector<SurfaceArrival> arrivals;
 
     void endPath() {
         surface.endPath();

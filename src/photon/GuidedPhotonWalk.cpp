@@ -93,7 +93,7 @@ template <typename Scattering>
 void GuidedPhotonWalk::connectToSurfaces(bool onSurface, const Scattering& scattering) {
     if (!connections_) return;
     connections_->connect({ray_.origin, onSurface, time_, bounce_, region_, power_}, gate_, scattering, sampler_,
-                          deposits_.contributions, counters_.rays);
+                          deposits_.arrivals, counters_.rays);
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {

@@ -3,6 +3,7 @@
 #include "photon/BeamSplat.h"
 #include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
+#include "photon/SharedArrivals.h"
 
 namespace tungsten::photon {
 
@@ -20,21 +21,6 @@ void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const 
         straight.photons.push_back(store.photons[i]);
         if (radii.size() > 1) straightRadii.push_back(radii[i]);
     }
-}
-
-/// What vertices of light paths sent to pixels, averaged over the paths.
-void addContributions(const PhotonMaps& maps, Film& film, Statistics& statistics) {
-    if (maps.contributions.empty()) return;
-    const float scale = float(1.0 / double(maps.paths));
-    const int width = film.width();
-    uint64_t nonFinite = 0;
-    for (const PixelContribution& c : maps.contributions) {
-        if (isFinite(c.radiance))
-            film.passPixel(c.frame, int(c.pixel) % width, int(c.pixel) / width) += c.radiance * scale;
-        else
-            ++nonFinite;
-    }
-    statistics.add("non-finite samples", nonFinite);
 }
 
 } // namespace
@@ -114,14 +100,8 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
 }
 
 std::string PhotonIntegrator::connectionObstacle(const EffectPlan& plan) const {
-    // Photons are shared by pixels, connections are not: at equal time they win by 2 to 3 with 25 000 pixels and lose
-    // by as much with 230 000 (cbox and staircase, benchmarks/study).
-    constexpr int MostPixels = 1 << 16;
-    const auto& resolution = scene_->camera.resolution;
     if (!settings_.includeSurfaces || !plan.surfaceScattering) return "no surface is gathered";
     if (!scene_->camera.hasSinglePosition() || plan.speedsDiffer) return "a thin lens, or different speeds of light";
-    if (!settings_.scheme.surfaceConnections && resolution.x * resolution.y > MostPixels)
-        return "more than 65536 pixels: surface photons, which pixels share, cost less";
     return settings_.scheme.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
 }
 
@@ -230,7 +210,12 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
         structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
     }
-    addContributions(maps, film, statistics);
+    if (connect) {
+        const StageTimer timer(statistics, "share arrivals");
+        const float radius = sharingRadius(record.points.size(), maps.arrivals.size(),
+                                           surfaceRadiusFactor(photons.index, settings_.alpha));
+        shareArrivals(*scene_, sensor, record, maps.arrivals, radius, 1.0 / double(maps.paths), film, statistics);
+    }
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);
 }

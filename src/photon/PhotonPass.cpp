@@ -11,8 +11,8 @@ namespace {
 constexpr uint64_t PathsPerBatch = 256;
 constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
 
-/// A pass goes on until vertices have connected so often to surfaces, on average over the points.
-constexpr uint64_t ConnectionsPerPoint = 8;
+/// A pass goes on until vertices have connected so often to surfaces: on average over the points, and in all.
+constexpr uint64_t ConnectionsPerPoint = 8, MostConnections = 1 << 18;
 
 struct Batch {
     Deposits deposits;
@@ -46,7 +46,7 @@ void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings)
     append(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount);
     append(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount);
     append(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount);
-    maps.contributions.insert(maps.contributions.end(), d.contributions.begin(), d.contributions.end());
+    maps.arrivals.insert(maps.arrivals.end(), d.arrivals.begin(), d.arrivals.end());
 }
 
 /// Room for what the first wave lets expect, so that growing does not hold the photons twice.
@@ -93,10 +93,10 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* con
     maps.volume.full = !storeVolume_;
     maps.beams.full = !storeBeams_;
     uint64_t traced = 0;
-    const uint64_t wanted = connections ? ConnectionsPerPoint * connections->points() : 0;
+    const uint64_t wanted = connections ? std::min(ConnectionsPerPoint * connections->points(), MostConnections) : 0;
     const auto finished = [&] {
         return maps.volume.full && maps.beams.full &&
-               (connections ? maps.contributions.size() >= wanted : maps.surface.full);
+               (connections ? maps.arrivals.size() >= wanted : maps.surface.full);
     };
     while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
@@ -135,7 +135,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* con
         traced += wave;
     }
     maps.paths = traced;
-    statistics.add("surface connections", maps.contributions.size());
+    statistics.add("surface connections", maps.arrivals.size());
     statistics.add("photons", traced);
     statistics.add("stored surface photons", maps.surface.photons.size());
     statistics.add("stored volume photons", maps.volume.photons.size());

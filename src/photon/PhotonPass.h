@@ -15,8 +15,8 @@ namespace tungsten::photon {
 struct PhotonMaps {
     PhotonStore surface, volume;
     BeamStore beams;
-    /// Light that vertices sent to pixels at once, by all paths of the pass.
-    std::vector<PixelContribution> contributions;
+    /// What vertices sent to sensor points, by all paths of the pass.
+    std::vector<SurfaceArrival> arrivals;
     uint64_t paths = 0;
 };
 

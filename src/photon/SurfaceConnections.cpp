@@ -74,14 +74,14 @@ void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& 
 }
 
 void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate& gate, const Candidate& candidate,
-                                const Rgb& scale, std::vector<PixelContribution>& contributions, uint64_t& rays) const {
+                                const Rgb& scale, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
     const SensorPoint& point = points_[order_[candidate.point]];
     const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
     const Vec3f toVertex = -candidate.direction;
-    if (!surface.consistent(toVertex, scene_.transport.consistencyChecks)) return;
-    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
-                                              surface.frame.toLocal(toVertex));
-    if (isBlack(scattering)) return;
+    // Not by the value of the BSDF: neighbours whose texture is not black here may share what arrives.
+    if (!surface.consistent(toVertex, scene_.transport.consistencyChecks) ||
+        ((surface.bsdf->lobes() & lobe::Transmissive) == 0 && surface.frame.toLocal(toVertex).z * surface.wi.z <= 0.0f))
+        return;
     const Visibility visibility = traceVisibility(scene_, vertex.position, vertex.onSurface, candidate.direction,
                                                   candidate.distance, true, vertex.region, rays);
     if (isBlack(visibility.transmittance)) return;
@@ -92,9 +92,7 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     const int frame = sensor_.gate.frameOf(arrival);
     if (frame < 0) return;
     const float geometry = sensor_.weight(arrival) / (candidate.distance * candidate.distance + nearField_);
-    contributions.push_back({point.pixel, frame,
-                             scale * scattering * visibility.transmittance * point.throughput *
-                                 (geometry / float(sensor_.gate.frameWidth))});
+    arrivals.push_back({order_[candidate.point], frame, toVertex, scale * visibility.transmittance * geometry});
 }
 
 } // namespace tungsten::photon

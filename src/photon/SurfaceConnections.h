@@ -31,8 +31,9 @@ struct LightVertex {
 /// to one of those that pass, resampled by what they would receive.
 ///
 /// Such connections have a weak singularity where vertex and point are close, which photons hitting surfaces have not:
-/// the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of the last flight. About a both find a
-/// point equally often: a^2 = NearFieldShare (area per sensor point) (points) / (4 pi points tested).
+/// the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of the last flight. Sharing spreads
+/// what arrives close by, so photons get less than where both find a point equally often: a^2 = NearFieldShare (area
+/// per sensor point) (points) / (4 pi points tested).
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
@@ -41,24 +42,24 @@ class SurfaceConnections {
     [[nodiscard]] size_t points() const { return points_.size(); }
     /// a^2; 0 when there is no sensor point.
     [[nodiscard]] float nearField() const { return nearField_; }
-    /// Appends what a vertex sends to a pixel. `scattering(direction)` is the vertex's BSDF or phase function times
-    /// cosine, or an emitter's intensity. Adds the rays traced to `rays`.
+    /// Appends what a vertex sends to sensor points. `scattering(direction)` is the vertex's BSDF or phase function
+    /// times cosine, or an emitter's intensity. Adds the rays traced to `rays`.
     template <typename Scattering>
     void connect(const LightVertex& vertex, const darts::TimeGate& gate, const Scattering& scattering, Sampler& sampler,
-                 std::vector<PixelContribution>& contributions, uint64_t& rays) const {
+                 std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
         Candidates candidates;
         find(vertex, gate, sampler, candidates);
         const float share = candidates.found * perTested_;
         for (int i = 0; i < candidates.count; ++i) {
             const Candidate& c = candidates.list[size_t(i)];
             const Rgb scale = vertex.power * scattering(c.direction) * share;
-            if (!isBlack(scale)) arrive(vertex, gate, c, scale, contributions, rays);
+            if (!isBlack(scale)) arrive(vertex, gate, c, scale, arrivals, rays);
         }
     }
 
   private:
     static constexpr size_t Tested = 512;
-    static constexpr double NearFieldShare = 0.3; ///< flat optimum between 0.1 and 1 on cbox (benchmarks/study)
+    static constexpr double NearFieldShare = 0.03; ///< flat optimum from 0.01 at 128x128 to 0.1 at 480x480 (cbox)
     static constexpr size_t MostCandidates = 8;
 
     struct Candidate {
@@ -73,7 +74,7 @@ class SurfaceConnections {
     };
     void find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler, Candidates& candidates) const;
     void arrive(const LightVertex& vertex, const darts::TimeGate& gate, const Candidate& candidate, const Rgb& scale,
-                std::vector<PixelContribution>& contributions, uint64_t& rays) const;
+                std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const;
 
     const Scene& scene_;
     Sensor sensor_;

@@ -120,7 +120,7 @@ std::string room(const std::string& gate) {
                 "transform": {"position": [0, 1.4, 5], "look_at": [0, 0.8, -1], "up": [0, 1, 0]}},
      "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 6, "enable_rr": false, "photon_count": 4000,
                     "volume_photon_count": 200000, "gather_radius": 0.12, "gather_photon_count": 100000, "fixed_volume_radius": true,
-                    "volume_gather_radius": 0.05, "alpha": 1, "volume_alpha": 1, "min_bounces": 1, )" +
+                    "volume_gather_radius": 0.05, "alpha": 0.3, "volume_alpha": 1, "min_bounces": 1, )" +
            gate + "}}";
 }
 constexpr const char* RoomGate = R"("start_time": 7.5, "transient_time_width": 1.2, "frame_num": 2)";
@@ -139,13 +139,13 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     };
     const std::string json = room(RoomGate);
     const auto paths = renderPaths(json, {change, 16, 128});
-    const auto connected = renderPhotons(json, {with(Best), 24, 1});
+    const auto connected = renderPhotons(json, {with(Best), 40, 1});
     EXPECT_GT(connected->statistics.counter("surface connections"), 10000u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);
         expectSameBlocks(*connected, *paths, frame, 0.03, 0.1);
     }
-    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"surface_connections": false})"), 24, 1});
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"surface_connections": false})"), 40, 1});
     EXPECT_EQ(photons->statistics.counter("surface connections"), 0u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);
@@ -165,9 +165,9 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
         return all;
     };
     const auto paths = renderPaths(json, {metal, 16, 256});
-    const auto followed = renderPhotons(json, {with(Best), 64, 1});
+    const auto followed = renderPhotons(json, {with(Best), 128, 1});
     expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
-    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 64, 1});
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 128, 1});
     expectSameBlocks(*photons, *paths, 0, 0.1, 0.3);
 }
 
