@@ -212,9 +212,9 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     }
     if (connect) {
         const StageTimer timer(statistics, "share arrivals");
-        const float radius = sharingRadius(record.points.size(), maps.arrivals.size(),
-                                           surfaceRadiusFactor(photons.index, settings_.alpha));
-        shareArrivals(*scene_, sensor, record, maps.arrivals, radius, 1.0 / double(maps.paths), film, statistics);
+        const auto kernel = SharingKernel::of(record.points.size(), maps.arrivals.size(), settings_.gatherRadius,
+                                              surfaceRadiusFactor(photons.index, settings_.alpha));
+        shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);

@@ -16,19 +16,21 @@ std::vector<uint32_t> beginnings(size_t groups, size_t elements, const Group& gr
 }
 
 /// Points about whose light the other has something to say: near each other on one smooth surface, seen alike.
-bool alike(const SensorPoint& a, const SensorPoint& b) {
+bool alike(const SensorPoint& a, const SensorPoint& b, float distance) {
     constexpr float LeastCosine = 0.95f, MostSlope = 0.2f;
     if (a.interactions != b.interactions || a.region.medium != b.region.medium) return false;
     const Vec3f offset = b.hit.position - a.hit.position;
-    if (a.hit.ng.dot(b.hit.ng) < LeastCosine) return false;
-    return std::max(sqr(offset.dot(a.hit.ng)), sqr(offset.dot(b.hit.ng))) <= sqr(MostSlope) * offset.length2();
+    const float squared = offset.length2();
+    if (squared > distance * distance || a.hit.ng.dot(b.hit.ng) < LeastCosine) return false;
+    return std::max(sqr(offset.dot(a.hit.ng)), sqr(offset.dot(b.hit.ng))) <= sqr(MostSlope) * squared;
 }
 
 class Sharing {
   public:
-    Sharing(const Scene& scene, const SensorRecord& record, const std::vector<SurfaceArrival>& arrivals, float radius,
-            double scale, Film& film)
-        : scene_(scene), record_(record), radius_(radius), scale_(scale), film_(film), reach_(int(std::floor(radius))),
+    Sharing(const Scene& scene, const SensorRecord& record, const std::vector<SurfaceArrival>& arrivals,
+            const SharingKernel& kernel, double scale, Film& film)
+        : scene_(scene), record_(record), kernel_(kernel), scale_(scale), film_(film),
+          reach_(int(std::floor(kernel.pixels))),
           firstPoint_(
               beginnings(record.x.size(), record.points.size(), [&](size_t i) { return record.points[i].pixel; })),
           firstArrival_(
@@ -71,12 +73,12 @@ class Sharing {
         const SensorPoint& point = record_.points[p];
         for (int v = std::max(y - reach_, 0); v <= std::min(y + reach_, record_.height - 1); ++v) {
             // Half chord of the disc in this row.
-            const int half = int(std::sqrt(std::max(sqr(radius_) - sqr(float(v - y)), 0.0f)));
+            const int half = int(std::sqrt(std::max(sqr(kernel_.pixels) - sqr(float(v - y)), 0.0f)));
             const size_t start = size_t(v) * size_t(record_.width);
             const uint32_t first = firstPoint_[start + size_t(std::max(x - half, 0))],
                            last = firstPoint_[start + size_t(std::min(x + half, record_.width - 1)) + 1];
             for (uint32_t q = first; q < last; ++q) {
-                if (q != p && !alike(point, record_.points[q])) continue;
+                if (q != p && !alike(point, record_.points[q], kernel_.distance)) continue;
                 ++among;
                 if (firstArrival_[q + 1] > firstArrival_[q]) found.push_back(q);
             }
@@ -99,7 +101,7 @@ class Sharing {
 
     const Scene& scene_;
     const SensorRecord& record_;
-    float radius_;
+    SharingKernel kernel_;
     double scale_;
     Film& film_;
     int reach_;
@@ -110,18 +112,20 @@ class Sharing {
 
 } // namespace
 
-float sharingRadius(size_t points, size_t arrivals, float factor) {
-    // MSE x CPU time on cbox at 128x128: 0.42 unshared, 0.091 with a radius of 1.5, 0.081 with 2.5; then time grows.
+SharingKernel SharingKernel::of(size_t points, size_t arrivals, float gatherRadius, float factor) {
+    // MSE x CPU time on cbox at 128x128, whatever the distance: 0.42 unshared, 0.091 with 1.5 pixels, 0.081 with 2.5;
+    // then time grows. Without a bound on the distance a small image's blocks are off by 4 % (cornell-fog, 64x64).
     constexpr float Wanted = 100.0f, Least = 2.5f, Most = 4.0f;
     const float each = float(arrivals) / float(std::max<size_t>(points, 1));
-    return std::clamp(std::sqrt(Wanted * InvPi / std::max(each, 1e-3f)), Least, Most) * factor;
+    const float pixels = std::clamp(std::sqrt(Wanted * InvPi / std::max(each, 1e-3f)), Least, Most);
+    return {pixels * factor, gatherRadius * factor};
 }
 
 void shareArrivals(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
-                   const std::vector<SurfaceArrival>& arrivals, float radius, double scale, Film& film,
+                   const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
                    Statistics& statistics) {
     if (arrivals.empty()) return;
-    const Sharing sharing(scene, record, arrivals, radius, scale / sensor.gate.frameWidth, film);
+    const Sharing sharing(scene, record, arrivals, kernel, scale / sensor.gate.frameWidth, film);
     tbb::parallel_for(0, record.height, [&](int y) { statistics.add("non-finite samples", sharing.row(y)); });
 }
 

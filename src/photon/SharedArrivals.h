@@ -10,15 +10,20 @@
 
 namespace tungsten::photon {
 
-/// How far apart, in pixels, sensor points on the same smooth surface may be to share. Wide where few connections
-/// arrive, and shrinking from pass to pass as `factor` (of gather radii) does; below 1 each point keeps its own light,
-/// and the estimate has no bias.
-float sharingRadius(size_t points, size_t arrivals, float factor);
+/// How far apart sensor points on the same smooth surface may be to share: in the image, where below 1 pixel each point
+/// keeps its own light and the estimate has no bias, and in the scene.
+struct SharingKernel {
+    float pixels, distance;
 
-/// Adds to the pass image, for every sensor point, the mean over the points within `radius` pixels of what arrived
-/// there, reflected by its own BSDF, times `scale`.
+    /// Wide in the image where few connections arrive, as wide in the scene as surface photons are gathered; shrinking
+    /// from pass to pass as `factor` (of gather radii) does.
+    static SharingKernel of(size_t points, size_t arrivals, float gatherRadius, float factor);
+};
+
+/// Adds to the pass image, for every sensor point, the mean over the points in its kernel of what arrived there,
+/// reflected by its own BSDF, times `scale`.
 void shareArrivals(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
-                   const std::vector<SurfaceArrival>& arrivals, float radius, double scale, Film& film,
+                   const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
                    Statistics& statistics);
 
 } // namespace tungsten::photon

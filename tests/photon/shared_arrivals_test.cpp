@@ -26,10 +26,10 @@ class SharedArrivals : public testing::Test {
     Statistics statistics_;
     SensorRecord record_ = recordSensorPaths(*loaded_.scene, true, {true, false}, {0, 0, 1, 1}, statistics_);
 
-    [[nodiscard]] Image share(const std::vector<SurfaceArrival>& arrivals, float radius) {
+    [[nodiscard]] Image share(const std::vector<SurfaceArrival>& arrivals, float radius, float distance = 100.0f) {
         Film film(24, 20, 1);
-        shareArrivals(*loaded_.scene, Sensor(loaded_.scene->transport.gate), record_, arrivals, radius, 3.0, film,
-                      statistics_);
+        shareArrivals(*loaded_.scene, Sensor(loaded_.scene->transport.gate), record_, arrivals, {radius, distance}, 3.0,
+                      film, statistics_);
         Image image(24, 20);
         for (int y = 0; y < 20; ++y)
             for (int x = 0; x < 24; ++x) image.at(x, y) = film.passPixel(0, x, y);
@@ -82,10 +82,26 @@ TEST_F(SharedArrivals, StayOnTheirSurface) {
     }
 }
 
-TEST(SharingRadius, ShrinksAndWidensWhereLittleArrives) {
-    EXPECT_GT(sharingRadius(1000, 500, 1.0f), sharingRadius(1000, 20000, 1.0f));
-    EXPECT_FLOAT_EQ(sharingRadius(1000, 20000, 0.5f), 0.5f * sharingRadius(1000, 20000, 1.0f));
-    EXPECT_GT(sharingRadius(1000, 0, 1.0f), 1.0f);
+TEST_F(SharedArrivals, GoNoFartherThanTheDistance) {
+    const uint32_t point = 10 * 24 + 5;
+    const Image image = share({straightDown(point)}, 4.0f, 1.0f);
+    size_t lit = 0;
+    for (size_t i = 0; i < 480; ++i) {
+        if (image.pixels[i].y == 0.0f) continue;
+        ++lit;
+        EXPECT_LE((record_.points[i].hit.position - record_.points[point].hit.position).length(), 1.0f);
+    }
+    EXPECT_GT(lit, 1u);
+}
+
+TEST(SharingKernel, ShrinksAndWidensWhereLittleArrives) {
+    const auto few = SharingKernel::of(1000, 500, 0.3f, 1.0f), many = SharingKernel::of(1000, 20000, 0.3f, 1.0f);
+    EXPECT_GT(few.pixels, many.pixels);
+    EXPECT_EQ(few.distance, 0.3f);
+    const auto later = SharingKernel::of(1000, 20000, 0.3f, 0.5f);
+    EXPECT_FLOAT_EQ(later.pixels, 0.5f * many.pixels);
+    EXPECT_FLOAT_EQ(later.distance, 0.5f * many.distance);
+    EXPECT_GT(SharingKernel::of(1000, 0, 0.3f, 1.0f).pixels, 1.0f);
 }
 
 } // namespace
