@@ -79,10 +79,11 @@ void PhotonIntegrator::planGlossyPaths(EffectPlan& plan) const {
     plan.glossySensorPaths = any && settings_.includeSurfaces && !unwarped && settings_.scheme.followsGlossy();
     plan.specularSensorPaths = plan.specularSensorPaths || plan.glossySensorPaths;
     plan.describe("glossy sensor paths", plan.glossySensorPaths,
-                  !any                        ? "no surface is glossy without being diffuse"
-                  : plan.glossySensorPaths    ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
-                  : settings_.includeSurfaces ? "the preset or glossy_sensor_paths leaves glossy surfaces to photons"
-                                              : "include_surfaces is false");
+                  !any                         ? "no surface is glossy without being diffuse"
+                  : plan.glossySensorPaths     ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
+                  : !settings_.includeSurfaces ? "include_surfaces is false"
+                  : unwarped ? "camera_unwarped: time stops at glossy surfaces, which are left to photons"
+                             : "the preset or glossy_sensor_paths leaves glossy surfaces to photons");
 }
 
 void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {

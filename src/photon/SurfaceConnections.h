@@ -28,7 +28,7 @@ struct LightVertex {
 };
 
 /// The sensor points of a pass in random order. A vertex tests a run of them for arrival inside its gate and connects
-/// to one of those that pass, resampled by what they would receive.
+/// to at most MostCandidates of those that pass, which stand for all that do.
 ///
 /// Such connections have a weak singularity where vertex and point are close, which photons hitting surfaces have not:
 /// the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of the last flight. Sharing spreads
@@ -59,7 +59,7 @@ class SurfaceConnections {
 
   private:
     static constexpr size_t Tested = 512;
-    static constexpr double NearFieldShare = 0.03; ///< flat optimum from 0.01 at 128x128 to 0.1 at 480x480 (cbox)
+    static constexpr double NearFieldShare = 0.03; ///< flat between 0.01 and 0.1 (cbox, no bound on sharing)
     static constexpr size_t MostCandidates = 8;
 
     struct Candidate {

@@ -153,7 +153,7 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     }
 }
 
-/// A block and a wall of rough metal, which show lamp, floor and each other; and a mirror that lights them.
+/// A block and a wall of rough metal, which show lamp, floor and each other.
 TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     const Overrides metal{R"(primitives.block.bsdf={"type": "rough_conductor", "material": "Ag", "roughness": 0.3})",
@@ -168,7 +168,17 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
     const auto followed = renderPhotons(json, {with(Best), 128, 1});
     expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
     const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 128, 1});
-    expectSameBlocks(*photons, *paths, 0, 0.1, 0.3);
+    expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
+}
+
+/// Light by way of a mirror on rough metal: the part that photons bring.
+TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
+    const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
+    Overrides metal{R"(primitives.floor.bsdf={"type": "mirror", "albedo": 0.9})",
+                    R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})"};
+    const auto paths = renderPaths(json, {metal, 16, 512});
+    metal.push_back(Best);
+    expectSameBlocks(*renderPhotons(json, {metal, 96, 1}), *paths, 0, 0.05, 0.15);
 }
 
 /// Orders one by one: every path is counted with its own number of interactions, connected or not.
