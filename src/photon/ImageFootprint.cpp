@@ -10,37 +10,93 @@ ImageFootprint::ImageFootprint(const Camera& camera)
       pixelsPerSlope_(0.5f * float(camera.resolution.x) * std::get<Pinhole>(camera.model).planeDistance) {}
 
 std::optional<ImageFootprint::Slopes> ImageFootprint::slopes(float sideways, float forward, float radius) {
-    // Within asin(r / distance) of the direction, between tangent planes.
-    constexpr float Widest = 1.5f; // radians
-    const float distance = std::sqrt(sideways * sideways + forward * forward);
-    if (distance <= radius * 1.0001f) return std::nullopt;
-    const float angle = std::atan2(sideways, forward), spread = std::asin(radius / distance);
-    if (angle - spread < -Widest || angle + spread > Widest) return std::nullopt;
-    return Slopes{std::tan(angle - spread), std::tan(angle + spread)};
+    constexpr float Steepest = 14.0f;
+    if (!(forward > radius * 1.0001f)) return std::nullopt;
+    // Tangents from the camera to the circle.
+    const float power = (forward - radius) * (forward + radius), inverse = 1.0f / power;
+    const float middle = sideways * forward * inverse;
+    const float spread = radius * std::sqrt(sideways * sideways + power) * inverse;
+    if (std::abs(middle) + spread > Steepest) return std::nullopt;
+    return Slopes{middle - spread, middle + spread};
+}
+
+std::optional<PixelArea> ImageFootprint::area(const std::optional<Slopes>& x, const std::optional<Slopes>& y) const {
+    PixelArea area{0, width_ - 1, 0, height_ - 1};
+    const float centreX = 0.5f * float(width_), centreY = 0.5f * float(height_);
+    if (x) {
+        area.left = std::max(area.left, firstPixel(centreX + x->low * pixelsPerSlope_, width_));
+        area.right = std::min(area.right, lastPixel(centreX + x->high * pixelsPerSlope_, width_));
+    }
+    if (y) {
+        area.top = std::max(area.top, firstPixel(centreY - y->high * pixelsPerSlope_, height_));
+        area.bottom = std::min(area.bottom, lastPixel(centreY - y->low * pixelsPerSlope_, height_));
+    }
+    if (area.left > area.right || area.top > area.bottom) return std::nullopt;
+    return area;
 }
 
 std::optional<PixelArea> ImageFootprint::around(const Vec3f& start, const Vec3f& end, float radius) const {
     const Vec3f a = frame_.toLocal(start - origin_), b = frame_.toLocal(end - origin_);
     if (std::max(a.z, b.z) < -radius) return std::nullopt;
-    PixelArea area{0, width_ - 1, 0, height_ - 1};
-    const auto clampPixel = [](float v, int size) { return int(std::clamp(v, -1.0f, float(size))); };
     // Between the ends both are in front of the camera: the slopes lie between theirs.
     const auto bounds = [&](float sidewaysA, float sidewaysB) -> std::optional<Slopes> {
         const auto atA = slopes(sidewaysA, a.z, radius), atB = slopes(sidewaysB, b.z, radius);
         if (!atA || !atB) return std::nullopt;
-        return Slopes{std::min(atA->low, atB->low) * pixelsPerSlope_, std::max(atA->high, atB->high) * pixelsPerSlope_};
+        return Slopes{std::min(atA->low, atB->low), std::max(atA->high, atB->high)};
     };
-    const float centreX = 0.5f * float(width_), centreY = 0.5f * float(height_);
-    if (const auto x = bounds(a.x, b.x)) {
-        area.left = std::max(area.left, clampPixel(std::floor(centreX + x->low - 0.5f - margin_), width_));
-        area.right = std::min(area.right, clampPixel(std::ceil(centreX + x->high - 0.5f + margin_), width_));
+    return area(bounds(a.x, b.x), bounds(a.y, b.y));
+}
+
+std::optional<ImageDisc> ImageFootprint::disc(const Vec3f& point, float radius) const {
+    const Vec3f p = frame_.toLocal(point - origin_);
+    if (p.z < -radius) return std::nullopt;
+    const auto x = slopes(p.x, p.z, radius), y = slopes(p.y, p.z, radius);
+    const auto covered = area(x, y);
+    if (!covered) return std::nullopt;
+    ImageDisc disc{};
+    disc.area = *covered;
+    disc.ellipse = x && y;
+    if (!disc.ellipse) return disc;
+    // Directions (X, Y, 1) with (p . d)^2 >= (|p|^2 - r^2) |d|^2: a quadratic inequality in X for given Y.
+    const float power = (p.z - radius) * (p.z + radius), inverse = 1.0f / (p.y * p.y + power);
+    disc.up = p.y;
+    disc.forward = p.z;
+    disc.squaredRadius = radius * radius;
+    disc.shift = p.x * p.z * inverse;
+    disc.slant = p.x * p.y * inverse;
+    disc.spread = std::sqrt(p.x * p.x + p.y * p.y + power) * inverse;
+    const float height = p.y / (p.x * p.x + power);
+    disc.heightOfLeft = height * (p.x * x->low + p.z);
+    disc.heightOfRight = height * (p.x * x->high + p.z);
+    return disc;
+}
+
+void ImageFootprint::columns(const ImageDisc& disc, int firstRow, int rows, int* left, int* right) const {
+    const float slopesPerPixel = 1.0f / pixelsPerSlope_, reach = margin_ * slopesPerPixel;
+    const float centreX = 0.5f * float(width_), top = 0.5f * float(height_) - 0.5f;
+    for (int i = 0; i < rows; ++i) {
+        left[i] = disc.area.left;
+        right[i] = disc.area.right;
+        if (!disc.ellipse) continue;
+        // Chords are longest where the outline is nearest to its extremes.
+        const float row = (top - float(firstRow + i)) * slopesPerPixel;
+        const auto edge = [&](float extreme, float sign) {
+            const float y = std::min(std::max(extreme, row - reach), row + reach);
+            const float across = disc.forward * y - disc.up;
+            const float root = std::sqrt(std::max(disc.squaredRadius * (1.0f + y * y) - across * across, 0.0f));
+            return centreX + (disc.shift + disc.slant * y + sign * disc.spread * root) * pixelsPerSlope_;
+        };
+        left[i] = std::max(left[i], firstPixel(edge(disc.heightOfLeft, -1.0f), width_));
+        right[i] = std::min(right[i], lastPixel(edge(disc.heightOfRight, 1.0f), width_));
     }
-    if (const auto y = bounds(a.y, b.y)) {
-        area.top = std::max(area.top, clampPixel(std::floor(centreY - y->high - 0.5f - margin_), height_));
-        area.bottom = std::min(area.bottom, clampPixel(std::ceil(centreY - y->low - 0.5f + margin_), height_));
-    }
-    if (area.left > area.right || area.top > area.bottom) return std::nullopt;
-    return area;
+}
+
+int ImageFootprint::firstPixel(float from, int size) const {
+    return int(std::ceil(std::min(std::max(from - 0.5f - margin_, -1.0f), float(size))));
+}
+
+int ImageFootprint::lastPixel(float to, int size) const {
+    return int(std::floor(std::min(std::max(to - 0.5f + margin_, -1.0f), float(size))));
 }
 
 ImageHalfPlane ImageFootprint::halfPlane(const Vec3f& normal) const {
@@ -57,11 +113,11 @@ void ImageFootprint::narrow(const ImageHalfPlane& half, int y, int& left, int& r
         if (least < 0.0f) right = left - 1;
         return;
     }
-    const float edge = std::clamp(-least / half.a, -2.0f, float(width_) + 2.0f);
+    const float edge = -least / half.a;
     if (half.a > 0.0f)
-        left = std::max(left, int(std::floor(edge - 0.5f - margin_)));
+        left = std::max(left, firstPixel(edge, width_));
     else
-        right = std::min(right, int(std::ceil(edge - 0.5f + margin_)));
+        right = std::min(right, lastPixel(edge, width_));
 }
 
 } // namespace tungsten::photon

@@ -12,6 +12,16 @@ struct PixelArea {
     int left, right, top, bottom;
 };
 
+/// Which pixels have rays through a sphere. Where the whole sphere lies in front of the camera its image is an ellipse,
+/// and rows have narrower columns than the area.
+struct ImageDisc {
+    PixelArea area;
+    bool ellipse = false;
+    float up, forward, squaredRadius;  ///< of the sphere, as the camera sees it
+    float shift, slant, spread;        ///< chord at height Y: shift + slant Y +- spread root(Y), all as slopes
+    float heightOfLeft, heightOfRight; ///< where the outline reaches its leftmost and rightmost points
+};
+
 /// Directions p with normal . p >= 0, by columns X and rows Y of the image plane: a X + b Y + c >= 0.
 struct ImageHalfPlane {
     float a, b, c;
@@ -27,6 +37,11 @@ class ImageFootprint {
     [[nodiscard]] std::optional<PixelArea> around(const Vec3f& point, float radius) const {
         return around(point, point, radius);
     }
+    /// The same with the image's outline.
+    [[nodiscard]] std::optional<ImageDisc> disc(const Vec3f& point, float radius) const;
+    /// Columns [left[i], right[i]] of row firstRow + i whose pixels can have rays through the sphere; empty if there
+    /// are none.
+    void columns(const ImageDisc& disc, int firstRow, int rows, int* left, int* right) const;
     /// Where directions from the camera have a component along `normal`.
     [[nodiscard]] ImageHalfPlane halfPlane(const Vec3f& normal) const;
     /// Narrows columns [left, right] to those whose pixels in row y can lie in the half-plane.
@@ -36,6 +51,10 @@ class ImageFootprint {
     struct Slopes {
         float low, high;
     };
+    [[nodiscard]] std::optional<PixelArea> area(const std::optional<Slopes>& x, const std::optional<Slopes>& y) const;
+    /// First and last row or column with rays beyond or before a coordinate of the image.
+    [[nodiscard]] int firstPixel(float from, int size) const;
+    [[nodiscard]] int lastPixel(float to, int size) const;
     /// Of rays within `radius`, sideways against forward; none where they have no bounds.
     [[nodiscard]] static std::optional<Slopes> slopes(float sideways, float forward, float radius);
 
