@@ -32,8 +32,11 @@ void ImageBand::addPiece(size_t number) {
         if (empty) {
             piece.medium = recorded.medium[i];
             piece.interactions = recorded.interactions[i];
+            piece.leastStart = piece.mostStart = recorded.start[i];
             empty = false;
         }
+        piece.leastStart = std::min(piece.leastStart, recorded.start[i]);
+        piece.mostStart = std::max(piece.mostStart, recorded.start[i]);
         piece.mixed =
             piece.mixed || recorded.medium[i] != piece.medium || int(recorded.interactions[i]) != piece.interactions;
     }

@@ -18,6 +18,7 @@ constexpr int Lanes = int(Batch::size);
 struct BandPiece {
     size_t number; ///< in the record
     std::vector<float> start, end;
+    float leastStart = 0.0f, mostStart = 0.0f;   ///< of the rays that have this piece
     bool mixed = false;                          ///< rays differ in medium or interactions
     int medium = -1, interactions = 0;           ///< of the first ray that has this piece, if any
     std::vector<float> media, interactionCounts; ///< of every ray, if mixed

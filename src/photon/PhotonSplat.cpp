@@ -4,8 +4,8 @@
 #include "photon/ImageFootprint.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
-#include <algorithm>
 #include <atomic>
 
 namespace tungsten::photon {
@@ -21,6 +21,7 @@ struct MediumTerms {
     explicit MediumTerms(const Medium& medium)
         : sigmaT(medium.sigmaT()), grey(medium.isGrey()),
           rayleigh(std::holds_alternative<Rayleigh>(medium.phase.model)), g(medium.phase.g()) {}
+    [[nodiscard]] bool isotropic() const { return g == 0.0f && !rayleigh; }
 };
 
 /// A photon as the camera sees it.
@@ -31,6 +32,25 @@ struct Spot {
     Rgb power; ///< with the kernel's constant and the sensor's weight
     float inverseSquaredRadius;
     ImageDisc disc;
+};
+
+/// A register of rays near a spot.
+struct Meeting {
+    Batch dx, dy, dz, start;
+    Batch t;    ///< along the rays
+    Batch part; ///< 1 - squared distance over squared radius
+    Batch::batch_bool_type inside;
+
+    Meeting(const Spot& spot, const BandPiece& piece, const ImageBand& band, size_t i)
+        : dx(Batch::load_unaligned(band.x.data() + i)), dy(Batch::load_unaligned(band.y.data() + i)),
+          dz(Batch::load_unaligned(band.z.data() + i)), start(Batch::load_unaligned(piece.start.data() + i)) {
+        const Vec3f& o = spot.offset;
+        t = dx * o.x + dy * o.y + dz * o.z;
+        // Distance by the part of the offset across the ray: no difference of squares.
+        const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
+        part = 1.0f - (px * px + py * py + pz * pz) * spot.inverseSquaredRadius;
+        inside = part > 0.0f && t > start && t <= Batch::load_unaligned(piece.end.data() + i);
+    }
 };
 
 class Splatter {
@@ -73,8 +93,12 @@ class Splatter {
             if (!piece.mixed &&
                 (piece.medium != photon.medium || piece.interactions < least || piece.interactions > most))
                 continue;
-            for (int row = top; row <= bottom; ++row)
-                gathered += drawRow(spot, piece, band, row, left[row - top], right[row - top], least, most);
+            const auto even = piece.mixed ? std::nullopt : evenExponent(spot, piece);
+            for (int row = top; row <= bottom; ++row) {
+                const size_t first = band.at(left[row - top], row), end = band.at(right[row - top], row) + 1;
+                gathered += even ? drawEvenly(spot, media_[size_t(piece.medium)], *even, piece, band, first, end)
+                                 : drawRow(spot, piece, band, first, end, least, most);
+            }
         }
         return uint64_t(xsimd::hadd(gathered));
     }
@@ -88,40 +112,63 @@ class Splatter {
         return way.length() / double(scene_.cameraRegion.speed);
     }
 
-    /// Returns how many rays gather the photon, lane by lane.
-    Batch drawRow(const Spot& spot, BandPiece& piece, const ImageBand& band, int row, int left, int right, int least,
+    /// Middle of the exponents (start - t) sigmaT of the rays that meet the spot, if the medium is grey and isotropic
+    /// and they differ so little that a cubic about the middle is exact to rounding.
+    [[nodiscard]] std::optional<float> evenExponent(const Spot& spot, const BandPiece& piece) const {
+        constexpr float MostDifference = 0.03f;
+        const MediumTerms& medium = media_[size_t(piece.medium)];
+        if (!medium.grey || !medium.isotropic()) return std::nullopt;
+        const float squared = spot.offset.length2(), farthest = std::sqrt(squared),
+                    nearest = std::sqrt(std::max(squared - 1.0f / spot.inverseSquaredRadius, 0.0f));
+        const float low = (piece.leastStart - farthest) * medium.sigmaT.x,
+                    high = (piece.mostStart - nearest) * medium.sigmaT.x;
+        if (!(high - low < 2.0f * MostDifference)) return std::nullopt;
+        return 0.5f * (low + high);
+    }
+
+    /// Of the rays at [first, end); returns how many gather the photon, lane by lane.
+    static Batch drawEvenly(const Spot& spot, const MediumTerms& medium, float middle, BandPiece& piece,
+                            const ImageBand& band, size_t first, size_t end) {
+        const Rgb power = spot.power * (0.25f * InvPi * std::exp(middle));
+        Batch gathered(0.0f);
+        for (size_t i = first; i < end; i += size_t(Lanes)) {
+            const Meeting met(spot, piece, band, i);
+            if (!xsimd::any(met.inside)) continue;
+            gathered += select(met.inside, Batch(1.0f), Batch(0.0f));
+            const Batch e = (met.start - met.t) * medium.sigmaT.x - middle;
+            const Batch transmittance = 1.0f + e * (1.0f + e * (0.5f + e * (1.0f / 6.0f)));
+            const Batch weight = select(met.inside, met.part * met.part * transmittance, Batch(0.0f));
+            for (int k = 0; k < 3; ++k) piece.add(i, weight, k, power[k]);
+        }
+        return gathered;
+    }
+
+    /// The same for any medium.
+    Batch drawRow(const Spot& spot, BandPiece& piece, const ImageBand& band, size_t first, size_t end, int least,
                   int most) const {
         const Photon& photon = photons_[spot.photon];
         const MediumTerms& medium = media_[size_t(photon.medium)];
-        const Vec3f& o = spot.offset;
         Batch gathered(0.0f);
-        for (size_t i = band.at(left, row), end = band.at(right, row) + 1; i < end; i += size_t(Lanes)) {
-            const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
-            const Batch dx = load(band.x), dy = load(band.y), dz = load(band.z), start = load(piece.start);
-            const Batch t = dx * o.x + dy * o.y + dz * o.z;
-            // Distance by the part of the offset across the ray: no difference of squares.
-            const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
-            const Batch part = 1.0f - (px * px + py * py + pz * pz) * spot.inverseSquaredRadius;
-            auto inside = part > 0.0f && t > start && t <= load(piece.end);
-            if (piece.mixed) inside = piece.select(inside, i, photon.medium, least, most);
+        for (size_t i = first; i < end; i += size_t(Lanes)) {
+            const Meeting met(spot, piece, band, i);
+            const auto inside = piece.mixed ? piece.select(met.inside, i, photon.medium, least, most) : met.inside;
             if (!xsimd::any(inside)) continue;
             gathered += select(inside, Batch(1.0f), Batch(0.0f));
-            const Batch value = part * part * phase(medium, photon.direction, dx, dy, dz), length = start - t;
+            const Batch value = met.part * met.part * phase(medium, photon.direction, met), length = met.start - met.t;
             Batch weight = select(inside, value * exp(length * medium.sigmaT.x), Batch(0.0f));
-            piece.add(i, weight, 0, spot.power.x);
-            if (!medium.grey) weight = select(inside, value * exp(length * medium.sigmaT.y), Batch(0.0f));
-            piece.add(i, weight, 1, spot.power.y);
-            if (!medium.grey) weight = select(inside, value * exp(length * medium.sigmaT.z), Batch(0.0f));
-            piece.add(i, weight, 2, spot.power.z);
+            for (int k = 0; k < 3; ++k) {
+                if (k > 0 && !medium.grey) weight = select(inside, value * exp(length * medium.sigmaT[k]), Batch(0.0f));
+                piece.add(i, weight, k, spot.power[k]);
+            }
         }
         return gathered;
     }
 
     /// Between the photon's direction and the way back along the rays.
-    static Batch phase(const MediumTerms& medium, const Vec3f& w, const Batch& dx, const Batch& dy, const Batch& dz) {
+    static Batch phase(const MediumTerms& medium, const Vec3f& w, const Meeting& met) {
         const float g = medium.g;
-        if (g == 0.0f && !medium.rayleigh) return Batch(0.25f * InvPi);
-        const Batch cosine = -(dx * w.x + dy * w.y + dz * w.z);
+        if (medium.isotropic()) return Batch(0.25f * InvPi);
+        const Batch cosine = -(met.dx * w.x + met.dy * w.y + met.dz * w.z);
         if (medium.rayleigh) return 3.0f / 16.0f * InvPi * (1.0f + cosine * cosine);
         const Batch d =
             xsimd::max(1.0f + g * g - 2.0f * g * cosine, Batch((1.0f - std::abs(g)) * (1.0f - std::abs(g))));
@@ -137,14 +184,28 @@ class Splatter {
     std::vector<MediumTerms> media_;
 };
 
-/// Spots by band, frame by frame, in their own order: the sums do not depend on the threads.
-std::vector<std::vector<const Spot*>> spotsByBand(const std::vector<Spot>& spots, size_t bands) {
-    std::vector<std::vector<const Spot*>> byBand(bands);
-    for (const Spot& spot : spots) {
-        if (spot.frame < 0) continue;
-        const PixelArea& area = spot.disc.area;
+/// Visible spots frame by frame, as bands hold one frame's sums; then from left to right, as neighbours share the
+/// cache.
+std::vector<uint32_t> drawingOrder(const std::vector<Spot>& spots, int width) {
+    std::vector<std::pair<uint64_t, uint32_t>> places;
+    places.reserve(spots.size());
+    for (const Spot& spot : spots)
+        if (spot.frame >= 0)
+            places.emplace_back(uint64_t(spot.frame) * uint64_t(width) + uint64_t(spot.disc.area.left), spot.photon);
+    tbb::parallel_sort(places);
+    std::vector<uint32_t> order;
+    order.reserve(places.size());
+    for (const auto& place : places) order.push_back(place.second);
+    return order;
+}
+
+/// In drawing order: the sums do not depend on the threads.
+std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, const SensorRecord& record) {
+    std::vector<std::vector<uint32_t>> byBand(ImageBand::count(record.height));
+    for (const uint32_t i : drawingOrder(spots, record.width)) {
+        const PixelArea& area = spots[i].disc.area;
         for (int band = area.top / ImageBand::Rows; band <= area.bottom / ImageBand::Rows; ++band)
-            byBand[size_t(band)].push_back(&spot);
+            byBand[size_t(band)].push_back(i);
     }
     return byBand;
 }
@@ -157,18 +218,17 @@ uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorReco
     std::vector<Spot> spots(store.photons.size());
     tbb::parallel_for(size_t(0), spots.size(),
                       [&](size_t i) { spots[i] = splatter.spot(uint32_t(i), radii[radii.size() == 1 ? 0 : i]); });
-    auto byBand = spotsByBand(spots, ImageBand::count(record.height));
+    const auto byBand = spotsByBand(spots, record);
     std::atomic<uint64_t> total = 0;
     tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {
-        auto& drawn = byBand[number];
+        const auto& drawn = byBand[number];
         if (drawn.empty()) return;
-        // One frame's sums at a time.
-        std::stable_sort(drawn.begin(), drawn.end(), [](const Spot* a, const Spot* b) { return a->frame < b->frame; });
         ImageBand band(record, number);
         uint64_t gathered = 0;
         for (size_t i = 0; i < drawn.size(); ++i) {
-            gathered += splatter.draw(*drawn[i], band);
-            if (i + 1 == drawn.size() || drawn[i + 1]->frame != drawn[i]->frame) band.addToFilm(drawn[i]->frame, film);
+            const int frame = spots[drawn[i]].frame;
+            gathered += splatter.draw(spots[drawn[i]], band);
+            if (i + 1 == drawn.size() || spots[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
         }
         total += gathered;
     });
