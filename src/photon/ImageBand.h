@@ -1,18 +1,14 @@
 #pragma once
 // A few rows of the image that one task draws: the recorded rays, a register at a time, and what they have gathered.
 
+#include "photon/Registers.h"
 #include "photon/SensorRecord.h"
 
 #include "tungsten/film/Film.h"
 
-#include <xsimd/xsimd.hpp>
-
 #include <array>
 
 namespace tungsten::photon {
-
-using Batch = xsimd::batch<float>;
-constexpr int Lanes = int(Batch::size);
 
 /// One piece of the band's rays. Rays without it end at 0.
 struct BandPiece {
@@ -41,7 +37,8 @@ struct BandPiece {
 /// Arrays over rows x stride pixels. Behind the last column is room for a register of rays that meet nothing.
 class ImageBand {
   public:
-    static constexpr int Rows = 4;
+    static constexpr int Rows = 4; ///< at most a register of them (ImageFootprint::columns)
+    static_assert(Rows <= Lanes);
     static size_t count(int imageHeight) { return size_t((imageHeight + Rows - 1) / Rows); }
 
     ImageBand(const SensorRecord& record, size_t number);

@@ -71,24 +71,30 @@ std::optional<ImageDisc> ImageFootprint::disc(const Vec3f& point, float radius) 
     return disc;
 }
 
-void ImageFootprint::columns(const ImageDisc& disc, int firstRow, int rows, int* left, int* right) const {
-    const float slopesPerPixel = 1.0f / pixelsPerSlope_, reach = margin_ * slopesPerPixel;
-    const float centreX = 0.5f * float(width_), top = 0.5f * float(height_) - 0.5f;
-    for (int i = 0; i < rows; ++i) {
-        left[i] = disc.area.left;
-        right[i] = disc.area.right;
-        if (!disc.ellipse) continue;
+ImageFootprint::Columns ImageFootprint::columns(const ImageDisc& disc, int firstRow) const {
+    const Batch leftmost(float(disc.area.left)), rightmost(float(disc.area.right));
+    Batch left = leftmost, right = rightmost;
+    if (disc.ellipse) {
+        const float slopesPerPixel = 1.0f / pixelsPerSlope_, reach = margin_ * slopesPerPixel;
+        const float centreX = 0.5f * float(width_) - 0.5f, top = 0.5f * float(height_) - 0.5f - float(firstRow);
+        const Batch row = (top - Batch::load_aligned(LaneNumbers)) * slopesPerPixel;
         // Chords are longest where the outline is nearest to its extremes.
-        const float row = (top - float(firstRow + i)) * slopesPerPixel;
-        const auto edge = [&](float extreme, float sign) {
-            const float y = std::min(std::max(extreme, row - reach), row + reach);
-            const float across = disc.forward * y - disc.up;
-            const float root = std::sqrt(std::max(disc.squaredRadius * (1.0f + y * y) - across * across, 0.0f));
-            return centreX + (disc.shift + disc.slant * y + sign * disc.spread * root) * pixelsPerSlope_;
+        const auto edge = [&](float extreme, float spread) {
+            const Batch y = xsimd::min(xsimd::max(Batch(extreme), row - reach), row + reach);
+            const Batch across = disc.forward * y - disc.up;
+            const Batch square = xsimd::max(disc.squaredRadius * (1.0f + y * y) - across * across, Batch(0.0f));
+            return centreX + (disc.shift + disc.slant * y + spread * xsimd::sqrt(square)) * pixelsPerSlope_;
         };
-        left[i] = std::max(left[i], firstPixel(edge(disc.heightOfLeft, -1.0f), width_));
-        right[i] = std::min(right[i], lastPixel(edge(disc.heightOfRight, 1.0f), width_));
+        left = xsimd::max(xsimd::ceil(edge(disc.heightOfLeft, -disc.spread) - margin_), leftmost);
+        right = xsimd::min(xsimd::floor(edge(disc.heightOfRight, disc.spread) + margin_), rightmost);
+        // Chords beside the image are empty.
+        left = xsimd::min(left, rightmost + 1.0f);
+        right = xsimd::max(right, leftmost - 1.0f);
     }
+    Columns columns;
+    xsimd::to_int(left).store_aligned(columns.left);
+    xsimd::to_int(right).store_aligned(columns.right);
+    return columns;
 }
 
 int ImageFootprint::firstPixel(float from, int size) const {

@@ -1,6 +1,8 @@
 #pragma once
 // Which pixels of a pinhole camera's image have rays near something.
 
+#include "photon/Registers.h"
+
 #include "tungsten/camera/Camera.h"
 
 #include <optional>
@@ -39,9 +41,12 @@ class ImageFootprint {
     }
     /// The same with the image's outline.
     [[nodiscard]] std::optional<ImageDisc> disc(const Vec3f& point, float radius) const;
-    /// Columns [left[i], right[i]] of row firstRow + i whose pixels can have rays through the sphere; empty if there
-    /// are none.
-    void columns(const ImageDisc& disc, int firstRow, int rows, int* left, int* right) const;
+    /// Columns [left[i], right[i]] of row firstRow + i whose pixels can have rays through the sphere; none if right <
+    /// left.
+    struct Columns {
+        alignas(64) int32_t left[Lanes], right[Lanes];
+    };
+    [[nodiscard]] Columns columns(const ImageDisc& disc, int firstRow) const;
     /// Where directions from the camera have a component along `normal`.
     [[nodiscard]] ImageHalfPlane halfPlane(const Vec3f& normal) const;
     /// Narrows columns [left, right] to those whose pixels in row y can lie in the half-plane.

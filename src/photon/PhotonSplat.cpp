@@ -24,11 +24,11 @@ struct MediumTerms {
     [[nodiscard]] bool isotropic() const { return g == 0.0f && !rayleigh; }
 };
 
-/// A photon as the camera sees it.
-struct Spot {
-    uint32_t photon;
+/// A photon as the camera sees it: all that drawing needs.
+struct alignas(64) Spot {
     int frame; ///< -1: not to be seen
-    Vec3f offset;
+    int medium, bounce;
+    Vec3f offset, direction;
     Rgb power; ///< with the kernel's constant and the sensor's weight
     float inverseSquaredRadius;
     ImageDisc disc;
@@ -55,15 +55,13 @@ struct Meeting {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
-             double scale)
-        : scene_(scene), sensor_(sensor), record_(record), photons_(store.photons), scale_(float(scale)),
-          footprint_(scene.camera), media_(scene.media.begin(), scene.media.end()) {}
+    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, double scale)
+        : scene_(scene), sensor_(sensor), record_(record), scale_(float(scale)), footprint_(scene.camera),
+          media_(scene.media.begin(), scene.media.end()) {}
 
-    [[nodiscard]] Spot spot(uint32_t index, float radius) const {
+    [[nodiscard]] Spot spot(const Photon& photon, float radius) const {
         Spot spot{};
         spot.frame = -1;
-        const Photon& photon = photons_[index];
         float weight = scale_;
         int frame = 0;
         if (!sensor_.gate.steadyState) {
@@ -75,23 +73,27 @@ class Splatter {
         const auto disc = footprint_.disc(photon.position, radius);
         if (!disc) return spot;
         const float inverse = 1.0f / (radius * radius);
-        return {index,   frame, photon.position - record_.origin, photon.power * (weight * 3.0f * InvPi * inverse),
-                inverse, *disc};
+        return {frame,
+                photon.medium,
+                photon.bounce,
+                photon.position - record_.origin,
+                photon.direction,
+                photon.power * (weight * 3.0f * InvPi * inverse),
+                inverse,
+                *disc};
     }
 
     /// Returns how many rays gather the photon.
     uint64_t draw(const Spot& spot, ImageBand& band) const {
-        const Photon& photon = photons_[spot.photon];
         const int top = std::max(spot.disc.area.top, band.firstRow),
                   bottom = std::min(spot.disc.area.bottom, band.lastRow);
-        int left[ImageBand::Rows], right[ImageBand::Rows];
-        footprint_.columns(spot.disc, top, bottom - top + 1, left, right);
-        const int least = scene_.transport.minBounces - photon.bounce,
-                  most = scene_.transport.maxBounces - photon.bounce - 1;
+        const auto [left, right] = footprint_.columns(spot.disc, top);
+        const int least = scene_.transport.minBounces - spot.bounce,
+                  most = scene_.transport.maxBounces - spot.bounce - 1;
         Batch gathered(0.0f);
         for (BandPiece& piece : band.pieces) {
             if (!piece.mixed &&
-                (piece.medium != photon.medium || piece.interactions < least || piece.interactions > most))
+                (piece.medium != spot.medium || piece.interactions < least || piece.interactions > most))
                 continue;
             const auto even = piece.mixed ? std::nullopt : evenExponent(spot, piece);
             for (int row = top; row <= bottom; ++row) {
@@ -146,15 +148,14 @@ class Splatter {
     /// The same for any medium.
     Batch drawRow(const Spot& spot, BandPiece& piece, const ImageBand& band, size_t first, size_t end, int least,
                   int most) const {
-        const Photon& photon = photons_[spot.photon];
-        const MediumTerms& medium = media_[size_t(photon.medium)];
+        const MediumTerms& medium = media_[size_t(spot.medium)];
         Batch gathered(0.0f);
         for (size_t i = first; i < end; i += size_t(Lanes)) {
             const Meeting met(spot, piece, band, i);
-            const auto inside = piece.mixed ? piece.select(met.inside, i, photon.medium, least, most) : met.inside;
+            const auto inside = piece.mixed ? piece.select(met.inside, i, spot.medium, least, most) : met.inside;
             if (!xsimd::any(inside)) continue;
             gathered += select(inside, Batch(1.0f), Batch(0.0f));
-            const Batch value = met.part * met.part * phase(medium, photon.direction, met), length = met.start - met.t;
+            const Batch value = met.part * met.part * phase(medium, spot.direction, met), length = met.start - met.t;
             Batch weight = select(inside, value * exp(length * medium.sigmaT.x), Batch(0.0f));
             for (int k = 0; k < 3; ++k) {
                 if (k > 0 && !medium.grey) weight = select(inside, value * exp(length * medium.sigmaT[k]), Batch(0.0f));
@@ -178,7 +179,6 @@ class Splatter {
     const Scene& scene_;
     Sensor sensor_;
     const SensorRecord& record_;
-    const std::vector<Photon>& photons_;
     float scale_;
     ImageFootprint footprint_;
     std::vector<MediumTerms> media_;
@@ -189,9 +189,9 @@ class Splatter {
 std::vector<uint32_t> drawingOrder(const std::vector<Spot>& spots, int width) {
     std::vector<std::pair<uint64_t, uint32_t>> places;
     places.reserve(spots.size());
-    for (const Spot& spot : spots)
-        if (spot.frame >= 0)
-            places.emplace_back(uint64_t(spot.frame) * uint64_t(width) + uint64_t(spot.disc.area.left), spot.photon);
+    for (size_t i = 0; i < spots.size(); ++i)
+        if (spots[i].frame >= 0)
+            places.emplace_back(uint64_t(spots[i].frame) * uint64_t(width) + uint64_t(spots[i].disc.area.left), i);
     tbb::parallel_sort(places);
     std::vector<uint32_t> order;
     order.reserve(places.size());
@@ -210,14 +210,19 @@ std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, c
     return byBand;
 }
 
+void prefetch(const Spot& spot) {
+    const auto* bytes = reinterpret_cast<const char*>(&spot);
+    for (size_t line = 0; line < sizeof(Spot); line += 64) __builtin_prefetch(bytes + line);
+}
+
 } // namespace
 
 uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
                       const std::vector<float>& radii, double scale, Film& film) {
-    const Splatter splatter(scene, sensor, record, store, scale);
+    const Splatter splatter(scene, sensor, record, scale);
     std::vector<Spot> spots(store.photons.size());
     tbb::parallel_for(size_t(0), spots.size(),
-                      [&](size_t i) { spots[i] = splatter.spot(uint32_t(i), radii[radii.size() == 1 ? 0 : i]); });
+                      [&](size_t i) { spots[i] = splatter.spot(store.photons[i], radii[radii.size() == 1 ? 0 : i]); });
     const auto byBand = spotsByBand(spots, record);
     std::atomic<uint64_t> total = 0;
     tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {
@@ -226,6 +231,8 @@ uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorReco
         ImageBand band(record, number);
         uint64_t gathered = 0;
         for (size_t i = 0; i < drawn.size(); ++i) {
+            // A band's spots lie scattered in memory.
+            prefetch(spots[drawn[std::min(i + 4, drawn.size() - 1)]]);
             const int frame = spots[drawn[i]].frame;
             gathered += splatter.draw(spots[drawn[i]], band);
             if (i + 1 == drawn.size() || spots[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
