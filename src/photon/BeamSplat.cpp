@@ -1,21 +1,15 @@
 #include "photon/BeamSplat.h"
 
+#include "photon/ImageBand.h"
 #include "photon/ImageFootprint.h"
 
 #include <tbb/parallel_for.h>
-#include <xsimd/xsimd.hpp>
-
-#include <array>
 
 namespace tungsten::photon {
 
 namespace {
 
-using Batch = xsimd::batch<float>;
-constexpr int Lanes = int(Batch::size);
-constexpr int BandRows = 4; ///< rows of the image that one task draws
 constexpr float LeastSine = 1e-4f;
-alignas(64) constexpr float LaneNumbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// A beam as the camera sees it. Its line comes closest to the camera at `foot`, relative to the camera; distances
 /// along the beam count from there, which leaves no difference of large numbers (closestApproach).
@@ -34,39 +28,13 @@ struct Ribbon {
     PixelArea area;
 };
 
-/// What every pixel with this piece of the rays shares.
-struct SharedPiece {
-    bool shared = true;
-    int medium = -1, interactions = 0;
-
-    explicit SharedPiece(const StraightPiece& piece) {
-        for (size_t i = 0; i < piece.end.size(); ++i) {
-            if (!(piece.end[i] > piece.start[i])) continue;
-            if (medium < 0) {
-                medium = piece.medium[i];
-                interactions = piece.interactions[i];
-            }
-            shared = shared && piece.medium[i] == medium && piece.interactions[i] == interactions;
-        }
-    }
-};
-
-/// Sums of a few rows' pixels by piece and channel, for what needs no look at the single pixel: without the rays'
-/// throughput.
-struct BandSums {
-    size_t firstPixel, pixels;
-    std::vector<std::array<std::vector<float>, 3>> pieces;
-};
-
 class Splatter {
   public:
     Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, float radius, double scale,
              Film& film)
         : scene_(scene), sensor_(sensor), record_(record), footprint_(scene.camera), radius_(radius),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
-          timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {
-        for (const StraightPiece& piece : record.pieces) shared_.emplace_back(piece);
-    }
+          timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {}
 
     [[nodiscard]] std::optional<Ribbon> ribbon(const PhotonBeam& beam) const {
         const auto area = footprint_.around(beam.base + beam.direction * beam.tStart,
@@ -106,42 +74,17 @@ class Splatter {
         return r;
     }
 
-    [[nodiscard]] BandSums newBand(int firstRow, int lastRow) const {
-        const size_t width = size_t(record_.width);
-        BandSums band{size_t(firstRow) * width, size_t(lastRow - firstRow + 1) * width, {}};
-        band.pieces.resize(shared_.size());
-        for (size_t k = 0; k < shared_.size(); ++k)
-            if (oneFrame_ && shared_[k].shared)
-                for (auto& channel : band.pieces[k]) channel.resize(band.pixels + size_t(Lanes));
-        return band;
-    }
-    uint64_t draw(const Ribbon& ribbon, int firstRow, int lastRow, BandSums& band) const {
+    uint64_t draw(const Ribbon& ribbon, ImageBand& band) const {
         uint64_t gathered = 0;
-        for (int y = std::max(ribbon.area.top, firstRow); y <= std::min(ribbon.area.bottom, lastRow); ++y) {
+        for (int y = std::max(ribbon.area.top, band.firstRow); y <= std::min(ribbon.area.bottom, band.lastRow); ++y) {
             int left = ribbon.area.left, right = ribbon.area.right;
             if (!ribbon.surrounds)
                 for (const ImageHalfPlane& side : ribbon.sides) footprint_.narrow(side, y, left, right);
-            if (left > right) continue;
-            for (size_t k = 0; k < shared_.size(); ++k) {
-                const StraightPiece& piece = record_.pieces[k];
-                if (!(ribbon.simple && oneFrame_ && shared_[k].shared))
-                    gathered += drawRow(ribbon, piece, y, left, right, nullptr, band.firstPixel);
-                else if (shared_[k].medium == ribbon.medium && rendered(shared_[k].interactions + ribbon.bounce + 1))
-                    gathered += drawRow(ribbon, piece, y, left, right, &band.pieces[k], band.firstPixel);
-            }
+            for (BandPiece& piece : band.pieces)
+                if (piece.mixed || (piece.medium == ribbon.medium && rendered(piece.interactions + ribbon.bounce + 1)))
+                    gathered += drawRow(ribbon, piece, band, y, left, right);
         }
         return gathered;
-    }
-    void addToFilm(const BandSums& band) const {
-        const size_t width = size_t(record_.width);
-        for (size_t k = 0; k < band.pieces.size(); ++k) {
-            const auto& sums = band.pieces[k];
-            for (size_t i = 0; i < band.pixels && !sums[0].empty(); ++i) {
-                const size_t pixel = band.firstPixel + i;
-                film_.passPixel(0, int(pixel % width), int(pixel / width)) +=
-                    Rgb(sums[0][i], sums[1][i], sums[2][i]) * record_.pieces[k].throughput[pixel];
-            }
-        }
     }
 
   private:
@@ -151,63 +94,45 @@ class Splatter {
         alignas(64) float weight[Lanes]; ///< 0 for rays that miss
     };
 
-    /// Into `sums`, or pixel by pixel into the film.
-    uint64_t drawRow(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right,
-                     std::array<std::vector<float>, 3>* sums, size_t firstPixel) const {
-        const size_t row = size_t(y) * size_t(record_.width), pixels = record_.x.size();
-        if (pixels < size_t(Lanes)) return drawSmallImage(ribbon, piece, y, left, right);
+    /// Into the band's sums, or pixel by pixel into the film.
+    uint64_t drawRow(const Ribbon& ribbon, BandPiece& piece, const ImageBand& band, int y, int left, int right) const {
         uint64_t gathered = 0;
         Approaches found;
         for (int x = left; x <= right; x += Lanes) {
-            const int count = std::min(Lanes, right - x + 1);
-            // The last registers of the image begin early; their first lanes have been drawn or lie outside.
-            const size_t wanted = row + size_t(x), first = std::min(wanted, pixels - size_t(Lanes));
-            const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
-            if (!approach(ribbon, load(record_.x), load(record_.y), load(record_.z), load(piece.start), load(piece.end),
-                          found))
-                continue;
-            const int skipped = int(wanted - first);
-            if (sums && skipped == 0) {
-                gathered += collect(ribbon, found, count, *sums, first - firstPixel);
+            const size_t i = band.at(x, y);
+            if (!approach(ribbon, band, piece, i, found)) continue;
+            if (ribbon.simple && oneFrame_) {
+                gathered += collect(ribbon, found, piece, i);
                 continue;
             }
-            for (int lane = skipped; lane < skipped + count; ++lane)
-                if (found.weight[lane] > 0.0f) gathered += add(ribbon, piece, y, x + lane - skipped, found, lane);
+            for (int lane = 0; lane < Lanes; ++lane)
+                if (found.weight[lane] > 0.0f)
+                    gathered += add(ribbon, record_.pieces[piece.number], y, x + lane, found, lane);
         }
         return gathered;
     }
-    /// The first `count` lanes.
-    uint64_t collect(const Ribbon& ribbon, const Approaches& found, int count, std::array<std::vector<float>, 3>& sums,
-                     size_t at) const {
+    /// From pixel `first` of the band on.
+    uint64_t collect(const Ribbon& ribbon, const Approaches& found, BandPiece& piece, size_t first) const {
         auto weight = Batch::load_aligned(found.weight);
-        auto inside = weight > 0.0f && Batch::load_aligned(LaneNumbers) < float(count);
+        auto inside = weight > 0.0f;
+        if (piece.mixed)
+            inside = piece.select(inside, first, ribbon.medium, scene_.transport.minBounces - ribbon.bounce - 1,
+                                  scene_.transport.maxBounces - ribbon.bounce - 2);
         if (!timeless_) {
             Batch length = Batch::load_aligned(found.alongBeam);
             if (!scene_.transport.cameraUnwarped) length += Batch::load_aligned(found.toCamera);
             inside = inside && length >= ribbon.shortest && length < ribbon.longest;
         }
         weight = xsimd::select(inside, weight, Batch(0.0f));
-        for (int k = 0; k < 3; ++k) {
-            float* sum = sums[size_t(k)].data() + at;
-            (Batch::load_unaligned(sum) + weight * ribbon.power[k]).store_unaligned(sum);
-        }
+        for (int k = 0; k < 3; ++k) piece.add(first, weight, k, ribbon.power[k]);
         return uint64_t(xsimd::hadd(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
-    }
-    /// Fewer pixels than lanes.
-    uint64_t drawSmallImage(const Ribbon& ribbon, const StraightPiece& piece, int y, int left, int right) const {
-        uint64_t gathered = 0;
-        Approaches found;
-        for (int x = left; x <= right; ++x) {
-            const size_t i = size_t(y) * size_t(record_.width) + size_t(x);
-            if (approach(ribbon, record_.x[i], record_.y[i], record_.z[i], piece.start[i], piece.end[i], found))
-                gathered += add(ribbon, piece, y, x, found, 0);
-        }
-        return gathered;
     }
 
     /// False if no ray meets the ribbon.
-    bool approach(const Ribbon& r, const Batch& dx, const Batch& dy, const Batch& dz, const Batch& start,
-                  const Batch& end, Approaches& found) const {
+    bool approach(const Ribbon& r, const ImageBand& band, const BandPiece& piece, size_t first,
+                  Approaches& found) const {
+        const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
+        const Batch dx = load(band.x), dy = load(band.y), dz = load(band.z), start = load(piece.start);
         const Vec3f &w = r.direction, &a = r.foot, &n = r.normal;
         const Batch cosine = dx * w.x + dy * w.y + dz * w.z;
         const Batch px = dx - cosine * w.x, py = dy - cosine * w.y, pz = dz - cosine * w.z;
@@ -215,7 +140,7 @@ class Splatter {
         const Batch t = (dx * a.x + dy * a.y + dz * a.z) * inverse, s = cosine * t;
         const Batch across = dx * n.x + dy * n.y + dz * n.z, squaredDistance = across * across * inverse;
         const auto inside = squaredSine > LeastSine * LeastSine && squaredDistance < radius_ * radius_ && s >= r.low &&
-                            s < r.high && t > start && t <= end;
+                            s < r.high && t > start && t <= load(piece.end);
         if (!xsimd::any(inside)) return false;
         Batch weight = xsimd::sqrt(inverse);
         if (r.simple) weight = weight * xsimd::exp((start - t - s - r.fromBase) * r.sigmaT) * phase(r, cosine);
@@ -272,7 +197,6 @@ class Splatter {
     Film& film_;
     double speed_;
     bool timeless_, oneFrame_; ///< without a gate; no frame to choose and no response to weigh by
-    std::vector<SharedPiece> shared_;
 };
 
 } // namespace
@@ -280,21 +204,23 @@ class Splatter {
 uint64_t splatBeams(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
                     const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, radius, scale, film);
-    const size_t bands = size_t((record.height + BandRows - 1) / BandRows);
+    const size_t bands = ImageBand::count(record.height);
     std::vector<std::optional<Ribbon>> ribbons(beams.size());
     tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) { ribbons[i] = splatter.ribbon(beams[i]); });
     // Beams by band, in their own order: the sums do not depend on the threads.
     std::vector<std::vector<uint32_t>> byBand(bands);
     for (size_t i = 0; i < ribbons.size(); ++i)
         if (ribbons[i])
-            for (int band = ribbons[i]->area.top / BandRows; band <= ribbons[i]->area.bottom / BandRows; ++band)
-                byBand[size_t(std::clamp(band, 0, int(bands) - 1))].push_back(uint32_t(i));
+            for (int band = ribbons[i]->area.top / ImageBand::Rows; band <= ribbons[i]->area.bottom / ImageBand::Rows;
+                 ++band)
+                byBand[size_t(band)].push_back(uint32_t(i));
     std::vector<uint64_t> gathered(bands, 0);
-    tbb::parallel_for(size_t(0), bands, [&](size_t band) {
-        const int first = int(band) * BandRows, last = std::min(first + BandRows, record.height) - 1;
-        BandSums sums = splatter.newBand(first, last);
-        for (const uint32_t i : byBand[band]) gathered[band] += splatter.draw(*ribbons[i], first, last, sums);
-        splatter.addToFilm(sums);
+    tbb::parallel_for(size_t(0), bands, [&](size_t number) {
+        if (byBand[number].empty()) return;
+        ImageBand band(record, number);
+        for (const uint32_t i : byBand[number]) gathered[number] += splatter.draw(*ribbons[i], band);
+        // With several frames nothing has been collected.
+        band.addToFilm(0, film);
     });
     uint64_t total = 0;
     for (const uint64_t count : gathered) total += count;

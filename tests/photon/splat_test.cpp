@@ -261,6 +261,31 @@ INSTANTIATE_TEST_SUITE_P(Views, Splat,
                                          SplatCase{"OnlyRayleigh", {37, 21}, 60.0f, false, false, true, 1, 2}),
                          [](const auto& test) { return std::string(test.param.name); });
 
+/// Pixels whose fog begins at different distances see one photon, to rounding.
+TEST(PhotonSplat, AttenuatesFromTheStartOfEveryRay) {
+    const Scene scene = foggyScene({"", {16, 16}, 3.0f, true, false, false, 1});
+    SensorRecord record = randomRecord(scene, 1);
+    useOneMedium(record, 3, false);
+    StraightPiece& fog = record.pieces.front();
+    for (size_t i = 0; i < fog.start.size(); ++i) {
+        fog.start[i] = 0.004f * float(i % 16);
+        fog.end[i] = Infinity;
+    }
+    const Vec3f offset = scene.camera.toWorld.rotation().n * 1.5f;
+    PhotonStore store;
+    store.photons.push_back({0.0, record.origin + offset, Vec3f(1.0f, 0.0f, 0.0f), Rgb(1.0f), 2, 3});
+    Film film(16, 16, 1);
+    film.beginPass();
+    EXPECT_EQ(splatPhotons(scene, TimeGate{}, record, store, {0.15f}, 1.0, film), 256u);
+    for (size_t i = 0; i < fog.start.size(); ++i) {
+        const Vec3f direction(record.x[i], record.y[i], record.z[i]);
+        const float t = offset.dot(direction);
+        const double attenuation = std::exp((double(fog.start[i]) - double(t)) * 0.9) * 0.25 * double(InvPi);
+        const double value = double(biweight((offset - direction * t).length2(), sqr(0.15f))) * attenuation;
+        EXPECT_NEAR(double(film.passPixel(0, int(i % 16), int(i / 16)).z), value, 4e-6 * value) << i;
+    }
+}
+
 /// Two clouds and a mirror behind them, in which a wall behind the camera shows.
 constexpr const char* Bench =
     R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.2, "sigma_s": [0.1, 0.2, 0.3]},
