@@ -216,9 +216,13 @@ uint64_t splatBeams(const Scene& scene, const Sensor& sensor, const SensorRecord
                 byBand[size_t(band)].push_back(uint32_t(i));
     std::vector<uint64_t> gathered(bands, 0);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
-        if (byBand[number].empty()) return;
+        const auto& drawn = byBand[number];
+        if (drawn.empty()) return;
         ImageBand band(record, number);
-        for (const uint32_t i : byBand[number]) gathered[number] += splatter.draw(*ribbons[i], band);
+        for (size_t i = 0; i < drawn.size(); ++i) {
+            prefetch(*ribbons[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
+            gathered[number] += splatter.draw(*ribbons[drawn[i]], band);
+        }
         // With several frames nothing has been collected.
         band.addToFilm(0, film);
     });

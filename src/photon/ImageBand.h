@@ -60,4 +60,12 @@ class ImageBand {
     const SensorRecord& record_;
 };
 
+/// A band's photons or beams lie scattered in memory: asks for the one that is drawn DrawnAhead later.
+template <typename T>
+void prefetch(const T& drawnLater) {
+    const auto* bytes = reinterpret_cast<const char*>(&drawnLater);
+    for (size_t line = 0; line < sizeof(T); line += 64) __builtin_prefetch(bytes + line);
+}
+inline constexpr size_t DrawnAhead = 4;
+
 } // namespace tungsten::photon

@@ -95,10 +95,10 @@ class Splatter {
             if (!piece.mixed &&
                 (piece.medium != spot.medium || piece.interactions < least || piece.interactions > most))
                 continue;
-            const auto even = piece.mixed ? std::nullopt : evenExponent(spot, piece);
+            const auto even = piece.mixed ? std::nullopt : evenTerms(spot, piece);
             for (int row = top; row <= bottom; ++row) {
                 const size_t first = band.at(left[row - top], row), end = band.at(right[row - top], row) + 1;
-                gathered += even ? drawEvenly(spot, media_[size_t(piece.medium)], *even, piece, band, first, end)
+                gathered += even ? drawEvenly(spot, *even, piece, band, first, end)
                                  : drawRow(spot, piece, band, first, end, least, most);
             }
         }
@@ -114,9 +114,14 @@ class Splatter {
         return way.length() / double(scene_.cameraRegion.speed);
     }
 
-    /// Middle of the exponents (start - t) sigmaT of the rays that meet the spot, if the medium is grey and isotropic
-    /// and they differ so little that a cubic about the middle is exact to rounding.
-    [[nodiscard]] std::optional<float> evenExponent(const Spot& spot, const BandPiece& piece) const {
+    /// For exponents (start - t) sigmaT that differ little from their middle.
+    struct EvenTerms {
+        float sigmaT, middle;
+        Rgb power; ///< the spot's, times phase function and e^middle
+    };
+    /// If the medium is grey and isotropic and the rays that meet the spot have so even exponents that a cubic about
+    /// their middle is exact to rounding.
+    [[nodiscard]] std::optional<EvenTerms> evenTerms(const Spot& spot, const BandPiece& piece) const {
         constexpr float MostDifference = 0.03f;
         const MediumTerms& medium = media_[size_t(piece.medium)];
         if (!medium.grey || !medium.isotropic()) return std::nullopt;
@@ -125,22 +130,22 @@ class Splatter {
         const float low = (piece.leastStart - farthest) * medium.sigmaT.x,
                     high = (piece.mostStart - nearest) * medium.sigmaT.x;
         if (!(high - low < 2.0f * MostDifference)) return std::nullopt;
-        return 0.5f * (low + high);
+        const float middle = 0.5f * (low + high);
+        return EvenTerms{medium.sigmaT.x, middle, spot.power * (0.25f * InvPi * std::exp(middle))};
     }
 
     /// Of the rays at [first, end); returns how many gather the photon, lane by lane.
-    static Batch drawEvenly(const Spot& spot, const MediumTerms& medium, float middle, BandPiece& piece,
-                            const ImageBand& band, size_t first, size_t end) {
-        const Rgb power = spot.power * (0.25f * InvPi * std::exp(middle));
+    static Batch drawEvenly(const Spot& spot, const EvenTerms& terms, BandPiece& piece, const ImageBand& band,
+                            size_t first, size_t end) {
         Batch gathered(0.0f);
         for (size_t i = first; i < end; i += size_t(Lanes)) {
             const Meeting met(spot, piece, band, i);
             if (!xsimd::any(met.inside)) continue;
             gathered += select(met.inside, Batch(1.0f), Batch(0.0f));
-            const Batch e = (met.start - met.t) * medium.sigmaT.x - middle;
+            const Batch e = (met.start - met.t) * terms.sigmaT - terms.middle;
             const Batch transmittance = 1.0f + e * (1.0f + e * (0.5f + e * (1.0f / 6.0f)));
             const Batch weight = select(met.inside, met.part * met.part * transmittance, Batch(0.0f));
-            for (int k = 0; k < 3; ++k) piece.add(i, weight, k, power[k]);
+            for (int k = 0; k < 3; ++k) piece.add(i, weight, k, terms.power[k]);
         }
         return gathered;
     }
@@ -210,11 +215,6 @@ std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, c
     return byBand;
 }
 
-void prefetch(const Spot& spot) {
-    const auto* bytes = reinterpret_cast<const char*>(&spot);
-    for (size_t line = 0; line < sizeof(Spot); line += 64) __builtin_prefetch(bytes + line);
-}
-
 } // namespace
 
 uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
@@ -231,8 +231,7 @@ uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorReco
         ImageBand band(record, number);
         uint64_t gathered = 0;
         for (size_t i = 0; i < drawn.size(); ++i) {
-            // A band's spots lie scattered in memory.
-            prefetch(spots[drawn[std::min(i + 4, drawn.size() - 1)]]);
+            prefetch(spots[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
             const int frame = spots[drawn[i]].frame;
             gathered += splatter.draw(spots[drawn[i]], band);
             if (i + 1 == drawn.size() || spots[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
