@@ -24,6 +24,7 @@ struct Deposits {
     DepositList surface, volume;
     BeamList beams;
     std::vector<SurfaceArrival> arrivals;
+    std::vector<float> worths; ///< of the vertices' connections, where these have no target yet
 
     void endPath() {
         surface.endPath();

@@ -12,6 +12,9 @@ double distanceBetween(const Vec3f& a, const Vec3f& b) {
     return d.length();
 }
 
+/// Of light that goes everywhere alike, per solid angle.
+constexpr float InSphere = 0.25f * InvPi;
+
 /// Balance heuristic between a control vertex's density along the ray and a free flight's.
 float controlVertexShare(float controlVertexPdf, float sigmaT, float distance) {
     return controlVertexPdf / (controlVertexPdf + sigmaT * std::exp(-sigmaT * distance));
@@ -72,7 +75,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     ray_ = Ray{start.position, Vec3f(0.0f), emitter.isArea() ? scene_.rayEpsilon : 0.0f};
     connectable_ = true;
     if (!arrival_->mayContinue(ray_.origin, time_)) return false;
-    connectToSurfaces(emitter.isArea(),
+    connectToSurfaces(emitter.isArea(), InSphere * meanComponent(emitterPower(emitter)),
                       [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
     const EmissionDirections own(emitter, start);
     float inversePdf = 0.0f;
@@ -90,10 +93,13 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
 }
 
 template <typename Scattering>
-void GuidedPhotonWalk::connectToSurfaces(bool onSurface, const Scattering& scattering) {
+void GuidedPhotonWalk::connectToSurfaces(bool onSurface, float usual, const Scattering& scattering) {
     if (!connections_) return;
-    connections_->connect({ray_.origin, onSurface, time_, bounce_, region_, power_}, gate_, scattering, sampler_,
-                          deposits_.arrivals, counters_.rays);
+    const LightVertex vertex{ray_.origin, onSurface, time_, bounce_, region_, power_, usual};
+    if (connections_->hasTarget())
+        connections_->connect(vertex, gate_, scattering, sampler_, draws_, deposits_.arrivals, counters_.rays);
+    else
+        deposits_.worths.push_back(connections_->worth(vertex, gate_));
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
@@ -103,7 +109,7 @@ bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
         const Region behind = region_;
         ray_.origin = hit.position;
         // Light leaves to the side of the direction; a boundary's other side is another region.
-        connectToSurfaces(true, [&](const Vec3f& direction) {
+        connectToSurfaces(true, 2.0f * InSphere, [&](const Vec3f& direction) {
             if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
             const Region ahead = regionBeyond(surface_, direction, behind);
             if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
@@ -188,7 +194,8 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     fromLight_ = false;
     if (!look(guide) || !survives(guide)) return false;
     if (flights_ < medium.maxBounces) // else no flight would leave here
-        connectToSurfaces(false, [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
+        connectToSurfaces(false, InSphere,
+                          [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
     const float inversePdf = redirect(guide, darts::PhaseScatterer{medium.phase, before});
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);
     return !isBlack(power_);

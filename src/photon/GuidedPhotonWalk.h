@@ -22,7 +22,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
     bool emitFromPoint(const Emitter& emitter, const darts::Guide* guide);
     template <typename Scattering>
-    void connectToSurfaces(bool onSurface, const Scattering& scattering);
+    void connectToSurfaces(bool onSurface, float usual, const Scattering& scattering);
     bool meetSurface(const SurfaceHit& hit);
     /// A flight through a scattering medium: its control vertex, then the next vertex. False ends the path.
     bool crossMedium(const Medium& medium, const darts::Guide& guide);
@@ -44,6 +44,7 @@ class GuidedPhotonWalk : private PhotonWalk {
 
     const PhotonGuidance& guidance_;
     const SurfaceConnections* connections_;
+    std::vector<PointDraw> draws_; ///< of the vertex at hand
     darts::TimeGate gate_;
     darts::Residual residual_;
     darts::Residual reachable_; ///< residual_ with the range that connection_ was drawn from

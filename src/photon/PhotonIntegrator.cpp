@@ -9,6 +9,9 @@ namespace tungsten::photon {
 
 namespace {
 
+/// Camera paths per pixel that look for surface points; 4 pay in small images of fine features, 1 never.
+constexpr uint32_t SurfaceSamples = 2;
+
 /// Copies the photons that straight sensor paths see inside the gate. Leaves `straight` alone where that would be all
 /// or unknown.
 void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const std::vector<float>& radii,
@@ -192,7 +195,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
         const StageTimer timer(statistics, "sensor record");
-        record = recordSensorPaths(*scene_, connect, rules_, pass, statistics);
+        record = recordSensorPaths(*scene_, connect, rules_, pass, connect ? SurfaceSamples : 1, statistics);
         if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass);
     }
     PhotonMaps maps;
@@ -213,8 +216,9 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     }
     if (connect) {
         const StageTimer timer(statistics, "share arrivals");
-        const auto kernel = SharingKernel::of(record.points.size(), maps.arrivals.size(), settings_.gatherRadius,
-                                              surfaceRadiusFactor(photons.index, settings_.alpha));
+        const auto kernel =
+            SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(), settings_.gatherRadius,
+                              surfaceRadiusFactor(photons.index, settings_.alpha));
         shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");

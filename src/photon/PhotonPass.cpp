@@ -10,9 +10,12 @@ namespace {
 
 constexpr uint64_t PathsPerBatch = 256;
 constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
+constexpr uint64_t PilotPaths = 256;    ///< before a pass
 
-/// A pass goes on until vertices have connected so often to surfaces: on average over the points, and in all.
-constexpr uint64_t ConnectionsPerPoint = 8, MostConnections = 1 << 18;
+/// How often a path tries to connect to surfaces. A pass goes on until so many have arrived: on average over the
+/// points, and in all.
+constexpr double ConnectionsPerPath = 16.0;
+constexpr uint64_t ArrivalsPerPoint = 4, MostArrivals = 1 << 15;
 
 struct Batch {
     Deposits deposits;
@@ -86,14 +89,32 @@ void PhotonPass::setGate(const TimeGate& gate) {
     if (guidance_) guidance_->setGate(gate);
 }
 
-PhotonMaps PhotonPass::trace(const PassInfo& pass, const SurfaceConnections* connections,
-                             Statistics& statistics) const {
+void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
+    // Paths of their own: what they find must not depend on the paths that follow.
+    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, PilotPaths);
+    const WalkContext context{scene_, settings_, arrival_, frameArrivals_, emitters_, false, false, false};
+    std::vector<Batch> pilots(paths);
+    tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
+        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
+        Batch& pilot = pilots[path];
+        GuidedPhotonWalk(context, *guidance_, &connections, sampler, path, pilot.deposits, pilot.counters).run();
+    });
+    std::vector<float> worths;
+    for (const Batch& pilot : pilots) {
+        worths.insert(worths.end(), pilot.deposits.worths.begin(), pilot.deposits.worths.end());
+        statistics.add("rays", pilot.counters.rays);
+    }
+    connections.setTarget(commonTarget(std::move(worths), ConnectionsPerPath * double(paths)));
+}
+
+PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
+    if (connections) setTarget(pass, *connections, statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume.full = !storeVolume_;
     maps.beams.full = !storeBeams_;
     uint64_t traced = 0;
-    const uint64_t wanted = connections ? std::min(ConnectionsPerPoint * connections->points(), MostConnections) : 0;
+    const uint64_t wanted = connections ? std::min(ArrivalsPerPoint * connections->points(), MostArrivals) : 0;
     const auto finished = [&] {
         return maps.volume.full && maps.beams.full &&
                (connections ? maps.arrivals.size() >= wanted : maps.surface.full);

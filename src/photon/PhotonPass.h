@@ -28,8 +28,7 @@ class PhotonPass {
     /// whatever the threads.
     /// `connections`: surface points that vertices connect to; may be null. With them, surfaces do not wait for
     /// photons: the pass ends when the volume store, if any is in use, is full.
-    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, const SurfaceConnections* connections,
-                                   Statistics& statistics) const;
+    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);
     [[nodiscard]] const ArrivalTest& arrival() const { return arrival_; }
@@ -40,6 +39,9 @@ class PhotonPass {
     [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 
   private:
+    /// Tells connections what each of them is to bring, from what a few paths find.
+    void setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const;
+
     const Scene& scene_;
     const PhotonSettings& settings_;
     ArrivalTest arrival_;

@@ -19,14 +19,15 @@ struct Workspace {
     std::vector<NearestPhotons::Neighbour> neighbours;
 };
 
-/// Gathers on a camera path.
+/// Gathers on camera paths.
 class SensorGather {
   public:
-    /// `sampler` draws lights. `oversampled`: highlights are left to HighlightGather.
-    SensorGather(const Scene& scene, const GatherStructures& structures, Sampler sampler, bool oversampled,
-                 Workspace& workspace, SensorCounters& counters)
-        : scene_(scene), structures_(structures), sampler_(sampler), oversampled_(oversampled), workspace_(workspace),
-          counters_(counters) {}
+    /// `lights` draws lights. `paths`: of a pixel, over which to average. `oversampled`: highlights are left to
+    /// HighlightGather.
+    SensorGather(const Scene& scene, const GatherStructures& structures, const Sampler& lights, uint32_t paths,
+                 bool oversampled, Workspace& workspace, SensorCounters& counters)
+        : scene_(scene), structures_(structures), lights_(lights), share_(1.0f / float(paths)),
+          oversampled_(oversampled), workspace_(workspace), counters_(counters) {}
 
     void segment(const SensorState& state, float length) {
         if (!scene_.medium(state.region)) return;
@@ -42,7 +43,7 @@ class SensorGather {
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
         if (!structures_.includeSurfaces) return;
         if (surface.primitive->emitter >= 0 && !state.glossy) addEmission(state, surface, 1.0f);
-        if (structures_.glossy && !oversampled_) highlight(state, surface, 1.0f);
+        if (structures_.glossy && !oversampled_) highlight(state, surface);
         if (structures_.surfaces && (surface.bsdf->lobes() & lobe::Smooth) != 0) gatherSurface(state, surface);
     }
 
@@ -54,14 +55,16 @@ class SensorGather {
         add(state.throughput * environmentRadiance(environment, state.ray.direction), Infinity);
     }
 
-    /// Light from the lights by way of glossy surfaces, times `share`.
-    void highlight(const SensorState& state, const SurfaceInteraction& surface, float share) {
+    /// Light from the lights by way of glossy surfaces.
+    void highlight(const SensorState& state, const SurfaceInteraction& surface) {
         if (surface.primitive->emitter >= 0 && state.glossy)
-            addEmission(state, surface, share * structures_.glossy->emissionWeight(state, surface));
+            addEmission(state, surface, structures_.glossy->emissionWeight(state, surface));
         if (!isGlossyOnly(*surface.bsdf)) return;
-        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, sampler_, counters_.rays);
-        if (light) add(light->radiance * share, light->time);
+        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.rays);
+        if (light) add(light->radiance, light->time);
     }
+
+    [[nodiscard]] const Sampler& lights() const { return lights_; }
 
   private:
     /// Points or beams along the segment; `straight`, if any, while the path has not folded.
@@ -76,7 +79,7 @@ class SensorGather {
         const uint64_t gathered = store.gather(segment, workspace_.volume);
         if (gathered == 0) return;
         counter += gathered;
-        const double scale = double(storeScale);
+        const double scale = double(storeScale) * double(share_);
         const Rgb& t = state.throughput;
         const Vec3d weight(double(t.x) * scale, double(t.y) * scale, double(t.z) * scale);
         for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
@@ -87,7 +90,7 @@ class SensorGather {
         const Sensor& sensor = structures_.sensor;
         const int frame = sensor.gate.steadyState ? 0 : sensor.gate.frameOf(time);
         if (frame < 0) return;
-        const Rgb weighed = radiance * sensor.weight(time);
+        const Rgb weighed = radiance * (sensor.weight(time) * share_);
         workspace_.sums[size_t(frame)] += Vec3d(double(weighed.x), double(weighed.y), double(weighed.z));
     }
 
@@ -129,18 +132,19 @@ class SensorGather {
 
     const Scene& scene_;
     const GatherStructures& structures_;
-    Sampler sampler_;
+    Sampler lights_;
+    float share_;
     bool oversampled_;
     Workspace& workspace_;
     SensorCounters& counters_;
 };
 
-/// Light from the lights on glossy surfaces, one of GlossyLight::Samples paths.
+/// Light from the lights on glossy surfaces alone.
 struct HighlightGather {
     SensorGather& gather;
     void segment(const SensorState&, float) const {}
     void surface(const SensorState& state, const SurfaceInteraction& surface) const {
-        gather.highlight(state, surface, 1.0f / float(GlossyLight::Samples));
+        gather.highlight(state, surface);
     }
     void escaped(const SensorState&) const {}
 };
@@ -157,19 +161,21 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
         for (uint32_t s = 0; s < pass.samples; ++s) {
             Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample + s),
                             size_t(y) * width + size_t(x));
-            const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
-            const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
             const size_t pixel = size_t(y) * width + size_t(x);
-            Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
+            const auto follow = [&](auto&& visitor) {
+                const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+                const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
+                counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
+            };
+            const Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
             const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
-            SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
-            counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, gather);
-            for (uint32_t k = 0; oversampled && k < GlossyLight::Samples; ++k) {
-                const Vec2f uAgain = sampler.next2D(), uLensAgain = sampler.next2D();
-                const Ray again = scene.camera.generateRay({x, y}, uAgain, uLensAgain);
-                counters.rays += followSensorPath(scene, {again, scene.cameraRegion}, structures.rules, sampler,
-                                                  HighlightGather{gather});
-            }
+            const uint32_t paths = oversampled ? GlossyLight::GatherPaths : 1;
+            SensorGather gather(scene, structures, lights, paths, oversampled, workspace, counters);
+            for (uint32_t k = 0; k < paths; ++k) follow(gather);
+            if (!oversampled) continue;
+            SensorGather highlights(scene, structures, gather.lights(), GlossyLight::HighlightPaths, false, workspace,
+                                    counters);
+            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(HighlightGather{highlights});
         }
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;

@@ -28,6 +28,7 @@ struct Piece {
 struct Recorder {
     const Scene& scene;
     bool includeSurfaces;
+    float share;                            ///< of a path in its pixel
     std::vector<std::vector<Piece>> pieces; ///< by number along the ray
     std::vector<SensorPoint> points;
     uint32_t pixel = 0;
@@ -51,24 +52,35 @@ struct Recorder {
     }
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
         if (!includeSurfaces || !receivesConnections(*surface.bsdf)) return;
-        points.push_back({surface.hit, state.ray.direction, state.throughput,
+        points.push_back({surface.hit, state.ray.direction, state.throughput * share,
                           state.time + double(surface.hit.t) / double(state.region.speed), pixel, state.interactions,
                           state.region});
     }
     void escaped(const SensorState&) {}
 };
 
+/// Leaves surface points alone.
+struct PointRecorder {
+    Recorder& recorder;
+    void segment(const SensorState&, float) const {}
+    void surface(const SensorState& state, const SurfaceInteraction& surface) const {
+        recorder.surface(state, surface);
+    }
+    void escaped(const SensorState&) const {}
+};
+
 } // namespace
 
 SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
-                               const PassInfo& pass, Statistics& statistics) {
+                               const PassInfo& pass, uint32_t samples, Statistics& statistics) {
     SensorRecord record;
+    record.samples = samples;
     record.width = scene.camera.resolution.x;
     record.height = scene.camera.resolution.y;
     record.origin = scene.camera.position();
     const size_t pixels = size_t(record.width) * size_t(record.height);
     for (auto* component : {&record.x, &record.y, &record.z}) component->resize(pixels);
-    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, includeSurfaces, {}, {}});
+    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, includeSurfaces, 1.0f / float(samples), {}, {}});
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
         uint64_t rays = 0;
         for (int x = 0; x < record.width; ++x) {
@@ -81,6 +93,12 @@ SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const S
             record.z[pixel] = ray.direction.z;
             rows[y].begin(uint32_t(pixel));
             rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
+            Sampler further(pass.seed, RandomStream::SensorPoint, uint32_t(pass.firstSample), pixel);
+            for (uint32_t s = 1; s < samples; ++s) {
+                const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
+                const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
+                rays += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, PointRecorder{rows[y]});
+            }
         }
         statistics.add("rays", rays);
     });

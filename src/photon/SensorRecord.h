@@ -14,7 +14,7 @@ namespace tungsten::photon {
 struct SensorPoint {
     SurfaceHit hit;
     Vec3f direction; ///< of the camera ray that found it
-    Rgb throughput;  ///< of the camera path up to the point
+    Rgb throughput;  ///< of the camera path up to the point, over the pixel's paths
     double time;     ///< of flight from the camera to the point
     uint32_t pixel;
     int interactions; ///< before the point
@@ -31,6 +31,7 @@ struct StraightPiece {
 
 struct SensorRecord {
     int width = 0, height = 0;
+    uint32_t samples = 1;              ///< camera paths of a pixel that have left points
     Vec3f origin;                      ///< of every ray
     std::vector<float> x, y, z;        ///< unit direction of every pixel's ray
     std::vector<StraightPiece> pieces; ///< first, second, ... piece of every ray
@@ -38,8 +39,9 @@ struct SensorRecord {
 };
 
 /// Traces the pass's camera rays; they are those of the sensor pass that follows. One sample per pixel, from a camera
-/// with a single position.
+/// with a single position; with `samples` above 1 further paths look for surface points alone: what a narrow gate
+/// lights is finer than pixels.
 SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
-                               const PassInfo& pass, Statistics& statistics);
+                               const PassInfo& pass, uint32_t samples, Statistics& statistics);
 
 } // namespace tungsten::photon

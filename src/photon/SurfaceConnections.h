@@ -4,6 +4,7 @@
 
 #include "photon/Deposits.h"
 #include "photon/Sensor.h"
+#include "photon/SensorClusters.h"
 #include "photon/SensorRecord.h"
 
 #include "darts/ResidualRange.h"
@@ -25,15 +26,15 @@ struct LightVertex {
     int bounce; ///< interactions up to and including the vertex
     Region region;
     Rgb power;
+    float usualScattering; ///< above 0: what scattering (below) is about, whatever the direction
 };
 
-/// The sensor points of a pass in random order. A vertex tests a run of them for arrival inside its gate and connects
-/// to at most MostCandidates of those that pass, which stand for all that do.
+/// Each vertex looks for sensor points that its light reaches inside its gate and connects to so many that every
+/// connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
-/// Such connections have a weak singularity where vertex and point are close, which photons hitting surfaces have not:
-/// the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of the last flight. Sharing spreads
-/// what arrives close by, so photons get less than where both find a point equally often: a^2 = NearFieldShare (area
-/// per sensor point) (points) / (4 pi points tested).
+/// Such connections have a weak singularity where vertex and point are closer than points are to each other, which
+/// photons hitting surfaces have not: the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of
+/// the last flight. a^2 = NearFieldShare (area per sensor point) / (4 pi).
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
@@ -46,43 +47,45 @@ class SurfaceConnections {
     /// times cosine, or an emitter's intensity. Adds the rays traced to `rays`.
     template <typename Scattering>
     void connect(const LightVertex& vertex, const darts::TimeGate& gate, const Scattering& scattering, Sampler& sampler,
-                 std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
-        Candidates candidates;
-        find(vertex, gate, sampler, candidates);
-        const float share = candidates.found * perTested_;
-        for (int i = 0; i < candidates.count; ++i) {
-            const Candidate& c = candidates.list[size_t(i)];
-            const Rgb scale = vertex.power * scattering(c.direction) * share;
-            if (!isBlack(scale)) arrive(vertex, gate, c, scale, arrivals, rays);
+                 std::vector<PointDraw>& draws, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
+        find(vertex, gate, sampler, draws);
+        for (const PointDraw& draw : draws) {
+            const Rgb scale = vertex.power * scattering(draw.direction) * (draw.inverseExpectation * perListed_);
+            if (!isBlack(scale)) arrive(vertex, gate, draw, scale, arrivals, rays);
         }
     }
+    /// About what connect() would bring in all.
+    [[nodiscard]] float worth(const LightVertex& vertex, const darts::TimeGate& gate) const;
+    /// About what each connection is to bring; 0: vertices connect as often as they can. Needed before connect().
+    void setTarget(float target) { target_ = target; }
+    [[nodiscard]] bool hasTarget() const { return target_.has_value(); }
 
   private:
-    static constexpr size_t Tested = 512;
-    static constexpr double NearFieldShare = 0.03; ///< flat between 0.01 and 0.1 (cbox, no bound on sharing)
-    static constexpr size_t MostCandidates = 8;
+    static constexpr double NearFieldShare = 0.5; ///< flat between 0.2 and 1 (cbox, dragon, staircase)
+    static constexpr size_t MostRanges = 8;
 
-    struct Candidate {
-        uint32_t point; ///< in the shuffled order
-        float distance;
-        Vec3f direction; ///< from the vertex
+    struct Ranges {
+        std::array<LengthRange, MostRanges> list;
+        size_t count = 0;
     };
-    struct Candidates {
-        std::array<Candidate, MostCandidates> list;
-        int count = 0;
-        float found = 1.0f; ///< candidates in time over candidates listed
-    };
-    void find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler, Candidates& candidates) const;
-    void arrive(const LightVertex& vertex, const darts::TimeGate& gate, const Candidate& candidate, const Rgb& scale,
+    /// When flights from the vertex end in time, as lengths; a little wide.
+    [[nodiscard]] Ranges openRanges(const LightVertex& vertex, const darts::TimeGate& gate) const;
+    void find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
+              std::vector<PointDraw>& draws) const;
+    void arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw, const Rgb& scale,
                 std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const;
 
     const Scene& scene_;
     Sensor sensor_;
     const std::vector<SensorPoint>& points_;
     double speed_;
-    float nearField_ = 0.0f, perTested_ = 0.0f;
-    std::vector<uint32_t> order_;                 ///< the shuffled order, its beginning repeated at the end
-    std::vector<float> x_, y_, z_, cameraLength_; ///< in that order
+    float nearField_ = 0.0f, perListed_ = 0.0f;
+    std::optional<float> target_;
+    std::unique_ptr<SensorClusters> clusters_;
 };
+
+/// The target with which vertices of such worths connect `wanted` times in all, counting none more often than 64 times:
+/// a single one must not set it. 0 where nothing is worth anything.
+float commonTarget(std::vector<float> worths, double wanted);
 
 } // namespace tungsten::photon

@@ -305,7 +305,7 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
     const test::SceneFile file(Bench);
     const LoadedScene loaded = loadScene(file.path(), {});
     Statistics statistics;
-    const SensorRecord record = recordSensorPaths(*loaded.scene, true, {true, false}, {0, 0, 1, 1}, statistics);
+    const SensorRecord record = recordSensorPaths(*loaded.scene, true, {true, false}, {0, 0, 1, 1}, 1, statistics);
     ASSERT_EQ(record.x.size(), 12u);
     ASSERT_EQ(record.pieces.size(), 2u) << "nothing scatters in the ink, and behind the mirror the ray is not straight";
     ASSERT_EQ(record.points.size(), 12u);
@@ -330,11 +330,21 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
         EXPECT_LT(point.direction.z, 0.0f);
         EXPECT_NEAR(point.throughput.x, 0.9f * std::exp(-2.0f * (0.3f * 2.0f + 0.5f * 0.5f + 0.5f) * slant), 1e-3f);
     }
-    const SensorRecord volumeOnly = recordSensorPaths(*loaded.scene, false, {false, false}, {0, 0, 1, 1}, statistics);
+    const SensorRecord three = recordSensorPaths(*loaded.scene, true, {true, false}, {0, 0, 1, 1}, 3, statistics);
+    ASSERT_EQ(three.points.size(), 36u);
+    EXPECT_EQ(three.x, record.x);
+    EXPECT_EQ(three.pieces[0].end, record.pieces[0].end);
+    for (size_t i = 0; i < 36; ++i) {
+        EXPECT_EQ(three.points[i].pixel, i / 3);
+        EXPECT_NEAR(three.points[i].throughput.x, record.points[i / 3].throughput.x / 3.0f, 1e-3f);
+        EXPECT_EQ(three.points[i].hit.position == record.points[i / 3].hit.position, i % 3 == 0);
+    }
+    const SensorRecord volumeOnly =
+        recordSensorPaths(*loaded.scene, false, {false, false}, {0, 0, 1, 1}, 1, statistics);
     EXPECT_TRUE(volumeOnly.points.empty());
     EXPECT_EQ(volumeOnly.pieces.size(), 2u);
     EXPECT_EQ(volumeOnly.x, record.x) << "the same rays";
-    EXPECT_NE(recordSensorPaths(*loaded.scene, false, {false, false}, {1, 1, 1, 1}, statistics).x, record.x)
+    EXPECT_NE(recordSensorPaths(*loaded.scene, false, {false, false}, {1, 1, 1, 1}, 1, statistics).x, record.x)
         << "another pass";
 }
 

@@ -24,7 +24,16 @@ inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::
 }
 
 /// What a random stream is for; streams with different purposes never share numbers.
-enum class RandomStream : uint32_t { Camera = 1, Photon = 2, Resample = 3, Test = 4, Target = 5, LightVertex = 6 };
+enum class RandomStream : uint32_t {
+    Camera = 1,
+    Photon = 2,
+    Resample = 3,
+    Test = 4,
+    Target = 5,
+    LightVertex = 6,
+    SensorPoint = 7,
+    Pilot = 8
+};
 
 /// The random numbers of one path. Copying it copies the position in the stream.
 class Sampler {

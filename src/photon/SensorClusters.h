@@ -1,0 +1,103 @@
+#pragma once
+// Sensor points in clusters of neighbours, to draw those that light from some place reaches in time.
+
+#include "tungsten/core/Random.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+namespace tungsten::photon {
+
+/// A point that the camera sees; `cameraLength` is what it adds to the length of a flight.
+struct ClusterPoint {
+    Vec3f position, normal;
+    float cameraLength;
+};
+
+/// Of a flight from a vertex by way of a sensor point to where time ends: the camera, or the point itself.
+struct LengthRange {
+    float least, most;
+};
+
+/// From where to draw: weights fall with d^2 + nearField, the squared distance; flights count whose length is in one
+/// of the ranges.
+struct ClusterQuery {
+    Vec3f position;
+    float nearField;
+    std::span<const LengthRange> open;
+};
+
+/// A sensor point in time, with 1 / the expected number of its draws.
+struct PointDraw {
+    uint32_t point; ///< index
+    float distance;
+    Vec3f direction; ///< from the vertex
+    float inverseExpectation;
+};
+
+/// At most MostPoints of the points are listed, at random; each stands for (points) / (points listed).
+class SensorClusters {
+  public:
+    static constexpr size_t MostPoints = size_t(1) << 18;
+
+    SensorClusters(const std::vector<ClusterPoint>& points, Sampler sampler);
+
+    /// About the sum over the points in time of 1 / (d^2 + nearField).
+    [[nodiscard]] float weight(const ClusterQuery& query) const;
+    /// Draws points in time, with probability about proportional to cosine / (d^2 + nearField), so many that each
+    /// stands for about `target` of that sum: first clusters by an estimate, then points in them by their true weights.
+    void draw(const ClusterQuery& query, float target, Sampler& sampler, std::vector<PointDraw>& draws) const;
+    /// How often draw() is expected to draw a listed point (by its rank in order()).
+    [[nodiscard]] float expectation(const ClusterQuery& query, float target, size_t rank) const;
+    /// Listed points, cluster by cluster.
+    [[nodiscard]] const std::vector<uint32_t>& order() const { return order_; }
+
+  private:
+    static constexpr size_t MostClusters = 1024, LeastSize = 8, MostSize = MostPoints / MostClusters + 8;
+    static constexpr float MostVisits = 32.0f, MostPerVisit = 64.0f; ///< of clusters, of points in one
+
+    /// What can be drawn, with sums of weights up to it; probabilities are differences of sums, as draws see them.
+    template <size_t Capacity>
+    struct Weights {
+        std::array<float, Capacity + 1> sums;
+        std::array<uint16_t, Capacity> members;
+        size_t count = 0;
+
+        Weights() { sums[0] = 0.0f; }
+        void add(size_t member, float weight) {
+            members[count] = uint16_t(member);
+            sums[count + 1] = sums[count] + weight;
+            ++count;
+        }
+        [[nodiscard]] float total() const { return sums[count]; }
+        [[nodiscard]] float weight(size_t place) const { return sums[place + 1] - sums[place]; }
+        /// The place in which a part of the total falls.
+        [[nodiscard]] size_t choose(float part) const {
+            const auto first = sums.begin() + 1;
+            const auto found = std::upper_bound(first, first + ptrdiff_t(count), part);
+            return std::min(size_t(found - first), count - 1);
+        }
+        [[nodiscard]] float weightOf(size_t member) const {
+            for (size_t i = 0; i < count; ++i)
+                if (members[i] == member) return weight(i);
+            return 0.0f;
+        }
+    };
+    using ClusterWeights = Weights<MostClusters>;
+    using PointWeights = Weights<MostSize>;
+
+    void split(size_t first, size_t last, size_t parts, const std::vector<ClusterPoint>& points);
+    void addCluster(size_t first, size_t last, const std::vector<ClusterPoint>& points);
+    [[nodiscard]] ClusterWeights weighClusters(const ClusterQuery& query) const;
+    /// Of the points of a cluster, counted from its first.
+    [[nodiscard]] PointWeights weighPoints(const ClusterQuery& query, size_t cluster) const;
+    [[nodiscard]] static int visitsFor(float wanted);
+
+    std::vector<uint32_t> order_, begin_; ///< begin_[c]: rank of cluster c's first point; one more entry
+    std::vector<float> x_, y_, z_, cameraLength_, nx_, ny_, nz_;                    ///< of points, by rank
+    std::vector<float> cx_, cy_, cz_, squaredRadius_, centreLength_, reach_, size_; ///< of clusters
+};
+
+} // namespace tungsten::photon
