@@ -1,15 +1,12 @@
 #include "photon/SensorClusters.h"
 
-#include <xsimd/xsimd.hpp>
+#include "photon/Registers.h"
 
 #include <numeric>
 
 namespace tungsten::photon {
 
 namespace {
-
-using Batch = xsimd::batch<float>;
-constexpr size_t Lanes = Batch::size;
 
 /// Grazing points are drawn a little, too.
 constexpr float LeastCosine = 0.05f;
@@ -21,9 +18,9 @@ constexpr float LeastPart = 0.2f;
 template <typename Weights>
 void add(Weights& weights, size_t first, const Batch& batch, size_t end) {
     if (!xsimd::any(batch > 0.0f)) return;
-    std::array<float, Lanes> lanes;
+    std::array<float, size_t(Lanes)> lanes;
     batch.store_unaligned(lanes.data());
-    for (size_t k = 0; k < Lanes && first + k < end; ++k)
+    for (size_t k = 0; k < size_t(Lanes) && first + k < end; ++k)
         if (lanes[k] > 0.0f) weights.add(first + k, lanes[k]);
 }
 
@@ -49,7 +46,7 @@ SensorClusters::SensorClusters(const std::vector<ClusterPoint>& points, Sampler 
     // Whole registers can be read from any place.
     for (auto* v : {&cx_, &cy_, &cz_, &squaredRadius_, &centreLength_, &reach_, &size_, &x_, &y_, &z_, &cameraLength_,
                     &nx_, &ny_, &nz_})
-        v->resize(v->size() + Lanes, 1.0f);
+        v->resize(v->size() + size_t(Lanes), 1.0f);
 }
 
 void SensorClusters::split(size_t first, size_t last, size_t parts, const std::vector<ClusterPoint>& points) {
@@ -117,7 +114,7 @@ void SensorClusters::addCluster(size_t first, size_t last, const std::vector<Clu
 SensorClusters::ClusterWeights SensorClusters::weighClusters(const ClusterQuery& query) const {
     ClusterWeights weights;
     const size_t count = begin_.size() - 1;
-    for (size_t i = 0; i < count; i += Lanes) {
+    for (size_t i = 0; i < count; i += size_t(Lanes)) {
         const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
         const Batch dx = load(cx_) - query.position.x, dy = load(cy_) - query.position.y,
                     dz = load(cz_) - query.position.z;
@@ -139,7 +136,7 @@ SensorClusters::ClusterWeights SensorClusters::weighClusters(const ClusterQuery&
 SensorClusters::PointWeights SensorClusters::weighPoints(const ClusterQuery& query, size_t cluster) const {
     PointWeights weights;
     const size_t first = begin_[cluster], count = begin_[cluster + 1] - first;
-    for (size_t i = 0; i < count; i += Lanes) {
+    for (size_t i = 0; i < count; i += size_t(Lanes)) {
         const auto load = [at = first + i](const std::vector<float>& v) {
             return Batch::load_unaligned(v.data() + at);
         };
