@@ -9,8 +9,12 @@ namespace tungsten::photon {
 
 namespace {
 
-/// Camera paths per pixel that look for surface points; 4 pay in small images of fine features, 1 never.
-constexpr uint32_t SurfaceSamples = 2;
+/// Camera paths per pixel that look for surface points. One leaves the noise of lines that a narrow gate lights; more
+/// cost little in small images alone.
+uint32_t surfaceSamples(const Vec2i& resolution) {
+    constexpr int Wanted = 1 << 16, Least = 2, Most = 4;
+    return uint32_t(std::clamp(Wanted / (resolution.x * resolution.y), Least, Most));
+}
 
 /// Copies the photons that straight sensor paths see inside the gate. Leaves `straight` alone where that would be all
 /// or unknown.
@@ -195,7 +199,8 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
         const StageTimer timer(statistics, "sensor record");
-        record = recordSensorPaths(*scene_, connect, rules_, pass, connect ? SurfaceSamples : 1, statistics);
+        record = recordSensorPaths(*scene_, connect, rules_, pass,
+                                   connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
         if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass);
     }
     PhotonMaps maps;

@@ -169,10 +169,8 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
             };
             const Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
             const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
-            // Folded rays gather beams at ten times the price of points.
-            const uint32_t paths = oversampled && !structures.beams ? GlossyLight::GatherPaths : 1;
-            SensorGather gather(scene, structures, lights, paths, oversampled, workspace, counters);
-            for (uint32_t k = 0; k < paths; ++k) follow(gather);
+            SensorGather gather(scene, structures, lights, 1, oversampled, workspace, counters);
+            follow(gather);
             if (!oversampled) continue;
             SensorGather highlights(scene, structures, gather.lights(), GlossyLight::HighlightPaths, false, workspace,
                                     counters);
