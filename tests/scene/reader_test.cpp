@@ -99,6 +99,17 @@ TEST(ObjectReader, WarnsAboutUnknownFieldsOnceWithTheNearestName) {
     EXPECT_EQ(diagnostics->warnings[1].message, "unknown field, ignored");
 }
 
+TEST(ObjectReader, WarnsAboutFieldsGivenTwice) {
+    auto diagnostics = std::make_shared<Diagnostics>();
+    const auto reader = readerOf(R"({"alpha": 0.3, "beta": 1, "alpha": 0.5, "alpha": 0.7})", diagnostics);
+    EXPECT_EQ(reader.number("alpha", 0.0), 0.3);
+    EXPECT_EQ(reader.number("beta", 0.0), 1.0);
+    reader.warnAboutUnknown();
+    reader.warnAboutUnknown();
+    ASSERT_EQ(diagnostics->warnings.size(), 1u);
+    EXPECT_EQ(diagnostics->warnings[0].message, "given more than once; the first counts");
+}
+
 TEST(ObjectReader, TransformsInBothForms) {
     auto diagnostics = std::make_shared<Diagnostics>();
     const auto reader = readerOf(

@@ -88,8 +88,14 @@ void ObjectReader::accept(const std::vector<std::string>& names) const {
 
 void ObjectReader::warnAboutUnknown() const {
     const std::vector<std::string> names(known_->begin(), known_->end());
+    std::set<std::string> seen;
     for (const auto& member : valueOf(node_).GetObject()) {
         const std::string name = member.name.GetString();
+        if (!seen.insert(name).second) {
+            const bool first = known_->insert(name + ", again").second; // once per field here, too
+            if (first) warn(name, "given more than once; the first counts");
+            continue;
+        }
         if (!known_->insert(name).second) continue;
         const std::string near = nearestName(name, names);
         warn(name, "unknown field, ignored" + (near.empty() ? "" : "; did you mean '" + near + "'?"));

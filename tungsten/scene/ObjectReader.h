@@ -76,7 +76,7 @@ class ObjectReader {
 
     /// Marks fields as known without reading them (dead keys of the format, fields another reader takes).
     void accept(const std::vector<std::string>& names) const;
-    /// Warns, once per field, about fields nobody asked for.
+    /// Warns, once per field, about fields nobody asked for and fields given more than once.
     void warnAboutUnknown() const;
     void problem(const std::string& field, const std::string& message) const;
     void warn(const std::string& field, const std::string& message) const;
