@@ -31,7 +31,7 @@ GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuida
 }
 
 void GuidedPhotonWalk::aimAtFrame(uint64_t path) {
-    const int frame = guidance_.frames().stratified(path, 0.0f);
+    const int frame = guidance_.frames().stratified(path, context_.frameShift);
     gate_ = guidance_.frames().frame(frame);
     arrival_ = &context_.frameArrivals[size_t(frame)];
 }

@@ -10,10 +10,11 @@ namespace tungsten::photon {
 namespace {
 
 /// Camera paths per pixel that look for surface points. One leaves the noise of lines that a narrow gate lights; more
-/// cost little in small images alone.
+/// cost little in small images alone, and in large ones there are more points than can be listed.
 uint32_t surfaceSamples(const Vec2i& resolution) {
-    constexpr int Wanted = 1 << 16, Least = 2, Most = 4;
-    return uint32_t(std::clamp(Wanted / (resolution.x * resolution.y), Least, Most));
+    constexpr size_t Wanted = 1 << 16, Least = 2, Most = 4;
+    const size_t pixels = size_t(resolution.x) * size_t(resolution.y);
+    return pixels > SensorClusters::MostPoints ? 1 : uint32_t(std::clamp(Wanted / pixels, Least, Most));
 }
 
 /// Copies the photons that straight sensor paths see inside the gate. Leaves `straight` alone where that would be all

@@ -12,10 +12,9 @@ constexpr uint64_t PathsPerBatch = 256;
 constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
 constexpr uint64_t PilotPaths = 256;    ///< before a pass
 
-/// How often a path tries to connect to surfaces. A pass goes on until so many have arrived: on average over the
-/// points, and in all.
-constexpr double ConnectionsPerPath = 16.0;
-constexpr uint64_t ArrivalsPerPoint = 4, MostArrivals = 1 << 15;
+/// How often a path tries to connect to surfaces, about. A pass has paths for so many tries at least, for each point
+/// but no more in all; what arrives does not decide, or dark passes would be longer.
+constexpr uint64_t ConnectionsPerPath = 16, ConnectionsPerPoint = 8, MostConnections = 1 << 16;
 
 struct Batch {
     Deposits deposits;
@@ -90,21 +89,23 @@ void PhotonPass::setGate(const TimeGate& gate) {
 }
 
 void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
-    // Paths of their own: what they find must not depend on the paths that follow.
+    // Paths of their own: the target must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, PilotPaths);
-    const WalkContext context{scene_, settings_, arrival_, frameArrivals_, emitters_, false, false, false};
+    const WalkContext context{scene_, settings_, arrival_, frameArrivals_, 0.0f, emitters_, false, false, false};
+    const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths);
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         Batch& pilot = pilots[path];
-        GuidedPhotonWalk(context, *guidance_, &connections, sampler, path, pilot.deposits, pilot.counters).run();
+        const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
+        GuidedPhotonWalk(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters).run();
     });
     std::vector<float> worths;
     for (const Batch& pilot : pilots) {
         worths.insert(worths.end(), pilot.deposits.worths.begin(), pilot.deposits.worths.end());
         statistics.add("rays", pilot.counters.rays);
     }
-    connections.setTarget(commonTarget(std::move(worths), ConnectionsPerPath * double(paths)));
+    connections.setTarget(commonTarget(std::move(worths), double(ConnectionsPerPath * paths)));
 }
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
@@ -114,10 +115,11 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     maps.volume.full = !storeVolume_;
     maps.beams.full = !storeBeams_;
     uint64_t traced = 0;
-    const uint64_t wanted = connections ? std::min(ArrivalsPerPoint * connections->points(), MostArrivals) : 0;
+    const uint64_t least =
+        connections ? std::min(ConnectionsPerPoint * connections->points(), MostConnections) / ConnectionsPerPath : 0;
+    const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     const auto finished = [&] {
-        return maps.volume.full && maps.beams.full &&
-               (connections ? maps.arrivals.size() >= wanted : maps.surface.full);
+        return maps.volume.full && maps.beams.full && (connections ? traced >= least : maps.surface.full);
     };
     while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
@@ -126,6 +128,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   settings_,
                                   arrival_,
                                   frameArrivals_,
+                                  frameShift,
                                   emitters_,
                                   !maps.surface.full,
                                   !maps.volume.full,

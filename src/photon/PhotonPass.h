@@ -27,7 +27,7 @@ class PhotonPass {
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
     /// `connections`: surface points that vertices connect to; may be null. With them, surfaces do not wait for
-    /// photons: the pass ends when the volume store, if any is in use, is full.
+    /// photons: the pass ends when the volume store, if any is in use, is full and there were paths for connections.
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);

@@ -23,6 +23,7 @@ struct WalkContext {
     const PhotonSettings& settings;
     const ArrivalTest& arrival;
     std::span<const ArrivalTest> frameArrivals; ///< for paths that aim at single frames
+    float frameShift;                           ///< of the order of frames: over passes, each is aimed at equally often
     const Distribution1D& emitters;
     bool storeSurface, storeVolume, storeBeams;
     /// a^2 of SurfaceConnections where light paths also connect to surfaces; else 0.

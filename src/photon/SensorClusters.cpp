@@ -162,6 +162,7 @@ void SensorClusters::draw(const ClusterQuery& query, float target, Sampler& samp
     draws.clear();
     const ClusterWeights clusters = weighClusters(query);
     if (!(clusters.total() > 0.0f)) return;
+    if (!(target > 0.0f)) target = clusters.total() / DrawsWithoutTarget;
     const int visits = visitsFor(clusters.total() / target);
     for (int i = 0; i < visits; ++i) {
         const float part = (float(i) + sampler.next1D()) / float(visits), u = sampler.next1D();
@@ -189,6 +190,7 @@ float SensorClusters::expectation(const ClusterQuery& query, float target, size_
     const size_t cluster = size_t(std::upper_bound(begin_.begin(), begin_.end(), uint32_t(rank)) - begin_.begin()) - 1;
     const float chosen = clusters.weightOf(cluster);
     if (!(chosen > 0.0f)) return 0.0f;
+    if (!(target > 0.0f)) target = clusters.total() / DrawsWithoutTarget;
     const float visits = float(visitsFor(clusters.total() / target)) * chosen / clusters.total();
     const PointWeights points = weighPoints(query, cluster);
     if (!(points.total() > 0.0f)) return 0.0f;

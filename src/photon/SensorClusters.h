@@ -44,10 +44,11 @@ class SensorClusters {
 
     SensorClusters(const std::vector<ClusterPoint>& points, Sampler sampler);
 
-    /// About the sum over the points in time of 1 / (d^2 + nearField).
+    /// About the sum over the points in time of 1 / (d^2 + nearField), whatever their cosines.
     [[nodiscard]] float weight(const ClusterQuery& query) const;
     /// Draws points in time, with probability about proportional to cosine / (d^2 + nearField), so many that each
-    /// stands for about `target` of that sum: first clusters by an estimate, then points in them by their true weights.
+    /// stands for `target` of the sum of that: first clusters by an estimate, then points in them by their true
+    /// weights. With a target of 0 about DrawsWithoutTarget.
     void draw(const ClusterQuery& query, float target, Sampler& sampler, std::vector<PointDraw>& draws) const;
     /// How often draw() is expected to draw a listed point (by its rank in order()).
     [[nodiscard]] float expectation(const ClusterQuery& query, float target, size_t rank) const;
@@ -57,6 +58,7 @@ class SensorClusters {
   private:
     static constexpr size_t MostClusters = 1024, LeastSize = 8, MostSize = MostPoints / MostClusters + 8;
     static constexpr float MostVisits = 32.0f, MostPerVisit = 64.0f; ///< of clusters, of points in one
+    static constexpr float DrawsWithoutTarget = 8.0f;
 
     /// What can be drawn, with sums of weights up to it; probabilities are differences of sums, as draws see them.
     template <size_t Capacity>
@@ -67,9 +69,10 @@ class SensorClusters {
 
         Weights() { sums[0] = 0.0f; }
         void add(size_t member, float weight) {
+            const float sum = sums[count] + weight;
+            if (!(sum > sums[count])) return; // lost in rounding: would be drawn with probability 0
             members[count] = uint16_t(member);
-            sums[count + 1] = sums[count] + weight;
-            ++count;
+            sums[++count] = sum;
         }
         [[nodiscard]] float total() const { return sums[count]; }
         [[nodiscard]] float weight(size_t place) const { return sums[place + 1] - sums[place]; }

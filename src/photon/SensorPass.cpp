@@ -22,7 +22,7 @@ struct Workspace {
 /// Gathers on camera paths.
 class SensorGather {
   public:
-    /// `lights` draws lights. `paths`: of a pixel, over which to average. `oversampled`: highlights are left to
+    /// `lights` draws lights. `paths`: of a pixel, over which to average highlights. `oversampled`: these are left to
     /// HighlightGather.
     SensorGather(const Scene& scene, const GatherStructures& structures, const Sampler& lights, uint32_t paths,
                  bool oversampled, Workspace& workspace, SensorCounters& counters)
@@ -79,7 +79,7 @@ class SensorGather {
         const uint64_t gathered = store.gather(segment, workspace_.volume);
         if (gathered == 0) return;
         counter += gathered;
-        const double scale = double(storeScale) * double(share_);
+        const double scale = double(storeScale);
         const Rgb& t = state.throughput;
         const Vec3d weight(double(t.x) * scale, double(t.y) * scale, double(t.z) * scale);
         for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)

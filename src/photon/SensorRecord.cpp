@@ -102,8 +102,12 @@ SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const S
         }
         statistics.add("rays", rays);
     });
-    for (const Recorder& row : rows) {
+    size_t points = 0;
+    for (const Recorder& row : rows) points += row.points.size();
+    record.points.reserve(points);
+    for (Recorder& row : rows) {
         record.points.insert(record.points.end(), row.points.begin(), row.points.end());
+        std::vector<SensorPoint>().swap(row.points);
         for (size_t k = 0; k < row.pieces.size(); ++k) {
             if (record.pieces.size() <= k) resize(record.pieces.emplace_back(), pixels);
             StraightPiece& piece = record.pieces[k];

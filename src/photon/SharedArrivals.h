@@ -10,7 +10,7 @@
 
 namespace tungsten::photon {
 
-/// How far apart sensor points on the same smooth surface may be to share: in the image, where below 1 pixel each point
+/// How far apart sensor points on the same smooth surface may be to share: in the image, where below 1 pixel each pixel
 /// keeps its own light and the estimate has no bias, and in the scene.
 struct SharingKernel {
     float pixels, distance;

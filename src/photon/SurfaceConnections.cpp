@@ -28,9 +28,9 @@ SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor,
     }
     const double plane = std::get<Pinhole>(scene.camera.model).planeDistance;
     area /= plane * plane * double(points_.size());
-    nearField_ = float(NearFieldShare * area / (4.0 * double(Pi) * double(record.samples)));
     clusters_ = std::make_unique<SensorClusters>(points, Sampler(pass.seed, RandomStream::Resample, pass.index, 0));
     perListed_ = float(double(points_.size()) / double(clusters_->order().size()));
+    nearField_ = float(NearFieldShare * area * double(perListed_) / (4.0 * double(Pi) * double(record.samples)));
 }
 
 SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& vertex,

@@ -34,7 +34,7 @@ struct LightVertex {
 ///
 /// Such connections have a weak singularity where vertex and point are closer than points are to each other, which
 /// photons hitting surfaces have not: the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of
-/// the last flight. a^2 = NearFieldShare (area per sensor point) / (4 pi).
+/// the last flight. a^2 = NearFieldShare (area per listed sensor point) / (4 pi).
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
@@ -56,7 +56,8 @@ class SurfaceConnections {
     }
     /// About what connect() would bring in all.
     [[nodiscard]] float worth(const LightVertex& vertex, const darts::TimeGate& gate) const;
-    /// About what each connection is to bring; 0: vertices connect as often as they can. Needed before connect().
+    /// About what each connection is to bring; 0: nobody knows, vertices connect a few times each. Needed before
+    /// connect().
     void setTarget(float target) { target_ = target; }
     [[nodiscard]] bool hasTarget() const { return target_.has_value(); }
 

@@ -32,7 +32,8 @@ enum class RandomStream : uint32_t {
     Target = 5,
     LightVertex = 6,
     SensorPoint = 7,
-    Pilot = 8
+    Pilot = 8,
+    Frame = 9
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.
