@@ -78,6 +78,33 @@ TEST_P(GuidedMaps, AgreeWithPathsInEveryFrame) {
     EXPECT_EQ(photons->statistics.counter("non-finite samples"), 0u);
 }
 
+/// 10 paths cannot aim at 7 frames equally often in one pass, only over passes.
+TEST(GuidedFrames, NeedNotDivideThePaths) {
+    const test::SceneFile file(test::fogOverFloor(R"("start_time": 6, "transient_time_width": 0.5, "frame_num": 7)"));
+    const auto countByFrame = [&](int paths, uint32_t passes) {
+        const LoadedScene loaded = loadScene(file.path(), {{}, {setting("photon_count", paths), Best}});
+        const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
+        const PhotonPass photonPass(*loaded.scene, settings, analyseScene(*loaded.scene));
+        std::array<double, 7> counts{};
+        Statistics statistics;
+        for (uint32_t index = 0; index < passes; ++index)
+            for (const Photon& photon : photonPass.trace({index, index, 1, 5}, nullptr, statistics).volume.photons) {
+                const double way = double((photon.position - loaded.scene->camera.position()).length());
+                const int frame = loaded.scene->transport.gate.frameOf(photon.time + way);
+                if (frame >= 0) ++counts[size_t(frame)];
+            }
+        return counts;
+    };
+    const auto uneven = countByFrame(10, 84000), even = countByFrame(1400, 600);
+    for (size_t frame = 0; frame < 7; ++frame) {
+        EXPECT_GT(even[frame], 400.0) << frame;
+        // A path leaves a few photons: twice a Poisson error.
+        EXPECT_NEAR(uneven[frame], even[frame], 9.0 * std::sqrt(even[frame] + uneven[frame])) << frame;
+        EXPECT_LT(9.0 * std::sqrt(even[frame] + uneven[frame]), 0.28 * even[frame])
+            << frame << ": the test would not see frames aimed at more often";
+    }
+}
+
 TEST_P(GuidedMaps, FullStoresStayUnbiased) {
     const std::string json = test::configurationA(2, false);
     // A wide view keeps more: the ray is the same.
