@@ -62,7 +62,8 @@ class SurfaceConnections {
     [[nodiscard]] bool hasTarget() const { return target_.has_value(); }
 
   private:
-    static constexpr double NearFieldShare = 0.5; ///< flat between 0.2 and 1 (cbox, dragon, staircase)
+    static constexpr double NearFieldShare =
+        0.05; ///< flat from 0.005 to 0.5 but for rare bright photons (cbox, staircase)
     static constexpr size_t MostRanges = 8;
 
     struct Ranges {
