@@ -2,21 +2,13 @@
 // Light that reaches glossy surfaces straight from the lights, where sensor paths follow their lobes
 // (SensorPathRules::glossy).
 
-#include "photon/Sensor.h"
-#include "photon/SensorPath.h"
-
-#include "tungsten/scene/LightChoice.h"
+#include "photon/LightConnection.h"
 
 namespace tungsten::photon {
 
-struct ArrivedLight {
-    Rgb radiance{0.0f}; ///< at the sensor
-    double time = 0.0;  ///< of arrival
-};
-
 class GlossyLight {
   public:
-    explicit GlossyLight(const Scene& scene);
+    GlossyLight(const Scene& scene, bool speedsDiffer);
 
     /// By a point on a light, weighed against sensor paths that hit the light. `state` is the path up to the glossy
     /// surface. None when it arrives outside the sensor's gate. Adds the rays traced to `rays`.
@@ -32,7 +24,7 @@ class GlossyLight {
 
   private:
     const Scene& scene_;
-    LightChoice lights_;
+    LightConnector lights_;
     std::vector<uint8_t> oversampled_; ///< by pixel
 };
 

@@ -99,13 +99,18 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
     const auto guidance = PhotonGuidance::make(*scene_, settings_.scheme, plan);
     plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
     if (!guidance) return;
+    if (scene_->transport.gate.frames > 1)
+        plan.describe("frames one by one", guidance->choosesFrames(),
+                      guidance->choosesFrames() ? "each light path aims at one frame"
+                                                : "light paths aim at the whole sequence as one gate");
     plan.describe("photons beside control vertices", !guidance->directView(),
                   guidance->directView() ? "direct view: control vertices alone are complete"
                                          : "mirrors, refraction or different speeds: both, by the balance heuristic");
     const std::string notConnected = connectionObstacle(plan);
     plan.describe("surface connections", notConnected.empty(),
-                  notConnected.empty() ? "light paths connect to the surface points that the camera sees in time"
-                                       : notConnected);
+                  notConnected.empty()
+                      ? "light paths connect to visible surface points; camera paths of their own find direct light"
+                      : notConnected);
 }
 
 std::string PhotonIntegrator::connectionObstacle(const EffectPlan& plan) const {
@@ -118,9 +123,10 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
     straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
     rules_ = {settings_.includeSurfaces, plan.glossySensorPaths};
-    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_);
+    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan.speedsDiffer);
     foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
+    if (connects_) direct_ = std::make_unique<DirectLight>(*scene_, rules_);
 }
 
 std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
@@ -226,6 +232,10 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
             SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(), settings_.gatherRadius,
                               surfaceRadiusFactor(photons.index, settings_.alpha));
         shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
+    }
+    if (connect) {
+        const StageTimer timer(statistics, "direct light");
+        direct_->add(sensor, record, connections->nearField(), pass, film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);

@@ -12,9 +12,11 @@ constexpr uint64_t PathsPerBatch = 256;
 constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
 constexpr uint64_t PilotPaths = 256;    ///< before a pass
 
-/// How often a path tries to connect to surfaces, about. A pass has paths for so many tries at least, for each point
-/// but no more in all; what arrives does not decide, or dark passes would be longer.
-constexpr uint64_t ConnectionsPerPath = 16, ConnectionsPerPoint = 8, MostConnections = 1 << 16;
+/// How often the vertices of a pass try to connect to surfaces, about, and those of a path: more in short passes.
+constexpr double ConnectionsPerPass = 1 << 17, LeastPerPath = 4.0, MostPerPath = 16.0;
+/// A pass has paths for so many tries at least, for each point but no more in all; what arrives does not decide, or
+/// dark passes would be longer.
+constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
 
 struct Batch {
     Deposits deposits;
@@ -91,7 +93,8 @@ void PhotonPass::setGate(const TimeGate& gate) {
 void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
     // Paths of their own: the target must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, PilotPaths);
-    const WalkContext context{scene_, settings_, arrival_, frameArrivals_, 0.0f, emitters_, false, false, false};
+    const WalkContext context{scene_,    settings_, arrival_,     frameArrivals_, 0.0f,
+                              emitters_, false,     storeVolume_, storeBeams_};
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths);
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
@@ -101,11 +104,17 @@ void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections
         GuidedPhotonWalk(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters).run();
     });
     std::vector<float> worths;
+    uint64_t deposits = 0;
     for (const Batch& pilot : pilots) {
         worths.insert(worths.end(), pilot.deposits.worths.begin(), pilot.deposits.worths.end());
+        deposits += pilot.deposits.volume.photons.size() + pilot.deposits.beams.beams.size();
         statistics.add("rays", pilot.counters.rays);
     }
-    connections.setTarget(commonTarget(std::move(worths), double(ConnectionsPerPath * paths)));
+    // Paths until the store of photons or beams is full.
+    const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
+    const double expected = std::min(double(settings_.volumePhotonCount) * perDeposit, double(settings_.photonCount));
+    const double perPath = std::clamp(ConnectionsPerPass / std::max(expected, 1.0), LeastPerPath, MostPerPath);
+    connections.setTarget(commonTarget(std::move(worths), perPath * double(paths)));
 }
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
@@ -116,7 +125,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     maps.beams.full = !storeBeams_;
     uint64_t traced = 0;
     const uint64_t least =
-        connections ? std::min(ConnectionsPerPoint * connections->points(), MostConnections) / ConnectionsPerPath : 0;
+        connections ? std::min(ConnectionsPerPoint * connections->points(), MostLeast) / uint64_t(MostPerPath) : 0;
     const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     const auto finished = [&] {
         return maps.volume.full && maps.beams.full && (connections ? traced >= least : maps.surface.full);

@@ -139,16 +139,6 @@ class SensorGather {
     SensorCounters& counters_;
 };
 
-/// Light from the lights on glossy surfaces alone.
-struct HighlightGather {
-    SensorGather& gather;
-    void segment(const SensorState&, float) const {}
-    void surface(const SensorState& state, const SurfaceInteraction& surface) const {
-        gather.highlight(state, surface);
-    }
-    void escaped(const SensorState&) const {}
-};
-
 } // namespace
 
 void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
@@ -174,7 +164,10 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
             if (!oversampled) continue;
             SensorGather highlights(scene, structures, gather.lights(), GlossyLight::HighlightPaths, false, workspace,
                                     counters);
-            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(HighlightGather{highlights});
+            const SurfaceVisitor findHighlights{[&](const SensorState& state, const SurfaceInteraction& surface) {
+                highlights.highlight(state, surface);
+            }};
+            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(findHighlights);
         }
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;

@@ -80,4 +80,15 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPat
     return rays;
 }
 
+/// A visitor of surfaces alone: `look(state, interaction)`.
+template <typename Look>
+struct SurfaceVisitor {
+    Look look;
+    void segment(const SensorState&, float) const {}
+    void surface(const SensorState& state, const SurfaceInteraction& surface) const { look(state, surface); }
+    void escaped(const SensorState&) const {}
+};
+template <typename Look>
+SurfaceVisitor(Look) -> SurfaceVisitor<Look>;
+
 } // namespace tungsten::photon

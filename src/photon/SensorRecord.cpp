@@ -59,16 +59,6 @@ struct Recorder {
     void escaped(const SensorState&) {}
 };
 
-/// Leaves surface points alone.
-struct PointRecorder {
-    Recorder& recorder;
-    void segment(const SensorState&, float) const {}
-    void surface(const SensorState& state, const SurfaceInteraction& surface) const {
-        recorder.surface(state, surface);
-    }
-    void escaped(const SensorState&) const {}
-};
-
 } // namespace
 
 SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
@@ -93,11 +83,13 @@ SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const S
             record.z[pixel] = ray.direction.z;
             rows[y].begin(uint32_t(pixel));
             rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
+            const SurfaceVisitor recordPoint{
+                [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
             Sampler further(pass.seed, RandomStream::SensorPoint, uint32_t(pass.firstSample), pixel);
             for (uint32_t s = 1; s < samples; ++s) {
                 const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
                 const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
-                rays += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, PointRecorder{rows[y]});
+                rays += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint);
             }
         }
         statistics.add("rays", rays);

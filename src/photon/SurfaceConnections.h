@@ -29,8 +29,8 @@ struct LightVertex {
     float usualScattering; ///< above 0: what scattering (below) is about, whatever the direction
 };
 
-/// Each vertex looks for sensor points that its light reaches inside its gate and connects to so many that every
-/// connection brings about the same: light that comes from close by lights few points, but those a lot.
+/// Each scattering vertex looks for sensor points that its light reaches inside its gate and connects to so many that
+/// every connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
 /// Such connections have a weak singularity where vertex and point are closer than points are to each other, which
 /// photons hitting surfaces have not: the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of
@@ -62,8 +62,8 @@ class SurfaceConnections {
     [[nodiscard]] bool hasTarget() const { return target_.has_value(); }
 
   private:
-    static constexpr double NearFieldShare =
-        0.05; ///< flat from 0.005 to 0.5 but for rare bright photons (cbox, staircase)
+    /// Flat from 0.005 to 0.5 but for rare bright photons (cbox, staircase).
+    static constexpr double NearFieldShare = 0.05;
     static constexpr size_t MostRanges = 8;
 
     struct Ranges {

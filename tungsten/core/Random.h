@@ -33,7 +33,8 @@ enum class RandomStream : uint32_t {
     LightVertex = 6,
     SensorPoint = 7,
     Pilot = 8,
-    Frame = 9
+    Frame = 9,
+    DirectLight = 10
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.
