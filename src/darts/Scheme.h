@@ -31,6 +31,11 @@ struct Scheme {
     std::optional<bool> glossySensorPaths;
     [[nodiscard]] bool followsGlossy() const { return on && glossySensorPaths.value_or(!published); }
 
+    /// Every light path of a photon map aims at one frame of a sequence, by default in the paper's preset alone:
+    /// otherwise at all of them as one gate, since a path that aims at one of n leaves nothing in the others.
+    std::optional<bool> singleFrames;
+    [[nodiscard]] bool aimsAtSingleFrames() const { return singleFrames.value_or(published); }
+
     std::optional<Direction> direction;
     std::optional<Greens> greens;
     std::optional<Proposals> proposals;
@@ -142,6 +147,7 @@ void readSwitches(const Block& block, Scheme& scheme) {
     scheme.guideEmission = flag(block, "guide_emission");
     scheme.surfaceConnections = flag(block, "surface_connections");
     scheme.glossySensorPaths = flag(block, "glossy_sensor_paths");
+    scheme.singleFrames = flag(block, "single_frames");
 }
 
 } // namespace detail

@@ -4,6 +4,11 @@ namespace tungsten::photon {
 
 namespace {
 
+/// Gates above are wide, in mean free paths: most connections are not close to the straight way, so that the direction
+/// need not know their length, and a length drawn after the direction knows where the surface is. MSE x CPU time of
+/// sequences of 3.5 and 7 mean free paths in a cube of fog: 1.64 to 0.60, 0.17 to 0.08.
+constexpr double WideGate = 2.0;
+
 double aperture(const Camera& camera) {
     const auto* lens = std::get_if<ThinLens>(&camera.model);
     return lens ? double(lens->apertureRadius) : 0.0;
@@ -36,7 +41,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, 
     const TimeGate& gate = scene.transport.gate;
     setGate(gate);
     const bool exact = directView_ && straight && slack_ == 0.0;
-    choosesFrames_ = exact && gate.frames > 1;
+    choosesFrames_ = exact && gate.frames > 1 && scheme.aimsAtSingleFrames();
     drawsByResponse_ = exact && sensor_.response;
     meetsDeltaGate_ = exact && gate.delta && scheme.elliptical;
     for (const Medium& medium : scene.media) {
@@ -44,6 +49,8 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, 
         if (!medium.scatters()) continue;
         darts::Settings settings =
             scheme.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
+        const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
+        if (width > WideGate && !choosesFrames_ && !scheme.lengthFirst) settings.lengthFirst = false;
         if (unwarped_) {
             // Any place seen will do: nothing to aim at, only the bound in time.
             settings.direction = darts::Direction::Phase;

@@ -107,6 +107,8 @@ TEST(Scheme, EverySwitchWorksAlone) {
     EXPECT_EQ(plain.candidates, 1);
     EXPECT_EQ(SwitchReading(Fields{{"direct_view", "off"}}).scheme.directView, DirectView::Off);
     EXPECT_FALSE(SwitchReading(Fields{{"surface_connections", false}}).scheme.connectsSurfaces());
+    EXPECT_FALSE(SwitchReading(Fields{}).scheme.aimsAtSingleFrames());
+    EXPECT_TRUE(SwitchReading(Fields{{"single_frames", true}}).scheme.aimsAtSingleFrames());
     EXPECT_TRUE(SwitchReading(Fields{}).scheme.followsGlossy());
     EXPECT_FALSE(SwitchReading(Fields{{"glossy_sensor_paths", false}}).scheme.followsGlossy());
 }

@@ -82,7 +82,8 @@ TEST_P(GuidedMaps, AgreeWithPathsInEveryFrame) {
 TEST(GuidedFrames, NeedNotDivideThePaths) {
     const test::SceneFile file(test::fogOverFloor(R"("start_time": 6, "transient_time_width": 0.5, "frame_num": 7)"));
     const auto countByFrame = [&](int paths, uint32_t passes) {
-        const LoadedScene loaded = loadScene(file.path(), {{}, {setting("photon_count", paths), Best}});
+        const LoadedScene loaded = loadScene(
+            file.path(), {{}, {setting("photon_count", paths), R"(integrator.darts={"single_frames": true})"}});
         const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
         const PhotonPass photonPass(*loaded.scene, settings, analyseScene(*loaded.scene));
         std::array<double, 7> counts{};
