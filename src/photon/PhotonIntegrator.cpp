@@ -1,6 +1,7 @@
 #include "photon/PhotonIntegrator.h"
 
 #include "photon/BeamSplat.h"
+#include "photon/FoldedSelection.h"
 #include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
 #include "photon/SharedArrivals.h"
@@ -36,10 +37,20 @@ void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const 
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
-struct PhotonIntegrator::StraightStores {
-    PhotonStore points;
-    std::vector<float> radii;
-    std::vector<PhotonBeam> beams;
+struct PhotonIntegrator::StoreParts {
+    PhotonStore straightPoints, foldedPoints;
+    std::vector<float> straightRadii, foldedRadii;
+    std::vector<PhotonBeam> straightBeams, foldedBeams;
+    float uFolded = 0.0f; ///< chooses what folded rays gather
+
+    void selectFolded(const PhotonStore& store, const std::vector<float>& radii) {
+        const double share = foldedShare(store.photons, radii);
+        foldedPoints.paths = store.paths;
+        foldedPoints.photons = chosenEvenly(store.photons, share, uFolded);
+        if (radii.size() == 1) foldedRadii = radii;
+        if (radii.size() > 1)
+            chooseEvenly(radii.size(), share, uFolded, [&](size_t i) { foldedRadii.push_back(radii[i]); });
+    }
 };
 
 void PhotonIntegrator::planVolume(EffectPlan& plan) const {
@@ -146,31 +157,36 @@ TimeGate PhotonIntegrator::gate(uint32_t pass) const {
 }
 
 void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
-                                    StraightStores& straight, GatherStructures& structures, Film& film,
+                                    StoreParts& parts, GatherStructures& structures, Film& film,
                                     Statistics& statistics) const {
     std::vector<float> radii;
     {
         const StageTimer timer(statistics, "build");
         radii = volumeRadii(maps.volume, pass);
-        selectStraight(photonPass_->arrival(), maps.volume, radii, straight.points, straight.radii);
+        selectStraight(photonPass_->arrival(), maps.volume, radii, parts.straightPoints, parts.straightRadii);
         const Sensor& sensor = structures.sensor;
-        if (!structures.splatted || foldedRays_)
+        if (!structures.splatted) {
             structures.points = std::make_unique<PointGather>(*scene_, sensor, maps.volume, radii);
-        if (!structures.splatted && straight.points.paths > 0)
-            structures.straightPoints = std::make_unique<PointGather>(*scene_, sensor, straight.points, straight.radii);
+        } else if (foldedRays_) {
+            parts.selectFolded(maps.volume, radii);
+            structures.points = std::make_unique<PointGather>(*scene_, sensor, parts.foldedPoints, parts.foldedRadii);
+        }
+        if (!structures.splatted && parts.straightPoints.paths > 0)
+            structures.straightPoints =
+                std::make_unique<PointGather>(*scene_, sensor, parts.straightPoints, parts.straightRadii);
     }
     if (!structures.splatted) return;
     const StageTimer timer(statistics, "splat");
-    const bool all = straight.points.paths == 0;
+    const bool all = parts.straightPoints.paths == 0;
     const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const uint64_t gathered = splatPhotons(*scene_, structures.sensor, record, all ? maps.volume : straight.points,
-                                           all ? radii : straight.radii, double(maps.volume.scale()) / width, film);
+    const uint64_t gathered =
+        splatPhotons(*scene_, structures.sensor, record, all ? maps.volume : parts.straightPoints,
+                     all ? radii : parts.straightRadii, double(maps.volume.scale()) / width, film);
     statistics.add("gathered photons", gathered);
 }
 
-void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
-                                   StraightStores& straight, GatherStructures& structures, Film& film,
-                                   Statistics& statistics) const {
+void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
+                                   GatherStructures& structures, Film& film, Statistics& statistics) const {
     const ArrivalTest& arrival = photonPass_->arrival();
     const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
                                                       : beamRadiusFactor(pass, settings_.alpha);
@@ -179,17 +195,22 @@ void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const 
     const bool single = arrival.directView() || !arrival.straightTimesKnown();
     {
         const StageTimer timer(statistics, "build");
-        if (!single) straight.beams = straightParts(*scene_, arrival, all);
-        if (!structures.splatted || foldedRays_)
+        if (!single) parts.straightBeams = straightParts(*scene_, arrival, all);
+        if (!structures.splatted) {
+            structures.beams = std::make_unique<BeamGather>(*scene_, structures.sensor, all, radius);
+        } else if (foldedRays_) {
+            parts.foldedBeams = chosenEvenly(all, foldedShare(all, radius), parts.uFolded);
             structures.beams =
-                std::make_unique<BeamGather>(*scene_, structures.sensor, all, radius, structures.splatted);
+                std::make_unique<BeamGather>(*scene_, structures.sensor, parts.foldedBeams, radius, true);
+        }
         if (!structures.splatted && !single)
-            structures.straightBeams = std::make_unique<BeamGather>(*scene_, structures.sensor, straight.beams, radius);
+            structures.straightBeams =
+                std::make_unique<BeamGather>(*scene_, structures.sensor, parts.straightBeams, radius);
     }
     if (!structures.splatted) return;
     const StageTimer timer(statistics, "splat");
     const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const uint64_t gathered = splatBeams(*scene_, structures.sensor, record, single ? all : straight.beams, radius,
+    const uint64_t gathered = splatBeams(*scene_, structures.sensor, record, single ? all : parts.straightBeams, radius,
                                          double(maps.beams.scale()) / width, film);
     statistics.add("gathered beams", gathered);
 }
@@ -216,11 +237,12 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         photonPass_->setGate(sensor.gate);
         maps = photonPass_->trace(photons, connections.get(), statistics);
     }
-    StraightStores straight;
+    StoreParts parts{};
+    parts.uFolded = Sampler(pass.seed, RandomStream::Folded, photons.index, 0).next1D();
     GatherStructures structures{
         maps, sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(), settings_.gatherCount};
-    if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, straight, structures, film, statistics);
-    if (!maps.beams.beams.empty()) gatherBeams(maps, photons.index, record, straight, structures, film, statistics);
+    if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, parts, structures, film, statistics);
+    if (!maps.beams.beams.empty()) gatherBeams(maps, photons.index, record, parts, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);

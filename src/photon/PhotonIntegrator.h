@@ -27,11 +27,11 @@ class PhotonIntegrator : public Integrator {
     void describeGuidance(EffectPlan& plan) const;
     /// Why guided light paths do not connect to surfaces; empty if they do.
     [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
-    /// Photons to pixels, or structures over them; `straight` holds what only straight sensor paths look at.
-    struct StraightStores;
-    void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
+    /// Photons to pixels, or structures over them; `parts` holds what only straight or only folded rays look at.
+    struct StoreParts;
+    void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
                       GatherStructures& structures, Film& film, Statistics& statistics) const;
-    void gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StraightStores& straight,
+    void gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
                      GatherStructures& structures, Film& film, Statistics& statistics) const;
     [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
 
