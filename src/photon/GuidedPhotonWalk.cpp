@@ -75,6 +75,8 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     ray_ = Ray{start.position, Vec3f(0.0f), emitter.isArea() ? scene_.rayEpsilon : 0.0f};
     connectable_ = true;
     if (!arrival_->mayContinue(ray_.origin, time_)) return false;
+    connectToSurfaces(emitter.isArea(), InSphere * meanComponent(emitterPower(emitter)),
+                      [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
     const EmissionDirections own(emitter, start);
     float inversePdf = 0.0f;
     if (guide) {

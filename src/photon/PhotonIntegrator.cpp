@@ -119,9 +119,8 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
                                          : "mirrors, refraction or different speeds: both, by the balance heuristic");
     const std::string notConnected = connectionObstacle(plan);
     plan.describe("surface connections", notConnected.empty(),
-                  notConnected.empty()
-                      ? "light paths connect to visible surface points; camera paths of their own find direct light"
-                      : notConnected);
+                  notConnected.empty() ? "light paths connect to the surface points that the camera sees in time"
+                                       : notConnected);
 }
 
 std::string PhotonIntegrator::connectionObstacle(const EffectPlan& plan) const {
@@ -137,7 +136,6 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan.speedsDiffer);
     foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
-    if (connects_) direct_ = std::make_unique<DirectLight>(*scene_, rules_);
 }
 
 std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
@@ -254,10 +252,6 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
             SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(), settings_.gatherRadius,
                               surfaceRadiusFactor(photons.index, settings_.alpha));
         shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
-    }
-    if (connect) {
-        const StageTimer timer(statistics, "direct light");
-        direct_->add(sensor, record, connections->nearField(), pass, film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");
     renderSensorPass(*scene_, structures, pass, film, statistics);

@@ -1,7 +1,6 @@
 #pragma once
 // The photon-map integrators: a photon pass, structures over its photons, a sensor pass.
 
-#include "photon/DirectLight.h"
 #include "photon/PhotonPass.h"
 #include "photon/PhotonSettings.h"
 #include "photon/SensorPass.h"
@@ -41,7 +40,6 @@ class PhotonIntegrator : public Integrator {
     SensorPathRules rules_;
     std::unique_ptr<GlossyLight> glossy_; ///< with rules_.glossy
     bool connects_ = false;               ///< light paths to visible surface points
-    std::unique_ptr<DirectLight> direct_; ///< with connects_
     bool straightRays_ = false; ///< of one origin and speed: photons and beams can be splatted, surfaces connected
     bool foldedRays_ = false;   ///< mirrors, refraction or followed glossy surfaces can be seen
 };

@@ -29,8 +29,8 @@ struct LightVertex {
     float usualScattering; ///< above 0: what scattering (below) is about, whatever the direction
 };
 
-/// Each scattering vertex looks for sensor points that its light reaches inside its gate and connects to so many that
-/// every connection brings about the same: light that comes from close by lights few points, but those a lot.
+/// Each vertex looks for sensor points that its light reaches inside its gate and connects to so many that every
+/// connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
 /// Such connections have a weak singularity where vertex and point are closer than points are to each other, which
 /// photons hitting surfaces have not: the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of

@@ -34,8 +34,7 @@ enum class RandomStream : uint32_t {
     SensorPoint = 7,
     Pilot = 8,
     Frame = 9,
-    DirectLight = 10,
-    Folded = 11
+    Folded = 10
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.
