@@ -39,4 +39,15 @@ std::vector<Element> chosenEvenly(const std::vector<Element>& elements, double s
     return chosen;
 }
 
+/// Deals elements into `count` hands, one after the other.
+template <typename Element>
+std::vector<std::vector<Element>> dealt(const std::vector<Element>& elements, size_t count) {
+    std::vector<std::vector<Element>> hands(count);
+    for (size_t k = 0; k < count; ++k) {
+        hands[k].reserve(elements.size() / count + 1);
+        for (size_t i = k; i < elements.size(); i += count) hands[k].push_back(elements[i]);
+    }
+    return hands;
+}
+
 } // namespace tungsten::photon

@@ -41,6 +41,10 @@ struct PhotonIntegrator::StoreParts {
     PhotonStore straightPoints, foldedPoints;
     std::vector<float> straightRadii, foldedRadii;
     std::vector<PhotonBeam> straightBeams, foldedBeams;
+    // Of what is folded, dealt to highlight paths.
+    std::vector<PhotonStore> pointParts;
+    std::vector<std::vector<float>> pointRadii;
+    std::vector<std::vector<PhotonBeam>> beamParts;
     float uFolded = 0.0f; ///< chooses what folded rays gather
 
     void selectFolded(const PhotonStore& store, const std::vector<float>& radii) {
@@ -50,6 +54,12 @@ struct PhotonIntegrator::StoreParts {
         if (radii.size() == 1) foldedRadii = radii;
         if (radii.size() > 1)
             chooseEvenly(radii.size(), share, uFolded, [&](size_t i) { foldedRadii.push_back(radii[i]); });
+    }
+    void dealPoints(size_t count) {
+        for (auto& photons : dealt(foldedPoints.photons, count))
+            pointParts.push_back({{foldedPoints.paths, false}, std::move(photons)});
+        pointRadii.assign(count, foldedRadii);
+        if (foldedRadii.size() > 1) pointRadii = dealt(foldedRadii, count);
     }
 };
 
@@ -168,6 +178,10 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const
         } else if (foldedRays_) {
             parts.selectFolded(maps.volume, radii);
             structures.points = std::make_unique<PointGather>(*scene_, sensor, parts.foldedPoints, parts.foldedRadii);
+            if (glossy_) parts.dealPoints(GlossyLight::HighlightPaths);
+            for (size_t k = 0; k < parts.pointParts.size(); ++k)
+                structures.pointParts.push_back(
+                    std::make_unique<PointGather>(*scene_, sensor, parts.pointParts[k], parts.pointRadii[k]));
         }
         if (!structures.splatted && parts.straightPoints.paths > 0)
             structures.straightPoints =
@@ -200,6 +214,10 @@ void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const 
             parts.foldedBeams = chosenEvenly(all, foldedShare(all, radius), parts.uFolded);
             structures.beams =
                 std::make_unique<BeamGather>(*scene_, structures.sensor, parts.foldedBeams, radius, true);
+            if (glossy_) parts.beamParts = dealt(parts.foldedBeams, GlossyLight::HighlightPaths);
+            for (const auto& beams : parts.beamParts)
+                structures.beamParts.push_back(
+                    std::make_unique<BeamGather>(*scene_, structures.sensor, beams, radius, true));
         }
         if (!structures.splatted && !single)
             structures.straightBeams =

@@ -22,28 +22,23 @@ struct Workspace {
 /// Gathers on camera paths.
 class SensorGather {
   public:
-    /// `lights` draws lights. `paths`: of a pixel, over which to average highlights. `oversampled`: these are left to
-    /// HighlightGather.
-    SensorGather(const Scene& scene, const GatherStructures& structures, const Sampler& lights, uint32_t paths,
-                 bool oversampled, Workspace& workspace, SensorCounters& counters)
-        : scene_(scene), structures_(structures), lights_(lights), share_(1.0f / float(paths)),
-          oversampled_(oversampled), workspace_(workspace), counters_(counters) {}
+    /// `lights` draws lights. `oversampled`: what highlight paths find is left to them.
+    SensorGather(const Scene& scene, const GatherStructures& structures, const Sampler& lights, bool oversampled,
+                 Workspace& workspace, SensorCounters& counters)
+        : scene_(scene), structures_(structures), lights_(lights), oversampled_(oversampled), workspace_(workspace),
+          counters_(counters) {}
 
     void segment(const SensorState& state, float length) {
-        if (!scene_.medium(state.region)) return;
-        if (structures_.splatted && !state.folded) return;
-        if (structures_.points)
-            gatherVolume(state, length, structures_.points, structures_.straightPoints, structures_.maps.volume.scale(),
-                         counters_.gathered);
-        if (structures_.beams)
-            gatherVolume(state, length, structures_.beams, structures_.straightBeams, structures_.maps.beams.scale(),
-                         counters_.gatheredBeams);
+        if (structures_.splatted && (!state.folded || oversampled_)) return;
+        const GatherStructures& s = structures_;
+        gatherVolume(state, length, s.straightPoints && !state.folded ? s.straightPoints.get() : s.points.get(),
+                     s.straightBeams && !state.folded ? s.straightBeams.get() : s.beams.get());
     }
 
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
         if (!structures_.includeSurfaces) return;
         if (surface.primitive->emitter >= 0 && !state.glossy) addEmission(state, surface, 1.0f);
-        if (structures_.glossy && !oversampled_) highlight(state, surface);
+        if (structures_.glossy && !oversampled_) highlight(state, surface, 1.0f);
         if (structures_.surfaces && (surface.bsdf->lobes() & lobe::Smooth) != 0) gatherSurface(state, surface);
     }
 
@@ -55,33 +50,40 @@ class SensorGather {
         add(state.throughput * environmentRadiance(environment, state.ray.direction), Infinity);
     }
 
-    /// Light from the lights by way of glossy surfaces.
-    void highlight(const SensorState& state, const SurfaceInteraction& surface) {
-        if (surface.primitive->emitter >= 0 && state.glossy)
-            addEmission(state, surface, structures_.glossy->emissionWeight(state, surface));
-        if (!isGlossyOnly(*surface.bsdf)) return;
-        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.rays);
-        if (light) add(light->radiance, light->time);
+    /// Highlight path `part`: a part of what folded rays meet in media.
+    void segmentPart(const SensorState& state, float length, uint32_t part) {
+        if (!structures_.splatted || !state.folded) return;
+        gatherVolume(state, length, structures_.pointParts.empty() ? nullptr : structures_.pointParts[part].get(),
+                     structures_.beamParts.empty() ? nullptr : structures_.beamParts[part].get());
     }
 
-    [[nodiscard]] const Sampler& lights() const { return lights_; }
+    /// Light from the lights by way of glossy surfaces; `share`: of the path in its pixel.
+    void highlight(const SensorState& state, const SurfaceInteraction& surface, float share) {
+        if (surface.primitive->emitter >= 0 && state.glossy)
+            addEmission(state, surface, share * structures_.glossy->emissionWeight(state, surface));
+        if (!isGlossyOnly(*surface.bsdf)) return;
+        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.rays);
+        if (light) add(light->radiance * share, light->time);
+    }
 
   private:
-    /// Points or beams along the segment; `straight`, if any, while the path has not folded.
-    template <typename Gather>
-    void gatherVolume(const SensorState& state, float length, const std::unique_ptr<Gather>& all,
-                      const std::unique_ptr<Gather>& straight, float storeScale, uint64_t& counter) {
-        std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
+    void gatherVolume(const SensorState& state, float length, const PointGather* points, const BeamGather* beams) {
+        if (!scene_.medium(state.region) || (!points && !beams)) return;
         const CameraSegment segment{
             state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
             state.interactions, state.region.medium};
-        const Gather& store = straight && !state.folded ? *straight : *all;
-        const uint64_t gathered = store.gather(segment, workspace_.volume);
+        if (points) addVolume(segment, *points, state.throughput * structures_.maps.volume.scale(), counters_.gathered);
+        if (beams)
+            addVolume(segment, *beams, state.throughput * structures_.maps.beams.scale(), counters_.gatheredBeams);
+    }
+
+    template <typename Gather>
+    void addVolume(const CameraSegment& segment, const Gather& gather, const Rgb& scale, uint64_t& counter) {
+        std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
+        const uint64_t gathered = gather.gather(segment, workspace_.volume);
         if (gathered == 0) return;
         counter += gathered;
-        const double scale = double(storeScale);
-        const Rgb& t = state.throughput;
-        const Vec3d weight(double(t.x) * scale, double(t.y) * scale, double(t.z) * scale);
+        const Vec3d weight(double(scale.x), double(scale.y), double(scale.z));
         for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
             workspace_.sums[frame] += workspace_.volume[frame] * weight;
     }
@@ -90,7 +92,7 @@ class SensorGather {
         const Sensor& sensor = structures_.sensor;
         const int frame = sensor.gate.steadyState ? 0 : sensor.gate.frameOf(time);
         if (frame < 0) return;
-        const Rgb weighed = radiance * (sensor.weight(time) * share_);
+        const Rgb weighed = radiance * sensor.weight(time);
         workspace_.sums[size_t(frame)] += Vec3d(double(weighed.x), double(weighed.y), double(weighed.z));
     }
 
@@ -133,10 +135,21 @@ class SensorGather {
     const Scene& scene_;
     const GatherStructures& structures_;
     Sampler lights_;
-    float share_;
     bool oversampled_;
     Workspace& workspace_;
     SensorCounters& counters_;
+};
+
+/// Follows a highlight path.
+struct HighlightVisitor {
+    SensorGather& gather;
+    uint32_t part;
+
+    void segment(const SensorState& state, float length) { gather.segmentPart(state, length, part); }
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        gather.highlight(state, surface, 1.0f / float(GlossyLight::HighlightPaths));
+    }
+    void escaped(const SensorState&) const {}
 };
 
 } // namespace
@@ -159,15 +172,10 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
             };
             const Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
             const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
-            SensorGather gather(scene, structures, lights, 1, oversampled, workspace, counters);
+            SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
             follow(gather);
             if (!oversampled) continue;
-            SensorGather highlights(scene, structures, gather.lights(), GlossyLight::HighlightPaths, false, workspace,
-                                    counters);
-            const SurfaceVisitor findHighlights{[&](const SensorState& state, const SurfaceInteraction& surface) {
-                highlights.highlight(state, surface);
-            }};
-            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(findHighlights);
+            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(HighlightVisitor{gather, k});
         }
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;

@@ -26,6 +26,10 @@ struct GatherStructures {
     std::unique_ptr<BeamGather> beams{};         ///< null when there is no photon beam
     std::unique_ptr<BeamGather> straightBeams{}; ///< as straightPoints
     std::unique_ptr<NearestPhotons> surfaces{};  ///< null when there is no surface photon
+    /// `points` or `beams` dealt to the highlight paths of a pixel: each gathers its own part on folded rays. Empty
+    /// unless splatted, with rules.glossy.
+    std::vector<std::unique_ptr<PointGather>> pointParts{};
+    std::vector<std::unique_ptr<BeamGather>> beamParts{};
 };
 
 /// Adds the image of every frame to the film's pass image.

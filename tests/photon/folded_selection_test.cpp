@@ -26,6 +26,14 @@ TEST(FoldedSelection, KeepsEveryElementEquallyOftenAndThePowerOnAverage) {
     EXPECT_EQ(chosenEvenly(photons, 1.0, 0.999f).size(), Count);
 }
 
+TEST(FoldedSelection, DealsEveryElementToOneHand) {
+    const std::vector<int> elements{0, 1, 2, 3, 4, 5, 6};
+    const std::vector<std::vector<int>> expected{{0, 3, 6}, {1, 4}, {2, 5}};
+    EXPECT_EQ(dealt(elements, 3), expected);
+    EXPECT_EQ(dealt(elements, 1), std::vector<std::vector<int>>{elements});
+    EXPECT_EQ(dealt(std::vector<int>{1}, 3), (std::vector<std::vector<int>>{{1}, {}, {}}));
+}
+
 /// Discs or ribbons met by those of 4 000 random lines through a ball about everything that hit the box. `meets` tells
 /// of element i and a line.
 template <typename Meets>

@@ -209,6 +209,26 @@ TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     expectSameBlocks(*renderPhotons(json, {metal, 96, 1}), *paths, 0, 0.05, 0.15);
 }
 
+/// Fog on rough metal, of which every highlight path gathers a part.
+TEST(GlossySurfaces, ShowFog) {
+    const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
+    const Overrides foggy{R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.2})",
+                          R"(primitives.block.bsdf={"type": "lambert", "albedo": 0})",
+                          R"(primitives.floor.bsdf={"type": "lambert", "albedo": 0})",
+                          "media.air.sigma_s=0.2",
+                          "integrator.min_bounces=2",
+                          "integrator.max_bounces=3",
+                          "integrator.volume_gather_radius=0.1"};
+    const auto paths = renderPaths(json, {foggy, 16, 256});
+    for (const char* primitive : {"points", "beams"}) {
+        SCOPED_TRACE(primitive);
+        Overrides best = foggy;
+        best.push_back(Best);
+        best.push_back(std::string("integrator.volume_photon_type=") + primitive);
+        expectSameBlocks(*renderPhotons(json, {best, 32, 1}), *paths, 0, 0.04, 0.2);
+    }
+}
+
 /// Orders one by one: every path is counted with its own number of interactions, connected or not.
 TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
     for (const int order : {1, 2}) {
