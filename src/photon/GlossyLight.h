@@ -20,7 +20,7 @@ class GlossyLight {
     /// Highlights are finer than pixels, and a narrow gate leaves lines of them; the fog that a glossy surface shows is
     /// as fine near lights. Such pixels look for both along HighlightPaths paths, which gather nothing else.
     [[nodiscard]] bool oversampled(size_t pixel) const { return oversampled_[pixel] != 0; }
-    static constexpr uint32_t HighlightPaths = 24;
+    static constexpr uint32_t HighlightPaths = 16;
 
   private:
     const Scene& scene_;
