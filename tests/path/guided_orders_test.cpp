@@ -2,20 +2,14 @@
 // switch alone.
 
 #include "path/render_paths.h"
-#include "support/GroundTruthScenes.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::path {
 namespace {
 
-struct Order {
-    char configuration;
-    int order;
-    bool unwarped, delta;
-    double expected;
-    double uncertainty = 0.0; ///< relative, of values that were simulated
-};
+using test::VerifiedValue;
 
 /// How paths are sampled.
 struct Sampling {
@@ -48,53 +42,44 @@ const std::vector<Sampling> Switches{
     {"NoRoulette", {switches(R"("roulette": 0)")}, 0.0},
 };
 
-std::unique_ptr<test::Rendered> renderOrder(const Order& c, const Sampling& sampling, test::RenderOptions options) {
-    const bool laser = c.configuration == 'C';
-    const double g = laser ? 0.3 : c.configuration == 'B' ? 0.6 : 0.0;
-    const std::string json = test::configurationA(c.order, c.unwarped, g);
-    options.overrides = sampling.fields;
+std::unique_ptr<test::Rendered> renderOrder(const VerifiedValue& value, const Sampling& sampling) {
+    test::RenderOptions options{test::gateOf(value), 40, sampling.samples};
+    options.overrides.insert(options.overrides.end(), sampling.fields.begin(), sampling.fields.end());
     options.overrides.emplace_back("integrator.type=path_tracer");
-    const double unwarpedCentre = laser ? 3.5 : c.delta ? 2.2 : 2.5;
-    const double width = c.delta ? 0.0 : 1.0, start = c.unwarped ? (laser ? 3.0 : 2.0) : 5.0;
-    const double centre = c.delta ? (c.unwarped ? unwarpedCentre : 5.5) : start + 0.5 * width;
-    options.overrides.push_back("integrator.transient_time_center=" + std::to_string(centre));
-    if (c.delta) options.overrides.emplace_back("integrator.delta_time_gate=true");
-    return test::renderWithPathTracer(laser ? test::withLaser(json) : json, options);
+    return test::renderWithPathTracer(test::sceneOf(value), options);
 }
 
-class GuidedOrders : public testing::TestWithParam<std::tuple<Sampling, Order>> {};
+class GuidedOrders : public testing::TestWithParam<std::tuple<Sampling, VerifiedValue>> {};
 
 TEST_P(GuidedOrders, MatchVerifiedValues) {
-    const auto& [sampling, c] = GetParam();
-    const auto rendered = renderOrder(c, sampling, {{}, 40, sampling.samples});
-    const double error = rendered->pixelError();
+    const auto& [sampling, value] = GetParam();
+    const auto rendered = renderOrder(value, sampling);
+    const double error = rendered->pixelError(), expected = value.radiance;
     constexpr double Rounding = 2e-4; // of the printed values, and of the pixel's width
-    EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + (sampling.slack + c.uncertainty + Rounding) * c.expected)
+    EXPECT_NEAR(rendered->mean(), expected, 4.0 * (error + value.uncertainty) + (sampling.slack + Rounding) * expected)
         << "standard error " << error;
-    EXPECT_LT(error, (sampling.slack > 0.0 ? 0.07 : 0.015) * c.expected) << "the test would not see a wrong value";
+    EXPECT_LT(error, (sampling.slack > 0.0 ? 0.07 : 0.015) * expected) << "the test would not see a wrong value";
     EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
 }
 
 /// Test names such as Best_B2UnwarpedDelta.
-std::string nameOf(const testing::TestParamInfo<std::tuple<Sampling, Order>>& info) {
-    const auto& [sampling, c] = info.param;
-    return sampling.name + "_" + c.configuration + std::to_string(c.order) + (c.unwarped ? "Unwarped" : "Warped") +
-           (c.delta ? "Delta" : "Box");
+std::string nameOf(const testing::TestParamInfo<std::tuple<Sampling, VerifiedValue>>& info) {
+    const auto& [sampling, value] = info.param;
+    return sampling.name + "_" + test::nameOf(value);
 }
 
-const std::vector<Order> Boxes{{'A', 1, false, false, 2.22436e-4},         {'A', 1, true, false, 11.1009e-4},
-                               {'A', 2, false, false, 5.97962e-4},         {'A', 2, true, false, 29.4416e-4},
-                               {'A', 3, false, false, 7.81135e-4},         {'A', 3, true, false, 22.1036e-4},
-                               {'B', 2, false, false, 1.28207e-4, 0.002},  {'B', 2, true, false, 36.250e-4, 0.002},
-                               {'B', 3, false, false, 1.900e-4, 0.008},    {'B', 3, true, false, 24.88e-4, 0.008},
-                               {'C', 2, false, false, 9.56707e-5},         {'C', 2, true, false, 8.34604e-5},
-                               {'C', 3, false, false, 10.6284e-5, 0.0024}, {'C', 3, true, false, 12.5775e-5, 0.0013}};
-const std::vector<Order> Deltas{{'A', 1, false, true, 2.1055e-4},          {'A', 1, true, true, 26.6081e-4},
-                                {'A', 2, false, true, 5.79199e-4},         {'A', 2, true, true, 40.7037e-4},
-                                {'A', 3, false, true, 7.70375e-4},         {'A', 3, true, true, 24.0969e-4},
-                                {'B', 2, false, true, 1.22185e-4, 0.0022}, {'B', 2, true, true, 67.886e-4, 0.0016},
-                                {'C', 2, false, true, 8.55486e-5},         {'C', 2, true, true, 7.63581e-5}};
-const std::vector<Order> Few{Boxes[2], Boxes[3], Boxes[4], Boxes[6], Boxes[10]};
+const std::vector<VerifiedValue> Boxes{
+    test::verified("A1WarpedBox"),   test::verified("A1UnwarpedBox"), test::verified("A2WarpedBox"),
+    test::verified("A2UnwarpedBox"), test::verified("A3WarpedBox"),   test::verified("A3UnwarpedBox"),
+    test::verified("B2WarpedBox"),   test::verified("B2UnwarpedBox"), test::verified("B3WarpedBox"),
+    test::verified("B3UnwarpedBox"), test::verified("C2WarpedBox"),   test::verified("C2UnwarpedBox"),
+    test::verified("C3WarpedBox"),   test::verified("C3UnwarpedBox")};
+const std::vector<VerifiedValue> Deltas{test::verified("A1WarpedDelta"), test::verified("A1UnwarpedDelta"),
+                                        test::verified("A2WarpedDelta"), test::verified("A2UnwarpedDelta"),
+                                        test::verified("A3WarpedDelta"), test::verified("A3UnwarpedDelta"),
+                                        test::verified("B2WarpedDelta"), test::verified("B2UnwarpedDelta"),
+                                        test::verified("C2WarpedDelta"), test::verified("C2UnwarpedDelta")};
+const std::vector<VerifiedValue> Few{Boxes[2], Boxes[3], Boxes[4], Boxes[6], Boxes[10]};
 
 INSTANTIATE_TEST_SUITE_P(BoxGates, GuidedOrders, testing::Combine(testing::ValuesIn(Presets), testing::ValuesIn(Boxes)),
                          nameOf);

@@ -39,14 +39,14 @@ TEST_P(BeamOrders, MatchVerifiedValues) {
 
 INSTANTIATE_TEST_SUITE_P(
     Configurations, BeamOrders,
-    testing::Values(OrderCase{{'A', 1, false, false, 2.22436e-4}}, OrderCase{{'A', 1, true, false, 11.1009e-4}},
-                    OrderCase{{'A', 1, false, true, 2.1055e-4}}, OrderCase{{'A', 1, true, true, 26.6081e-4}},
-                    OrderCase{{'A', 2, false, false, 5.97962e-4}}, OrderCase{{'A', 2, true, false, 29.4416e-4}},
-                    OrderCase{{'A', 2, false, true, 5.79199e-4}}, OrderCase{{'A', 2, true, true, 40.7037e-4}},
-                    OrderCase{{'A', 3, false, false, 7.81135e-4}}, OrderCase{{'A', 3, true, false, 22.1036e-4}},
-                    OrderCase{{'A', 3, true, true, 24.0969e-4}}, OrderCase{{'B', 2, false, false, 1.28207e-4}, 60},
-                    OrderCase{{'B', 2, true, false, 36.250e-4}}, OrderCase{{'C', 2, false, false, 9.56707e-5}},
-                    OrderCase{{'C', 2, true, false, 8.34604e-5}}, OrderCase{{'C', 2, false, true, 8.55486e-5}}),
+    testing::Values(OrderCase{test::verified("A1WarpedBox")}, OrderCase{test::verified("A1UnwarpedBox")},
+                    OrderCase{test::verified("A1WarpedDelta")}, OrderCase{test::verified("A1UnwarpedDelta")},
+                    OrderCase{test::verified("A2WarpedBox")}, OrderCase{test::verified("A2UnwarpedBox")},
+                    OrderCase{test::verified("A2WarpedDelta")}, OrderCase{test::verified("A2UnwarpedDelta")},
+                    OrderCase{test::verified("A3WarpedBox")}, OrderCase{test::verified("A3UnwarpedBox")},
+                    OrderCase{test::verified("A3UnwarpedDelta")}, OrderCase{test::verified("B2WarpedBox"), 60},
+                    OrderCase{test::verified("B2UnwarpedBox")}, OrderCase{test::verified("C2WarpedBox")},
+                    OrderCase{test::verified("C2UnwarpedBox")}, OrderCase{test::verified("C2WarpedDelta")}),
     [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(BeamMap, SingleScatteringInAFoggedBox) {

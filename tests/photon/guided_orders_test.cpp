@@ -63,15 +63,15 @@ TEST_P(GuidedOrders, MatchVerifiedValues) {
     RecordProperty("relative standard error", std::to_string(error / exact));
 }
 
-constexpr VerifiedValue A1{'A', 1, false, false, 2.22436e-4}, A1Unwarped{'A', 1, true, false, 11.1009e-4},
-    A2{'A', 2, false, false, 5.97962e-4}, A2Unwarped{'A', 2, true, false, 29.4416e-4},
-    A3{'A', 3, false, false, 7.81135e-4}, A3Unwarped{'A', 3, true, false, 22.1036e-4},
-    B2{'B', 2, false, false, 1.28207e-4}, B2Unwarped{'B', 2, true, false, 36.250e-4},
-    B3{'B', 3, false, false, 1.900e-4}, C2{'C', 2, false, false, 9.56707e-5},
-    C2Unwarped{'C', 2, true, false, 8.34604e-5}, C3{'C', 3, false, false, 10.6284e-5},
-    A1Delta{'A', 1, false, true, 2.1055e-4}, A1UnwarpedDelta{'A', 1, true, true, 26.6081e-4},
-    A2Delta{'A', 2, false, true, 5.79199e-4}, A2UnwarpedDelta{'A', 2, true, true, 40.7037e-4},
-    A3Delta{'A', 3, false, true, 7.70375e-4}, C2Delta{'C', 2, false, true, 8.55486e-5};
+constexpr VerifiedValue A1 = test::verified("A1WarpedBox"), A1Unwarped = test::verified("A1UnwarpedBox"),
+                        A2 = test::verified("A2WarpedBox"), A2Unwarped = test::verified("A2UnwarpedBox"),
+                        A3 = test::verified("A3WarpedBox"), A3Unwarped = test::verified("A3UnwarpedBox"),
+                        B2 = test::verified("B2WarpedBox"), B2Unwarped = test::verified("B2UnwarpedBox"),
+                        B3 = test::verified("B3WarpedBox"), C2 = test::verified("C2WarpedBox"),
+                        C2Unwarped = test::verified("C2UnwarpedBox"), C3 = test::verified("C3WarpedBox"),
+                        A1Delta = test::verified("A1WarpedDelta"), A1UnwarpedDelta = test::verified("A1UnwarpedDelta"),
+                        A2Delta = test::verified("A2WarpedDelta"), A2UnwarpedDelta = test::verified("A2UnwarpedDelta"),
+                        A3Delta = test::verified("A3WarpedDelta"), C2Delta = test::verified("C2WarpedDelta");
 
 /// The published sampler has no finite variance where B's forward scattering needs it most: warped B is left out.
 INSTANTIATE_TEST_SUITE_P(

@@ -25,35 +25,27 @@ TEST(ProgressiveSchedule, FollowsItsProduct) {
 }
 
 struct OrderCase {
-    int order;
-    bool unwarped;
-    double g, expected; ///< verified values, section 6
+    test::VerifiedValue value;
     uint32_t passes = 20;
 };
-
-/// Test names such as Order2UnwarpedG60.
-std::string nameOf(const testing::TestParamInfo<OrderCase>& info) {
-    return "Order" + std::to_string(info.param.order) + (info.param.unwarped ? "Unwarped" : "Warped") + "G" +
-           std::to_string(int(100.0 * info.param.g));
-}
 
 class PointOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(PointOrders, MatchVerifiedValues) {
     const OrderCase& c = GetParam();
-    const auto rendered = renderPhotons(test::configurationA(c.order, c.unwarped, c.g), {{}, c.passes, 1});
-    const double error = rendered->pixelError();
+    const auto rendered = renderPhotons(test::sceneOf(c.value), {test::gateOf(c.value), c.passes, 1});
+    const double error = rendered->pixelError(), exact = c.value.radiance;
     constexpr double KernelBias = 0.01;
-    EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + KernelBias * c.expected) << "standard error " << error;
-    EXPECT_LT(error, 0.13 * c.expected) << "the test would not see a wrong value";
+    EXPECT_NEAR(rendered->mean(), exact, 4.0 * error + KernelBias * exact) << "standard error " << error;
+    EXPECT_LT(error, 0.13 * exact) << "the test would not see a wrong value";
 }
 
-INSTANTIATE_TEST_SUITE_P(ConfigurationsAAndB, PointOrders,
-                         testing::Values(OrderCase{1, false, 0.0, 2.22436e-4}, OrderCase{1, true, 0.0, 11.1009e-4},
-                                         OrderCase{2, false, 0.0, 5.97962e-4}, OrderCase{2, true, 0.0, 29.4416e-4},
-                                         OrderCase{3, false, 0.0, 7.81135e-4},
-                                         OrderCase{2, false, 0.6, 1.28207e-4, 40}),
-                         nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    ConfigurationsAAndB, PointOrders,
+    testing::Values(OrderCase{test::verified("A1WarpedBox")}, OrderCase{test::verified("A1UnwarpedBox")},
+                    OrderCase{test::verified("A2WarpedBox")}, OrderCase{test::verified("A2UnwarpedBox")},
+                    OrderCase{test::verified("A3WarpedBox")}, OrderCase{test::verified("B2WarpedBox"), 40}),
+    [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(PhotonMap, SingleScatteringInAFoggedBox) {
     const auto rendered = renderPhotons(test::foggedBox(), {{"integrator.photon_count=30000"}, 60, 1});
