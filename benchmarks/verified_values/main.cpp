@@ -140,26 +140,23 @@ Row prove(const VerifiedValue& value, const Method& method, double seconds) {
 
 void writeHeader(std::ostream& file, double seconds) {
     file
-        << "Deviations from the verified values (photon-primitives, section 6) in % ± standard error of the render in "
-           "%;\n"
-           "in brackets the deviation beyond what is allowed, in standard errors of render and value together. Names:\n"
-           "configuration, order of scattering, time (with or without the camera's leg), gate (a delta, a box of width "
-           "1,\nor of 0.1: narrow). About "
-        << seconds
-        << " s per render on 2 threads; 15000 photons, 6000 beams or 5000 paths a pass.\nPoints: biweight kernel of "
-           "radius "
-        << PointRadius << "; beams: uniform kernel of radius " << BeamRadius
-        << "; delta gates: temporal kernel of half-width " << Tau
-        << "; constant\nradii. Allowed: " << 100.0 * KernelBias << " % for the kernels' bias, " << 100.0 * Rounding
-        << " % for paths (rounding).\n\n"
-        << "- ∞: the estimator's variance is infinite; not counted below.\n"
-           "- noisy: the standard error is above "
-        << 100.0 * LargestProvingError
-        << " %; proves little.\n"
-           "- repeated: the first render deviated by more than "
-        << LargestDeviation
-        << "; these are the figures of a second one, with another\n  seed and four times the passes.\n"
-           "- –: plain paths cannot meet a delta gate, and guided ones render none where surfaces could scatter.\n\n";
+        << "# Verified values\n\n"
+           "Deviations from the verified values (photon-primitives, section 6) in % ± standard error of the render in "
+           "%; "
+           "in brackets\nthe deviation beyond what is allowed, in standard errors of render and value together. Names: "
+           "configuration, order of\nscattering, time (with or without the camera's leg), gate (a delta; a box of "
+           "width "
+           "1, or of 0.1: narrow).\n\n"
+        << "About " << seconds
+        << " s per render on 2 threads; 15000 photons, 6000 beams or 5000 paths a pass; constant "
+        << "radii. Points: biweight kernel of\nradius " << PointRadius << "; beams: uniform kernel of radius "
+        << BeamRadius << "; delta gates: uniform kernel of half-width " << Tau << ". Allowed: " << 100.0 * KernelBias
+        << " % for the\nkernels' bias, " << 100.0 * Rounding << " % for paths (rounding).\n\n"
+        << "- ∞: the estimator's variance is infinite; not counted in the summary.\n"
+        << "- noisy: the standard error is above " << 100.0 * LargestProvingError << " %; proves little.\n"
+        << "- repeated: the first render deviated by more than " << LargestDeviation
+        << "; these are the figures of a second one, with another seed\n  and four times the passes.\n"
+        << "- –: plain paths cannot meet a delta gate, and guided ones render none where surfaces could scatter.\n\n";
 }
 
 void writeTable(std::ostream& file, const std::vector<Row>& rows) {
@@ -175,7 +172,7 @@ void writeTable(std::ostream& file, const std::vector<Row>& rows) {
     for (const VerifiedValue& value : VerifiedValues) {
         if (std::none_of(rows.begin(), rows.end(), [&](const Row& r) { return nameOf(r.value) == nameOf(value); }))
             continue;
-        std::snprintf(text, sizeof text, "| %s | %.6g |", nameOf(value).c_str(), value.radiance);
+        std::snprintf(text, sizeof text, "| %s | %.5e |", nameOf(value).c_str(), value.radiance);
         file << text;
         for (const Method& method : Methods) {
             const auto row =
@@ -227,11 +224,12 @@ bool proveAll(const std::string& path, double seconds, const std::string& only) 
         for (const Method& method : Methods)
             if (applies(method, value) && (nameOf(value) + ", " + method.name).find(only) != std::string::npos)
                 rows.push_back(prove(value, method, seconds));
-    file << "# Verified values\n\n";
     writeHeader(file, seconds);
     std::string table = "| method | values | within 4 | worst | rms of deviation / error | median error, % | "
                         "noisy | repeated | ∞ |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
-    for (const Method& method : Methods) table += summary(rows, method.name);
+    for (const Method& method : Methods)
+        if (std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return row.method.name == method.name; }))
+            table += summary(rows, method.name);
     table += summary(rows, "");
     std::cout << table;
     file << table << '\n';

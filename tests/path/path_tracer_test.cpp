@@ -2,8 +2,8 @@
 
 #include "path/PathTracer.h"
 
-#include "support/GroundTruthScenes.h"
 #include "support/Render.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 
@@ -22,36 +22,27 @@ std::unique_ptr<Rendered> renderPaths(const std::string& json, RenderOptions opt
 }
 
 struct OrderCase {
-    int order;
-    bool unwarped;
-    double g;
-    double expected; ///< radiance per unit path length, averaged over the gate (verified values, section 6)
-    double slack;    ///< relative allowance for the heavy tail of next-event estimation near the light (order 2 and up)
+    test::VerifiedValue value;
+    double slack; ///< relative allowance for the heavy tail of next-event estimation near the light (order 2 and up)
 };
-
-/// Test names such as Order2UnwarpedG60.
-std::string nameOf(const testing::TestParamInfo<OrderCase>& info) {
-    return "Order" + std::to_string(info.param.order) + (info.param.unwarped ? "Unwarped" : "Warped") + "G" +
-           std::to_string(int(100.0 * info.param.g));
-}
 
 class PathOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(PathOrders, MatchVerifiedValues) {
     const OrderCase& c = GetParam();
-    const auto rendered = renderPaths(test::configurationA(c.order, c.unwarped, c.g), {{}, 100, 20000});
-    const double error = rendered->pixelError();
-    EXPECT_NEAR(rendered->mean(), c.expected, 4.0 * error + c.slack * c.expected) << "standard error " << error;
-    EXPECT_LT(error, 0.04 * c.expected) << "the test would not see a wrong value";
+    const auto rendered = renderPaths(test::sceneOf(c.value), {test::gateOf(c.value), 100, 20000});
+    const double error = rendered->pixelError(), expected = c.value.radiance;
+    EXPECT_NEAR(rendered->mean(), expected, 4.0 * error + c.slack * expected) << "standard error " << error;
+    EXPECT_LT(error, 0.04 * expected) << "the test would not see a wrong value";
 }
 
 INSTANTIATE_TEST_SUITE_P(
     ConfigurationsAAndB, PathOrders,
-    testing::Values(OrderCase{1, false, 0.0, 2.22436e-4, 0.0}, OrderCase{1, true, 0.0, 11.1009e-4, 0.0},
-                    OrderCase{2, false, 0.0, 5.97962e-4, 0.02}, OrderCase{2, true, 0.0, 29.4416e-4, 0.02},
-                    OrderCase{3, false, 0.0, 7.81135e-4, 0.03}, OrderCase{3, true, 0.0, 22.1036e-4, 0.03},
-                    OrderCase{2, false, 0.6, 1.28207e-4, 0.03}),
-    nameOf);
+    testing::Values(OrderCase{test::verified("A1WarpedBox"), 0.0}, OrderCase{test::verified("A1UnwarpedBox"), 0.0},
+                    OrderCase{test::verified("A2WarpedBox"), 0.02}, OrderCase{test::verified("A2UnwarpedBox"), 0.02},
+                    OrderCase{test::verified("A3WarpedBox"), 0.03}, OrderCase{test::verified("A3UnwarpedBox"), 0.03},
+                    OrderCase{test::verified("B2WarpedBox"), 0.03}),
+    [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(PathTracer, SingleScatteringInAFoggedBox) {
     const auto rendered = renderPaths(test::foggedBox(), {{}, 40, 20000});
