@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# One command from a clean clone to a picture: sets up, then renders a time-gated view of a foggy Cornell box.
+# One command from a clean clone to a picture: sets up the renderer without tests and benchmarks, then renders a
+# time-gated view of a foggy Cornell box.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/setup.sh
+scripts/setup.sh --target tungsten-app tungsten-photon tungsten-path
 echo
 echo "Rendering data/scenes/cornell-fog (one minute) ..."
 build/bin/tungsten data/scenes/cornell-fog/scene.json "$@"
