@@ -11,8 +11,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <stdexcept>
 
 namespace tungsten::test {
 namespace {
@@ -224,12 +226,19 @@ std::string summary(const std::vector<Row>& rows, const std::string& name) {
 }
 
 bool proveAll(const std::string& path, double seconds, const std::string& only) {
-    std::ofstream file(path);
+    const std::string unfinished = path + ".part"; // under its own name when it is complete
+    std::ofstream file(unfinished);
+    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
     std::vector<Row> rows;
     for (const VerifiedValue& value : VerifiedValues)
         for (const Method& method : Methods)
             if (applies(method, value) && (nameOf(value) + ", " + method.name).find(only) != std::string::npos)
                 rows.push_back(prove(value, method, seconds));
+    if (rows.empty()) {
+        file.close();
+        std::filesystem::remove(unfinished);
+        throw std::runtime_error("no row's name holds '" + only + "'; names are such as 'A2WarpedBox, best beams'");
+    }
     writeHeader(file, seconds);
     std::string table = "| method | values | within 4 | worst | rms of deviation / error | median error, % | "
                         "noisy | repeated | ∞ |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
@@ -240,6 +249,9 @@ bool proveAll(const std::string& path, double seconds, const std::string& only) 
     std::cout << table;
     file << table << '\n';
     writeTable(file, rows);
+    file.close();
+    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
+    std::filesystem::rename(unfinished, path);
     return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.agrees() || row.exempt(); });
 }
 
