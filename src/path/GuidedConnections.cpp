@@ -94,11 +94,20 @@ GuidedPathWalk::Scattering GuidedPathWalk::scatteringTowards(const Vec3f& direct
     return {surface->bsdf->eval(query, surface->wi, wo), surface->bsdf->pdf(query, surface->wi, wo)};
 }
 
-void GuidedPathWalk::connectToLightVertex(const SurfaceInteraction* surface) {
+void GuidedPathWalk::connectToLightPaths(const SurfaceInteraction* surface) {
     const Medium* medium = scene_.medium(region_);
-    const LightVertexCache* cache = context_.lightVertices.of(target_->index);
-    lightVertexTried_ = cache && mayFly(medium);
-    if (!lightVertexTried_ || !counts(1, 0)) return;
+    lightVertexTried_ = context_.lightPaths.vertices(target_->index) && mayFly(medium);
+    if (!lightVertexTried_) return;
+    connectToLightVertex(surface);
+    // Wherever reflected light ends, light vertices would be tried.
+    reflectedTried_ = context_.lightPaths.reflected(target_->index) && medium && flights_ + 1 < medium->maxBounces;
+    if (reflectedTried_) connectToReflectedLight(surface);
+}
+
+void GuidedPathWalk::connectToLightVertex(const SurfaceInteraction* surface) {
+    if (!counts(1, 0)) return;
+    const Medium* medium = scene_.medium(region_);
+    const LightVertexCache* cache = context_.lightPaths.vertices(target_->index);
     const TimeGate& gate = context_.sensor.gate;
     const double speed = double(region_.speed), elapsed = time_ + target_->start;
     const float low = float(speed * (gate.start - elapsed)), high = float(speed * (gate.end() - elapsed));
@@ -116,12 +125,80 @@ void GuidedPathWalk::connectToLightVertex(const SurfaceInteraction* surface) {
     ++counters_.lightVertices;
     if (scene_.geometry->occluded({ray_.origin, direction, ray_.tMin, distance - scene_.rayEpsilon})) return;
     const float perArea = std::abs(direction.dot(vertex.surface.hit.ng)) / sqr(distance);
-    const float share = lightVertexShare(vertex.areaPdf, scattering.pdf * perArea);
+    const float tried = triedDensity(vertex.areaPdf), walk = scattering.pdf * perArea;
+    const float share =
+        tried / (tried + walk + reflectedDensity(vertex.surface, -direction, distance, vertex.toLight, vertex.areaPdf));
     const Medium* beyond = scene_.medium(regionBeyond(vertex.surface, vertex.toLight, region_));
     Rgb transmittance = medium ? medium->transmittance(distance) : Rgb(1.0f);
     if (beyond) transmittance = transmittance * beyond->transmittance(vertex.distance);
     sink_.add(throughput_ * scattering.value * transmittance * onward * (perArea * choice.weight * share),
               elapsed + (double(distance) + double(vertex.distance)) / speed);
+}
+
+float GuidedPathWalk::reflectedDensity(const SurfaceInteraction& glossy, const Vec3f& direction, float flight,
+                                       const Vec3f& toLight, float areaPdf) const {
+    if (!(arrivalPdf_ > 0.0f) || !reflectsSharply(*glossy.bsdf)) return 0.0f;
+    const bool inMedium = isBlack(arrivalNormal_);
+    const float cosine = -direction.dot(arrivalNormal_);
+    if (!inMedium && !(cosine > 0.0f)) return 0.0f;
+    const float pdf = glossy.bsdf->pdf(glossy.query(TransportMode::Radiance), glossy.frame.toLocal(toLight),
+                                       glossy.frame.toLocal(direction));
+    const float end = inMedium ? context_.lightPaths.flights().pdf(flight) : cosine;
+    return context_.lightPaths.reflected(target_->index)->tried() * areaPdf * pdf * end / sqr(flight) / arrivalPdf_;
+}
+
+void GuidedPathWalk::connectToReflectedLight(const SurfaceInteraction* surface) {
+    const Medium* medium = scene_.medium(region_);
+    const ReflectedLightCache* cache = context_.lightPaths.reflected(target_->index);
+    const TimeGate& gate = context_.sensor.gate;
+    const double speed = double(region_.speed), elapsed = time_ + target_->start;
+    const float low = float(speed * (gate.start - elapsed)), high = float(speed * (gate.end() - elapsed));
+    const ReflectedLightCache::Choice choice = cache->choose(ray_.origin, low, high, sampler_.next2D());
+    if (!choice.vertex) return;
+    const ReflectedVertex& vertex = *choice.vertex;
+    if (!counts(2, vertex.surface ? 0 : 1)) return;
+    const Vec3f offset = vertex.position - ray_.origin;
+    const float distance = offset.length();
+    if (!(distance > scene_.rayEpsilon)) return;
+    const Vec3f direction = offset / distance;
+
+    // The reflected light's end as a walk would meet it: what it scatters here, and in which medium its light came.
+    Scattering end;
+    float arrival = 1.0f / sqr(distance); // of scattering here towards it, per area or volume
+    Region region = region_;
+    if (vertex.surface) {
+        const SurfaceInteraction& there = *vertex.surface;
+        if (!mayBeLightVertex(there, -direction, vertex.toGlossy) || !guideFor(there, -direction) ||
+            !there.consistent(-direction, scene_.transport.consistencyChecks))
+            return;
+        const Vec3f wi = there.frame.toLocal(-direction), wo = there.frame.toLocal(vertex.toGlossy);
+        const BsdfQuery query = there.query(TransportMode::Radiance);
+        end = {there.bsdf->eval(query, wi, wo), there.bsdf->pdf(query, wi, wo)};
+        arrival *= std::abs(direction.dot(there.hit.ng));
+        region = regionBeyond(there, -direction, region_);
+    } else {
+        const float phase = medium->phase.eval(direction, vertex.toGlossy);
+        end = {medium->sigmaS * phase, phase};
+    }
+    const Scattering scattering = scatteringTowards(direction, surface);
+    if (isBlack(scattering.value) || isBlack(end.value)) return;
+    ++counters_.shadowRays;
+    ++counters_.reflectedLight;
+    if (scene_.geometry->occluded(
+            {ray_.origin, direction, ray_.tMin, vertex.surface ? distance - scene_.rayEpsilon : distance}))
+        return;
+    const float flight = vertex.surface ? 1.0f : context_.lightPaths.flights().pdf(distance);
+    const float walk =
+        scattering.pdf * arrival * flight * (end.pdf * vertex.walkGeometry + triedDensity(vertex.glossy.areaPdf));
+    const float tried = cache->tried() * vertex.density;
+    Rgb transmittance = medium->transmittance(distance);
+    if (const Medium* between = scene_.medium(region))
+        transmittance = transmittance * between->transmittance(vertex.flight);
+    if (const Medium* beyond = scene_.medium(regionBeyond(vertex.glossy.surface, vertex.glossy.toLight, region)))
+        transmittance = transmittance * beyond->transmittance(vertex.glossy.distance);
+    sink_.add(throughput_ * scattering.value * end.value * transmittance * vertex.power *
+                  (arrival * choice.weight * (tried / (tried + walk))),
+              elapsed + (double(distance) + double(vertex.length)) / speed);
 }
 
 void GuidedPathWalk::findAt(const SurfaceHit& hit, const Rgb& throughput) {
@@ -140,7 +217,9 @@ float GuidedPathWalk::shareOfWalk(const SurfaceInteraction& surface, const Strai
     const float lightCosine = std::abs(way.direction.dot(ng)), cosine = std::abs(ray_.direction.dot(ng));
     const float areaPdf =
         pdfLightDirection(*target_->emitter, target_->point, -way.direction) * lightCosine / sqr(way.distance);
-    return 1.0f - lightVertexShare(areaPdf, scatteringPdf_ * cosine / sqr(surface.hit.t));
+    const float walk = scatteringPdf_ * cosine / sqr(surface.hit.t);
+    return walk / (walk + triedDensity(areaPdf) +
+                   reflectedDensity(surface, -ray_.direction, surface.hit.t, way.direction, areaPdf));
 }
 
 void GuidedPathWalk::connectFromSurface(const SurfaceInteraction& surface, const Straight& way, const Rgb& throughput) {

@@ -4,12 +4,13 @@
 //
 // Every path is found in one way or by weighted ways, told apart by the last vertex before the emitter: in a medium
 // with a straight connection at one speed: a control vertex; in a medium otherwise: an ordinary connection; on a
-// surface: an ordinary connection from where the walk meets it, or a light vertex, weighted against each other and
-// against emitters that the walk meets; specular, or none: emitters that the walk meets.
+// surface: an ordinary connection from where the walk meets it, a light vertex, or, glossy, reflected light one vertex
+// before, weighted against each other and against emitters that the walk meets; specular, or none: emitters that the
+// walk meets.
 
 #include "path/ArrivalBound.h"
 #include "path/CameraPath.h"
-#include "path/LightVertices.h"
+#include "path/LightPaths.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
 
@@ -21,6 +22,7 @@ namespace tungsten::path {
 struct PathGuides {
     std::vector<darts::Guide> media;    ///< for scattering in it, and flights
     std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
+    std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
     std::vector<darts::Guide> view;     ///< for flights from the camera
 };
 
@@ -30,7 +32,7 @@ struct GuidedContext {
     const PathSettings& settings;
     const Sensor& sensor;
     const PathGuides& guides;
-    const LightVertices& lightVertices;
+    const LightPaths& lightPaths;
     const ArrivalBound& arrival;
     bool forwardBoundaries; ///< connections must look through index-matched surfaces
 };
@@ -77,7 +79,7 @@ class GuidedPathWalk : private CameraPath {
     // Vertices. False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
     bool scatterOnSurface(const SurfaceHit& hit);
-    [[nodiscard]] const darts::Guide* guideFor(const SurfaceInteraction& surface) const;
+    [[nodiscard]] const darts::Guide* guideFor(const SurfaceInteraction& surface, const Vec3f& back) const;
     bool leavePlainly(const SurfaceInteraction& surface);
     bool leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide);
     void passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight);
@@ -97,16 +99,23 @@ class GuidedPathWalk : private CameraPath {
     void addControlVertex(const Medium& medium, const darts::ControlVertex& vertex, double arrival);
     /// An ordinary connection from the ray's origin.
     void connectFromMedium(const Medium& medium);
-    /// Light by way of a light vertex, from the ray's origin: on `surface`, or in the medium if there is none.
+    /// Light by way of a light vertex, and by way of light that a glossy surface reflects, from the ray's origin: on
+    /// `surface`, or in the medium if there is none.
+    void connectToLightPaths(const SurfaceInteraction* surface);
     void connectToLightVertex(const SurfaceInteraction* surface);
+    void connectToReflectedLight(const SurfaceInteraction* surface);
     [[nodiscard]] Scattering scatteringTowards(const Vec3f& direction, const SurfaceInteraction* surface) const;
     /// Light that the surface at the end of the ray emits or scatters straight from the target; `throughput` includes
     /// the way there.
     void findAt(const SurfaceHit& hit, const Rgb& throughput);
     void connectFromSurface(const SurfaceInteraction& surface, const Straight& way, const Rgb& throughput);
     void addEmission(const SurfaceHit& hit, const Rgb& throughput);
-    /// The part of a connection from the surface that is not left to light vertices.
+    /// The part of a connection from the surface that is not left to light vertices and reflected light.
     [[nodiscard]] float shareOfWalk(const SurfaceInteraction& surface, const Straight& way) const;
+    /// Density of the reflected light tried one vertex before, at the ray's origin and a light vertex of density
+    /// `areaPdf` at distance `flight` in direction `direction`, over the walk's density at the ray's origin.
+    [[nodiscard]] float reflectedDensity(const SurfaceInteraction& glossy, const Vec3f& direction, float flight,
+                                         const Vec3f& toLight, float areaPdf) const;
 
     [[nodiscard]] Straight straightFrom(const Vec3f& position) const;
     [[nodiscard]] bool mayConnect(double time, float distance) const {
@@ -131,9 +140,14 @@ class GuidedPathWalk : private CameraPath {
     float scatteringPdf_ = 0.0f;    ///< of the last vertex's own sampling, for the present direction
     Vec3f vertex_{0.0f};            ///< the last vertex on a surface
     bool lightVertexTried_ = false; ///< at the ray's origin
-    darts::Residual residual_;      ///< at the ray's origin, towards the target
-    darts::Residual reachable_;     ///< the same for everything the walk may find: whole emitters, at the highest speed
-    bool connectionDrawn_ = false;  ///< this straight way's control vertex is pending, behind, or void
+    bool reflectedTried_ = false;   ///< there
+    /// The walk's own density at the ray's origin, per area or volume, if reflected light was tried at the vertex
+    /// before and may end here; else 0.
+    float arrivalPdf_ = 0.0f;
+    Vec3f arrivalNormal_{0.0f};    ///< of the surface at the ray's origin, on the side of the vertex before; 0 in media
+    darts::Residual residual_;     ///< at the ray's origin, towards the target
+    darts::Residual reachable_;    ///< the same for everything the walk may find: whole emitters, at the highest speed
+    bool connectionDrawn_ = false; ///< this straight way's control vertex is pending, behind, or void
     std::optional<Pending> pending_;
     float firstUsefulness_ = 0.0f; ///< logarithm
     bool rouletteStarted_ = false;

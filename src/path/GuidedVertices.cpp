@@ -59,13 +59,16 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
     const darts::Guide& guide = guideOf(region_);
     const Vec3f before = ray_.direction;
     ray_ = Ray{ray_.at(distance), before};
+    arrivalPdf_ = reflectedTried_ ? scatteringPdf_ * context_.lightPaths.flights().pdf(distance) / sqr(distance) : 0.0f;
+    arrivalNormal_ = Vec3f(0.0f);
+    reflectedTried_ = false;
     lookAhead(ray_.origin);
     if (!reachable_.alive()) return false;
     if (!elliptical(guide) || !context_.arrival.oneSpeed()) connectFromMedium(medium);
     if (interactions_ + 1 >= scene_.transport.maxBounces || !roulette(guide)) return false;
 
     forgetConnection();
-    connectToLightVertex(nullptr);
+    connectToLightPaths(nullptr);
     if (!residual_.alive() || guide.settings().direction == darts::Direction::Phase) {
         ray_.direction = medium.phase.sample(before, sampler_.next2D());
         scatteringPdf_ = medium.phase.pdf(before, ray_.direction);
@@ -91,18 +94,24 @@ bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
     if (mediumScatters_ == 1 && !context_.settings.lowOrderScattering) return false;
     lightVertexTried_ = false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
-    if (const darts::Guide* guide = guideFor(surface)) return leaveGuided(surface, *guide);
-    return leavePlainly(surface);
+    const darts::Guide* guide = guideFor(surface, -ray_.direction);
+    const float cosine = ray_.direction.dot(hit.ng);
+    arrivalPdf_ = reflectedTried_ && guide ? scatteringPdf_ * std::abs(cosine) / sqr(hit.t) : 0.0f;
+    arrivalNormal_ = cosine < 0.0f ? hit.ng : -hit.ng;
+    reflectedTried_ = false;
+    return guide ? leaveGuided(surface, *guide) : leavePlainly(surface);
 }
 
-/// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere.
-const darts::Guide* GuidedPathWalk::guideFor(const SurfaceInteraction& surface) const {
-    const LobeMask lobes = surface.bsdf->lobes();
-    if ((lobes & lobe::Smooth) == 0 || (lobes & (lobe::Specular | lobe::Transmissive)) != 0) return nullptr;
-    const Region region = regionBeyond(surface, -ray_.direction, region_);
+/// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere. `back` is the
+/// way there, turned round.
+const darts::Guide* GuidedPathWalk::guideFor(const SurfaceInteraction& surface, const Vec3f& back) const {
+    if (!endsReflectedLight(*surface.bsdf)) return nullptr;
+    const Region region = regionBeyond(surface, back, region_);
     const Medium* medium = scene_.medium(region);
     if (!medium || !medium->scatters()) return nullptr;
-    const darts::Guide& guide = context_.guides.surfaces[size_t(region.medium)];
+    const bool diffuse = (surface.bsdf->lobes() & lobe::DiffuseReflection) != 0;
+    const auto& guides = diffuse ? context_.guides.surfaces : context_.guides.glossy;
+    const darts::Guide& guide = guides[size_t(region.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
 }
 
@@ -110,13 +119,13 @@ bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts:
     scattered_ = true;
     region_ = regionBeyond(surface, -ray_.direction, region_);
     lookAhead(surface.hit.position);
-    if (!residual_.alive()) return leavePlainly(surface);
-    if (!roulette(guide)) return false;
+    if (residual_.alive() && !roulette(guide)) return false;
     last_ = Last::Surface;
     vertex_ = surface.hit.position;
     ray_ = Ray{vertex_, ray_.direction, scene_.rayEpsilon};
+    connectToLightPaths(&surface);
+    if (!residual_.alive()) return leavePlainly(surface);
     forgetConnection();
-    connectToLightVertex(&surface);
     const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, sampler_});
     ray_.direction = darts::to<Vec3f>(sample.direction);
     const Scattering scattering = scatteringTowards(ray_.direction, &surface);

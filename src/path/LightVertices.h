@@ -3,6 +3,7 @@
 // can end; of these points a vertex tries many, by distance alone, before it traces a single ray. (cbox, 128 x 128: a
 // tenth of the variance at equal time.)
 
+#include "path/ArrivalWindow.h"
 #include "path/PathTarget.h"
 
 #include "tungsten/render/Integrator.h"
@@ -30,17 +31,16 @@ struct LightVertex {
 /// Whether the surface point could be a light vertex for light from `toLight` and a vertex in direction `toVertex`: it
 /// scatters smoothly and transmits nothing, and both are on one side.
 bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, const Vec3f& toLight);
+/// The light path `sampler` draws from the emitter, as far as its first surface; none where that is no light vertex.
+std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, float probability,
+                                            Sampler& sampler);
 /// Density per solid angle with which light vertices draw the direction of light from a point of the emitter.
 float pdfLightDirection(const Emitter& emitter, const SurfaceSample& point, const Vec3f& direction);
-/// Balance heuristic between the light vertices tried, of density `areaPdf` each, and the walk's own `walkPdf`, both
-/// per area.
-float lightVertexShare(float areaPdf, float walkPdf);
-
 /// Light vertices of one emitter.
 class LightVertexCache {
   public:
     /// How many a vertex tries.
-    static constexpr size_t Tried = 64;
+    static constexpr size_t Tried = ArrivalWindow::Size;
 
     struct Choice {
         const LightVertex* vertex = nullptr;
@@ -54,28 +54,14 @@ class LightVertexCache {
     [[nodiscard]] size_t paths() const { return paths_; }
 
   private:
-    using Window = std::array<float, Tried>;
-    /// Rough contribution of a vertex at this squared distance from `position`.
-    [[nodiscard]] static float importance(const LightVertex& vertex, const Vec3f& position, float squared);
-
     std::vector<LightVertex> vertices_;
-    std::vector<float> x_, y_, z_, length_; ///< of the vertices, with their distances; the first Tried - 1 follow again
+    ArrivalWindow window_;
     size_t paths_ = 0;
 };
 
-/// A cache for every emitter that shines in more than one direction.
-class LightVertices {
-  public:
-    /// Few enough emitters, and one among them that shines in more than one direction.
-    [[nodiscard]] static bool helpWith(const Scene& scene);
-    void trace(const Scene& scene, const TargetChoice& targets, const PassInfo& pass, Statistics& statistics);
-    /// None for emitters without light vertices.
-    [[nodiscard]] const LightVertexCache* of(int emitter) const {
-        return emitter >= 0 && size_t(emitter) < caches_.size() ? &caches_[size_t(emitter)] : nullptr;
-    }
-
-  private:
-    std::vector<LightVertexCache> caches_; ///< by emitter
-};
+/// Density per area at `vertex` of the light vertices tried there.
+inline float triedDensity(float areaPdf) {
+    return float(LightVertexCache::Tried) * areaPdf;
+}
 
 } // namespace tungsten::path

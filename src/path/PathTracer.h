@@ -36,8 +36,8 @@ class PathTracer : public Integrator {
     TargetChoice targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> arrival_;
     PathGuides guides_;
-    LightVertices lightVertices_; ///< of the pass
-    bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true, tracesLightVertices_ = false;
+    LightPaths lightPaths_; ///< of the pass
+    bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true, tracesLightPaths_ = false;
 };
 
 } // namespace tungsten::path

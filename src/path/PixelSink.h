@@ -12,7 +12,7 @@ namespace tungsten::path {
 /// What happened, counted by one worker.
 struct PathCounters {
     uint64_t rays = 0, shadowRays = 0, paths = 0, mediumEvents = 0, surfaceEvents = 0, controlVertices = 0,
-             lightVertices = 0, connections = 0, arrivals = 0, nonFinite = 0;
+             lightVertices = 0, reflectedLight = 0, connections = 0, arrivals = 0, nonFinite = 0;
 };
 
 /// When the sensor is open, and how it weighs that time: evenly, or by a response whose support is the gate.

@@ -107,8 +107,6 @@ TEST(LightVertices, OnlyOpaqueSmoothSurfacesSeenFromTheLightsSide) {
     const Vec3f up(0.0f, 1.0f, 0.0f), down(0.0f, -1.0f, 0.0f);
     EXPECT_TRUE(mayBeLightVertex(floor, up, up));
     EXPECT_FALSE(mayBeLightVertex(floor, down, up));
-    EXPECT_FLOAT_EQ(lightVertexShare(0.0f, 1.0f), 0.0f);
-    EXPECT_FLOAT_EQ(lightVertexShare(1.0f, float(LightVertexCache::Tried)), 0.5f);
 }
 
 TEST(ShellChord, SamplesItsDensity) {

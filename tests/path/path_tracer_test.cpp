@@ -162,18 +162,23 @@ TEST(GuidedPaths, SameImageOnOneAndTwoThreadsBitForBit) {
 
 TEST(GuidedPaths, StagesThatAreOffCountNothing) {
     struct Counts {
-        uint64_t controlVertices, lightPaths, lightConnections;
+        uint64_t controlVertices, lightPaths, lightConnections, reflectedLight;
     };
     const auto counts = [](const std::string& darts, std::vector<std::string> overrides = {}) {
         const auto rendered = renderGuided(darts, {std::move(overrides), 1, 8});
         const Statistics& statistics = rendered->statistics;
         return Counts{statistics.counter("control vertices"), statistics.counter("light paths"),
-                      statistics.counter("light vertex connections")};
+                      statistics.counter("light vertex connections"),
+                      statistics.counter("reflected light connections")};
     };
     const Counts best = counts("best");
     EXPECT_GT(best.controlVertices, 0u);
     EXPECT_GT(best.lightPaths, 0u);
     EXPECT_GT(best.lightConnections, 0u);
+    EXPECT_EQ(best.reflectedLight, 0u) << "the floor is diffuse";
+    const std::string glossy = R"(primitives.1.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.2})";
+    EXPECT_GT(counts("best", {glossy}).reflectedLight, 0u);
+    EXPECT_EQ(counts("published", {glossy}).reflectedLight, 0u);
     EXPECT_EQ(counts("best", {"integrator.enable_elliptical=false"}).controlVertices, 0u);
     const std::string black = R"(primitives.1.bsdf={"type": "null"})";
     for (const Counts& c : {counts("published"), counts("best", {black}),
@@ -200,6 +205,7 @@ TEST(GuidedPaths, ThePlanSaysWhy) {
     EXPECT_EQ(planned(R"("off")", "guided paths").substr(0, 4), "off:");
     EXPECT_EQ(planned(R"("best")", "light vertices").substr(0, 3), "on:");
     EXPECT_EQ(planned(R"("published")", "light vertices").substr(0, 4), "off:");
+    EXPECT_EQ(planned(R"("best")", "reflected light"), "off: no glossy surface");
 }
 
 } // namespace

@@ -34,7 +34,8 @@ enum class RandomStream : uint32_t {
     SensorPoint = 7,
     Pilot = 8,
     Frame = 9,
-    Folded = 10
+    Folded = 10,
+    ReflectedLight = 11
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.
