@@ -6,10 +6,7 @@ namespace tungsten {
 
 Bsdf::Bsdf(std::string name_, BsdfModel model_, Texture albedo_)
     : name(std::move(name_)), model(std::move(model_)), albedo(std::move(albedo_)) {
-    // A black diffuse surface scatters nothing: no effect to simulate.
-    const bool diffuse = std::holds_alternative<Lambert>(model) || std::holds_alternative<OrenNayar>(model);
-    const bool black = diffuse && albedo.isConstant() && isBlack(albedo.rgb({}));
-    if (!black) lobes_ = std::visit([](const auto& m) { return lobesOf(m); }, model);
+    lobes_ = std::visit([](const auto& m) { return lobesOf(m); }, model);
 }
 
 Rgb Bsdf::eval(const BsdfQuery& query, const Vec3f& wi, const Vec3f& wo) const {
