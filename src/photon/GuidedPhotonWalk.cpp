@@ -189,7 +189,6 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     ++bounce_;
     ++consecutiveMedium_;
     ray_ = Ray{position, before};
-    sinceVertex_ = 0.0f;
     connectable_ = true;
     fromLight_ = false;
     if (!look(guide) || !survives(guide)) return false;

@@ -245,7 +245,11 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         const StageTimer timer(statistics, "sensor record");
         record = recordSensorPaths(*scene_, connect, rules_, pass,
                                    connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
-        if (connect) connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass);
+        if (connect) {
+            const auto spread =
+                Spread::of(settings_.gatherRadius, surfaceRadiusFactor(photons.index, settings_.alpha));
+            connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass, spread);
+        }
     }
     PhotonMaps maps;
     {

@@ -142,7 +142,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   !maps.surface.full,
                                   !maps.volume.full,
                                   !maps.beams.full,
-                                  connections ? connections->nearField() : 0.0f,
+                                  connections != nullptr,
                                   glossySensorPaths_};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);

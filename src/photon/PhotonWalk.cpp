@@ -65,7 +65,6 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
         ++counters_.volumeDeposits;
         if (deposit(deposits_.volume, position, power_, region_.medium)) ++counters_.countingDeposits;
     }
-    sinceVertex_ = 0.0f;
     connectable_ = true;
     fromLight_ = false;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};
@@ -74,7 +73,6 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
 
 bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     time_ += double(hit.t) / double(region_.speed);
-    sinceVertex_ += hit.t;
     ++bounce_;
     flights_ = 0;
     consecutiveMedium_ = 0;
@@ -91,9 +89,7 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
 
 float PhotonWalk::photonShare() const {
     if (context_.glossySensorPaths && isGlossyOnly(*surface_.bsdf)) return fromLight_ && !connectable_ ? 1.0f : 0.0f;
-    // Where vertices connect to surfaces too, photons count for what is near.
-    const float nearField = connectable_ && receivesConnections(*surface_.bsdf) ? context_.nearField : 0.0f;
-    return nearField > 0.0f ? nearField / (nearField + sinceVertex_ * sinceVertex_) : 1.0f;
+    return context_.connects && connectable_ && receivesConnections(*surface_.bsdf) ? 0.0f : 1.0f;
 }
 
 bool PhotonWalk::leaveSurface() {
@@ -103,7 +99,6 @@ bool PhotonWalk::leaveSurface() {
     const Region ahead = regionBeyond(surface_, exit->direction, region_);
     if (!exit->straight()) {
         power_ = power_ * surface_.photonShadingFactor(-ray_.direction, exit->direction);
-        sinceVertex_ = 0.0f;
         connectable_ =
             (exit->lobe & lobe::Smooth) != 0 && ahead.medium == region_.medium && ahead.speed == region_.speed;
         fromLight_ = fromLight_ && (exit->lobe & lobe::Smooth) == 0;

@@ -26,8 +26,7 @@ struct WalkContext {
     float frameShift;                           ///< of the order of frames: over passes, each is aimed at equally often
     const Distribution1D& emitters;
     bool storeSurface, storeVolume, storeBeams;
-    /// a^2 of SurfaceConnections where light paths also connect to surfaces; else 0.
-    float nearField = 0.0f;
+    bool connects = false;          ///< to surfaces: SurfaceConnections
     bool glossySensorPaths = false; ///< SensorPathRules::glossy
 };
 
@@ -71,7 +70,6 @@ class PhotonWalk {
     int bounce_ = 0;
     int flights_ = 0;           ///< distances sampled since the last surface
     int consecutiveMedium_ = 0; ///< medium vertices since the last light or surface
-    float sinceVertex_ = 0.0f;  ///< way since the last vertex that scattered
     bool connectable_ = false;  ///< that vertex has no single direction
     bool fromLight_ = true;     ///< nothing has scattered since the light but mirrors and refraction
 };

@@ -14,17 +14,53 @@ constexpr float LeastCosine = 0.05f;
 /// A sliver of a cluster's bounds may be all of its points.
 constexpr float LeastPart = 0.2f;
 
-/// Adds the lanes above 0.
-template <typename Weights>
-void add(Weights& weights, size_t first, const Batch& batch, size_t end) {
-    if (!xsimd::any(batch > 0.0f)) return;
-    std::array<float, size_t(Lanes)> lanes;
-    batch.store_unaligned(lanes.data());
-    for (size_t k = 0; k < size_t(Lanes) && first + k < end; ++k)
-        if (lanes[k] > 0.0f) weights.add(first + k, lanes[k]);
-}
-
 } // namespace
+
+/// What can be drawn: registers of consecutive members, those without any weight left out.
+template <size_t Capacity>
+struct SensorClusters::Weights {
+    static constexpr size_t Most = (Capacity + size_t(Lanes) - 1) / size_t(Lanes);
+    alignas(64) std::array<float, Most * size_t(Lanes)> weights;
+    std::array<float, Most + 1> sums; ///< of the registers before
+    std::array<uint16_t, Most> first; ///< members
+    size_t count = 0;                 ///< of registers
+
+    Weights() { sums[0] = 0.0f; }
+    void add(size_t member, const Batch& weight) {
+        if (!xsimd::any(weight > 0.0f)) return;
+        weight.store_aligned(weights.data() + count * size_t(Lanes));
+        first[count] = uint16_t(member);
+        sums[count + 1] = sums[count] + xsimd::hadd(weight);
+        ++count;
+    }
+    [[nodiscard]] float total() const { return sums[count]; }
+    struct Choice {
+        size_t member;
+        float weight;
+    };
+    /// The member in which a part of the total, above 0, falls.
+    [[nodiscard]] Choice choose(float part) const {
+        const auto begin = sums.begin() + 1;
+        const auto found = std::upper_bound(begin, begin + ptrdiff_t(count), part);
+        const size_t place = std::min(size_t(found - begin), count - 1);
+        const float* own = weights.data() + place * size_t(Lanes);
+        float rest = part - sums[place];
+        size_t last = 0; // with a weight
+        for (size_t k = 0; k < size_t(Lanes); ++k) {
+            if (!(own[k] > 0.0f)) continue;
+            last = k;
+            rest -= own[k];
+            if (rest < 0.0f) break;
+        }
+        return {first[place] + last, own[last]};
+    }
+    [[nodiscard]] float weightOf(size_t member) const {
+        for (size_t i = 0; i < count; ++i)
+            if (member >= first[i] && member < first[i] + size_t(Lanes))
+                return weights[i * size_t(Lanes) + member - first[i]];
+        return 0.0f;
+    }
+};
 
 int SensorClusters::visitsFor(float wanted) {
     return int(std::clamp(std::ceil(wanted), 1.0f, MostVisits));
@@ -44,8 +80,9 @@ SensorClusters::SensorClusters(const std::vector<ClusterPoint>& points, Sampler 
     if (order_.empty()) return;
     split(0, order_.size(), std::clamp<size_t>(order_.size() / LeastSize, 1, MostClusters), points);
     // Whole registers can be read from any place.
-    for (auto* v : {&cx_, &cy_, &cz_, &squaredRadius_, &centreLength_, &reach_, &size_, &x_, &y_, &z_, &cameraLength_,
-                    &nx_, &ny_, &nz_})
+    size_.resize(size_.size() + size_t(Lanes), 0.0f);
+    for (auto* v : {&cx_, &cy_, &cz_, &squaredSize_, &centreLength_, &reach_, &x_, &y_, &z_, &cameraLength_,
+                    &spread_, &nx_, &ny_, &nz_})
         v->resize(v->size() + size_t(Lanes), 1.0f);
 }
 
@@ -80,7 +117,7 @@ void SensorClusters::split(size_t first, size_t last, size_t parts, const std::v
 
 void SensorClusters::addCluster(size_t first, size_t last, const std::vector<ClusterPoint>& points) {
     Vec3f low(Infinity), high(-Infinity);
-    float shortest = Infinity, longest = -Infinity;
+    float shortest = Infinity, longest = -Infinity, squaredSpreads = 0.0f;
     for (size_t i = first; i < last; ++i) {
         const ClusterPoint& point = points[order_[i]];
         for (int axis = 0; axis < 3; ++axis) {
@@ -96,13 +133,15 @@ void SensorClusters::addCluster(size_t first, size_t last, const std::vector<Clu
         ny_.push_back(point.normal.y);
         nz_.push_back(point.normal.z);
         cameraLength_.push_back(point.cameraLength);
+        spread_.push_back(point.spread);
+        squaredSpreads += point.spread * point.spread;
     }
     const Vec3f centre = (low + high) * 0.5f;
     const float radius = (high - low).length() * 0.5f;
     cx_.push_back(centre.x);
     cy_.push_back(centre.y);
     cz_.push_back(centre.z);
-    squaredRadius_.push_back(radius * radius);
+    squaredSize_.push_back(radius * radius + squaredSpreads / float(last - first));
     centreLength_.push_back(0.5f * (shortest + longest));
     // Wide enough for rounding.
     const float scale = std::abs(centre.x) + std::abs(centre.y) + std::abs(centre.z) + longest;
@@ -127,14 +166,14 @@ SensorClusters::ClusterWeights SensorClusters::weighClusters(const ClusterQuery&
             const Batch least = LeastPart * xsimd::min(2.0f * reach, Batch(range.most - range.least));
             open += xsimd::select(part > 0.0f, xsimd::max(part, least), Batch(0.0f));
         }
-        add(weights, i, load(size_) * open / (2.0f * reach * (squared + load(squaredRadius_) + query.nearField)),
-            count);
+        weights.add(i, load(size_) * open / (2.0f * reach * (squared + load(squaredSize_))));
     }
     return weights;
 }
 
 SensorClusters::PointWeights SensorClusters::weighPoints(const ClusterQuery& query, size_t cluster) const {
     PointWeights weights;
+    const auto lanes = Batch::load_aligned(LaneNumbers);
     const size_t first = begin_[cluster], count = begin_[cluster + 1] - first;
     for (size_t i = 0; i < count; i += size_t(Lanes)) {
         const auto load = [at = first + i](const std::vector<float>& v) {
@@ -146,9 +185,11 @@ SensorClusters::PointWeights SensorClusters::weighPoints(const ClusterQuery& que
         const Batch distance = xsimd::sqrt(squared + 1e-30f), length = distance + load(cameraLength_);
         auto inTime = length < -1.0f;
         for (const LengthRange& range : query.open) inTime = inTime || (length >= range.least && length < range.most);
-        const Batch cosine = xsimd::abs(dx * load(nx_) + dy * load(ny_) + dz * load(nz_)) / distance;
-        const Batch weight = xsimd::max(cosine, Batch(LeastCosine)) / (squared + query.nearField);
-        add(weights, i, xsimd::select(inTime, weight, Batch(0.0f)), count);
+        const Batch height = xsimd::abs(dx * load(nx_) + dy * load(ny_) + dz * load(nz_)), spread = load(spread_);
+        const Batch lifted = squared + spread * (2.0f * height + spread) + 1e-30f;
+        const Batch weight = xsimd::max((height + spread) / xsimd::sqrt(lifted), Batch(LeastCosine)) / lifted;
+        inTime = inTime && lanes < float(count - i);
+        weights.add(i, xsimd::select(inTime, weight, Batch(0.0f)));
     }
     return weights;
 }
@@ -166,21 +207,20 @@ void SensorClusters::draw(const ClusterQuery& query, float target, Sampler& samp
     const int visits = visitsFor(clusters.total() / target);
     for (int i = 0; i < visits; ++i) {
         const float part = (float(i) + sampler.next1D()) / float(visits), u = sampler.next1D();
-        const size_t place = clusters.choose(part * clusters.total());
-        const size_t cluster = clusters.members[place];
-        const PointWeights points = weighPoints(query, cluster);
+        const auto cluster = clusters.choose(part * clusters.total());
+        const PointWeights points = weighPoints(query, cluster.member);
         if (!(points.total() > 0.0f)) continue;
-        const float inverseVisits = clusters.total() / (clusters.weight(place) * float(visits));
+        const float inverseVisits = clusters.total() / (cluster.weight * float(visits));
         const float expected = std::min(points.total() * inverseVisits / target, MostPerVisit);
         const int count = int(expected + u);
         for (int k = 0; k < count; ++k) {
-            const size_t point = points.choose((float(k) + sampler.next1D()) / float(count) * points.total());
-            const size_t rank = begin_[cluster] + points.members[point];
+            const auto point = points.choose((float(k) + sampler.next1D()) / float(count) * points.total());
+            const size_t rank = begin_[cluster.member] + point.member;
             const Vec3f offset(x_[rank] - query.position.x, y_[rank] - query.position.y, z_[rank] - query.position.z);
             const float distance = offset.length();
             if (!(distance > 0.0f)) continue;
             draws.push_back({order_[rank], distance, offset / distance,
-                             inverseVisits * points.total() / (points.weight(point) * expected)});
+                             inverseVisits * points.total() / (point.weight * expected)});
         }
     }
 }

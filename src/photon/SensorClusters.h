@@ -10,10 +10,11 @@
 
 namespace tungsten::photon {
 
-/// A point that the camera sees; `cameraLength` is what it adds to the length of a flight.
+/// A point that the camera sees; `cameraLength` is what it adds to the length of a flight, `spread` that of
+/// spreadArrival().
 struct ClusterPoint {
     Vec3f position, normal;
-    float cameraLength;
+    float cameraLength, spread;
 };
 
 /// Of a flight from a vertex by way of a sensor point to where time ends: the camera, or the point itself.
@@ -21,11 +22,9 @@ struct LengthRange {
     float least, most;
 };
 
-/// From where to draw: weights fall with d^2 + nearField, the squared distance; flights count whose length is in one
-/// of the ranges.
+/// From where to draw; flights count whose length is in one of the ranges.
 struct ClusterQuery {
     Vec3f position;
-    float nearField;
     std::span<const LengthRange> open;
 };
 
@@ -44,11 +43,11 @@ class SensorClusters {
 
     SensorClusters(const std::vector<ClusterPoint>& points, Sampler sampler);
 
-    /// About the sum over the points in time of 1 / (d^2 + nearField), whatever their cosines.
+    /// About the sum over the points in time of 1 / (d^2 + spread^2), whatever their cosines.
     [[nodiscard]] float weight(const ClusterQuery& query) const;
-    /// Draws points in time, with probability about proportional to cosine / (d^2 + nearField), so many that each
-    /// stands for `target` of the sum of that: first clusters by an estimate, then points in them by their true
-    /// weights. With a target of 0 about DrawsWithoutTarget.
+    /// Draws points in time, with probability about proportional to cosine / d^2 from the vertex lifted by the spread
+    /// (spreadArrival), so many that each stands for `target` of the sum of that: first clusters by an estimate, then
+    /// points in them by their true weights. With a target of 0 about DrawsWithoutTarget.
     void draw(const ClusterQuery& query, float target, Sampler& sampler, std::vector<PointDraw>& draws) const;
     /// How often draw() is expected to draw a listed point (by its rank in order()).
     [[nodiscard]] float expectation(const ClusterQuery& query, float target, size_t rank) const;
@@ -60,34 +59,8 @@ class SensorClusters {
     static constexpr float MostVisits = 32.0f, MostPerVisit = 64.0f; ///< of clusters, of points in one
     static constexpr float DrawsWithoutTarget = 8.0f;
 
-    /// What can be drawn, with sums of weights up to it; probabilities are differences of sums, as draws see them.
     template <size_t Capacity>
-    struct Weights {
-        std::array<float, Capacity + 1> sums;
-        std::array<uint16_t, Capacity> members;
-        size_t count = 0;
-
-        Weights() { sums[0] = 0.0f; }
-        void add(size_t member, float weight) {
-            const float sum = sums[count] + weight;
-            if (!(sum > sums[count])) return; // lost in rounding: would be drawn with probability 0
-            members[count] = uint16_t(member);
-            sums[++count] = sum;
-        }
-        [[nodiscard]] float total() const { return sums[count]; }
-        [[nodiscard]] float weight(size_t place) const { return sums[place + 1] - sums[place]; }
-        /// The place in which a part of the total falls.
-        [[nodiscard]] size_t choose(float part) const {
-            const auto first = sums.begin() + 1;
-            const auto found = std::upper_bound(first, first + ptrdiff_t(count), part);
-            return std::min(size_t(found - first), count - 1);
-        }
-        [[nodiscard]] float weightOf(size_t member) const {
-            for (size_t i = 0; i < count; ++i)
-                if (members[i] == member) return weight(i);
-            return 0.0f;
-        }
-    };
+    struct Weights;
     using ClusterWeights = Weights<MostClusters>;
     using PointWeights = Weights<MostSize>;
 
@@ -99,8 +72,8 @@ class SensorClusters {
     [[nodiscard]] static int visitsFor(float wanted);
 
     std::vector<uint32_t> order_, begin_; ///< begin_[c]: rank of cluster c's first point; one more entry
-    std::vector<float> x_, y_, z_, cameraLength_, nx_, ny_, nz_;                    ///< of points, by rank
-    std::vector<float> cx_, cy_, cz_, squaredRadius_, centreLength_, reach_, size_; ///< of clusters
+    std::vector<float> x_, y_, z_, cameraLength_, spread_, nx_, ny_, nz_;         ///< of points, by rank
+    std::vector<float> cx_, cy_, cz_, squaredSize_, centreLength_, reach_, size_; ///< of clusters
 };
 
 } // namespace tungsten::photon

@@ -1,5 +1,7 @@
 #include "photon/SurfaceConnections.h"
 
+#include "photon/SpreadArrival.h"
+
 #include <algorithm>
 
 namespace tungsten::photon {
@@ -13,24 +15,23 @@ float usualIntensity(const LightVertex& vertex) {
 } // namespace
 
 SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
-                                       const PassInfo& pass)
+                                       const PassInfo& pass, const Spread& spread)
     : scene_(scene), sensor_(sensor), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
     const double pixelArea =
         4.0 / (double(record.width) * double(record.width)); // at the distance where the image is 2 wide
-    double area = 0.0;
+    const double plane = std::get<Pinhole>(scene.camera.model).planeDistance;
     std::vector<ClusterPoint> points;
     for (const SensorPoint& point : points_) {
         const double length = point.time * speed_;
-        points.push_back({point.hit.position, point.hit.ng, scene.transport.cameraUnwarped ? 0.0f : float(length)});
         const double cosine = std::max(std::abs(double(point.direction.dot(point.hit.ng))), 0.05);
-        area += length * length * pixelArea / cosine;
+        const double area = length * length * pixelArea / (cosine * plane * plane);
+        spread_.push_back(std::min(spread.pixels * float(std::sqrt(area)), spread.most));
+        points.push_back({point.hit.position, point.hit.ng, scene.transport.cameraUnwarped ? 0.0f : float(length),
+                          spread_.back()});
     }
-    const double plane = std::get<Pinhole>(scene.camera.model).planeDistance;
-    area /= plane * plane * double(points_.size());
     clusters_ = std::make_unique<SensorClusters>(points, Sampler(pass.seed, RandomStream::Resample, pass.index, 0));
     perListed_ = float(double(points_.size()) / double(clusters_->order().size()));
-    nearField_ = float(NearFieldShare * area * double(perListed_) / (4.0 * double(Pi) * double(record.samples)));
 }
 
 SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& vertex,
@@ -58,7 +59,7 @@ float SurfaceConnections::worth(const LightVertex& vertex, const darts::TimeGate
     const Ranges ranges = openRanges(vertex, gate);
     if (ranges.count == 0) return 0.0f;
     return usualIntensity(vertex) *
-           clusters_->weight({vertex.position, nearField_, {ranges.list.data(), ranges.count}});
+           clusters_->weight({vertex.position, {ranges.list.data(), ranges.count}});
 }
 
 void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
@@ -67,7 +68,7 @@ void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& 
     const Ranges ranges = openRanges(vertex, gate);
     const float each = usualIntensity(vertex);
     if (ranges.count == 0 || !(each > 0.0f)) return;
-    clusters_->draw({vertex.position, nearField_, {ranges.list.data(), ranges.count}}, *target_ / each, sampler, draws);
+    clusters_->draw({vertex.position, {ranges.list.data(), ranges.count}}, *target_ / each, sampler, draws);
 }
 
 void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw,
@@ -88,8 +89,9 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     if (!(arrival >= gate.begin && arrival < gate.end)) return;
     const int frame = sensor_.gate.frameOf(arrival);
     if (frame < 0) return;
-    const float geometry = sensor_.weight(arrival) / (draw.distance * draw.distance + nearField_);
-    arrivals.push_back({draw.point, frame, toVertex, scale * visibility.transmittance * geometry});
+    const SpreadArrival spread = spreadArrival(toVertex * draw.distance, point.hit.ng, spread_[draw.point]);
+    arrivals.push_back({draw.point, frame, spread.from,
+                        scale * visibility.transmittance * (sensor_.weight(arrival) * spread.geometry)});
 }
 
 float commonTarget(std::vector<float> worths, double wanted) {

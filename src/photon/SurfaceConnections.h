@@ -29,20 +29,31 @@ struct LightVertex {
     float usualScattering; ///< above 0: what scattering (below) is about, whatever the direction
 };
 
+/// How far light from close by is spread about sensor points (SpreadArrival.h): so many sides of a pixel's area on the
+/// surface, `most` at most.
+struct Spread {
+    float pixels, most;
+
+    /// Shrinks from pass to pass as `factor` (of gather radii) does.
+    static Spread of(float gatherRadius, float factor) {
+        // cbox, MSE x CPU time: 0.086 at 0.25, 0.076 at 0.5 and at 1.
+        constexpr float Pixels = 0.5f;
+        return {Pixels * factor, gatherRadius * factor};
+    }
+};
+
 /// Each vertex looks for sensor points that its light reaches inside its gate and connects to so many that every
 /// connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
-/// Such connections have a weak singularity where vertex and point are closer than points are to each other, which
-/// photons hitting surfaces have not: the two share paths by d^2 / (d^2 + a^2) and a^2 / (d^2 + a^2), d the length of
-/// the last flight. a^2 = NearFieldShare (area per listed sensor point) / (4 pi).
+/// Such connections have a weak singularity where vertex and point are closer than points are to each other: light from
+/// close by is spread over the surface about the point (SpreadArrival.h), a blur that shrinks with gather radii.
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
-    SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PassInfo& pass);
+    SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PassInfo& pass,
+                       const Spread& spread);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
-    /// a^2; 0 when there is no sensor point.
-    [[nodiscard]] float nearField() const { return nearField_; }
     /// Appends what a vertex sends to sensor points. `scattering(direction)` is the vertex's BSDF or phase function
     /// times cosine, or an emitter's intensity. Adds the rays traced to `rays`.
     template <typename Scattering>
@@ -62,8 +73,6 @@ class SurfaceConnections {
     [[nodiscard]] bool hasTarget() const { return target_.has_value(); }
 
   private:
-    /// Flat from 0.005 to 0.5 but for rare bright photons (cbox, staircase).
-    static constexpr double NearFieldShare = 0.05;
     static constexpr size_t MostRanges = 8;
 
     struct Ranges {
@@ -81,7 +90,8 @@ class SurfaceConnections {
     Sensor sensor_;
     const std::vector<SensorPoint>& points_;
     double speed_;
-    float nearField_ = 0.0f, perListed_ = 0.0f;
+    float perListed_ = 0.0f;
+    std::vector<float> spread_; ///< of points
     std::optional<float> target_;
     std::unique_ptr<SensorClusters> clusters_;
 };

@@ -1,6 +1,7 @@
 // Drawing sensor points in time: as often as expectation() says, nothing in time left out, sums unbiased.
 
 #include "photon/SensorClusters.h"
+#include "photon/SpreadArrival.h"
 #include "photon/SurfaceConnections.h"
 
 #include "support/ChiSquare.h"
@@ -22,7 +23,7 @@ struct Corner {
             const float u = 4.0f * sampler.next1D() - 2.0f, v = 4.0f * sampler.next1D();
             const Vec3f position = i % 2 ? Vec3f(u, 0.0f, v - 2.0f) : Vec3f(u, v, 2.0f);
             points.push_back({position, i % 2 ? Vec3f(0.0f, 1.0f, 0.0f) : Vec3f(0.0f, 0.0f, -1.0f),
-                              (position - Vec3f(0.0f, 3.0f, -4.0f)).length()});
+                              (position - Vec3f(0.0f, 3.0f, -4.0f)).length(), 0.01f});
         }
     }
     [[nodiscard]] SensorClusters clusters() const { return {points, Sampler(1, RandomStream::Resample, 0, 0)}; }
@@ -32,7 +33,7 @@ struct Corner {
                            [&](const LengthRange& r) { return length >= r.least && length < r.most; });
     }
     [[nodiscard]] double value(const ClusterQuery& query, uint32_t point) const {
-        return 1.0 / double((points[point].position - query.position).length2() + query.nearField);
+        return 1.0 / double((points[point].position - query.position).length2() + sqr(points[point].spread));
     }
 };
 
@@ -53,7 +54,7 @@ TEST_P(SensorClustersAt, DrawAsOftenAsExpected) {
     const Place& place = GetParam();
     const Corner corner(3000);
     const SensorClusters clusters = corner.clusters();
-    const ClusterQuery query{place.position, 1e-4f, place.open};
+    const ClusterQuery query{place.position, place.open};
     const float target = place.each * clusters.weight(query);
 
     std::vector<size_t> rankOf(corner.points.size());
@@ -108,7 +109,7 @@ TEST(SensorClusters, DrawNothingOutOfTime) {
     const Corner corner(500);
     const SensorClusters clusters = corner.clusters();
     const std::vector<LengthRange> early{{0.1f, 1.0f}};
-    const ClusterQuery query{{0.0f, 1.0f, 0.0f}, 1e-4f, early};
+    const ClusterQuery query{{0.0f, 1.0f, 0.0f}, early};
     EXPECT_EQ(clusters.weight(query), 0.0f);
     std::vector<PointDraw> draws(3);
     Sampler sampler(1, RandomStream::Test, 0, 0);
@@ -123,14 +124,16 @@ TEST(SensorClusters, BringAboutTheTargetWithEachDraw) {
     const std::vector<LengthRange> open{{5.0f, 9.0f}};
     std::vector<PointDraw> draws;
     for (const Vec3f& position : {Vec3f(0.0f, 2.0f, 0.0f), Vec3f(0.2f, 0.05f, 0.2f)}) {
-        const ClusterQuery query{position, 1e-3f, open};
+        const ClusterQuery query{position, open};
         Sampler sampler(1, RandomStream::Test, 0, 0);
         clusters.draw(query, 20.0f, sampler, draws);
         ASSERT_GT(draws.size(), 10u);
         for (const PointDraw& draw : draws) {
-            const float cosine = std::abs(draw.direction.dot(corner.points[draw.point].normal));
-            const double brought =
-                corner.value(query, draw.point) * double(draw.inverseExpectation) * double(std::max(cosine, 0.05f));
+            const ClusterPoint& point = corner.points[draw.point];
+            const SpreadArrival seen = spreadArrival(-draw.direction * draw.distance, point.normal, point.spread);
+            const Vec3f lifted = position + point.normal * point.spread - point.position;
+            const double cosine = double(std::max(seen.from.dot(point.normal), 0.05f));
+            const double brought = cosine / double(lifted.length2()) * double(draw.inverseExpectation);
             EXPECT_NEAR(brought, 20.0, 0.1);
         }
     }
