@@ -246,8 +246,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         record = recordSensorPaths(*scene_, connect, rules_, pass,
                                    connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
         if (connect) {
-            const auto spread =
-                Spread::of(settings_.gatherRadius, surfaceRadiusFactor(photons.index, settings_.alpha));
+            const auto spread = Spread::of(settings_.gatherRadius, surfaceRadiusFactor(photons.index, settings_.alpha));
             connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass, spread);
         }
     }

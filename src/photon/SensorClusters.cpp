@@ -81,8 +81,8 @@ SensorClusters::SensorClusters(const std::vector<ClusterPoint>& points, Sampler 
     split(0, order_.size(), std::clamp<size_t>(order_.size() / LeastSize, 1, MostClusters), points);
     // Whole registers can be read from any place.
     size_.resize(size_.size() + size_t(Lanes), 0.0f);
-    for (auto* v : {&cx_, &cy_, &cz_, &squaredSize_, &centreLength_, &reach_, &x_, &y_, &z_, &cameraLength_,
-                    &spread_, &nx_, &ny_, &nz_})
+    for (auto* v : {&cx_, &cy_, &cz_, &squaredSize_, &centreLength_, &reach_, &x_, &y_, &z_, &cameraLength_, &spread_,
+                    &nx_, &ny_, &nz_})
         v->resize(v->size() + size_t(Lanes), 1.0f);
 }
 

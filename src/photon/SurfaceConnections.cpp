@@ -27,8 +27,8 @@ SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor,
         const double cosine = std::max(std::abs(double(point.direction.dot(point.hit.ng))), 0.05);
         const double area = length * length * pixelArea / (cosine * plane * plane);
         spread_.push_back(std::min(spread.pixels * float(std::sqrt(area)), spread.most));
-        points.push_back({point.hit.position, point.hit.ng, scene.transport.cameraUnwarped ? 0.0f : float(length),
-                          spread_.back()});
+        points.push_back(
+            {point.hit.position, point.hit.ng, scene.transport.cameraUnwarped ? 0.0f : float(length), spread_.back()});
     }
     clusters_ = std::make_unique<SensorClusters>(points, Sampler(pass.seed, RandomStream::Resample, pass.index, 0));
     perListed_ = float(double(points_.size()) / double(clusters_->order().size()));
@@ -58,8 +58,7 @@ SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& ver
 float SurfaceConnections::worth(const LightVertex& vertex, const darts::TimeGate& gate) const {
     const Ranges ranges = openRanges(vertex, gate);
     if (ranges.count == 0) return 0.0f;
-    return usualIntensity(vertex) *
-           clusters_->weight({vertex.position, {ranges.list.data(), ranges.count}});
+    return usualIntensity(vertex) * clusters_->weight({vertex.position, {ranges.list.data(), ranges.count}});
 }
 
 void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
