@@ -10,7 +10,7 @@ from images import ImageError
 from results import collect
 from report import write_report
 from runs import check, plan, run_all
-from study_file import StudyError, load_study
+from study_file import StudyError, load_study, require_references
 
 ROOT = Path(__file__).resolve().parents[2]
 EXIT_DONE, EXIT_FAILED_RUNS, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
@@ -83,6 +83,7 @@ def perform(options):
         problems = check(runs, options.tungsten)
         print("".join(f"\n{problem}\n" for problem in problems), end="")
         return EXIT_FAILED_RUNS if problems else EXIT_DONE
+    require_references(study)
     work.mkdir(parents=True, exist_ok=True)
     if options.action == "run":
         run_all(study, runs, options.tungsten.resolve(), options.retry_failed, options.accept_warnings)

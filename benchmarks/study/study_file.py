@@ -154,7 +154,7 @@ def _scene(entry, known, root, where):
     _require(gate is None or (len(gate) == 2 and gate[0] < gate[1]), where, "'gate' is [start, end]")
     path, files = root / merged["path"], {name: root / file for name, file in merged.get("files", {}).items()}
     reference = root / merged["reference"]
-    for file in [path, reference, *files.values()]:
+    for file in [path, *files.values()]:
         _require(file.is_file(), where, f"there is no file {file}")
     overrides = merged.get("set", {})
     _require(isinstance(overrides, dict), where, "'set' maps method names, or \"*\" for all, to lists of overrides")
@@ -206,6 +206,14 @@ def _methods(study, known, scenes, where):
     for method in methods:
         _require(set(method.scenes or ()) <= names, where, f"method '{method.name}' names a scene that is not compared")
     return methods
+
+
+def require_references(study):
+    """Not needed to list or check a study: those of our own are rendered once (references.sh)."""
+    for scene in study.scenes:
+        own = "; benchmarks/study/references.sh renders it" if scene.reference.parent.name == "reference" and \
+            scene.reference.suffix == ".exr" else ""
+        _require(scene.reference.is_file(), f"scene '{scene.name}'", f"there is no reference {scene.reference}{own}")
 
 
 def load_study(path, root):

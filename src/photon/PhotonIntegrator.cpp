@@ -83,11 +83,16 @@ void PhotonIntegrator::planVolume(EffectPlan& plan) const {
 void PhotonIntegrator::plan(EffectPlan& plan) const {
     const bool surfaces = settings_.includeSurfaces && plan.surfaceScattering;
     planVolume(plan);
-    plan.describe("surface photons", surfaces,
-                  surfaces
-                      ? "smooth surfaces are gathered"
-                      : (settings_.includeSurfaces ? "no surface has a smooth lobe" : "include_surfaces is false"));
     planGlossyPaths(plan);
+    const bool connects =
+        PhotonGuidance::obstacle(*scene_, settings_.scheme, plan).empty() && connectionObstacle(plan).empty();
+    plan.describe("surface photons", surfaces,
+                  !settings_.includeSurfaces ? "include_surfaces is false"
+                  : !surfaces                ? "no surface has a smooth lobe"
+                  : connects
+                      ? "for what connections cannot bring: light by way of mirrors or of a single direction, and "
+                        "to glossy surfaces"
+                      : "smooth surfaces are gathered");
     describeGuidance(plan);
     const bool direct = ArrivalTest(*scene_, plan).directView();
     plan.describe(
