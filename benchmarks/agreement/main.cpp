@@ -9,6 +9,8 @@
 
 #include "tungsten/film/ImageIo.h"
 
+#include <CLI/CLI.hpp>
+
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -99,18 +101,23 @@ int prove(const Run& run) {
 
 int main(int argc, char** argv) {
     using namespace tungsten::test;
-    if (argc < 2 || argc > 5) {
-        std::cerr << "usage: agreement FOLDER [EFFORT [SIDE [SCENE]]]\n";
-        return 2;
-    }
+    CLI::App app{"Holds points, beams and paths against each other on the test scenes: a table and pictures."};
     Run run;
-    run.folder = argv[1];
-    if (argc > 2) run.effort = std::atof(argv[2]);
-    if (argc > 3) run.side = std::atoi(argv[3]);
-    if (argc > 4) run.only = argv[4];
-    if (!(run.effort > 0.0) || run.side < BlockSide || run.side % BlockSide != 0) {
-        std::cerr << "EFFORT must be above 0 and SIDE a multiple of " << BlockSide << '\n';
-        return 2;
+    app.add_option("folder", run.folder, "where they go")->required();
+    app.add_option("effort", run.effort, "passes, relative to the tests'")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    app.add_option("side", run.side, "of the images, a multiple of the blocks'")
+        ->check(CLI::PositiveNumber)
+        ->check([](const std::string& side) {
+            return std::atoi(side.c_str()) % BlockSide == 0 ? "" : "not a multiple of " + std::to_string(BlockSide);
+        })
+        ->capture_default_str();
+    app.add_option("scene", run.only, "only those whose name holds this");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
     }
     try {
         return prove(run);

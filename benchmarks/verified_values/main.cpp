@@ -7,6 +7,8 @@
 
 #include "photon/render_photons.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -259,13 +261,19 @@ bool proveAll(const std::string& path, double seconds, const std::string& only) 
 } // namespace tungsten::test
 
 int main(int argc, char** argv) {
-    const double seconds = argc > 2 ? std::atof(argv[2]) : 5.0;
-    if (argc < 2 || argc > 4 || !(seconds > 0.0)) {
-        std::cerr << "usage: verified_values FILE.md [SECONDS [ROWS]]\n";
-        return 2;
+    CLI::App app{"Single orders of scattering against exact and brute-force values, by every method."};
+    std::string file, rows;
+    double seconds = 5.0;
+    app.add_option("file", file, "the table, in Markdown")->required();
+    app.add_option("seconds", seconds, "processor time per render")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("rows", rows, "only those with this in their name");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
     }
     try {
-        return tungsten::test::proveAll(argv[1], seconds, argc > 3 ? argv[3] : "") ? 0 : 1;
+        return tungsten::test::proveAll(file, seconds, rows) ? 0 : 1;
     } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';
         return 2;
