@@ -90,8 +90,8 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
                   !settings_.includeSurfaces ? "include_surfaces is false"
                   : !surfaces                ? "no surface has a smooth lobe"
                   : connects
-                      ? "for what connections cannot bring: light by way of mirrors or of a single direction, and "
-                        "to glossy surfaces"
+                      ? "for what connections cannot bring: light by way of mirrors or refraction or of a single "
+                        "direction, and to glossy surfaces"
                       : "smooth surfaces are gathered");
     describeGuidance(plan);
     const bool direct = ArrivalTest(*scene_, plan).directView();

@@ -29,6 +29,20 @@ Distribution1D powerDistribution(const Scene& scene) {
     return Distribution1D(powers);
 }
 
+/// Whether surface photons may have to bring light besides connections: by way of mirrors or refraction, of single
+/// directions, or from surfaces that are glossy only.
+bool bringsWhatConnectionsCannot(const Scene& scene, const EffectPlan& plan) {
+    constexpr LobeMask Unconnected = lobe::Specular | lobe::GlossyTransmission;
+    const auto unconnected = [&](const BsdfPtr& bsdf) {
+        return (bsdf->lobes() & Unconnected) != 0 || (!plan.glossySensorPaths && isGlossyOnly(*bsdf));
+    };
+    return std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                       [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); }) ||
+           std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+               return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), unconnected);
+           });
+}
+
 /// Appends the deposits path by path until the store is full.
 template <typename Record>
 void append(StoreState& store, std::vector<Record>& records, const std::vector<Record>& deposits,
@@ -76,7 +90,8 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
       storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
       storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
-      storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths) {
+      storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths),
+      densityPhotons_(bringsWhatConnectionsCannot(scene, plan)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     const TimeGate& gate = scene.transport.gate;
     for (int frame = 0; frame < gate.frames; ++frame) {
@@ -143,6 +158,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   !maps.volume.full,
                                   !maps.beams.full,
                                   connections != nullptr,
+                                  densityPhotons_,
                                   glossySensorPaths_};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);

@@ -48,7 +48,7 @@ class PhotonPass {
     std::unique_ptr<PhotonGuidance> guidance_;
     std::vector<ArrivalTest> frameArrivals_; ///< when light paths aim at single frames
     Distribution1D emitters_;                ///< proportional to power
-    bool storeVolume_, storeBeams_, storeSurface_, glossySensorPaths_;
+    bool storeVolume_, storeBeams_, storeSurface_, glossySensorPaths_, densityPhotons_;
 };
 
 } // namespace tungsten::photon

@@ -81,15 +81,16 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     if (!context_.storeSurface || (surface_.bsdf->lobes() & lobe::Smooth) == 0) return true;
     const float shading = std::abs(ray_.direction.dot(surface_.frame.n)),
                 geometric = std::abs(ray_.direction.dot(hit.ng));
-    const float share = photonShare();
-    if (share > 0.0f && geometric > 0.0f)
-        deposit(deposits_.surface, hit.position, power_ * (share * shading / geometric), -1);
+    if (!(geometric > 0.0f)) return true;
+    const bool connected = context_.connects && connectable_ && receivesConnections(*surface_.bsdf);
+    if (connected && context_.densityPhotons) deposit(deposits_.surface, hit.position, Rgb(0.0f), -1);
+    if (!connected && !foundBySensorPaths())
+        deposit(deposits_.surface, hit.position, power_ * (shading / geometric), -1);
     return true;
 }
 
-float PhotonWalk::photonShare() const {
-    if (context_.glossySensorPaths && isGlossyOnly(*surface_.bsdf)) return fromLight_ && !connectable_ ? 1.0f : 0.0f;
-    return context_.connects && connectable_ && receivesConnections(*surface_.bsdf) ? 0.0f : 1.0f;
+bool PhotonWalk::foundBySensorPaths() const {
+    return context_.glossySensorPaths && isGlossyOnly(*surface_.bsdf) && (!fromLight_ || connectable_);
 }
 
 bool PhotonWalk::leaveSurface() {

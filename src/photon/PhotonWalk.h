@@ -26,7 +26,10 @@ struct WalkContext {
     float frameShift;                           ///< of the order of frames: over passes, each is aimed at equally often
     const Distribution1D& emitters;
     bool storeSurface, storeVolume, storeBeams;
-    bool connects = false;          ///< to surfaces: SurfaceConnections
+    bool connects = false; ///< to surfaces: SurfaceConnections
+    /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
+    /// photons are, not from how dense those few are that bring what connections cannot.
+    bool densityPhotons = false;
     bool glossySensorPaths = false; ///< SensorPathRules::glossy
 };
 
@@ -50,8 +53,8 @@ class PhotonWalk {
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
-    /// Part of the light arriving on surface_ that photons bring; sensor paths and connections find the rest.
-    [[nodiscard]] float photonShare() const;
+    /// Light arriving on surface_ that sensor paths along its glossy lobes find.
+    [[nodiscard]] bool foundBySensorPaths() const;
     /// False if it cannot be gathered.
     bool deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 
@@ -70,7 +73,7 @@ class PhotonWalk {
     int bounce_ = 0;
     int flights_ = 0;           ///< distances sampled since the last surface
     int consecutiveMedium_ = 0; ///< medium vertices since the last light or surface
-    bool connectable_ = false;  ///< that vertex has no single direction
+    bool connectable_ = false;  ///< the last vertex has no single direction and lies in this region: it connects
     bool fromLight_ = true;     ///< nothing has scattered since the light but mirrors and refraction
 };
 

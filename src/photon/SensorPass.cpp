@@ -121,7 +121,7 @@ class SensorGather {
         const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
         for (const auto& neighbour : workspace_.neighbours) {
             const Photon& photon = photons[neighbour.index];
-            if (!rendered(state.interactions + photon.bounce)) continue;
+            if (isBlack(photon.power) || !rendered(state.interactions + photon.bounce)) continue; // densityPhotons
             const Vec3f wo = surface.frame.toLocal(-photon.direction);
             if (wo.z == 0.0f) continue;
             const Rgb scattering = surface.bsdf->eval(query, surface.wi, wo) / std::abs(wo.z);

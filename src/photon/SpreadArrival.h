@@ -5,27 +5,35 @@
 
 namespace tungsten::photon {
 
-/// A flight from a vertex as a sensor point sees it.
+/// A flight from a vertex as a sensor point sees it: a difference of two, from where the vertex would be if it were
+/// lifted off the surface once and twice.
 struct SpreadArrival {
-    Vec3f from;     ///< unit direction that the light seems to come from
-    float geometry; ///< 1 / squared distance, but bounded: at most 2 / spread^2
+    Vec3f from, fromFurther; ///< unit directions towards the lifted vertices
+    float weight, further;   ///< instead of 1 / squared distance; at most 2 / spread^2 and as much
+
+    /// What arrives, to be reflected as coming along `from`; `intensity(direction)` is the vertex's, away from it.
+    template <typename Intensity>
+    [[nodiscard]] auto light(const Intensity& intensity) const {
+        return intensity(-from) * weight - intensity(-fromFurther) * further;
+    }
 };
 
 /// `toVertex` leads from the point to the vertex, `normal` is the surface's, on any side; `spread` >= 0, a length,
 /// keeps the light of vertices that are closer from falling on one point alone.
 ///
-/// In the plane of the point, the irradiance h / (h^2 + rho^2)^(3/2) of a vertex at height h is 2 pi times the Poisson
-/// kernel P_h of the half-space, for which P_h * P_r = P_(h + r): to blur it is to lift the vertex. The blur here is
-/// 2 P_r - P_2r, r the spread. It is positive, has no error of first order (its transform is 1 - k^2 r^2 + ...) and
-/// keeps the light: the irradiance is that of the vertex lifted by r, times 2 - P_(h + 2r) / P_(h + r).
+/// On a plane, a vertex at height h and twice the height leave the same flux whatever they send where; lifting it by r
+/// blurs its irradiance over a length of about r. For an even vertex the irradiance is 2 pi times the Poisson kernel
+/// P_h(rho) = h / (2 pi (h^2 + rho^2)^(3/2)) of the half-space, P_h * P_r = P_(h + r), and lifting is that blur. For
+/// the irradiance f(h) the result is 2 f(h + r) - f(h + 2r): it keeps the flux and has no error of first order in r.
 inline SpreadArrival spreadArrival(const Vec3f& toVertex, const Vec3f& normal, float spread) {
     const float height = toVertex.dot(normal), h = std::abs(height), r = spread;
-    const Vec3f lifted = toVertex + normal * std::copysign(r, height);
-    const float once = lifted.length2(), twice = once + r * (2.0f * h + 3.0f * r);
-    if (!(once > 0.0f)) return {normal, 0.0f};
+    const Vec3f lift = normal * std::copysign(r, height), once = toVertex + lift, twice = once + lift;
+    const float squared = once.length2(), squaredTwice = twice.length2();
+    if (!(squared > 0.0f)) return {normal, normal, 0.0f, 0.0f};
     // P_(h + 2r) / P_(h + r)
-    const float ratio = h + r > 0.0f ? (h + 2.0f * r) / (h + r) * (once / twice) * std::sqrt(once / twice) : 1.0f;
-    return {lifted / std::sqrt(once), (2.0f - ratio) / once};
+    const float part = squared / squaredTwice;
+    const float ratio = h + r > 0.0f ? (h + 2.0f * r) / (h + r) * part * std::sqrt(part) : 1.0f;
+    return {once / std::sqrt(squared), twice / std::sqrt(squaredTwice), 2.0f / squared, ratio / squared};
 }
 
 } // namespace tungsten::photon

@@ -1,7 +1,5 @@
 #include "photon/SurfaceConnections.h"
 
-#include "photon/SpreadArrival.h"
-
 #include <algorithm>
 
 namespace tungsten::photon {
@@ -71,7 +69,7 @@ void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& 
 }
 
 void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw,
-                                const Rgb& scale, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
+                                SurfaceArrival arrival, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
     const SensorPoint& point = points_[draw.point];
     const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
     const Vec3f toVertex = -draw.direction;
@@ -84,13 +82,12 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     if (isBlack(visibility.transmittance)) return;
     const int interactions = point.interactions + vertex.bounce + 1 + visibility.crossings;
     if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return;
-    const double arrival = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
-    if (!(arrival >= gate.begin && arrival < gate.end)) return;
-    const int frame = sensor_.gate.frameOf(arrival);
-    if (frame < 0) return;
-    const SpreadArrival spread = spreadArrival(toVertex * draw.distance, point.hit.ng, spread_[draw.point]);
-    arrivals.push_back({draw.point, frame, spread.from,
-                        scale * visibility.transmittance * (sensor_.weight(arrival) * spread.geometry)});
+    const double time = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
+    if (!(time >= gate.begin && time < gate.end)) return;
+    arrival.frame = sensor_.gate.frameOf(time);
+    if (arrival.frame < 0) return;
+    arrival.light = arrival.light * visibility.transmittance * sensor_.weight(time);
+    arrivals.push_back(arrival);
 }
 
 float commonTarget(std::vector<float> worths, double wanted) {

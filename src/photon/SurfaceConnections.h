@@ -6,6 +6,7 @@
 #include "photon/Sensor.h"
 #include "photon/SensorClusters.h"
 #include "photon/SensorRecord.h"
+#include "photon/SpreadArrival.h"
 
 #include "darts/ResidualRange.h"
 
@@ -29,8 +30,8 @@ struct LightVertex {
     float usualScattering; ///< above 0: what scattering (below) is about, whatever the direction
 };
 
-/// How far light from close by is spread about sensor points (SpreadArrival.h): so many sides of a pixel's area on the
-/// surface, `most` at most.
+/// How far light from close by is spread about sensor points (SpreadArrival.h): `pixels` square roots of the area that
+/// a pixel covers on the surface, `most` (a length) at most.
 struct Spread {
     float pixels, most;
 
@@ -61,8 +62,10 @@ class SurfaceConnections {
                  std::vector<PointDraw>& draws, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
         find(vertex, gate, sampler, draws);
         for (const PointDraw& draw : draws) {
-            const Rgb scale = vertex.power * scattering(draw.direction) * (draw.inverseExpectation * perListed_);
-            if (!isBlack(scale)) arrive(vertex, gate, draw, scale, arrivals, rays);
+            if (vertex.onSurface && isBlack(scattering(draw.direction))) continue; // not on this side
+            const SpreadArrival spread = seenFrom(draw);
+            const Rgb light = vertex.power * spread.light(scattering) * (draw.inverseExpectation * perListed_);
+            if (!isBlack(light)) arrive(vertex, gate, draw, {draw.point, 0, spread.from, light}, arrivals, rays);
         }
     }
     /// About what connect() would bring in all.
@@ -83,7 +86,11 @@ class SurfaceConnections {
     [[nodiscard]] Ranges openRanges(const LightVertex& vertex, const darts::TimeGate& gate) const;
     void find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
               std::vector<PointDraw>& draws) const;
-    void arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw, const Rgb& scale,
+    [[nodiscard]] SpreadArrival seenFrom(const PointDraw& draw) const {
+        return spreadArrival(-draw.direction * draw.distance, points_[draw.point].hit.ng, spread_[draw.point]);
+    }
+    /// If it does, in time and not occluded: `arrival` lacks frame, transmittance and the sensor's weight.
+    void arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw, SurfaceArrival arrival,
                 std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const;
 
     const Scene& scene_;

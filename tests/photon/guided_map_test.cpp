@@ -262,6 +262,33 @@ TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
     }
 }
 
+/// Photons are left where a mirror sends light that connections cannot bring, and as densely as the light itself.
+TEST(SurfaceConnections, LeavePhotonsToMirrorsAlone) {
+    const std::string json = room(RoomGate);
+    const auto stored = [&](Overrides overrides) {
+        overrides.push_back(Best);
+        const auto render = renderPhotons(json, {overrides, 2, 1});
+        EXPECT_GT(render->statistics.counter("surface connections"), 1000u);
+        return render->statistics.counter("stored surface photons");
+    };
+    EXPECT_EQ(stored({}), 0u);
+    EXPECT_GT(stored({Mirror}), 1000u);
+}
+
+/// What a mirror sends is gathered from the nearest photons as from all within a radius, also where none bounds them.
+TEST(SurfaceConnections, GatherTheNearestPhotonsBesideAMirror) {
+    const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
+    const auto gathered = [&](const Overrides& settings) {
+        Overrides all{Mirror, Best, setting("photon_count", 20000)};
+        all.insert(all.end(), settings.begin(), settings.end());
+        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 12, 1, seed}); });
+    };
+    const auto [expected, radiusError] = gathered({});
+    const auto [mean, error] = gathered({"integrator.gather_radius=1e30", "integrator.gather_photon_count=20"});
+    EXPECT_NEAR(mean, expected, 4.0 * std::hypot(error, radiusError) + 0.03 * expected);
+    EXPECT_LT(std::hypot(error, radiusError), 0.02 * expected) << "the test would not see a wrong value";
+}
+
 /// A floor lit through scattering fog, seen beside it: with one flight allowed in the fog none of that light gets out,
 /// neither by flying on nor by a connection.
 TEST(SurfaceConnections, KeepTheMediumsLimit) {
