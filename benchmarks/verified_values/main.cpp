@@ -265,7 +265,7 @@ int main(int argc, char** argv) {
     std::string file, rows;
     double seconds = 5.0;
     app.add_option("file", file, "the table, in Markdown")->required();
-    app.add_option("seconds", seconds, "processor time per render")->check(CLI::PositiveNumber)->capture_default_str();
+    app.add_option("seconds", seconds, "of each render, about")->check(CLI::PositiveNumber)->capture_default_str();
     app.add_option("rows", rows, "only those with this in their name");
     try {
         app.parse(argc, argv);

@@ -29,9 +29,9 @@ Distribution1D powerDistribution(const Scene& scene) {
     return Distribution1D(powers);
 }
 
-/// Whether surface photons may have to bring light besides connections: by way of mirrors or refraction, of single
-/// directions, or from surfaces that are glossy only.
-bool bringsWhatConnectionsCannot(const Scene& scene, const EffectPlan& plan) {
+/// Whether surface photons may have to bring what connections cannot: light by way of mirrors or refraction, of a
+/// single direction, or to surfaces that are glossy only.
+bool needsPhotonsBesideConnections(const Scene& scene, const EffectPlan& plan) {
     constexpr LobeMask Unconnected = lobe::Specular | lobe::GlossyTransmission;
     const auto unconnected = [&](const BsdfPtr& bsdf) {
         return (bsdf->lobes() & Unconnected) != 0 || (!plan.glossySensorPaths && isGlossyOnly(*bsdf));
@@ -91,7 +91,7 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
       storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
       storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths),
-      densityPhotons_(bringsWhatConnectionsCannot(scene, plan)) {
+      densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     const TimeGate& gate = scene.transport.gate;
     for (int frame = 0; frame < gate.frames; ++frame) {
@@ -148,18 +148,10 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
         std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
-        const WalkContext context{scene_,
-                                  settings_,
-                                  arrival_,
-                                  frameArrivals_,
-                                  frameShift,
-                                  emitters_,
-                                  !maps.surface.full,
-                                  !maps.volume.full,
-                                  !maps.beams.full,
-                                  connections != nullptr,
-                                  densityPhotons_,
-                                  glossySensorPaths_};
+        const WalkContext context{
+            scene_,          settings_,          arrival_,          frameArrivals_,   frameShift,
+            emitters_,       !maps.surface.full, !maps.volume.full, !maps.beams.full, connections != nullptr,
+            densityPhotons_, glossySensorPaths_};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];

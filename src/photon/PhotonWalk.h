@@ -53,7 +53,7 @@ class PhotonWalk {
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
-    /// Light arriving on surface_ that sensor paths along its glossy lobes find.
+    /// Whether sensor paths along its glossy lobes find the light that arrives on surface_.
     [[nodiscard]] bool foundBySensorPaths() const;
     /// False if it cannot be gathered.
     bool deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
