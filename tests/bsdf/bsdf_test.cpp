@@ -167,6 +167,29 @@ TEST(Bsdf, LobeMasksSelect) {
     EXPECT_NEAR(straight->weight.x, 0.75f, 1e-6f);
 }
 
+/// A connection that goes straight through carries what paths that are sampled straight through carry on average.
+TEST(Bsdf, StraightConnectionsWeighWhatStraightSamplesDo) {
+    const auto part = [](BsdfModel model, float albedo = 1.0f) {
+        return std::make_shared<const Bsdf>("", std::move(model), Texture(albedo));
+    };
+    const BsdfPtr veil = part(Transparency{part(Lambert{}, 0.6f), Texture(0.25f)});
+    const BsdfPtr filter = part(Mixed{part(Forward{}), part(Null{}), Texture(0.4f)}, 0.5f);
+    for (const auto& [bsdf, expected] : {std::pair{part(Forward{}), 1.0f},
+                                         {veil, 0.75f},
+                                         {filter, 0.5f * 0.4f},
+                                         {part(Mixed{veil, filter, Texture(0.3f)}, 0.9f), 0.9f * (0.225f + 0.14f)}}) {
+        constexpr int Count = 10000; // of lobes, stratified
+        double sum = 0.0;
+        for (int i = 0; i < Count; ++i) {
+            const float choice = (float(i) + 0.5f) / Count;
+            const auto drawn = bsdf->sample({}, Vec3f(0.6f, 0.0f, 0.8f), {{0.5f, 0.5f}, choice});
+            if (drawn && drawn->lobe == lobe::Forward) sum += double(drawn->weight.x);
+        }
+        EXPECT_NEAR(sum / Count, double(expected), 1e-3);
+        EXPECT_NEAR(bsdf->forwardWeight({0.5f, 0.5f}).x, expected, 1e-6f);
+    }
+}
+
 TEST(Bsdf, BacksOfReflectiveModelsAreBlack) {
     const Vec3f behind = Vec3f(0.0f, 0.6f, -0.8f);
     for (const Named& model : smoothModels()) {
