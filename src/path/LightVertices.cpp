@@ -12,7 +12,7 @@ namespace {
 
 bool scattersSmoothly(const Bsdf& bsdf) {
     const LobeMask lobes = bsdf.lobes();
-    return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Transmissive) == 0;
+    return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Through) == 0;
 }
 
 /// A glowing disk may shine in a narrower cone than its directions are drawn from.

@@ -58,12 +58,12 @@ void traceReflection(const Scene& scene, const Emitter& emitter, float probabili
 
 bool reflectsSharply(const Bsdf& bsdf) {
     const LobeMask lobes = bsdf.lobes();
-    return (lobes & lobe::GlossyReflection) != 0 && (lobes & lobe::Transmissive) == 0;
+    return (lobes & lobe::GlossyReflection) != 0 && (lobes & lobe::Through) == 0;
 }
 
 bool endsReflectedLight(const Bsdf& bsdf) {
     const LobeMask lobes = bsdf.lobes();
-    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Transmissive)) == 0;
+    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
 }
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights) {

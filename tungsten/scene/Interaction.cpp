@@ -36,9 +36,8 @@ SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, co
     interaction.primitive = &scene.primitives[hit.shape];
     interaction.bsdf = &scene.bsdfOf(hit);
     interaction.frame = shadingFrame(*interaction.bsdf, hit.ns, hit.dpdu, hit.dpdv, hit.uv);
-    interaction.twoSided =
-        scene.transport.twoSidedShading && (interaction.bsdf->lobes() & lobe::Transmissive) == lobe::None;
-    if (interaction.twoSided && rayDirection.dot(hit.ng) > 0.0f) {
+    const bool transmissive = (interaction.bsdf->lobes() & lobe::Transmissive) != 0;
+    if (scene.transport.twoSidedShading && !transmissive && rayDirection.dot(hit.ng) > 0.0f) {
         interaction.frame.n = -interaction.frame.n;
         interaction.frame.s = -interaction.frame.s;
     }

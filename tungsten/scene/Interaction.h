@@ -10,9 +10,8 @@ struct SurfaceInteraction {
     SurfaceHit hit;
     const Primitive* primitive = nullptr;
     const Bsdf* bsdf = nullptr;
-    Frame frame;           ///< shading frame, flipped toward the ray for two-sided models
-    Vec3f wi;              ///< local direction back along the ray
-    bool twoSided = false; ///< the frame was, or would be, flipped (no transmissive lobes, two-sided shading on)
+    Frame frame; ///< shading frame, flipped toward the ray for two-sided models
+    Vec3f wi;    ///< local direction back along the ray
 
     [[nodiscard]] BsdfQuery query(TransportMode mode, LobeMask requested = lobe::All) const {
         return {hit.uv, mode, requested};
