@@ -30,8 +30,7 @@ std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& e
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
     if (!shines(emitter, emission)) return std::nullopt;
     const Vec3f direction = emission.ray.direction;
-    const auto hit = scene.geometry->intersect(
-        {emission.ray.origin, direction, emitter.isArea() ? scene.rayEpsilon : 0.0f, emission.ray.tMax});
+    const auto hit = scene.geometry->intersect(emission.ray);
     if (!hit || !scattersSmoothly(scene.bsdfOf(*hit))) return std::nullopt;
     LightVertex vertex;
     vertex.surface = makeInteraction(scene, *hit, direction);

@@ -37,9 +37,10 @@ void traceReflection(const Scene& scene, const Emitter& emitter, float probabili
         vertex.glossy = *glossy;
         return vertex;
     };
-    const auto hit = scene.geometry->intersect({from.hit.position, direction, scene.rayEpsilon});
+    const Ray onward = from.hit.leave(direction);
+    const auto hit = scene.geometry->intersect(onward);
     const float flight = flights.sample(sampler.next1D()), density = flights.pdf(flight);
-    if (flight > scene.rayEpsilon && density > 0.0f && (!hit || flight < hit->t)) {
+    if (flight > onward.tMin && density > 0.0f && (!hit || flight < hit->t)) {
         vertices.push_back(end(flight, density));
         vertices.back().power = power / density;
     }

@@ -72,10 +72,10 @@ bool GuidedPhotonWalk::emit() {
 
 bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide* guide) {
     const SurfaceSample start = sampleEmissionPoint(emitter, sampler_.next2D());
-    ray_ = Ray{start.position, Vec3f(0.0f), emitter.isArea() ? scene_.rayEpsilon : 0.0f};
+    ray_ = Ray{start.position, Vec3f(0.0f)};
     connectable_ = true;
     if (!arrival_->mayContinue(ray_.origin, time_)) return false;
-    connectToSurfaces(emitter.isArea(), InSphere * meanComponent(emitterPower(emitter)),
+    connectToSurfaces(start.margin(), InSphere * meanComponent(emitterPower(emitter)),
                       [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
     const EmissionDirections own(emitter, start);
     float inversePdf = 0.0f;
@@ -88,14 +88,15 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
         ray_.direction = darts::to<Vec3f>(direction);
         inversePdf = 1.0f / own.pdf(direction);
     }
+    ray_ = start.leave(ray_.direction);
     power_ = power_ * emittedIntensity(emitter, start, ray_.direction) * inversePdf;
     return !isBlack(power_);
 }
 
 template <typename Scattering>
-void GuidedPhotonWalk::connectToSurfaces(bool onSurface, float usual, const Scattering& scattering) {
+void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering) {
     if (!connections_) return;
-    const LightVertex vertex{ray_.origin, onSurface, time_, bounce_, region_, power_, usual};
+    const LightVertex vertex{ray_.origin, margin, time_, bounce_, region_, power_, usual};
     if (connections_->hasTarget())
         connections_->connect(vertex, gate_, scattering, sampler_, draws_, deposits_.arrivals, counters_.rays);
     else
@@ -109,7 +110,7 @@ bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
         const Region behind = region_;
         ray_.origin = hit.position;
         // Light leaves to the side of the direction; a boundary's other side is another region.
-        connectToSurfaces(true, 2.0f * InSphere, [&](const Vec3f& direction) {
+        connectToSurfaces(hit.margin(), 2.0f * InSphere, [&](const Vec3f& direction) {
             if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
             const Region ahead = regionBeyond(surface_, direction, behind);
             if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
@@ -193,7 +194,7 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     fromLight_ = false;
     if (!look(guide) || !survives(guide)) return false;
     if (flights_ < medium.maxBounces) // else no flight would leave here
-        connectToSurfaces(false, InSphere,
+        connectToSurfaces({}, InSphere,
                           [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
     const float inversePdf = redirect(guide, darts::PhaseScatterer{medium.phase, before});
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);

@@ -22,7 +22,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
     bool emitFromPoint(const Emitter& emitter, const darts::Guide* guide);
     template <typename Scattering>
-    void connectToSurfaces(bool onSurface, float usual, const Scattering& scattering);
+    void connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering);
     bool meetSurface(const SurfaceHit& hit);
     /// A flight through a scattering medium: its control vertex, then the next vertex. False ends the path.
     bool crossMedium(const Medium& medium, const darts::Guide& guide);

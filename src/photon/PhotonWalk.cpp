@@ -38,7 +38,6 @@ bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     time_ = emitter.emissionTime;
     region_ = scene_.regionOf(emitter);
     ray_ = emission.ray;
-    ray_.tMin = emitter.isArea() ? scene_.rayEpsilon : 0.0f;
     return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
 }
 
@@ -107,7 +106,7 @@ bool PhotonWalk::leaveSurface() {
     power_ = power_ * exit->weight;
     if (isBlack(power_)) return false;
     region_ = ahead;
-    ray_ = Ray{surface_.hit.position, exit->direction, scene_.rayEpsilon};
+    ray_ = surface_.hit.leave(exit->direction);
     return true;
 }
 

@@ -186,18 +186,18 @@ TEST(Visibility, TimeTransmittanceAndCrossingsThroughABoundary) {
     const auto loaded = loadScene(file.path());
     uint64_t rays = 0;
     // Straight down through the unit cube of fog (speed 0.75) in vacuum (speed 1), from y = 1 to y = -1.
-    const Visibility through = traceVisibility(*loaded.scene, Vec3f(0.1f, 1, 0.1f), false, Vec3f(0, -1, 0), 2.0f, false,
-                                               Region{-1, 1.0f}, rays);
+    const Visibility through =
+        traceVisibility(*loaded.scene, {Vec3f(0.1f, 1, 0.1f), Vec3f(0, -1, 0), 0, 2}, 2.0f, Region{-1, 1.0f}, rays);
     EXPECT_EQ(through.crossings, 2);
     EXPECT_NEAR(through.time, 1.0 + 1.0 / 0.75, 1e-6);
     EXPECT_NEAR(through.transmittance.x, std::exp(-3.0f), 1e-6f);
     EXPECT_NEAR(through.transmittance.z, std::exp(-7.0f), 1e-6f);
-    const Visibility blocked = traceVisibility(*loaded.scene, Vec3f(0.1f, 1, 0.1f), false, Vec3f(0, -1, 0), 4.0f, false,
-                                               Region{-1, 1.0f}, rays);
+    const Visibility blocked =
+        traceVisibility(*loaded.scene, {Vec3f(0.1f, 1, 0.1f), Vec3f(0, -1, 0), 0, 4}, 4.0f, Region{-1, 1.0f}, rays);
     EXPECT_EQ(blocked.transmittance, Rgb(0.0f));
     // From inside the fog outward: one crossing.
     const Visibility outward =
-        traceVisibility(*loaded.scene, Vec3f(0, 0, 0), false, Vec3f(1, 0, 0), 1.0f, false, Region{0, 0.75f}, rays);
+        traceVisibility(*loaded.scene, {Vec3f(0, 0, 0), Vec3f(1, 0, 0), 0, 1}, 1.0f, Region{0, 0.75f}, rays);
     EXPECT_EQ(outward.crossings, 1);
     EXPECT_NEAR(outward.time, 0.5 / 0.75 + 0.5, 1e-6);
 }

@@ -11,7 +11,7 @@ EmissionSample sampleEmission(const AreaEmitter& area, const Vec2f& uPosition, c
     const Vec3f direction = Frame(start.normal).toWorld(local).normalized();
     // L cos / (1/A · cos/pi) = pi A L. A disk's cone does not restrict photons (a rule of the format).
     const Rgb power = area.radiance.rgb(start.uv) * (Pi * area.areaSampler->area());
-    return {{start.position, direction}, power, warp::squareToCosineHemispherePdf(local), start.normal};
+    return {start.leave(direction), power, warp::squareToCosineHemispherePdf(local), start.normal};
 }
 
 std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& receiver, const Vec2f& u) {
@@ -24,7 +24,7 @@ std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& r
     if (cosine <= 0.0f) return std::nullopt;
     if (const auto* disk = std::get_if<Disk>(area.shape); disk && cosine < disk->cosConeAngle) return std::nullopt;
     const float pdf = sqr(distance) / (cosine * area.areaSampler->area());
-    return DirectSample{direction, distance, area.radiance.rgb(point.uv) / pdf, pdf, point.position};
+    return DirectSample{direction, distance, area.radiance.rgb(point.uv) / pdf, pdf, point.position, point.margin()};
 }
 
 } // namespace tungsten

@@ -94,6 +94,10 @@ struct DirectSample {
     Rgb weight;      ///< radiance / pdf (area, environment) or intensity / distance^2 (points); visibility not included
     float pdf;       ///< per solid angle at the receiver; 0 for point-like emitters (no MIS with directions)
     Vec3f position;  ///< on the emitter
+    SurfaceMargin margin{};
+
+    /// The length of a ray to the emitter on which only other surfaces are met.
+    [[nodiscard]] float reach() const { return margin.before(direction, distance); }
 };
 /// None when the emitter cannot light the point (behind it, outside the cone, single direction).
 std::optional<DirectSample> sampleDirect(const Emitter& emitter, const Vec3f& receiver, const Vec2f& u);

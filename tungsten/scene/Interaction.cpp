@@ -72,14 +72,11 @@ Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, c
     return region.medium < 0 && inside == cameFromInside ? current : region;
 }
 
-Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
-                           float distance, bool toSurface, Region region, uint64_t& rays) {
+Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region region, uint64_t& rays) {
     Visibility result;
     result.transmittance = Rgb(1.0f);
-    const float end = toSurface ? distance - scene.rayEpsilon : distance;
     float start = 0.0f;
     const float speed = region.speed;
-    Ray ray{origin, direction, fromSurface ? scene.rayEpsilon : 0.0f, end};
     const auto advance = [&](float to) {
         const float length = to - start;
         if (const Medium* medium = scene.medium(region))
@@ -100,8 +97,8 @@ Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSur
         }
         advance(hit->t);
         result.transmittance = result.transmittance * through;
-        region = regionOnSide(scene.primitives[hit->shape], direction.dot(hit->ng) < 0.0f, region);
-        ray.tMin = hit->t + scene.rayEpsilon;
+        region = regionOnSide(scene.primitives[hit->shape], ray.direction.dot(hit->ng) < 0.0f, region);
+        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
     }
     advance(distance);
     return result;

@@ -50,9 +50,9 @@ struct Visibility {
     int crossings = 0;       ///< forward surfaces passed: each counts as a bounce
     bool oneSpeed = true;    ///< light went at the speed of the starting region all the way
 };
-/// From `origin` (in `region`) along the unit `direction` for `distance`; `fromSurface` and `toSurface` say whether the
-/// ends lie on surfaces (ray offsets). `distance` may be Infinity. `rays` is increased by the number of rays traced.
-Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
-                           float distance, bool toSurface, Region region, uint64_t& rays);
+/// Along a ray that starts in `region`, for `distance`, which may be Infinity. Between the ray's limits something may
+/// be in the way: where the ends lie on surfaces they are short of them. `rays` is increased by the number of rays
+/// traced.
+Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region region, uint64_t& rays);
 
 } // namespace tungsten

@@ -89,8 +89,6 @@ struct Scene {
     ToneMap toneMap = ToneMap::Gamma;
     TransportSettings transport;
     std::unique_ptr<SceneGeometry> geometry;
-    /// Ray offset after a surface, relative to the scene's coordinates.
-    float rayEpsilon = 1e-4f;
 
     [[nodiscard]] const Bsdf& bsdfOf(const SurfaceHit& hit) const {
         const Primitive& primitive = primitives[hit.shape];

@@ -53,11 +53,6 @@ void finishGeometry(Scene& scene) {
     for (const Primitive& primitive : scene.primitives) shapes.push_back(&primitive.shape);
     scene.geometry = std::make_unique<SceneGeometry>(shapes);
     const Vec3f low = scene.geometry->boundsMin(), high = scene.geometry->boundsMax();
-    float largest = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(low[axis]), std::abs(high[axis])});
-    // Hit points carry an error of a few float steps of the largest coordinate; grazing rays stretch it.
-    constexpr float RelativeOffset = 2e-5f;
-    scene.rayEpsilon = std::max(RelativeOffset * largest, 1e-30f);
     for (Emitter& emitter : scene.emitters) {
         auto* sky = std::get_if<InfiniteSphereEmitter>(&emitter.model);
         if (!sky) continue;
