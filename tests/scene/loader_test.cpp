@@ -181,6 +181,40 @@ TEST(SceneLoader, InlineMediaAndBsdfsWork) {
     EXPECT_TRUE(loaded.scene->emitters[0].isArea());
 }
 
+std::string warningsOf(const std::string& json) {
+    const SceneFile file(json);
+    std::string text;
+    const LoadedScene loaded = loadScene(file.path());
+    for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text() + "\n";
+    return text;
+}
+
+/// Warnings of a lamp at `height` above a unit cube of fog, seen from outside or from within fog that is everywhere.
+std::string warningsOfLamp(const std::string& lamp, double height, bool everywhere) {
+    return warningsOf(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_s": 1}], "primitives": [
+        {"name": "cloud", "type": "cube", "int_medium": "haze", )" +
+                      std::string(everywhere ? R"("ext_medium": "haze", )" : "") + R"("bsdf": {"type": "forward"}},
+        {"name": "bulb", "emission": 3, )" +
+                      lamp + R"(, "transform": {"position": [0.1, )" + std::to_string(height) +
+                      R"(, 0], "scale": 0.2}}], "camera": {)" + (everywhere ? R"("medium": "haze", )" : "") +
+                      R"("transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}}})");
+}
+
+TEST(SceneLoader, LightsInAMediumTheyDoNotNameAreWarnedAbout) {
+    for (const std::string lamp :
+         {R"("type": "point")", R"("type": "sphere", "bsdf": {"type": "null"})", R"("type": "quad")"}) {
+        SCOPED_TRACE(lamp);
+        const std::string named = lamp + R"(, "ext_medium": "haze")";
+        for (const auto& [height, everywhere] : {std::pair{0.0, false}, {2.0, true}}) {
+            const std::string warning = warningsOfLamp(lamp, height, everywhere);
+            for (const char* part : {"primitives[1].ext_medium", "'bulb'", "'haze'"})
+                EXPECT_NE(warning.find(part), std::string::npos) << part << " in " << warning;
+            EXPECT_EQ(warningsOfLamp(named, height, everywhere), "");
+        }
+        EXPECT_EQ(warningsOfLamp(lamp, 2.0, false), "");
+    }
+}
+
 TEST(Visibility, TimeTransmittanceAndCrossingsThroughABoundary) {
     const SceneFile file(Fog);
     const auto loaded = loadScene(file.path());

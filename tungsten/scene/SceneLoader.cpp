@@ -2,6 +2,7 @@
 
 #include "tungsten/scene/Json.h"
 #include "tungsten/scene/LoadContext.h"
+#include "tungsten/scene/LoadEmitters.h"
 
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
@@ -87,7 +88,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     auto scene = std::make_shared<Scene>();
     scene->file = file;
     LoadContext context{
-        *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}};
+        *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}, {}};
     scene->transport = readTransport(integrator, type);
     readMedia(context, root);
     readBsdfs(context, root);
@@ -98,6 +99,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     throwIfProblems(*diagnostics);
 
     finishGeometry(*scene);
+    warnAboutMediaOfEmitters(context);
     return {scene, renderer, type, integrator, diagnostics, hashScene(*document, context.resources)};
 }
 
