@@ -25,7 +25,7 @@ ArrivalTest::ArrivalTest(const Scene& scene, const EffectPlan& plan)
     camera_ = Vec3d(position.x, position.y, position.z);
     straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;
     directView_ = straightTimesKnown_ && !plan.specularSensorPaths;
-    if (const auto* lens = std::get_if<ThinLens>(&scene.camera.model)) slack_ = double(lens->apertureRadius);
+    slack_ = double(scene.camera.aperture());
     if (std::holds_alternative<Orthographic>(scene.camera.model)) slack_ = std::numeric_limits<double>::infinity();
     // One speed everywhere that counts: the camera's own.
     if (straightTimesKnown_) highestSpeed_ = double(scene.cameraRegion.speed);

@@ -39,7 +39,7 @@ double pValue(const Directions& directions) {
 TEST(CameraView, DirectionsFollowTheirDensity) {
     for (const float fov : {35.0f, 70.0f, 120.0f}) {
         EXPECT_GT(pValue(CameraView(slantedCamera(Pinhole{fov}))), test::SmallestPValue) << fov;
-        EXPECT_GT(pValue(CameraView(slantedCamera(ThinLens{fov, 2.0f, 0.1f, 0.0f}))), test::SmallestPValue) << fov;
+        EXPECT_GT(pValue(CameraView(slantedCamera(ThinLens{fov, 2.0f, 0.1f}))), test::SmallestPValue) << fov;
     }
 }
 
@@ -110,8 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Cameras, Sight,
                          testing::Values(ViewCase{"Pinhole", Pinhole{60.0f}, FilterType::Box},
                                          ViewCase{"Tele", Pinhole{5.0f}, FilterType::Lanczos},
                                          ViewCase{"Wide", Pinhole{110.0f}, FilterType::Gaussian},
-                                         ViewCase{"Lens", ThinLens{50.0f, 3.0f, 0.2f, 0.0f}, FilterType::Tent},
-                                         ViewCase{"NearFocus", ThinLens{40.0f, 0.5f, 0.1f, 0.0f}, FilterType::Box}),
+                                         ViewCase{"Lens", ThinLens{50.0f, 3.0f, 0.2f}, FilterType::Tent},
+                                         ViewCase{"NearFocus", ThinLens{40.0f, 0.5f, 0.1f}, FilterType::Box}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(EmissionDirections, FollowTheirDensity) {
