@@ -2,6 +2,7 @@
 
 #include "support/SceneFile.h"
 
+#include "tungsten/film/ImageIo.h"
 #include "tungsten/scene/Interaction.h"
 #include "tungsten/scene/SceneLoader.h"
 
@@ -212,6 +213,51 @@ TEST(SceneLoader, LightsInAMediumTheyDoNotNameAreWarnedAbout) {
             EXPECT_EQ(warningsOfLamp(named, height, everywhere), "");
         }
         EXPECT_EQ(warningsOfLamp(lamp, 2.0, false), "");
+    }
+}
+
+TEST(SceneLoader, WhatIsNotDoneIsSaid) {
+    const std::string lamp = R"({"primitives": [{"type": "point", "emission": 1}], )";
+    const std::string lens = lamp + R"("camera": {"type": "thinlens", "cateye": )";
+    EXPECT_NE(warningsOf(lens + "0.5}}").find("camera.cateye"), std::string::npos);
+    EXPECT_EQ(warningsOf(lens + "0}}"), "");
+    const std::string gate = lamp + R"("integrator": {"type": "path_tracer", "transient_time_width": 0.5)";
+    EXPECT_NE(warningsOf(gate + R"(, "transient_time_center": -2}})").find("steady state"), std::string::npos);
+    EXPECT_NE(warningsOf(gate + "}}").find("steady state"), std::string::npos);
+    for (const char* more :
+         {R"(, "transient_time_center": 2}})", R"(, "frame_num": 2}})", R"(, "temporal_response": {"type": "box"}}})"})
+        EXPECT_EQ(warningsOf(gate + more).find("steady state"), std::string::npos) << more;
+}
+
+TEST(SceneLoader, BitmapsThatDifferInAScaleFarBelowOneAreTwo) {
+    const SceneFile file(R"({"bsdfs": [
+        {"name": "a", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "scale": 1e-7}},
+        {"name": "b", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "scale": 3e-7}}],
+        "primitives": [{"type": "quad", "bsdf": "a"}, {"type": "quad", "bsdf": "b"}]})");
+    Image grey(2, 2);
+    for (Rgb& pixel : grey.pixels) pixel = Rgb(0.5f);
+    writePfm(file.path().parent_path() / "grey.pfm", grey);
+    const LoadedScene loaded = loadScene(file.path());
+    const auto albedo = [&](size_t i) { return loaded.scene->primitives[i].bsdfs[0]->albedo.rgb({0.5f, 0.5f}).x; };
+    EXPECT_FLOAT_EQ(albedo(0), 0.5e-7f);
+    EXPECT_FLOAT_EQ(albedo(1), 1.5e-7f);
+}
+
+/// Where nothing is refracted light goes on, as through a smooth interface.
+TEST(SceneLoader, RoughDielectricsWithoutContrastLetEverythingThrough) {
+    for (const char* ior : {"1", "1.00001", "0.99999"}) {
+        const SceneFile file(R"({"primitives": [{"type": "quad", "bsdf": {"type": "rough_dielectric", "roughness": 0.3,
+            "ior": )" + std::string(ior) +
+                             "}}]}");
+        const LoadedScene loaded = loadScene(file.path());
+        const Bsdf& bsdf = *loaded.scene->primitives[0].bsdfs[0];
+        const Vec3f wi(0.6f, 0.0f, 0.8f);
+        for (const float u : {0.1f, 0.5f, 0.9f}) {
+            const auto drawn = bsdf.sample({}, wi, {{u, 0.4f}, u});
+            ASSERT_TRUE(drawn) << ior;
+            EXPECT_EQ(drawn->weight, Rgb(1.0f)) << ior;
+            EXPECT_LT((drawn->wo + wi).length(), 1e-6f) << ior;
+        }
     }
 }
 
