@@ -120,8 +120,11 @@ TEST(EmissionDirections, FollowTheirDensity) {
     Emitter emitter;
     emitter.model = PointEmitter{Vec3f(0.0f), White};
     EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
-    emitter.model = AreaEmitter{};
-    EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
+    for (const float coneAngle : {90.0f, 60.0f, 30.0f}) {
+        const Shape disk = makeDisk(Transform{}, coneAngle);
+        emitter.model = AreaEmitter{&disk, 0, Texture(1.0f), nullptr};
+        EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << coneAngle;
+    }
     for (const float cosOuter : {-0.3f, 0.5f, 0.9f}) {
         emitter.model = SpotEmitter{Vec3f(0.0f), start.normal, White, 0.95f, cosOuter};
         EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << cosOuter;
@@ -130,7 +133,9 @@ TEST(EmissionDirections, FollowTheirDensity) {
 
 /// The integral of the density over what the emitter lights: the emission weighted by it is the emitter's power.
 TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
-    std::vector<Emitter> emitters(2);
+    std::vector<Emitter> emitters(3);
+    const Shape disk = makeDisk(Transform{}, 40.0f);
+    emitters[2].model = AreaEmitter{&disk, 0, Texture(1.0f), std::make_shared<const AreaSampler>(disk)};
     emitters[0].model = PointEmitter{Vec3f(0.0f), White};
     emitters[1].model = SpotEmitter{Vec3f(0.0f), Vec3f(0.48f, -0.6f, 0.64f), White, 0.9f, 0.6f};
     for (const Emitter& emitter : emitters) {

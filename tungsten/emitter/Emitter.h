@@ -43,6 +43,12 @@ struct AreaEmitter {
     uint32_t primitive = 0; ///< index in Scene::primitives
     Texture radiance;
     std::shared_ptr<const AreaSampler> areaSampler;
+
+    /// Cosine of the half angle of the cone about the normal that it shines into: 0 but for disks with a cone_angle.
+    [[nodiscard]] float cosCone() const;
+    [[nodiscard]] bool shinesAt(float cosine) const { return cosine > 0.0f && cosine >= cosCone(); }
+    /// What its radiance is multiplied by for the power: area times projected solid angle.
+    [[nodiscard]] float extent() const;
 };
 /// Environment (steady state only): constant or bitmap radiance.
 struct InfiniteSphereEmitter {
