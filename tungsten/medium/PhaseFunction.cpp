@@ -20,9 +20,10 @@ float HenyeyGreenstein::eval(float h) const {
 }
 
 float HenyeyGreenstein::sample(float u) const {
-    // The inverted distribution with the difference of squares multiplied out: all terms are positive.
-    const float strength = std::abs(g), b = 1.0f - strength + 2.0f * strength * u;
-    return std::min(2.0f * (1.0f - u) * sqr(1.0f - strength) * (1.0f + strength * u) / (b * b), 2.0f);
+    // The inverted distribution from the peak (u = 0) on, with the difference of squares multiplied out: no term is
+    // negative.
+    const float strength = std::abs(g), b = 1.0f - strength + 2.0f * strength * (1.0f - u);
+    return std::min(2.0f * u * sqr(1.0f - strength) * (1.0f + strength * (1.0f - u)) / (b * b), 2.0f);
 }
 
 float Rayleigh::eval(float h) const {
