@@ -23,13 +23,19 @@ class EmissionDirections {
         // cos^2 is uniform for the cosine: h = 1 - sqrt(1 - u) = u / (1 + sqrt(1 - u)).
         return darts::directionAbout(axis_, cosine_ ? u / (1.0f + std::sqrt(1.0f - u)) : widest_ * u, v);
     }
+    /// Above 0 for whatever sample() draws.
     [[nodiscard]] float pdf(const darts::Vec3& direction) const {
         const float h = darts::oneMinusCosine(direction, axis_);
-        if (cosine_) return std::max(1.0f - h, 0.0f) / darts::Pi;
-        return h <= widest_ ? 1.0f / (2.0f * darts::Pi * widest_) : 0.0f;
+        if (cosine_) return std::max(1.0f - h, LeastCosine) / darts::Pi;
+        // Rounding carries directions across the cone's edge, by as much as it moves their difference from the axis.
+        // Beyond it nothing is emitted, so that the density there does not matter.
+        const float edge = widest_ + Rounding * std::sqrt(widest_);
+        return h <= edge ? 1.0f / (2.0f * darts::Pi * widest_) : 0.0f;
     }
 
   private:
+    static constexpr float Rounding = 1e-6f, LeastCosine = 1e-6f;
+
     darts::Vec3 axis_{0, 0, 1};
     float widest_ = 2.0f; ///< largest 1 - cos
     bool cosine_ = false;

@@ -94,7 +94,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
 
 template <typename Scattering>
 void GuidedPhotonWalk::connectToSurfaces(bool onSurface, float usual, const Scattering& scattering) {
-    if (!connections_) return;
+    if (!connections_ || !bears(power_)) return;
     const LightVertex vertex{ray_.origin, onSurface, time_, bounce_, region_, power_, usual};
     if (connections_->hasTarget())
         connections_->connect(vertex, gate_, scattering, sampler_, draws_, deposits_.arrivals, counters_.rays);
@@ -221,7 +221,7 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
 
 void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
     if (!guidance_.directView()) return depositBeam(medium, surface);
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
     const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeRadius);
     const float end = std::min(surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
@@ -242,7 +242,7 @@ void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& g
 }
 
 void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
-    if (isBlack(power) || bounce > MostPhotonBounces) return;
+    if (!bears(power) || bounce > MostPhotonBounces) return;
     if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
     ++counters_.volumeDeposits;
     if (!arrival_->mayCount(position, time)) return;

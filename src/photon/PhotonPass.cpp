@@ -170,6 +170,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
             append(maps, batch.deposits, settings_);
             statistics.add("rays", batch.counters.rays);
             statistics.add("control vertices", batch.counters.controlVertices);
+            statistics.add("non-finite samples", batch.counters.nonFinite);
             statistics.add("volume deposits", batch.counters.volumeDeposits);
             statistics.add("volume deposits that may count", batch.counters.countingDeposits);
         }
