@@ -20,15 +20,13 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
 
 ArrivalTest::ArrivalTest(const Scene& scene, const EffectPlan& plan)
     : sensor_(Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
-      highestSpeed_(double(highestSpeed(scene))) {
+      highestSpeed_(double(plan.highestSpeed)) {
     const Vec3f position = scene.camera.position();
     camera_ = Vec3d(position.x, position.y, position.z);
     straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;
     directView_ = straightTimesKnown_ && !plan.specularSensorPaths;
     if (const auto* lens = std::get_if<ThinLens>(&scene.camera.model)) slack_ = double(lens->apertureRadius);
     if (std::holds_alternative<Orthographic>(scene.camera.model)) slack_ = std::numeric_limits<double>::infinity();
-    // One speed everywhere that counts: the camera's own.
-    if (straightTimesKnown_) highestSpeed_ = double(scene.cameraRegion.speed);
 }
 
 double ArrivalTest::soonestArrival(const Vec3f& position, double time) const {

@@ -148,7 +148,7 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
     straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
     rules_ = {settings_.includeSurfaces, plan.glossySensorPaths};
-    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan.speedsDiffer);
+    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
     foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }

@@ -163,6 +163,7 @@ TEST_P(FlightParts, AreWhereDepositsCount) {
     plan.timeResolved = true;
     plan.specularSensorPaths = c.folds;
     plan.speedsDiffer = c.flightSpeed != 1.0f;
+    plan.highestSpeed = std::max(c.flightSpeed, 1.0f);
     const ArrivalTest arrival(scene, plan);
     Sampler sampler(5, RandomStream::Test, 0, 0);
     int inside = 0, outside = 0;

@@ -199,6 +199,29 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
     expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
 }
 
+/// Fog at half the speed and a gate of twice the times are the same scene; the speed of a vacuum that no path can reach
+/// does not matter. Straight from a lamp to rough metal.
+TEST(GlossySurfaces, KnowTheSpeedThatMatters) {
+    const auto mean = [](double speed) {
+        const std::string json = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.02}],
+         "primitives": [{"type": "quad", "bsdf": {"type": "rough_conductor", "material": "Al", "roughness": 0.3}, "transform": {"scale": [6, 1, 6]}},
+                        {"type": "point", "emission": 20, "ext_medium": "fog", "transform": {"position": [0, 2, 1]}}],
+         "camera": {"type": "pinhole", "resolution": [16, 16], "fov": 45, "medium": "fog", "reconstruction_filter": "box",
+                    "transform": {"position": [0, 1.5, 3], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+         "integrator": {"type": "progressive_transient_photon_map", "photon_count": 100, "max_bounces": 2, "volume_gather_radius": 0.05}})";
+        return renderPhotons(
+                   json, {{Best, "media.fog.speed_of_light=" + std::to_string(speed),
+                           setting("transient_time_center", 5.6 / speed), setting("transient_time_width", 1.0 / speed)},
+                          8,
+                          1})
+                   ->mean() /
+               speed;
+    };
+    const double expected = mean(1.0);
+    EXPECT_GT(expected, 0.0);
+    EXPECT_NEAR(mean(0.5), expected, 0.02 * expected);
+}
+
 /// Light by way of a mirror on rough metal: the part that photons bring.
 TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
