@@ -222,7 +222,7 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
 void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
     if (!guidance_.directView()) return depositBeam(medium, surface);
     if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
-    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeRadius);
+    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeReach());
     const float end = std::min(surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
     storeBeam(deposits_.beams, *arrival_, medium,
@@ -243,7 +243,7 @@ void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& g
 
 void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
     if (!bears(power) || bounce > MostPhotonBounces) return;
-    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
+    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeReach())) return;
     ++counters_.volumeDeposits;
     if (!arrival_->mayCount(position, time)) return;
     ++counters_.countingDeposits;

@@ -106,6 +106,23 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
     }
 }
 
+/// Where radii follow the density the largest fixed radius does not matter, not at the image's border either: photons
+/// beyond it show in the image, and are what the density there is.
+TEST(GuidedPoints, AreNotCulledByARadiusThatIsNotTheirs) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 7, "transient_time_width": 1)");
+    const auto mean = [&](const std::string& radius) {
+        return renderPhotons(
+                   json, {{Best, "integrator.fixed_volume_radius=false", "integrator.include_surfaces=false",
+                           "camera.fov=3", "integrator.volume_gather_radius=" + radius, setting("photon_count", 4000)},
+                          4,
+                          1})
+            ->mean();
+    };
+    const double all = mean("1000");
+    EXPECT_GT(all, 0.0);
+    EXPECT_NEAR(mean("0.0005"), all, 1e-5 * all);
+}
+
 TEST_P(GuidedMaps, FullStoresStayUnbiased) {
     const std::string json = test::configurationA(2, false);
     // A wide view keeps more: the ray is the same.
