@@ -153,8 +153,8 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }
 
-std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
-    const float factor = pointRadiusFactor(pass, settings_.volumeAlpha);
+std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t step) const {
+    const float factor = pointRadiusFactor(step, settings_.volumeAlpha);
     if (settings_.fixedVolumeRadius) return {settings_.volumeRadius * factor};
     std::vector<float> radii = adaptiveRadii(store.photons);
     // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
@@ -162,20 +162,20 @@ std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint3
     return radii;
 }
 
-TimeGate PhotonIntegrator::gate(uint32_t pass) const {
+TimeGate PhotonIntegrator::gate(uint32_t step) const {
     const TimeGate& gate = scene_->transport.gate;
     if (!gate.delta) return gate;
-    const double tau = settings_.temporalRadius * deltaGateFactor(pass, settings_.volumeAlpha);
+    const double tau = settings_.temporalRadius * deltaGateFactor(step, settings_.volumeAlpha);
     return {false, false, gate.start - tau, 2.0 * tau, 1};
 }
 
-void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
+void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t step, const SensorRecord& record,
                                     StoreParts& parts, GatherStructures& structures, Film& film,
                                     Statistics& statistics) const {
     std::vector<float> radii;
     {
         const StageTimer timer(statistics, "build");
-        radii = volumeRadii(maps.volume, pass);
+        radii = volumeRadii(maps.volume, step);
         selectStraight(photonPass_->arrival(), maps.volume, radii, parts.straightPoints, parts.straightRadii);
         const Sensor& sensor = structures.sensor;
         if (!structures.splatted) {
@@ -202,11 +202,11 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const
     statistics.add("gathered photons", gathered);
 }
 
-void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
+void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t step, const SensorRecord& record, StoreParts& parts,
                                    GatherStructures& structures, Film& film, Statistics& statistics) const {
     const ArrivalTest& arrival = photonPass_->arrival();
-    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
-                                                      : beamRadiusFactor(pass, settings_.alpha);
+    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(step, settings_.volumeAlpha))
+                                                      : beamRadiusFactor(step, settings_.alpha);
     const float radius = settings_.volumeRadius * factor;
     const std::vector<PhotonBeam>& all = maps.beams.beams;
     const bool single = arrival.directView() || !arrival.straightTimesKnown();
@@ -237,10 +237,10 @@ void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const 
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    // Without progression every pass looks at the photons of the first.
-    PassInfo photons = pass;
-    if (!settings_.progressive) photons.index = 0;
-    const Sensor sensor = Sensor::of(*scene_, gate(photons.index));
+    // Without progression radii stay as they are. New photons come all the same: passes that shared them would share
+    // their error, which no spread of passes tells.
+    const uint32_t step = settings_.progressive ? pass.index : 0;
+    const Sensor sensor = Sensor::of(*scene_, gate(step));
     const bool recordable = straightRays_ && pass.samples == 1;
     const bool splat = recordable && (photonPass_->storesVolume() || photonPass_->storesBeams());
     const bool connect = recordable && connects_;
@@ -251,7 +251,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         record = recordSensorPaths(*scene_, connect, rules_, pass,
                                    connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
         if (connect) {
-            const auto spread = Spread::of(settings_.gatherRadius, surfaceRadiusFactor(photons.index, settings_.alpha));
+            const auto spread = Spread::of(settings_.gatherRadius, surfaceRadiusFactor(step, settings_.alpha));
             connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass, spread);
         }
     }
@@ -259,24 +259,23 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     {
         const StageTimer timer(statistics, "photon pass");
         photonPass_->setGate(sensor.gate);
-        maps = photonPass_->trace(photons, connections.get(), statistics);
+        maps = photonPass_->trace(pass, connections.get(), statistics);
     }
     StoreParts parts{};
-    parts.uFolded = Sampler(pass.seed, RandomStream::Folded, photons.index, 0).next1D();
+    parts.uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
     GatherStructures structures{
         maps, sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(), settings_.gatherCount};
-    if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, parts, structures, film, statistics);
-    if (!maps.beams.beams.empty()) gatherBeams(maps, photons.index, record, parts, structures, film, statistics);
+    if (!maps.volume.photons.empty()) gatherPoints(maps, step, record, parts, structures, film, statistics);
+    if (!maps.beams.beams.empty()) gatherBeams(maps, step, record, parts, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
-        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
+        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(step, settings_.alpha);
     }
     if (connect) {
         const StageTimer timer(statistics, "share arrivals");
-        const auto kernel =
-            SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(), settings_.gatherRadius,
-                              surfaceRadiusFactor(photons.index, settings_.alpha));
+        const auto kernel = SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(),
+                                              settings_.gatherRadius, surfaceRadiusFactor(step, settings_.alpha));
         shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");

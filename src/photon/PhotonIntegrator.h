@@ -9,8 +9,8 @@
 
 namespace tungsten::photon {
 
-/// `photon_map`, `progressive_photon_map` and their transient forms. The progressive ones trace new photons and shrink
-/// the radii every pass; the others trace the same photons in every pass.
+/// `photon_map`, `progressive_photon_map` and their transient forms. All trace new photons in every pass; the
+/// progressive ones shrink the radii from pass to pass.
 class PhotonIntegrator : public Integrator {
   public:
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
@@ -19,8 +19,9 @@ class PhotonIntegrator : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
+    // `step`: of the radii's schedule, the pass if they shrink.
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
-    [[nodiscard]] TimeGate gate(uint32_t pass) const;
+    [[nodiscard]] TimeGate gate(uint32_t step) const;
     void planVolume(EffectPlan& plan) const;
     void planGlossyPaths(EffectPlan& plan) const;
     void describeGuidance(EffectPlan& plan) const;
@@ -28,11 +29,11 @@ class PhotonIntegrator : public Integrator {
     [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
     /// Photons to pixels, or structures over them; `parts` holds what only straight or only folded rays look at.
     struct StoreParts;
-    void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
+    void gatherPoints(const PhotonMaps& maps, uint32_t step, const SensorRecord& record, StoreParts& parts,
                       GatherStructures& structures, Film& film, Statistics& statistics) const;
-    void gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
+    void gatherBeams(const PhotonMaps& maps, uint32_t step, const SensorRecord& record, StoreParts& parts,
                      GatherStructures& structures, Film& film, Statistics& statistics) const;
-    [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
+    [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t step) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
