@@ -216,7 +216,9 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
     if (!guidance_.directView())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
-    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power, bounce_ + 1);
+    // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
+    store(context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power,
+          bounce_ + 1);
 }
 
 void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
@@ -237,15 +239,16 @@ void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& g
         share = controlVertexShare(guide.pdfControlVertex(reachable_, h, distance), meanComponent(medium.sigmaT()),
                                    distance);
     const Vec3f position = ray_.at(distance);
-    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power_ * (1.0f - share),
-          bounce_ + 1);
+    store(*arrival_, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
+          power_ * (1.0f - share), bounce_ + 1);
 }
 
-void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
+void GuidedPhotonWalk::store(const ArrivalTest& arrival, const Vec3f& position, double time, const Rgb& power,
+                             int bounce) {
     if (!bears(power) || bounce > MostPhotonBounces) return;
     if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeReach())) return;
     ++counters_.volumeDeposits;
-    if (!arrival_->mayCount(position, time)) return;
+    if (!arrival.mayCount(position, time)) return;
     ++counters_.countingDeposits;
     deposits_.volume.photons.push_back(
         {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});

@@ -93,11 +93,7 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
-    const TimeGate& gate = scene.transport.gate;
-    for (int frame = 0; frame < gate.frames; ++frame) {
-        frameArrivals_.push_back(arrival_);
-        frameArrivals_.back().setGate({false, false, gate.frameStart(frame), gate.frameWidth, 1});
-    }
+    for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameArrivals_.push_back(arrival_.ofFrame(frame));
 }
 
 void PhotonPass::setGate(const TimeGate& gate) {

@@ -106,6 +106,23 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
     }
 }
 
+/// Rounding moves photons across the ends of short frames, where paths that aim at one of them lose no light.
+TEST(GuidedFrames, MayBeShort) {
+    const std::string json = test::fogOverFloor(R"("start_time": 7, "transient_time_width": 1e-5, "frame_num": 8)");
+    const auto mean = [&](const char* single) {
+        const Overrides overrides{std::string(R"(integrator.darts={"preset": "published", "single_frames": )") +
+                                      single + "}",
+                                  "integrator.include_surfaces=false", "integrator.photon_count=20000"};
+        double sum = 0.0;
+        const auto rendered = renderPhotons(json, {overrides, 32, 1});
+        for (int frame = 0; frame < 8; ++frame) sum += rendered->mean(frame) / 8.0;
+        return sum;
+    };
+    const double whole = mean("false");
+    EXPECT_GT(whole, 0.0);
+    EXPECT_NEAR(mean("true"), whole, 0.005 * whole);
+}
+
 /// Where radii follow the density the largest fixed radius does not matter, not at the image's border either: photons
 /// beyond it show in the image, and are what the density there is.
 TEST(GuidedPoints, AreNotCulledByARadiusThatIsNotTheirs) {
