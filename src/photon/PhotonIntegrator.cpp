@@ -162,6 +162,10 @@ std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint3
     return radii;
 }
 
+uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
+    return settings_.progressive ? pass.index : 0;
+}
+
 TimeGate PhotonIntegrator::gate(uint32_t step) const {
     const TimeGate& gate = scene_->transport.gate;
     if (!gate.delta) return gate;
@@ -169,13 +173,21 @@ TimeGate PhotonIntegrator::gate(uint32_t step) const {
     return {false, false, gate.start - tau, 2.0 * tau, 1};
 }
 
-void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t step, const SensorRecord& record,
+template <typename Use>
+void PhotonIntegrator::forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics,
+                                     const Use& use) const {
+    use(first);
+    for (uint32_t s = 1; s < pass.samples; ++s)
+        use(recordSensorPaths(*scene_, false, rules_, {pass.index, pass.firstSample + s, 1, pass.seed}, 1, statistics));
+}
+
+void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
                                     StoreParts& parts, GatherStructures& structures, Film& film,
                                     Statistics& statistics) const {
     std::vector<float> radii;
     {
         const StageTimer timer(statistics, "build");
-        radii = volumeRadii(maps.volume, step);
+        radii = volumeRadii(maps.volume, step(pass));
         selectStraight(photonPass_->arrival(), maps.volume, radii, parts.straightPoints, parts.straightRadii);
         const Sensor& sensor = structures.sensor;
         if (!structures.splatted) {
@@ -196,17 +208,20 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t step, const
     const StageTimer timer(statistics, "splat");
     const bool all = parts.straightPoints.paths == 0;
     const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const uint64_t gathered =
-        splatPhotons(*scene_, structures.sensor, record, all ? maps.volume : parts.straightPoints,
-                     all ? radii : parts.straightRadii, double(maps.volume.scale()) / width, film);
-    statistics.add("gathered photons", gathered);
+    const double scale = double(maps.volume.scale()) / (width * double(pass.samples));
+    forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
+        statistics.add("gathered photons",
+                       splatPhotons(*scene_, structures.sensor, sample, all ? maps.volume : parts.straightPoints,
+                                    all ? radii : parts.straightRadii, scale, film));
+    });
 }
 
-void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t step, const SensorRecord& record, StoreParts& parts,
-                                   GatherStructures& structures, Film& film, Statistics& statistics) const {
+void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
+                                   StoreParts& parts, GatherStructures& structures, Film& film,
+                                   Statistics& statistics) const {
     const ArrivalTest& arrival = photonPass_->arrival();
-    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(step, settings_.volumeAlpha))
-                                                      : beamRadiusFactor(step, settings_.alpha);
+    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(step(pass), settings_.volumeAlpha))
+                                                      : beamRadiusFactor(step(pass), settings_.alpha);
     const float radius = settings_.volumeRadius * factor;
     const std::vector<PhotonBeam>& all = maps.beams.beams;
     const bool single = arrival.directView() || !arrival.straightTimesKnown();
@@ -231,19 +246,18 @@ void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t step, const 
     if (!structures.splatted) return;
     const StageTimer timer(statistics, "splat");
     const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const uint64_t gathered = splatBeams(*scene_, structures.sensor, record, single ? all : parts.straightBeams, radius,
-                                         double(maps.beams.scale()) / width, film);
-    statistics.add("gathered beams", gathered);
+    const double scale = double(maps.beams.scale()) / (width * double(pass.samples));
+    forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
+        statistics.add("gathered beams", splatBeams(*scene_, structures.sensor, sample,
+                                                    single ? all : parts.straightBeams, radius, scale, film));
+    });
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    // Without progression radii stay as they are. New photons come all the same: passes that shared them would share
-    // their error, which no spread of passes tells.
-    const uint32_t step = settings_.progressive ? pass.index : 0;
-    const Sensor sensor = Sensor::of(*scene_, gate(step));
-    const bool recordable = straightRays_ && pass.samples == 1;
-    const bool splat = recordable && (photonPass_->storesVolume() || photonPass_->storesBeams());
-    const bool connect = recordable && connects_;
+    const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
+    const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
+    const bool splat = straightRays_ && (photonPass_->storesVolume() || photonPass_->storesBeams());
+    const bool connect = straightRays_ && connects_;
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
@@ -251,7 +265,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         record = recordSensorPaths(*scene_, connect, rules_, pass,
                                    connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
         if (connect) {
-            const auto spread = Spread::of(settings_.gatherRadius, surfaceRadiusFactor(step, settings_.alpha));
+            const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
             connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass, spread);
         }
     }
@@ -265,17 +279,17 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     parts.uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
     GatherStructures structures{
         maps, sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(), settings_.gatherCount};
-    if (!maps.volume.photons.empty()) gatherPoints(maps, step, record, parts, structures, film, statistics);
-    if (!maps.beams.beams.empty()) gatherBeams(maps, step, record, parts, structures, film, statistics);
+    if (!maps.volume.photons.empty()) gatherPoints(maps, pass, record, parts, structures, film, statistics);
+    if (!maps.beams.beams.empty()) gatherBeams(maps, pass, record, parts, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
-        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(step, settings_.alpha);
+        structures.surfaceRadius = settings_.gatherRadius * surfaceFactor;
     }
     if (connect) {
         const StageTimer timer(statistics, "share arrivals");
         const auto kernel = SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(),
-                                              settings_.gatherRadius, surfaceRadiusFactor(step, settings_.alpha));
+                                              settings_.gatherRadius, surfaceFactor);
         shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");

@@ -19,7 +19,9 @@ class PhotonIntegrator : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
-    // `step`: of the radii's schedule, the pass if they shrink.
+    /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that
+    /// shared them would share their error, which no spread of passes tells.
+    [[nodiscard]] uint32_t step(const PassInfo& pass) const;
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
     [[nodiscard]] TimeGate gate(uint32_t step) const;
     void planVolume(EffectPlan& plan) const;
@@ -27,11 +29,14 @@ class PhotonIntegrator : public Integrator {
     void describeGuidance(EffectPlan& plan) const;
     /// Why guided light paths do not connect to surfaces; empty if they do.
     [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
+    /// Calls use(record) with the straight rays of every sample of the pass; `first` holds the first sample's.
+    template <typename Use>
+    void forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics, const Use& use) const;
     /// Photons to pixels, or structures over them; `parts` holds what only straight or only folded rays look at.
     struct StoreParts;
-    void gatherPoints(const PhotonMaps& maps, uint32_t step, const SensorRecord& record, StoreParts& parts,
+    void gatherPoints(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record, StoreParts& parts,
                       GatherStructures& structures, Film& film, Statistics& statistics) const;
-    void gatherBeams(const PhotonMaps& maps, uint32_t step, const SensorRecord& record, StoreParts& parts,
+    void gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record, StoreParts& parts,
                      GatherStructures& structures, Film& film, Statistics& statistics) const;
     [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t step) const;
 

@@ -106,6 +106,20 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
     }
 }
 
+/// Several camera samples of one pass: surfaces are connected and photons splatted on each sample's rays.
+TEST_P(GuidedMaps, AgreeWithPathsAtSeveralSamplesAPass) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 9, "transient_time_width": 2)");
+    const auto photons = guided(json, {{setting("photon_count", 12000)}, 40, 3});
+    if (GetParam().darts == Best) {
+        EXPECT_GT(photons->statistics.counter("surface connections"), 10000u);
+    }
+    expectSameBlocks(*photons, *renderPaths(json, {{}, 20, 64}), 0, 0.05, 0.25);
+    const char* counter = GetParam().beams ? "gathered beams" : "gathered photons";
+    const auto single = guided(json, {{setting("photon_count", 12000)}, 40, 1});
+    const double expected = 3.0 * double(single->statistics.counter(counter));
+    EXPECT_NEAR(double(photons->statistics.counter(counter)), expected, 0.05 * expected);
+}
+
 /// Rounding moves photons across the ends of short frames, where paths that aim at one of them lose no light.
 TEST(GuidedFrames, MayBeShort) {
     const std::string json = test::fogOverFloor(R"("start_time": 7, "transient_time_width": 1e-5, "frame_num": 8)");
