@@ -313,7 +313,7 @@ TEST(GlossySurfaces, ShowFog) {
         Overrides maps = best;
         maps.push_back(std::string("integrator.volume_photon_type=") + primitive);
         const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
-            return renderPhotons(json, {maps, 12, 1, seed});
+            return renderPhotons(json, {maps, 16, 1, seed});
         });
         EXPECT_NEAR(mean, expected, 5.0 * std::hypot(error, pathError) + 0.02 * expected);
         EXPECT_LT(std::hypot(error, pathError), 0.04 * expected) << "the test would not see a wrong value";
