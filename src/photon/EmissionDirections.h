@@ -26,13 +26,19 @@ class EmissionDirections {
         const float x = u * sineSquared();
         return darts::directionAbout(axis_, cosine_ ? x / (1.0f + std::sqrt(1.0f - x)) : widest_ * u, v);
     }
+    /// Above 0 for whatever sample() draws.
     [[nodiscard]] float pdf(const darts::Vec3& direction) const {
         const float h = darts::oneMinusCosine(direction, axis_);
-        if (h > widest_) return 0.0f;
-        return cosine_ ? (1.0f - h) / (darts::Pi * sineSquared()) : 1.0f / (2.0f * darts::Pi * widest_);
+        // Rounding carries directions across the cone's edge, by as much as it moves their difference from the axis.
+        // Beyond it nothing is emitted, so that the density there does not matter.
+        if (h > widest_ + Rounding * std::sqrt(widest_)) return 0.0f;
+        return cosine_ ? std::max(1.0f - h, LeastCosine) / (darts::Pi * sineSquared())
+                       : 1.0f / (2.0f * darts::Pi * widest_);
     }
 
   private:
+    static constexpr float Rounding = 1e-6f, LeastCosine = 1e-6f;
+
     /// Of the cone's half angle.
     [[nodiscard]] float sineSquared() const { return widest_ * (2.0f - widest_); }
 

@@ -95,7 +95,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
 
 template <typename Scattering>
 void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering) {
-    if (!connections_) return;
+    if (!connections_ || !bears(power_)) return;
     const LightVertex vertex{ray_.origin, margin, time_, bounce_, region_, power_, usual};
     if (connections_->hasTarget())
         connections_->connect(vertex, gate_, scattering, sampler_, draws_, deposits_.arrivals, counters_.rays);
@@ -217,13 +217,15 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
     if (!guidance_.directView())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
-    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power, bounce_ + 1);
+    // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
+    store(context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power,
+          bounce_ + 1);
 }
 
 void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
     if (!guidance_.directView()) return depositBeam(medium, surface);
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
-    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeRadius);
+    if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
+    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeReach());
     const float end = std::min(surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
     storeBeam(deposits_.beams, *arrival_, medium,
@@ -238,15 +240,16 @@ void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& g
         share = controlVertexShare(guide.pdfControlVertex(reachable_, h, distance), meanComponent(medium.sigmaT()),
                                    distance);
     const Vec3f position = ray_.at(distance);
-    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power_ * (1.0f - share),
-          bounce_ + 1);
+    store(*arrival_, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
+          power_ * (1.0f - share), bounce_ + 1);
 }
 
-void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
-    if (isBlack(power) || bounce > MostPhotonBounces) return;
-    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
+void GuidedPhotonWalk::store(const ArrivalTest& arrival, const Vec3f& position, double time, const Rgb& power,
+                             int bounce) {
+    if (!bears(power) || bounce > MostPhotonBounces) return;
+    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeReach())) return;
     ++counters_.volumeDeposits;
-    if (!arrival_->mayCount(position, time)) return;
+    if (!arrival.mayCount(position, time)) return;
     ++counters_.countingDeposits;
     deposits_.volume.photons.push_back(
         {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});

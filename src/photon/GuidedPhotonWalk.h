@@ -32,7 +32,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     void depositSeenBeam(const Medium& medium, float surface);
     /// Ordinary photons share with control vertices where sensor paths can fold.
     void depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h);
-    void store(const Vec3f& position, double time, const Rgb& power, int bounce);
+    void store(const ArrivalTest& arrival, const Vec3f& position, double time, const Rgb& power, int bounce);
     bool survives(const darts::Guide& guide);
     /// Residual at the ray's origin, and the length of the next connection.
     bool look(const darts::Guide& guide);

@@ -2,8 +2,8 @@
 
 namespace tungsten::photon {
 
-LightConnector::LightConnector(const Scene& scene, bool speedsDiffer)
-    : scene_(scene), lights_(scene), highestSpeed_(double(highestSpeed(scene))), oneSpeed_(!speedsDiffer) {}
+LightConnector::LightConnector(const Scene& scene, const EffectPlan& plan)
+    : scene_(scene), lights_(scene), highestSpeed_(double(plan.highestSpeed)), oneSpeed_(!plan.speedsDiffer) {}
 
 /// Of light that leaves at `start`; the exact test is left to the frames.
 bool LightConnector::mayArrive(const TimeGate& gate, double start, double distance) const {

@@ -27,8 +27,7 @@ std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const d
 }
 
 PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
-    : view_(scene.camera), camera_(scene.camera.position()),
-      speed_(double(plan.speedsDiffer ? highestSpeed(scene) : scene.cameraRegion.speed)),
+    : view_(scene.camera), camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
       unwarped_(scene.transport.cameraUnwarped), sensor_(Sensor::of(scene, scene.transport.gate)) {
     const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;

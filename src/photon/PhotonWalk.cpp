@@ -41,6 +41,12 @@ bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
 }
 
+bool PhotonWalk::bears(const Rgb& power) {
+    if (isFinite(power)) return !isBlack(power);
+    ++counters_.nonFinite;
+    return false;
+}
+
 bool PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
     if (!arrival_->mayCount(position, time_)) return false;
     list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
@@ -48,7 +54,7 @@ bool PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& po
 }
 
 void PhotonWalk::depositBeam(const Medium& medium, float reach) {
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
     storeBeam(deposits_.beams, *arrival_, medium,
               {time_, ray_.origin, ray_.direction, power_, 0.0f, reach, uint16_t(bounce_), int16_t(region_.medium)});
 }
@@ -60,7 +66,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     ++consecutiveMedium_;
     if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
-    if (context_.storeVolume && orderCounts) {
+    if (context_.storeVolume && orderCounts && bears(power_)) {
         ++counters_.volumeDeposits;
         if (deposit(deposits_.volume, position, power_, region_.medium)) ++counters_.countingDeposits;
     }
@@ -83,8 +89,9 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     if (!(geometric > 0.0f)) return true;
     const bool connected = context_.connects && connectable_ && receivesConnections(*surface_.bsdf);
     if (connected && context_.densityPhotons) deposit(deposits_.surface, hit.position, Rgb(0.0f), -1);
-    if (!connected && !foundBySensorPaths())
-        deposit(deposits_.surface, hit.position, power_ * (shading / geometric), -1);
+    if (connected || foundBySensorPaths()) return true;
+    const Rgb power = power_ * (shading / geometric);
+    if (bears(power)) deposit(deposits_.surface, hit.position, power, -1);
     return true;
 }
 

@@ -27,7 +27,7 @@ SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u) {
 Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction) {
     if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) return point->intensity;
     if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model))
-        return spot->intensity * spot->falloff(direction.dot(spot->direction));
+        return spot->intensity * spot->falloffTowards(direction);
     const float cosine = direction.dot(start.normal);
     if (const auto* area = std::get_if<AreaEmitter>(&emitter.model); area && area->shinesAt(cosine))
         return area->radiance.rgb(start.uv) * (cosine * area->areaSampler->area());

@@ -36,6 +36,11 @@ struct SpotEmitter {
     float cosInner = 0.9f, cosOuter = 0.8f;
 
     [[nodiscard]] float falloff(float cosTheta) const;
+    /// Towards a unit direction. By the difference from the axis: in a narrow cone a dot product's rounding is a large
+    /// part of the edge.
+    [[nodiscard]] float falloffTowards(const Vec3f& unit) const {
+        return falloff(1.0f - 0.5f * (unit - direction).length2());
+    }
 };
 /// Any surface with emission: one-sided radiance on the side of the geometric normal.
 struct AreaEmitter {

@@ -4,14 +4,6 @@
 
 namespace tungsten {
 
-float highestSpeed(const Scene& scene) {
-    float speed = std::max(scene.transport.vacuumSpeed, scene.cameraRegion.speed);
-    for (const Medium& medium : scene.media) speed = std::max(speed, medium.speedOfLight);
-    for (const Primitive& primitive : scene.primitives)
-        if (primitive.boundsRegion) speed = std::max({speed, primitive.inside.speed, primitive.outside.speed});
-    return speed;
-}
-
 Region Scene::regionOf(const Emitter& emitter) const {
     if (emitter.medium >= 0) return {emitter.medium, media[size_t(emitter.medium)].speedOfLight};
     return {-1, emitter.vacuumSpeed > 0.0f ? emitter.vacuumSpeed : transport.vacuumSpeed};

@@ -102,7 +102,4 @@ struct Scene {
     [[nodiscard]] Region regionOf(const Emitter& emitter) const;
 };
 
-/// An upper bound of the speeds that light travels at anywhere.
-float highestSpeed(const Scene& scene);
-
 } // namespace tungsten
