@@ -75,7 +75,7 @@ TEST(Harness, KernelBiasFallsWithTheRadius) {
         const Agreement wide = compare(renderBlocks(scene, method), reference);
         scene.radius = 0.45;
         const Agreement narrow = compare(renderBlocks(scene, method), reference);
-        EXPECT_GT(wide.shrink, 0.05);
+        EXPECT_GT(wide.shrink, 0.04);
         EXPECT_LT(narrow.shrink, 0.5 * wide.shrink);
         EXPECT_LT(narrow.deviation, 0.5 * wide.shrink + wide.blockError);
         EXPECT_LE(narrow.score(), 1.0) << narrow;
