@@ -60,7 +60,7 @@ float DirectionsOut::connectionWorth(const Heading& ray, float last) const {
     const auto legs = Ellipse<float>{residual_.C, excess_, ray.h}.legs();
     const float depth = face.depth - legs.first * dot(ray.direction, face.normal);
     if (!exit.connects || !(depth > 0.0f)) return 0.0f;
-    const float inside = legs.first + depth * exit.inside / std::max(face.depth, 1e-6f * exit.inside);
+    const float inside = legs.first + depth * exit.slant;
     const float transmittance = std::exp(std::min(-sigmaT_ * inside - here_, MostLog));
     return std::min(gate_ * legs.firstPerLength * 4.0f * Pi * last * transmittance, MostConnectionWorth);
 }

@@ -37,6 +37,7 @@ struct Exit {
     std::array<Face, 3> faces; ///< the first one is where the straight way to the target leaves
     int count = 0;
     float inside = 0;          ///< length of the straight way up to there
+    float slant = 1;           ///< length of straight ways in the body per depth under that face
     float mismatch = 1;        ///< A = (1 + R) / (1 - R), R the mean internal reflectance; 1: index-matched
     float outerSpeed = 1;      ///< speed of light in the body over that beyond
     float gate = 0;            ///< length of the gate
@@ -44,6 +45,7 @@ struct Exit {
     bool connects = true;      ///< light goes on straight beyond the boundary
     bool sealed = false;       ///< and does so nowhere: no connection from inside is ever complete
     float leaveOdds = 1;       ///< factor on the odds of a flight's end at the surface ahead
+    float elsewhere = 0;       ///< part of what leaves by any other way that may get to the target, within the gate
     bool narrow = false;       ///< sides are set
     std::array<Side, 4> sides; ///< two pairs of opposite ones
 };

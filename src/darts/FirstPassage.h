@@ -84,15 +84,20 @@ class FirstPassage {
     template <typename Batch>
     Batch exponent(const Departure<Batch>& at, Batch& factor) const {
         using std::max;
-        Batch exponent = through(exit_.faces[0], at.to(exit_.faces[0]), factor);
+        const typename Departure<Batch>::Left first = at.to(exit_.faces[0]);
+        Batch exponent = through(exit_.faces[0], first, factor);
         for (int i = 1; i < exit_.count; ++i) {
             const Exit::Face& face = exit_.faces[size_t(i)];
             Batch otherFactor(0.0f);
-            const Batch other = through(face, at.to(face), otherFactor), top = max(exponent, other);
-            factor = factor * lanes::exp(Batch(exponent - top)) + otherFactor * lanes::exp(Batch(other - top));
-            exponent = top;
+            const Batch other = through(face, at.to(face), otherFactor);
+            add(other, otherFactor, exponent, factor);
         }
-        return exponent - at.squaredOutside * fourthInverseD_ / (at.excess + meanFreePath_);
+        exponent = exponent - at.squaredOutside * fourthInverseD_ / (at.excess + meanFreePath_);
+        if (exit_.elsewhere > 0.0f)
+            add(Batch(-sigmaA_ * first.longest),
+                Batch(exit_.elsewhere * (first.reachable + 1e-4f * meanFreePath_) / (first.longest + meanFreePath_)),
+                exponent, factor);
+        return exponent;
     }
     /// Its logarithm, never below that of 1e-37.
     [[nodiscard]] float log(const Departure<float>& at) const {
@@ -108,6 +113,14 @@ class FirstPassage {
     [[nodiscard]] Slopes slopes(const Departure<float>& at, const Vec3& towardsTarget) const;
 
   private:
+    /// e^exponent factor += e^other otherFactor
+    template <typename Batch>
+    static void add(const Batch& other, const Batch& otherFactor, Batch& exponent, Batch& factor) {
+        using std::max;
+        const Batch top = max(exponent, other);
+        factor = factor * lanes::exp(Batch(exponent - top)) + otherFactor * lanes::exp(Batch(other - top));
+        exponent = top;
+    }
     /// Through one face.
     template <typename Batch>
     Batch through(const Exit::Face& face, const typename Departure<Batch>::Left& left, Batch& factor) const {
@@ -136,7 +149,8 @@ class FirstPassage {
         }
         return -sigmaA_ * left.longest - p2;
     }
-    /// e^{x^2} erfc(x), x >= 0, within 1 % up to 5 and too large by at most 2 / 5 beyond (Abramowitz and Stegun 7.1.26).
+    /// e^{x^2} erfc(x), x >= 0, within 1 % up to 5 and too large by at most 2 / 5 beyond (Abramowitz and
+    /// Stegun 7.1.26).
     template <typename Batch>
     static Batch scaledErfc(const Batch& x) {
         const Batch t = 1.0f / (1.0f + 0.3275911f * x);

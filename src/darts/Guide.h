@@ -87,7 +87,7 @@ class Guide {
         if (residual.way != Way::Out) return 1.0f;
         const Exit::Face& face = residual.exit.faces[0];
         const float depth = std::max(face.depth - vertex.distance * dot(direction, face.normal), 0.0f);
-        const float inside = vertex.distance + depth * residual.exit.inside / std::max(face.depth, 1e-6f * residual.C);
+        const float inside = vertex.distance + depth * residual.exit.slant;
         const float logged = -mean(medium_.sigmaT()) * inside - logWayOut(residual);
         const float worth = meanSigmaS_ * vertex.inversePdf * 4.0f * Pi * last * std::exp(std::min(logged, 20.0f));
         return std::min(worth / WorthTracing, 1.0f);

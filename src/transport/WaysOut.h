@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tungsten::transport {
@@ -64,6 +65,10 @@ class WaysOut {
         Region beyond;
         SurfaceMargin margin;
     };
+    /// The boundary through which a straight way from inside the region leaves its body for the aim, past what lies
+    /// inside the body. None if the aim is inside; Way::Unknown if something opaque hides it.
+    [[nodiscard]] std::optional<Boundary> findExit(Ray way, const Region& region, const Aim& aim,
+                                                   darts::Residual& residual, uint64_t& rays) const;
     void leave(const Boundary& boundary, const Vec3f& position, const Region& region, const Aim& aim,
                darts::Residual& residual, uint64_t& rays) const;
     /// Goes on through index-matched boundaries: what diffuses beyond the exit counts as depth, the rest as free.
@@ -73,6 +78,7 @@ class WaysOut {
     const Scene& scene_;
     std::vector<Body> bodies_; ///< by medium
     bool layered_ = false;     ///< several media scatter
+    bool surfaces_ = false;    ///< some surface has a smooth lobe
 };
 
 } // namespace tungsten::transport

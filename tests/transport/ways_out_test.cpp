@@ -101,6 +101,32 @@ TEST(WaysOut, WhatDiffusesFartherOutIsDepth) {
     EXPECT_NEAR(residual.exit.faces[0].thickness, 4.5f, 1e-3f); // light in the coat is not lost
 }
 
+TEST(WaysOut, LightGoesAroundWhatLiesInTheBody) {
+    const std::string coat = R"({"type": "cube", "int_medium": "tissue", "bsdf": {"type": "forward"},
+                                "transform": {"scale": [3, 3, 5]}}, )";
+    View view(sceneWith(Forward, coat, R"("ext_medium": "tissue", )"));
+    const darts::Residual residual = view.look({0.0f, 0.0f, -2.25f}, {{0.0f, 0.0f, 8.0f}}, 1);
+    ASSERT_EQ(residual.way, darts::Way::Out);
+    EXPECT_NEAR(residual.exit.faces[0].depth, 4.75f, 1e-4f);
+    EXPECT_NEAR(residual.exit.slant, 1.0f, 1e-4f);
+    // What is inside the milk is to be entered.
+    EXPECT_NEAR(view.look({0.0f, 0.0f, -2.25f}, {{0.0f, 0.0f, 1.0f}, 0}, 1).exit.faces[0].depth, 0.25f, 1e-4f);
+}
+
+/// At the boundary there is no depth: ways in the body must follow from the face's slant (best paths fell to 0.64).
+TEST(WaysOut, FlightsThatEnterABodyHaveALookFromInside) {
+    const std::string coat = R"({"type": "cube", "int_medium": "tissue", "bsdf": {"type": "forward"},
+                                "transform": {"scale": [3, 3, 5]}}, )";
+    View view(sceneWith(Forward, coat, R"("ext_medium": "tissue", )"));
+    const Aim aim{{4.0f, 0.0f, 5.5f}};
+    darts::Residual residual = darts::Residual::of({4.0f, 0.0f, 3.0f}, {5.0, 9.0});
+    view.waysOut.look(Start::along({{0.0f, 0.0f, 2.5f}, {0.0f, 0.0f, -1.0f}, 1e-5f}), {1, 1.0f}, aim, residual,
+                      view.rays);
+    ASSERT_EQ(residual.way, darts::Way::Out);
+    EXPECT_NEAR(residual.exit.faces[0].depth, 0.0f, 1e-4f);
+    EXPECT_NEAR(residual.exit.slant, 5.0f / 3.0f, 1e-4f);
+}
+
 TEST(WaysOut, NoneWhereNothingEndsOrTheSchemeLeavesThemOut) {
     darts::Scheme scheme;
     scheme.on = true;
