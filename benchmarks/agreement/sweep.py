@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""Renders small scenes unlike the shipped ones by plain and guided points, beams and paths, and copies of them in other units
+or turned and moved as a whole: all must agree.
+
+    sweep.py FOLDER [--fast] [--scenes NAME ...]
+
+Writes FOLDER/SWEEP.md; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the same
+command, and only what changed is rendered again. Seeds are fixed.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sweep_copies import moved, scaled
+from sweep_measures import Samples, compare, compare_pairs, means, without_kernel
+from sweep_report import report, scene_row
+from sweep_scenes import FAST, all_scenes
+from sweep_vocabulary import write_assets
+
+PROJECT = Path(__file__).resolve().parents[2]
+SEEDS = 4
+LIMIT_SECONDS = 120  # for one render
+
+
+@dataclass(frozen=True)
+class Method:
+    name: str
+    settings: dict
+    samples: int     # per pixel of a path tracer, passes of a photon map
+    photons: int = 0  # light paths per pass; 0: no kernel
+
+    @property
+    def guided(self):
+        return self.settings["darts"] != "off"
+
+
+def photon_method(name, primitive, darts, passes, photons):
+    settings = {"type": "photons", "volume_photon_type": primitive, "darts": darts, "alpha": 1.0, "volume_alpha": 1.0,
+                "fixed_volume_radius": True, "gather_photon_count": 1000000, "volume_photon_count": 100000000}
+    return Method(name, settings, passes, photons)
+
+
+METHODS = [
+    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 768),
+    Method("best paths", {"type": "path_tracer", "darts": "best"}, 192),
+    photon_method("plain points", "points", "off", 8, 10000),
+    photon_method("best points", "points", "best", 8, 1500),
+    photon_method("plain beams", "beams", "off", 8, 3000),
+    photon_method("best beams", "beams", "best", 8, 500),
+]
+
+# Copies, and the seeds that they begin after. Scaled copies use the original's random numbers, with which they can be compared
+# closely; moved ones, whose directions differ in any case, their own.
+COPIES = {"original": (lambda scene: scene, 0), "scaled": (lambda scene: scaled(scene, 7.0, 3.0), 0), "moved": (moved, 100)}
+
+
+def methods_of(scene):
+    """Without a gate there is nothing to guide light paths to."""
+    return [m for m in METHODS if m.name not in scene.without and not (scene.steady and m.guided)]
+
+
+def scene_json(scene, method, radius):
+    """The scene file's content."""
+    effort = scene.effort.get(method.name, 1.0) * scene.effort.get("*", 1.0)
+    integrator = {**scene.integrator, **method.settings}
+    samples = method.samples
+    if method.photons:
+        integrator.update({"type": "progressive_photon_map" if scene.steady else "progressive_transient_photon_map",
+                           "photon_count": int(method.photons * effort), "gather_radius": radius, "volume_gather_radius": radius})
+    else:
+        samples = max(1, int(samples * effort))
+    if integrator.pop("single_frames", False) and method.guided:
+        integrator["darts"] = {"preset": integrator["darts"], "single_frames": True}
+    return {"media": scene.media, "primitives": scene.primitives, "camera": scene.camera, "integrator": integrator,
+            "renderer": {"spp": samples, "spp_step": 1 if method.photons else samples}}
+
+
+class Renderer:
+    """Renders scene files once and remembers their means, for one build of the renderer."""
+
+    def __init__(self, tungsten, folder):
+        self.tungsten, self.folder = tungsten, folder
+        build = hashlib.sha256()
+        for file in [tungsten, *sorted(tungsten.parent.glob("libtungsten*.so"))]:
+            build.update(file.read_bytes())
+        self.build = build.hexdigest()
+        self.messages = set()
+
+    def store(self, name, content):
+        """Keeps a scene file under a name."""
+        text = json.dumps(content, indent=1, default=lambda value: value.ravel().tolist())
+        (self.folder / "scenes" / f"{name}.json").write_text(text)
+
+    def means(self, name, seed):
+        """Means of one render of a stored scene, its frames, and the seconds it took. Throws RuntimeError with the renderer's
+        message."""
+        file = self.folder / "scenes" / f"{name}.json"
+        text = file.read_text()
+        key = hashlib.sha256(f"{self.build} {seed} {text}".encode()).hexdigest()[:24]
+        kept = self.folder / "renders" / f"{key}.npz"
+        if not kept.exists():
+            np.savez(kept.with_suffix(".part.npz"), **self._render(file, seed, key))
+            kept.with_suffix(".part.npz").replace(kept)
+        with np.load(kept) as stored:
+            for message in stored["messages"]:
+                self.messages.add((name, str(message)))
+            return stored["means"], int(stored["frames"]), float(stored["seconds"])
+
+    def _render(self, file, seed, key):
+        image = self.folder / "renders" / f"{key}.npy"
+        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", self.folder / "renders", "-o", f"{key}.png", "-e",
+                   image.name, file]
+        start = time.monotonic()
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS)
+        if done.returncode != 0:
+            raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+        pixels = np.load(image).astype(float)
+        for leftover in self.folder.glob(f"renders/{key}*.*"):
+            leftover.unlink()
+        messages = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        return {"means": means(pixels), "frames": len(pixels), "seconds": time.monotonic() - start, "messages": np.array(messages, str)}
+
+
+def render_scene(scene, renderer, pool):
+    """Samples of every method: all copies together, and copies by name; with the seconds that each method took."""
+    jobs = {}
+    for copy, (change, first) in COPIES.items():
+        changed = change(scene)
+        for method in methods_of(scene):
+            for part in (1.0, 0.5) if method.photons else (0.5,):
+                name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == 1.0 else ''}"
+                renderer.store(name, scene_json(changed, method, part * changed.radius))
+                for seed in range(first + 1, first + SEEDS + 1):
+                    jobs[copy, method.name, part, seed - first] = pool.submit(renderer.means, name, seed)
+    return {method.name: gathered(method, {key: job.result() for key, job in jobs.items() if key[1] == method.name})
+            for method in methods_of(scene)}
+
+
+def gathered(method, results):
+    """One method's samples by copy, and the seconds of its renders."""
+    frames = next(iter(results.values()))[1]
+    copies = {}
+    for copy in COPIES:
+        fine, coarse = ([results[copy, method.name, part, s + 1][0] for s in range(SEEDS)] if method.photons or part == 0.5 else None
+                        for part in (0.5, 1.0))
+        values, blur = without_kernel(fine, coarse) if coarse else (np.asarray(fine), np.zeros_like(fine[0]))
+        copies[copy] = Samples([values], blur, frames)
+    together = Samples([copies["original"].groups[0], copies["moved"].groups[0]],
+                       (copies["original"].blur + copies["moved"].blur) / 2, frames)
+    return copies, together, sum(seconds for _, _, seconds in results.values())
+
+
+def compare_scene(rendered):
+    """All comparisons: of methods with each other, and of copies with the originals."""
+    names = list(rendered)
+    methods = {(a, b): compare(rendered[a][1], rendered[b][1]) for i, a in enumerate(names) for b in names[i + 1:]}
+    copies = {}
+    for name, (by_copy, _, _) in rendered.items():
+        copies[name, "scaled"] = compare_pairs(by_copy["original"], by_copy["scaled"])
+        copies[name, "moved"] = compare(by_copy["original"], by_copy["moved"])
+    return methods, copies
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--tungsten", type=Path, default=os.environ.get("TUNGSTEN", PROJECT / "build/bin/tungsten"))
+    parser.add_argument("--fast", action="store_true", help="a handful of scenes, for the tests")
+    parser.add_argument("--scenes", nargs="+", default=[], metavar="NAME", help="those whose names hold one of these")
+    parser.add_argument("--jobs", type=int, default=2, help="renders at a time, one thread each (2)")
+    return parser.parse_args()
+
+
+def chosen(options):
+    scenes = all_scenes()
+    if options.fast:
+        scenes = [scene for scene in scenes if scene.name in FAST]
+    return [s for s in scenes if not options.scenes or any(part in s.name for part in options.scenes)]
+
+
+def main():
+    options = arguments()
+    for name in ("scenes", "renders"):
+        (options.folder / name).mkdir(parents=True, exist_ok=True)
+    write_assets(options.folder / "assets")
+    renderer = Renderer(Path(options.tungsten).resolve(), options.folder.resolve())
+    results, failures = {}, {}
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for scene in chosen(options):
+            try:
+                rendered = render_scene(scene, renderer, pool)
+            except (RuntimeError, subprocess.TimeoutExpired) as error:
+                failures[scene.name] = str(error)
+                print(f"{scene.name}: {error}", flush=True)
+                continue
+            results[scene.name] = (scene, rendered, *compare_scene(rendered))
+            text, agree = report(results, failures, renderer.messages)
+            (options.folder / "SWEEP.md").write_text(text)
+            print(scene_row(*results[scene.name]), flush=True)
+    text, agree = report(results, failures, renderer.messages)
+    (options.folder / "SWEEP.md").write_text(text)
+    return 0 if agree else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
