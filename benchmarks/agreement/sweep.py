@@ -28,7 +28,7 @@ from sweep_scenes import FAST, all_scenes
 from sweep_vocabulary import write_assets
 
 PROJECT = Path(__file__).resolve().parents[2]
-SEEDS = 4
+SEEDS = 8
 LIMIT_SECONDS = 120  # for one render
 
 
@@ -51,12 +51,12 @@ def photon_method(name, primitive, darts, passes, photons):
 
 
 METHODS = [
-    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 768),
-    Method("best paths", {"type": "path_tracer", "darts": "best"}, 192),
-    photon_method("plain points", "points", "off", 8, 10000),
-    photon_method("best points", "points", "best", 8, 1500),
-    photon_method("plain beams", "beams", "off", 8, 3000),
-    photon_method("best beams", "beams", "best", 8, 500),
+    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 256),
+    Method("best paths", {"type": "path_tracer", "darts": "best"}, 64),
+    photon_method("plain points", "points", "off", 4, 5000),
+    photon_method("best points", "points", "best", 4, 1000),
+    photon_method("plain beams", "beams", "off", 4, 1500),
+    photon_method("best beams", "beams", "best", 4, 300),
 ]
 
 # Copies, and the seeds that they begin after. Scaled copies use the original's random numbers, with which they can be compared
@@ -79,6 +79,8 @@ def scene_json(scene, method, radius):
                            "photon_count": int(method.photons * effort), "gather_radius": radius, "volume_gather_radius": radius})
     else:
         samples = max(1, int(samples * effort))
+    if method.photons:
+        integrator.pop("enable_rr", None)
     if integrator.pop("single_frames", False) and method.guided:
         integrator["darts"] = {"preset": integrator["darts"], "single_frames": True}
     return {"media": scene.media, "primitives": scene.primitives, "camera": scene.camera, "integrator": integrator,

@@ -44,6 +44,13 @@ class Samples:
         squares = sum(((group - group.mean(axis=0))**2).sum(axis=0) for group in self.groups)
         return np.sqrt(squares / self.freedom / count)
 
+    def error_at(self, level):
+        """The same, relative to `level` nowhere below the median: means that no rare bright path has reached yet do not know their
+        error."""
+        lit = self.mean > 0.0
+        usual = np.median(self.error[lit] / self.mean[lit]) if lit.any() else 0.0
+        return np.maximum(self.error, usual * level)
+
     @property
     def freedom(self):
         return sum(len(group) - 1 for group in self.groups)
@@ -79,7 +86,8 @@ def normal_sigmas(t, freedom):
 
 def compare(first: Samples, second: Samples):
     """Two sets of renders of the same image by different random numbers."""
-    variances = np.array([first.error**2, second.error**2])
+    level = np.maximum(np.abs(first.mean), np.abs(second.mean))
+    variances = np.array([first.error_at(level)**2, second.error_at(level)**2])
     total = variances.sum(axis=0)
     # Welch and Satterthwaite
     freedom = total**2 / np.maximum((variances**2 / [[first.freedom], [second.freedom]]).sum(axis=0), 1e-300)

@@ -1,11 +1,13 @@
 """The sweep's tables, in Markdown."""
 
+import math
+
 from sweep_measures import MOST_SIGMAS, RELATIVE_BIAS
 
 INTRODUCTION = f"""# Sweep of small scenes
 
 `benchmarks/agreement/sweep.py FOLDER`: plain and best points, beams and paths, and copies of each in units 7 times as short (of time:
-3 times) or turned and moved as a whole, 16 x 16 pixels, 4 seeds each. Compared are the means over the image, every frame, and 16
+3 times) or turned and moved as a whole, 16 x 16 pixels, 8 seeds each. Compared are the means over the image, every frame, and 16
 blocks of it, each channel by itself. Errors are those of the seeds, as normal deviates of Student's t; allowed besides are
 {100 * RELATIVE_BIAS:g} % of the image's mean and two thirds of what half the kernel's radius changes, the means of photons being
 extrapolated to no radius. More than {MOST_SIGMAS:g} sigmas disagree.
@@ -34,7 +36,7 @@ def report(results, failures, messages):
 def _worst(comparisons):
     """The most sigmas, and the ratio furthest from 1."""
     sigmas = max((c.sigmas for c in comparisons), default=0.0)
-    return max((c.ratio for c in comparisons), key=lambda ratio: abs(ratio - 1.0), default=1.0), sigmas
+    return max((c.ratio for c in comparisons), key=lambda ratio: abs(math.log(max(ratio, 1e-9))), default=1.0), sigmas
 
 
 def scene_row(scene, rendered, methods, copies):

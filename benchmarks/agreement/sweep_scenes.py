@@ -15,36 +15,41 @@ def scene(name, shows, media, primitives, view, integrator, radius=0.12, **field
     return SweepScene(name, shows, media, primitives, view, integrator, radius, **fields)
 
 
+def dense(*parts, **fields):
+    """Small bodies of dense fog: a radius that they are large for."""
+    return scene(*parts, radius=0.06, **fields)
+
+
 def bulb(x=1.2, y=1.2, z=1.4, size=0.3, emission=40.0, outside=None, **fields):
     return lamp("sphere", at(x, y, z, size), emission, outside, **fields)
 
 
 def several_media():
     thin, thick = medium("thin", 0.4), medium("thick", [5.0, 4.0, 3.0], 0.05)
-    yield scene("nested-cubes", "a dense cube in a thin one in vacuum, light and camera outside", [thin, thick],
+    yield dense("nested-cubes", "a dense cube in a thin one in vacuum, light and camera outside", [thin, thick],
                 [body("cube", at(0, 0, 0, 1.8, 25), "thin"), body("cube", at(0.1, 0, 0, 0.9, 50), "thick", "thin"), bulb()],
                 camera(), gate(6.4, 7.4))
-    yield scene("nested-spheres", "three spheres of fog in each other", [thin, thick, medium("core", 1.0, 1.0, 0.5)],
+    yield dense("nested-spheres", "three spheres of fog in each other", [thin, thick, medium("core", 1.0, 1.0, 0.5)],
                 [body("sphere", at(0, 0, 0, 0.9), "thin"), body("sphere", at(0, 0, 0, 0.6), "thick", "thin"),
                  body("sphere", at(0.1, 0, 0.1, 0.25), "core", "thick"), bulb()], camera(), gate(6.4, 7.4))
-    yield scene("layers", "three layers of tissue (g 0.8), index-matched, lit and seen from outside",
+    yield dense("layers", "three layers of tissue (g 0.8), index-matched, lit and seen from outside",
                 [medium("skin", 6.0, 0.2, 0.8), medium("fat", 3.0, 0.05, 0.8), medium("muscle", 8.0, 0.5, 0.8)],
                 [body("cube", at(0, 0, 0, (1.6, 1.6, 1.2)), "fat"),
                  body("cube", at(0, 0, 0.4, (1.59, 1.59, 0.3)), "skin", "fat"),
                  body("cube", at(0, 0, -0.3, (1.59, 1.59, 0.5)), "muscle", "fat"), bulb()],
                 camera(), gate(6.2, 7.6, 48), effort={"plain points": 2, "plain beams": 2})
-    yield scene("cloud-in-haze", "a dense sphere in haze that holds light and camera", [medium("haze", 0.1), medium("cloud", 10.0)],
+    yield dense("cloud-in-haze", "a dense sphere in haze that holds light and camera", [medium("haze", 0.1), medium("cloud", 10.0)],
                 [body("sphere", at(0, 0, 0, 0.5), "cloud", "haze"), bulb(outside="haze")], camera(inside="haze"),
                 gate(6.4, 7.4, 64))
-    yield scene("two-clouds", "two dense spheres of different colour beside each other in haze",
+    yield dense("two-clouds", "two dense spheres of different colour beside each other in haze",
                 [medium("haze", 0.15), medium("red", [6.0, 2.0, 1.0]), medium("blue", [1.0, 2.0, 6.0], 0.2, -0.4)],
                 [body("sphere", at(-0.45, 0, 0, 0.4), "red", "haze"), body("sphere", at(0.45, 0, 0, 0.4), "blue", "haze"),
                  bulb(0, 1.2, 1.4, outside="haze")], camera(inside="haze"), gate(6.2, 7.2, 48))
-    yield scene("two-rooms", "rooms of different fog that share an opening", [medium("left", 0.6), medium("right", 2.0, 0.1)],
+    yield dense("two-rooms", "rooms of different fog that share an opening", [medium("left", 0.6), medium("right", 2.0, 0.1)],
                 [body("cube", at(-0.5, 0, 0, 0.999), "left"), body("cube", at(0.5, 0, 0, 0.999), "right"),
                  bulb(-1.4, 0.8, 1.0), body("quad", facing((0, -0.35, 0), (1, -0.35, 0), 0.29), bsdf=lambert(0.3))],
                 camera(), gate(6.0, 7.2))
-    yield scene("tissue", "a block with g 0.8 lit from behind", [medium("tissue", 10.0, 0.1, 0.8)],
+    yield dense("tissue", "a block with g 0.8 lit from behind", [medium("tissue", 10.0, 0.1, 0.8)],
                 [body("cube", at(0, 0, 0, (1.4, 1.4, 0.6)), "tissue"), bulb(0.8, 0.8, -1.6)], camera(),
                 gate(6.6, 7.8, 64), effort={"plain points": 2})
 
@@ -52,16 +57,16 @@ def several_media():
 def inside_and_outside():
     fog = medium("fog", 1.0, 0.05)
     cube = at(0, 0, 0, 1.6, 20)
-    yield scene("lamp-in-body", "a lamp inside a body of fog, seen from outside", [fog],
+    yield dense("lamp-in-body", "a lamp inside a body of fog, seen from outside", [fog],
                 [body("cube", cube, "fog"), bulb(0.3, 0.2, 0, 0.2, outside="fog")], camera(), gate(4.8, 5.8))
-    yield scene("camera-in-body", "the camera inside a body of fog, the lamp outside", [fog],
+    yield dense("camera-in-body", "the camera inside a body of fog, the lamp outside", [fog],
                 [body("cube", at(0, 0, 0, 3.0), "fog"), bulb(0.9, 0.9, -2.2)], camera((0, 0, 1.2), fov=50, inside="fog"),
                 gate(3.4, 4.6))
-    yield scene("behind-fog", "a wall seen through a slab of fog in front of it, lit beside the slab", [fog],
+    yield dense("behind-fog", "a wall seen through a slab of fog in front of it, lit beside the slab", [fog],
                 [body("cube", at(0, 0, 0.8, (2, 2, 0.5)), "fog"), *room(3.0), bulb(0, 1.1, 0.2, 0.25)], camera(fov=24), gate(7.6, 8.8))
-    yield scene("deep-cube", "a cube of 8 mean free paths, from afar", [medium("milk", 8.0, 0.02)],
+    yield dense("deep-cube", "a cube of 8 mean free paths, from afar", [medium("milk", 8.0, 0.02)],
                 [body("cube", at(0, 0, 0, 1.0, 15), "milk"), bulb(2, 2, 4, 0.5, 60.0)], camera((0, 0, 8), fov=10), gate(12.0, 13.2, 96))
-    yield scene("fog-ball-and-wall", "a fog ball that touches nothing lights a wall behind it", [medium("ball", 4.0, 0.0, 0.3)],
+    yield dense("fog-ball-and-wall", "a fog ball that touches nothing lights a wall behind it", [medium("ball", 4.0, 0.0, 0.3)],
                 [body("sphere", at(0.2, 0.1, 0.4, 0.5), "ball"), *room(2.6, [0.7, 0.5, 0.3]), bulb(0.9, 0.7, 0.9, 0.2)],
                 camera(fov=26), gate(6.2, 7.4))
 
@@ -79,7 +84,7 @@ def refraction():
                 gate(4.6, 6.0, 24))
     yield scene("rough-glass", "a lamp in milk in rough glass", [milk],
                 [body("sphere", at(0, 0, 0, 0.8), "milk", bsdf={"type": "rough_dielectric", "ior": 1.3, "roughness": 0.3}),
-                 inner], camera(), gate(4.6, 6.0, 24), effort={"plain paths": 2})
+                 inner], camera(), gate(4.6, 6.0, 24), radius=0.2)
 
 
 def lights():
