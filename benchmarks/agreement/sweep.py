@@ -2,7 +2,7 @@
 """Renders small scenes unlike the shipped ones by plain and guided points, beams and paths, and copies of them in other units
 or turned and moved as a whole: all must agree.
 
-    sweep.py FOLDER [--fast] [--scenes NAME ...]
+    sweep.py FOLDER [--fast] [--scenes NAME ...] [--effort FACTOR]
 
 Writes FOLDER/SWEEP.md; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the same
 command, and only what changed is rendered again. Seeds are fixed.
@@ -14,7 +14,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,12 +50,12 @@ def photon_method(name, primitive, darts, passes, photons):
 
 
 METHODS = [
-    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 256),
-    Method("best paths", {"type": "path_tracer", "darts": "best"}, 64),
-    photon_method("plain points", "points", "off", 4, 5000),
-    photon_method("best points", "points", "best", 4, 1000),
-    photon_method("plain beams", "beams", "off", 4, 1500),
-    photon_method("best beams", "beams", "best", 4, 300),
+    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 512),
+    Method("best paths", {"type": "path_tracer", "darts": "best"}, 192),
+    photon_method("plain points", "points", "off", 4, 20000),
+    photon_method("best points", "points", "best", 4, 6000),
+    photon_method("plain beams", "beams", "off", 4, 6000),
+    photon_method("best beams", "beams", "best", 4, 2000),
 ]
 
 # Copies, and the seeds that they begin after. Scaled copies use the original's random numbers, with which they can be compared
@@ -69,9 +68,9 @@ def methods_of(scene):
     return [m for m in METHODS if m.name not in scene.without and not (scene.steady and m.guided)]
 
 
-def scene_json(scene, method, radius):
-    """The scene file's content."""
-    effort = scene.effort.get(method.name, 1.0) * scene.effort.get("*", 1.0)
+def scene_json(scene, method, radius, effort=1.0):
+    """The scene file's content; `effort` multiplies the samples or light paths."""
+    effort *= scene.effort.get(method.name, 1.0)
     integrator = {**scene.integrator, **method.settings}
     samples = method.samples
     if method.photons:
@@ -104,7 +103,7 @@ class Renderer:
         (self.folder / "scenes" / f"{name}.json").write_text(text)
 
     def means(self, name, seed):
-        """Means of one render of a stored scene, its frames, and the seconds it took. Throws RuntimeError with the renderer's
+        """Means of one render of a stored scene, its frames, and the processor's seconds. Throws RuntimeError with the renderer's
         message."""
         file = self.folder / "scenes" / f"{name}.json"
         text = file.read_text()
@@ -120,20 +119,21 @@ class Renderer:
 
     def _render(self, file, seed, key):
         image = self.folder / "renders" / f"{key}.npy"
-        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", self.folder / "renders", "-o", f"{key}.png", "-e",
-                   image.name, file]
-        start = time.monotonic()
+        statistics = image.with_suffix(".json")
+        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png", "-e", image.name,
+                   "--stats", statistics, file]
         done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS)
         if done.returncode != 0:
             raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
         pixels = np.load(image).astype(float)
+        seconds = json.loads(statistics.read_text())["process CPU seconds"]
         for leftover in self.folder.glob(f"renders/{key}*.*"):
             leftover.unlink()
         messages = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        return {"means": means(pixels), "frames": len(pixels), "seconds": time.monotonic() - start, "messages": np.array(messages, str)}
+        return {"means": means(pixels), "frames": len(pixels), "seconds": seconds, "messages": np.array(messages, str)}
 
 
-def render_scene(scene, renderer, pool):
+def render_scene(scene, effort, renderer, pool):
     """Samples of every method: all copies together, and copies by name; with the seconds that each method took."""
     jobs = {}
     for copy, (change, first) in COPIES.items():
@@ -141,7 +141,7 @@ def render_scene(scene, renderer, pool):
         for method in methods_of(scene):
             for part in (1.0, 0.5) if method.photons else (0.5,):
                 name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == 1.0 else ''}"
-                renderer.store(name, scene_json(changed, method, part * changed.radius))
+                renderer.store(name, scene_json(changed, method, part * changed.radius, effort))
                 for seed in range(first + 1, first + SEEDS + 1):
                     jobs[copy, method.name, part, seed - first] = pool.submit(renderer.means, name, seed)
     return {method.name: gathered(method, {key: job.result() for key, job in jobs.items() if key[1] == method.name})
@@ -149,7 +149,7 @@ def render_scene(scene, renderer, pool):
 
 
 def gathered(method, results):
-    """One method's samples by copy, and the seconds of its renders."""
+    """One method's samples by copy, and the processor's seconds for its renders."""
     frames = next(iter(results.values()))[1]
     copies = {}
     for copy in COPIES:
@@ -179,8 +179,11 @@ def arguments():
     parser.add_argument("--tungsten", type=Path, default=os.environ.get("TUNGSTEN", PROJECT / "build/bin/tungsten"))
     parser.add_argument("--fast", action="store_true", help="a handful of scenes, for the tests")
     parser.add_argument("--scenes", nargs="+", default=[], metavar="NAME", help="those whose names hold one of these")
+    parser.add_argument("--effort", type=float, help="factor on all samples and light paths (1; fast: 0.4)")
     parser.add_argument("--jobs", type=int, default=2, help="renders at a time, one thread each (2)")
-    return parser.parse_args()
+    options = parser.parse_args()
+    options.effort = options.effort or (0.4 if options.fast else 1.0)
+    return options
 
 
 def chosen(options):
@@ -200,7 +203,7 @@ def main():
     with ThreadPoolExecutor(options.jobs) as pool:
         for scene in chosen(options):
             try:
-                rendered = render_scene(scene, renderer, pool)
+                rendered = render_scene(scene, options.effort, renderer, pool)
             except (RuntimeError, subprocess.TimeoutExpired) as error:
                 failures[scene.name] = str(error)
                 print(f"{scene.name}: {error}", flush=True)

@@ -12,7 +12,7 @@ blocks of it, each channel by itself. Errors are those of the seeds, as normal d
 {100 * RELATIVE_BIAS:g} % of the image's mean and two thirds of what half the kernel's radius changes, the means of photons being
 extrapolated to no radius. More than {MOST_SIGMAS:g} sigmas disagree.
 """
-SCENE_HEAD = """| scene | shows | worst ratio of methods | sigmas | of copies | sigmas | seconds | |
+SCENE_HEAD = """| scene | shows | worst ratio of methods | sigmas | of copies | sigmas | CPU s | |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
 
 

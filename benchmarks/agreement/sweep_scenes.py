@@ -11,7 +11,7 @@ BEAM = "a sensor path cannot hit a light without a surface that shines in one di
 GLASS = "no straight way to the light: only light paths and chance hits of the lamp"
 
 
-def scene(name, shows, media, primitives, view, integrator, radius=0.12, **fields):
+def scene(name, shows, media, primitives, view, integrator, radius=0.2, **fields):
     return SweepScene(name, shows, media, primitives, view, integrator, radius, **fields)
 
 
@@ -110,10 +110,10 @@ def lights():
     yield lit("pulses", "lamps of several shapes that flash at different times", lamp("quad", facing(where, target, 0.5), 20.0, "fog"),
               bulb(-1.2, 1.0, 0.8, 0.25, [5, 20, 40], "fog", emission_time=0.4),
               lamp("disk", facing((0, -1.4, 1), target, 0.3), [40, 10, 5], "fog", emission_time=-0.3))
-    yield scene("spot-outside", "a spot outside shines into a cube of fog", [fog],
+    yield dense("spot-outside", "a spot outside shines into a cube of fog", [fog],
                 [body("cube", at(0, 0, 0, 1.5), "fog"), lamp("spot", looking((1.6, 1.2, 0.5), target), 30.0, cone_angle=25)],
                 camera(), gate(6.4, 7.8))
-    yield scene("sky", "a cloud and a ball under a constant sky, in steady state", [medium("cloud", 2.0, 0.2, 0.5)],
+    yield dense("sky", "a cloud and a ball under a constant sky, in steady state", [medium("cloud", 2.0, 0.2, 0.5)],
                 [body("sphere", at(0, 0.2, 0, 0.6), "cloud"), body("quad", facing((0, -0.7, 0), (0, 1, 0), 3.0), bsdf=lambert(0.6)),
                  lamp("infinite_sphere", at(0, 0, 0), [1.0, 1.2, 1.5])], camera((0, 0.5, 5)), steady())
 
@@ -127,9 +127,9 @@ def cameras():
     yield scene("orthographic-haze", "parallel rays through haze", [haze], things,
                 camera(kind="orthographic", inside="haze", orthographic_size=0.8), gate(6.2, 7.6))
     cloud = [body("sphere", at(0, 0, 0, 0.7), "cloud"), bulb()]
-    yield scene("orthographic-cloud", "a cloud seen by parallel rays from outside", [medium("cloud", 4.0)], cloud,
+    yield dense("orthographic-cloud", "a cloud seen by parallel rays from outside", [medium("cloud", 4.0)], cloud,
                 camera(kind="orthographic", orthographic_size=0.8), gate(6.4, 7.6))
-    yield scene("thinlens-cloud", "a cloud seen through a wide lens from outside", [medium("cloud", 4.0)], cloud,
+    yield dense("thinlens-cloud", "a cloud seen through a wide lens from outside", [medium("cloud", 4.0)], cloud,
                 camera(kind="thinlens", aperture_size=0.2, focus_distance=4.5), gate(6.4, 7.6))
     yield scene("unwarped-mirror", "camera_unwarped, with a mirror in fog", [haze],
                 [*things, body("quad", facing((0.9, 0.2, -0.8), (0, 0.2, 1.5), 1.6), bsdf={"type": "mirror", "albedo": 0.9})],
@@ -191,7 +191,7 @@ def units_and_speeds():
     for name, length, time in (("millimetres", 1e-3, 1.0), ("ten-thousands", 1e4, 1e4), ("nanoseconds", 1.0, 3.336e-9)):
         yield replace(scaled(base, length, time), name=name, shows=f"nested-cubes in lengths of {length:g}, times of {time:g}")
     fast, slow = medium("fast", 0.5, 0.02, speed=1.5), medium("slow", 2.0, 0.02, speed=0.5)
-    yield scene("slow-and-fast", "a slow cube in fast fog, vacuum at 0.8", [fast, slow],
+    yield dense("slow-and-fast", "a slow cube in fast fog, vacuum at 0.8", [fast, slow],
                 [body("cube", at(0, 0, 0, 1.8), "fast"), body("cube", at(0, 0, 0, 0.8, 30), "slow", "fast"), bulb()], camera(),
                 {**gate(7.8, 9.2), "vaccum_speed_of_light": 0.8})
     yield scene("slow-vacuum", "a body of slow vacuum around a ball, in fog", [medium("fog", 0.4)],

@@ -18,7 +18,7 @@ class SweepScene:
     camera: dict
     integrator: dict
     radius: float
-    effort: dict = field(default_factory=dict)   # factor on samples or photons by method; "*": by all
+    effort: dict = field(default_factory=dict)   # factor on samples or photons by method
     without: dict = field(default_factory=dict)  # methods left out, and why
     unit: float = 1.0                            # length of what is 1 in the unscaled scene
 
