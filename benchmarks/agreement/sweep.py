@@ -51,7 +51,7 @@ def photon_method(name, primitive, darts, passes, photons):
 
 METHODS = [
     Method("plain paths", {"type": "path_tracer", "darts": "off"}, 512),
-    Method("best paths", {"type": "path_tracer", "darts": "best"}, 192),
+    Method("best paths", {"type": "path_tracer", "darts": "best"}, 96),
     photon_method("plain points", "points", "off", 4, 20000),
     photon_method("best points", "points", "best", 4, 6000),
     photon_method("plain beams", "beams", "off", 4, 6000),
@@ -68,22 +68,26 @@ def methods_of(scene):
     return [m for m in METHODS if m.name not in scene.without and not (scene.steady and m.guided)]
 
 
+def photon_map(scene):
+    return "progressive_photon_map" if scene.steady else "progressive_transient_photon_map"
+
+
 def scene_json(scene, method, radius, effort=1.0):
     """The scene file's content; `effort` multiplies the samples or light paths."""
     effort *= scene.effort.get(method.name, 1.0)
     integrator = {**scene.integrator, **method.settings}
     samples = method.samples
     if method.photons:
-        integrator.update({"type": "progressive_photon_map" if scene.steady else "progressive_transient_photon_map",
-                           "photon_count": int(method.photons * effort), "gather_radius": radius, "volume_gather_radius": radius})
+        integrator.update({"type": scene.integrator.get("photon_map", photon_map(scene)), "photon_count": int(method.photons * effort), "gather_radius": radius, "volume_gather_radius": radius})
     else:
         samples = max(1, int(samples * effort))
+    integrator.pop("photon_map", None)
     if method.photons:
         integrator.pop("enable_rr", None)
     if integrator.pop("single_frames", False) and method.guided:
         integrator["darts"] = {"preset": integrator["darts"], "single_frames": True}
     return {"media": scene.media, "primitives": scene.primitives, "camera": scene.camera, "integrator": integrator,
-            "renderer": {"spp": samples, "spp_step": 1 if method.photons else samples}}
+            "renderer": {"spp": samples, "spp_step": 1 if method.photons else samples, **scene.renderer}}
 
 
 class Renderer:

@@ -53,14 +53,15 @@ def _rescaled(value, dimensions, length, time):
         return copy.copy(value)
     result = {key: _rescaled(entry, dimensions, length, time) for key, entry in value.items()}
     for key, (of_length, of_time) in dimensions.items():
-        if not isinstance(result.get(key), dict):
-            _multiply(result, key, length**of_length * time**of_time)
+        _multiply(result, key, length**of_length * time**of_time)
     return result
 
 
 def _multiply(fields, key, factor):
-    """A number, or all of a list; a texture is scaled by its own field."""
+    """A number, all of a list, or a texture by its own scale."""
     value = fields.get(key)
+    if isinstance(value, dict):
+        fields[key] = {**value, "scale": value.get("scale", 1.0) * factor}
     if isinstance(value, list):
         fields[key] = [entry * factor for entry in value]
     elif isinstance(value, (int, float)):

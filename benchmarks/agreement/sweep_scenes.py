@@ -8,7 +8,8 @@ from sweep_vocabulary import (SweepScene, at, body, camera, facing, frames, gate
 
 FAST = ("nested-cubes", "lamp-in-body", "orthographic-haze", "mixed-and-alpha", "zero-channels", "slow-and-fast")
 BEAM = "a sensor path cannot hit a light without a surface that shines in one direction"
-GLASS = "no straight way to the light: only light paths and chance hits of the lamp"
+WAVES = {"type": "bitmap", "file": "../assets/waves.pfm", "scale": 2.0}
+STRIPES = {"type": "bitmap", "file": "../assets/stripes.pfm", "interpolate": False}
 
 
 def scene(name, shows, media, primitives, view, integrator, radius=0.2, **fields):
@@ -144,15 +145,13 @@ def surfaces():
         integrator = gate(*times, **fields.pop("switches", {}))
         return scene(name, shows, lit["media"], [*things, bulb(0.6, 0.8, 1.0, 0.25, outside="fog")], lit["view"], integrator, **fields)
 
-    waves = {"type": "bitmap", "file": "../assets/waves.pfm", "scale": 2.0}
-    stripes = {"type": "bitmap", "file": "../assets/stripes.pfm", "interpolate": False}
     back = body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert([0.5, 0.6, 0.7]))
     yield inner("bump-and-smooth", "a bumpy wall, and a ball of triangles with smooth normals",
-                body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert(0.6, bump=waves)),
+                body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert(0.6, bump=WAVES)),
                 body("mesh", at(0, 0, 0, 0.5), bsdf=lambert(0.7), file="../assets/ball.obj", smooth=True))
     yield inner("mixed-and-alpha", "mixed materials and half-transparent cards, fog and lamp behind them", back,
                 body("quad", facing((-0.4, 0, 0.2), (0, 0, 5), 0.8),
-                     bsdf={"type": "transparency", "alpha": stripes, "base": lambert([0.8, 0.4, 0.2])}),
+                     bsdf={"type": "transparency", "alpha": STRIPES, "base": lambert([0.8, 0.4, 0.2])}),
                 body("quad", facing((0.4, 0, 0.2), (1.5, 0, -5), 0.8),
                      bsdf={"type": "transparency", "alpha": 0.6, "base": lambert(0.7)}),
                 body("sphere", at(0, -0.5, 0.2, 0.25),
@@ -169,6 +168,26 @@ def surfaces():
                 body("quad", facing((-0.4, 0, 0.2), (-1, 0, -5), 0.7), bsdf={"type": "oren_nayar", "albedo": 0.7, "sigma": 0.5}),
                 body("quad", facing((0.4, 0, 0.2), (1, 0, 5), 0.7), bsdf={"type": "oren_nayar", "albedo": 0.7, "sigma": 0.5}),
                 switches={"enable_two_sided_shading": False})
+
+
+def odd_bodies():
+    fog, dense_fog = medium("fog", 0.3), medium("dense", 3.0, 0.05)
+    view = camera(inside="fog")
+    veil = {"type": "transparency", "alpha": 0.4, "base": lambert(0.7)}
+    yield dense("veiled-fog", "dense fog behind half-transparent walls", [fog, dense_fog],
+                [body("cube", at(0, 0, 0, 1.1, 30), "dense", "fog", veil), bulb(outside="fog")], view, gate(6.2, 7.4))
+    yield dense("striped-fog", "dense fog behind walls with holes, lamp and camera in vacuum", [dense_fog],
+                [body("cube", at(0, 0, 0, 1.1, 30), "dense", bsdf={**veil, "alpha": STRIPES}), bulb()], camera(), gate(6.2, 7.4))
+    yield dense("mesh-of-fog", "fog in a ball of triangles, mirrored by its scale", [dense_fog],
+                [body("mesh", at(0, 0, 0, (0.7, 0.5, -0.7), 20), "dense", file="../assets/ball.obj"), bulb()], camera(), gate(6.4, 7.4))
+    yield dense("fog-on-wall", "fog that touches a wall, just under a lamp", [dense_fog],
+                [body("cube", at(0, 0, -0.2, 1.0), "dense"), body("quad", facing((0, 0, -0.7005), (0, 0, 5), 2.6), bsdf=lambert(0.6)),
+                 lamp("quad", facing((0, 0.55, -0.2), (0, 0, -0.2), 0.5), 20.0)], camera(), gate(5.2, 6.4))
+    yield scene("textured-light", "a wall of stripes and a lamp of stripes in fog", [fog],
+                [body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert({**STRIPES, "scale": 0.8})),
+                 lamp("quad", facing((1.1, 1.1, 1.0), (0, 0, 0), 0.6), 30.0, "fog"),
+                 lamp("quad", facing((-1.1, 1.1, 1.0), (0, 0, 0), 0.6), {**STRIPES, "interpolate": True, "scale": 30.0}, "fog")],
+                view, gate(6.2, 7.6))
 
 
 def media_and_colours():
@@ -204,8 +223,8 @@ def switches():
     ball = body("sphere", at(0, -0.2, 0, 0.35), bsdf=lambert(0.7))
     inside = camera(inside="fog")
 
-    def switched(name, shows, integrator, *more, fog=fog, **fields):
-        return scene(name, shows, [fog], [*more, ball, bulb(outside="fog")], inside, integrator, **fields)
+    def switched(name, shows, integrator, *more, fog=fog, view=inside, **fields):
+        return scene(name, shows, [fog], [*more, ball, bulb(outside="fog")], view, integrator, **fields)
 
     yield switched("sequence", "eight frames", frames(5.6, 0.3, 8))
     yield switched("sequence-outside", "six frames of a body of fog seen from outside", frames(6.2, 0.3, 6), fog=fog)
@@ -220,10 +239,18 @@ def switches():
                     "temporal_response": {"type": "gaussian", "center": 6.8, "sigma": 0.3}})
     yield switched("single-frames", "light paths that aim at one frame each", frames(5.8, 0.6, 3, single_frames=True))
     yield switched("steady-fog", "everything that arrives", steady())
-    yield switched("consistency", "consistency checks, and roulette", gate(5.8, 7.6, enable_consistency_checks=True, enable_rr=True))
+    yield switched("roulette", "roulette of dark paths", gate(5.8, 7.6, enable_rr=True))
+    yield switched("consistency", "consistency checks on smooth and bumpy things", gate(5.8, 7.6, enable_consistency_checks=True),
+                   body("mesh", at(0.4, 0.3, 0.2, 0.35), bsdf=lambert(0.7), file="../assets/ball.obj", smooth=True),
+                   body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert(0.6, bump=WAVES)))
+    yield switched("one-map", "the same photons in every pass", gate(5.8, 7.6, photon_map="transient_photon_map"))
+    yield switched("steps", "passes of several samples a pixel", gate(5.8, 7.6), renderer={"spp_step": 2})
+    for filter in ("tent", "gaussian", "mitchell_netravali"):
+        yield switched(f"{filter.split('_')[0]}-filter", "a reconstruction filter wider than a pixel", gate(5.8, 7.6),
+                       view={**inside, "reconstruction_filter": filter, "resolution": [20, 12]})
 
 
 def all_scenes():
     """In the order of the report; names are unique."""
-    groups = (several_media, inside_and_outside, refraction, lights, cameras, surfaces, media_and_colours, units_and_speeds, switches)
+    groups = (several_media, inside_and_outside, refraction, lights, cameras, surfaces, odd_bodies, media_and_colours, units_and_speeds, switches)
     return [entry for group in groups for entry in group()]

@@ -20,6 +20,7 @@ class SweepScene:
     radius: float
     effort: dict = field(default_factory=dict)   # factor on samples or photons by method
     without: dict = field(default_factory=dict)  # methods left out, and why
+    renderer: dict = field(default_factory=dict)  # fields of the renderer block
     unit: float = 1.0                            # length of what is 1 in the unscaled scene
 
     @property
