@@ -7,6 +7,7 @@ from sweep_vocabulary import (SweepScene, at, body, camera, facing, frames, gate
                               room, steady)
 
 FAST = ("nested-cubes", "lamp-in-body", "orthographic-haze", "mixed-and-alpha", "zero-channels", "slow-and-fast")
+KEPT = "sensor paths keep the light that fog sends to visible surfaces, photons do not; so has the format"
 BEAM = "a sensor path cannot hit a light without a surface that shines in one direction"
 WAVES = {"type": "bitmap", "file": "../assets/waves.pfm", "scale": 2.0}
 STRIPES = {"type": "bitmap", "file": "../assets/stripes.pfm", "interpolate": False}
@@ -178,8 +179,8 @@ def odd_bodies():
                 [body("cube", at(0, 0, 0, 1.1, 30), "dense", "fog", veil), bulb(outside="fog")], view, gate(6.2, 7.4))
     yield dense("striped-fog", "dense fog behind walls with holes, lamp and camera in vacuum", [dense_fog],
                 [body("cube", at(0, 0, 0, 1.1, 30), "dense", bsdf={**veil, "alpha": STRIPES}), bulb()], camera(), gate(6.2, 7.4))
-    yield dense("mesh-of-fog", "fog in a ball of triangles, mirrored by its scale", [dense_fog],
-                [body("mesh", at(0, 0, 0, (0.7, 0.5, -0.7), 20), "dense", file="../assets/ball.obj"), bulb()], camera(), gate(6.4, 7.4))
+    yield dense("mesh-of-fog", "fog in a stretched ball of triangles", [dense_fog],
+                [body("mesh", at(0, 0, 0, (0.7, 0.5, 0.7), 20), "dense", file="../assets/ball.obj"), bulb()], camera(), gate(6.4, 7.4))
     yield dense("fog-on-wall", "fog that touches a wall, just under a lamp", [dense_fog],
                 [body("cube", at(0, 0, -0.2, 1.0), "dense"), body("quad", facing((0, 0, -0.7005), (0, 0, 5), 2.6), bsdf=lambert(0.6)),
                  lamp("quad", facing((0, 0.55, -0.2), (0, 0, -0.2), 0.5), 20.0)], camera(), gate(5.2, 6.4))
@@ -223,15 +224,17 @@ def switches():
     ball = body("sphere", at(0, -0.2, 0, 0.35), bsdf=lambert(0.7))
     inside = camera(inside="fog")
 
-    def switched(name, shows, integrator, *more, fog=fog, view=inside, **fields):
+    def switched(name, shows, integrator, *more, view=inside, **fields):
         return scene(name, shows, [fog], [*more, ball, bulb(outside="fog")], view, integrator, **fields)
 
     yield switched("sequence", "eight frames", frames(5.6, 0.3, 8))
-    yield switched("sequence-outside", "six frames of a body of fog seen from outside", frames(6.2, 0.3, 6), fog=fog)
+    yield dense("sequence-outside", "six frames of a body of fog seen from outside", [thick],
+                [body("cube", at(0, 0, 0, 1.0, 20), "thick"), bulb()], camera(), frames(6.2, 0.3, 6))
     yield switched("integral", "frames that integrate", frames(6.0, 0.7, 2, time_normalization="integral"))
-    yield switched("no-low-orders", "low_order_scattering off, no surfaces", gate(5.8, 7.6, low_order_scattering=False, include_surfaces=False),
-                   fog={**thick, "name": "fog"})
-    yield switched("no-surfaces", "include_surfaces off", gate(5.8, 7.6, include_surfaces=False))
+    yield scene("no-low-orders", "low_order_scattering off, in fog alone", [thick], [bulb(outside="thick")], camera(inside="thick"),
+                gate(5.8, 7.6, low_order_scattering=False))
+    yield switched("no-surfaces", "include_surfaces off", gate(5.8, 7.6, include_surfaces=False),
+                   without={"plain paths": KEPT, "best paths": KEPT})
     yield switched("few-bounces", "bounces 2 and 3 only, through a forward surface that counts", gate(5.8, 8.0, 4, min_bounces=2),
                    body("cube", at(0, 0, 0, 1.2, 30)))
     yield switched("gaussian-response", "a sensor with a Gaussian response",
