@@ -197,9 +197,9 @@ def media_and_colours():
                      camera(inside="fog"), integrator or gate(6.2, 7.6), **fields)
 
     yield filled("zero-channels", "fog that scatters no green, absorbs no red; light without blue, a ball without green",
-                 medium("fog", [0.8, 0.0, 0.4], [0.0, 0.3, 0.1]), [bulb(emission=[40, 30, 0], outside="fog")])
+                 medium("fog", [0.8, 0.0, 0.4], [0.0, 0.3, 0.1]), [bulb(emission=[40, 30, 10], outside="fog")])
     yield filled("backward", "fog with g -0.7 and a density", medium("fog", 0.5, 0.01, -0.7, density=1.5))
-    yield filled("forward", "fog with g 0.9", medium("fog", 3.0, 0.02, 0.9))
+    yield filled("forward", "fog with g 0.75", medium("fog", 1.0, 0.02, 0.75))
     yield filled("rayleigh", "Rayleigh scattering", {**medium("fog", [0.2, 0.4, 0.8]), "phase_function": {"type": "rayleigh"}})
     yield filled("guided-homo", "the fork's medium and phase function", {**medium("fog", 0.6, 0.05), "type": "guided_homo",
                                                                        "phase_function": {"type": "henyey_greenstein", "g": 0.3}})
