@@ -52,10 +52,10 @@ def photon_method(name, primitive, darts, passes, photons):
 METHODS = [
     Method("plain paths", {"type": "path_tracer", "darts": "off"}, 512),
     Method("best paths", {"type": "path_tracer", "darts": "best"}, 96),
-    photon_method("plain points", "points", "off", 4, 20000),
+    photon_method("plain points", "points", "off", 4, 50000),
     photon_method("best points", "points", "best", 4, 6000),
-    photon_method("plain beams", "beams", "off", 4, 6000),
-    photon_method("best beams", "beams", "best", 4, 2000),
+    photon_method("plain beams", "beams", "off", 4, 12000),
+    photon_method("best beams", "beams", "best", 4, 3000),
 ]
 
 # Copies, and the seeds that they begin after. Scaled copies use the original's random numbers, with which they can be compared
