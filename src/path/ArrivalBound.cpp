@@ -52,8 +52,7 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
 }
 
 ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
-    : start_(scene.transport.gate.start), end_(scene.transport.gate.end()),
-      highestSpeed_(plan.speedsDiffer ? tungsten::highestSpeed(scene) : scene.cameraRegion.speed),
+    : start_(scene.transport.gate.start), end_(scene.transport.gate.end()), highestSpeed_(plan.highestSpeed),
       slowness_(1.0 / double(highestSpeed_)), oneSpeed_(!plan.speedsDiffer) {
     // Environments never arrive; single directions are never found.
     for (const Emitter& emitter : scene.emitters)

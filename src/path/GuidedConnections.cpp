@@ -12,6 +12,11 @@ GuidedPathWalk::Straight GuidedPathWalk::straightFrom(const Vec3f& position) con
     return {distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f), distance};
 }
 
+Ray GuidedPathWalk::toTarget(Ray ray, const Straight& way) const {
+    ray.tMax = target_->point.margin().before(way.direction, way.distance);
+    return ray;
+}
+
 void GuidedPathWalk::connectElliptically(const Medium& medium, const darts::Guide& guide, float h, float surface) {
     if (!elliptical(guide)) return;
     if (connectionDrawn_) {
@@ -58,8 +63,9 @@ void GuidedPathWalk::addControlVertex(const Medium& medium, const darts::Control
     const Rgb light = target_->intensity(-way.direction);
     if (isBlack(light)) return;
     const float phase = medium.phase.eval(ray_.direction, way.direction);
-    const Visibility visibility = traceConnection(scene_, context_.forwardBoundaries, {position, way.direction},
-                                                  way.distance, target_->onSurface, region_, counters_.shadowRays);
+    const Visibility visibility =
+        traceConnection(scene_, context_.forwardBoundaries, toTarget({position, way.direction}, way), way.distance,
+                        region_, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !counts(1 + visibility.crossings, 1)) return;
     const Rgb radiance = throughput_ * medium.sigmaS * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * (phase / sqr(vertex.toTarget) * vertex.inversePdf);
@@ -73,8 +79,9 @@ void GuidedPathWalk::connectFromMedium(const Medium& medium) {
     if (!mayConnect(time_, way.distance)) return;
     const Rgb light = target_->intensity(-way.direction);
     if (isBlack(light)) return;
-    const Visibility visibility = traceConnection(scene_, context_.forwardBoundaries, {ray_.origin, way.direction},
-                                                  way.distance, target_->onSurface, region_, counters_.shadowRays);
+    const Visibility visibility =
+        traceConnection(scene_, context_.forwardBoundaries, toTarget({ray_.origin, way.direction}, way), way.distance,
+                        region_, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !counts(visibility.crossings, 0)) return;
     if (elliptical(guideOf(region_)) && visibility.oneSpeed) return; // control vertices find it
     const float phase = medium.phase.eval(ray_.direction, way.direction);
@@ -92,6 +99,12 @@ GuidedPathWalk::Scattering GuidedPathWalk::scatteringTowards(const Vec3f& direct
     const Vec3f wo = surface->frame.toLocal(direction);
     const BsdfQuery query = surface->query(TransportMode::Radiance);
     return {surface->bsdf->eval(query, surface->wi, wo), surface->bsdf->pdf(query, surface->wi, wo)};
+}
+
+Ray GuidedPathWalk::leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const {
+    Ray ray = surface ? surface->hit.leave(direction) : Ray{ray_.origin, direction};
+    ray.tMax = reach;
+    return ray;
 }
 
 void GuidedPathWalk::connectToLightPaths(const SurfaceInteraction* surface) {
@@ -116,14 +129,16 @@ void GuidedPathWalk::connectToLightVertex(const SurfaceInteraction* surface) {
     const LightVertex& vertex = *choice.vertex;
     const Vec3f offset = vertex.surface.hit.position - ray_.origin;
     const float distance = offset.length();
-    if (!(distance > scene_.rayEpsilon)) return;
+    if (!(distance > 0.0f)) return;
     const Vec3f direction = offset / distance;
+    const Ray ray = leave(surface, direction, vertex.surface.hit.margin().before(direction, distance));
+    if (!(ray.tMin < ray.tMax)) return;
     const Scattering scattering = scatteringTowards(direction, surface);
     const Rgb onward = vertex.scattered(-direction);
     if (isBlack(scattering.value) || isBlack(onward)) return;
     ++counters_.shadowRays;
     ++counters_.lightVertices;
-    if (scene_.geometry->occluded({ray_.origin, direction, ray_.tMin, distance - scene_.rayEpsilon})) return;
+    if (scene_.geometry->occluded(ray)) return;
     const float perArea = std::abs(direction.dot(vertex.surface.hit.ng)) / sqr(distance);
     const float tried = triedDensity(vertex.areaPdf), walk = scattering.pdf * perArea;
     const float share =
@@ -159,8 +174,11 @@ void GuidedPathWalk::connectToReflectedLight(const SurfaceInteraction* surface) 
     if (!counts(2, vertex.surface ? 0 : 1)) return;
     const Vec3f offset = vertex.position - ray_.origin;
     const float distance = offset.length();
-    if (!(distance > scene_.rayEpsilon)) return;
+    if (!(distance > 0.0f)) return;
     const Vec3f direction = offset / distance;
+    const Ray ray =
+        leave(surface, direction, vertex.surface ? vertex.surface->hit.margin().before(direction, distance) : distance);
+    if (!(ray.tMin < ray.tMax)) return;
 
     // The reflected light's end as a walk would meet it: what it scatters here, and in which medium its light came.
     Scattering end;
@@ -184,9 +202,7 @@ void GuidedPathWalk::connectToReflectedLight(const SurfaceInteraction* surface) 
     if (isBlack(scattering.value) || isBlack(end.value)) return;
     ++counters_.shadowRays;
     ++counters_.reflectedLight;
-    if (scene_.geometry->occluded(
-            {ray_.origin, direction, ray_.tMin, vertex.surface ? distance - scene_.rayEpsilon : distance}))
-        return;
+    if (scene_.geometry->occluded(ray)) return;
     const float flight = vertex.surface ? 1.0f : context_.lightPaths.flights().pdf(distance);
     const float walk =
         scattering.pdf * arrival * flight * (end.pdf * vertex.walkGeometry + triedDensity(vertex.glossy.areaPdf));
@@ -231,8 +247,8 @@ void GuidedPathWalk::connectFromSurface(const SurfaceInteraction& surface, const
     if (isBlack(light)) return;
     const Region region = regionBeyond(surface, way.direction, region_);
     const Visibility visibility =
-        traceConnection(scene_, context_.forwardBoundaries, {surface.hit.position, way.direction, scene_.rayEpsilon},
-                        way.distance, target_->onSurface, region, counters_.shadowRays);
+        traceConnection(scene_, context_.forwardBoundaries, toTarget(surface.hit.leave(way.direction), way),
+                        way.distance, region, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !counts(1 + visibility.crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
     const float lightPdf = target_->pdfFrom(surface.hit.position, target_->point.position, target_->point.normal);

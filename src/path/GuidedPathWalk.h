@@ -118,6 +118,10 @@ class GuidedPathWalk : private CameraPath {
                                          const Vec3f& toLight, float areaPdf) const;
 
     [[nodiscard]] Straight straightFrom(const Vec3f& position) const;
+    /// The part of a ray to the target on which something may be in the way.
+    [[nodiscard]] Ray toTarget(Ray ray, const Straight& way) const;
+    /// From the ray's origin, on `surface` if there is one, up to `reach`.
+    [[nodiscard]] Ray leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const;
     [[nodiscard]] bool mayConnect(double time, float distance) const {
         return distance > 0.0f && context_.arrival.mayConnect(time, distance, target_->start);
     }

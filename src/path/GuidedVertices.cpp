@@ -122,12 +122,12 @@ bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts:
     if (residual_.alive() && !roulette(guide)) return false;
     last_ = Last::Surface;
     vertex_ = surface.hit.position;
-    ray_ = Ray{vertex_, ray_.direction, scene_.rayEpsilon};
+    ray_ = Ray{vertex_, ray_.direction};
     connectToLightPaths(&surface);
     if (!residual_.alive()) return leavePlainly(surface);
     forgetConnection();
     const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, sampler_});
-    ray_.direction = darts::to<Vec3f>(sample.direction);
+    ray_ = surface.hit.leave(darts::to<Vec3f>(sample.direction));
     const Scattering scattering = scatteringTowards(ray_.direction, &surface);
     throughput_ = throughput_ * scattering.value * sample.inversePdf;
     scatteringPdf_ = scattering.pdf;
@@ -149,7 +149,7 @@ bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
         last_ = Last::Specular;
     }
     passBoundary(surface, exit->direction, exit->straight());
-    ray_ = Ray{surface.hit.position, exit->direction, scene_.rayEpsilon};
+    ray_ = surface.hit.leave(exit->direction);
     if (timed()) lookAhead(ray_.origin);
     return true;
 }

@@ -12,14 +12,7 @@ namespace {
 
 bool scattersSmoothly(const Bsdf& bsdf) {
     const LobeMask lobes = bsdf.lobes();
-    return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Transmissive) == 0;
-}
-
-/// A glowing disk may shine in a narrower cone than its directions are drawn from.
-bool shines(const Emitter& emitter, const EmissionSample& emission) {
-    const auto* area = std::get_if<AreaEmitter>(&emitter.model);
-    const auto* disk = area ? std::get_if<Disk>(area->shape) : nullptr;
-    return !disk || emission.ray.direction.dot(emission.normal) >= disk->cosConeAngle;
+    return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Through) == 0;
 }
 
 } // namespace
@@ -28,10 +21,8 @@ std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& e
                                             Sampler& sampler) {
     const Vec2f uPosition = sampler.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
-    if (!shines(emitter, emission)) return std::nullopt;
     const Vec3f direction = emission.ray.direction;
-    const auto hit = scene.geometry->intersect(
-        {emission.ray.origin, direction, emitter.isArea() ? scene.rayEpsilon : 0.0f, emission.ray.tMax});
+    const auto hit = scene.geometry->intersect(emission.ray);
     if (!hit || !scattersSmoothly(scene.bsdfOf(*hit))) return std::nullopt;
     LightVertex vertex;
     vertex.surface = makeInteraction(scene, *hit, direction);
@@ -60,7 +51,8 @@ bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, 
 }
 
 float pdfLightDirection(const Emitter& emitter, const SurfaceSample& point, const Vec3f& direction) {
-    if (emitter.isArea()) return std::max(direction.dot(point.normal), 0.0f) * InvPi;
+    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model))
+        return warp::squareToCosineConePdf({0.0f, 0.0f, direction.dot(point.normal)}, area->cosCone());
     if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model))
         return direction.dot(spot->direction) >= spot->cosOuter ? warp::squareToConePdf(spot->cosOuter) : 0.0f;
     return warp::squareToSpherePdf();

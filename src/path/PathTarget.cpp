@@ -64,7 +64,6 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
     if (emitter.isDelta()) return scatterBeam(std::move(target), sampler, counters);
     target.index = int(chosen.index);
     target.point = sampleEmissionPoint(emitter, sampler.next2D());
-    target.onSurface = emitter.isArea();
     target.reach = radii_[chosen.index];
     return target;
 }
@@ -113,10 +112,9 @@ bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit&
     const float scatters = (lobes & lobe::Smooth) == 0 ? 0.0f : onward == 0 ? 1.0f : 0.5f;
     if (sampler.next1D() < scatters) {
         target.power = target.power / scatters;
-        target.point = {hit.position, hit.ng, hit.uv};
+        target.point = {hit.position, hit.ng, hit.uv, hit.error};
         target.surface = surface;
         target.consistencyChecks = scene_.transport.consistencyChecks;
-        target.onSurface = true;
         return true;
     }
     if (onward == 0) return false;
@@ -125,7 +123,7 @@ bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit&
     const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-beam.ray.direction, exit->direction);
     target.power = target.power * exit->weight * (shading / (1.0f - scatters));
     beam.region = regionBeyond(surface, exit->direction, beam.region);
-    beam.ray = Ray{hit.position, exit->direction, scene_.rayEpsilon};
+    beam.ray = hit.leave(exit->direction);
     return true;
 }
 

@@ -15,7 +15,6 @@ struct PathTarget {
     const Emitter* emitter = nullptr;
     int index = -1; ///< of the emitter; -1 for virtual sources, which cannot be hit
     SurfaceSample point{Vec3f(0.0f), Vec3f(0.0f), Vec2f(0.0f)};
-    bool onSurface = false;                    ///< connections end on a surface (ray offsets)
     float reach = 0.0f;                        ///< distance from `point` to the emitter's farthest point
     double start = 0.0;                        ///< when light leaves the point
     float probability = 1.0f;                  ///< of the emitter's choice

@@ -128,7 +128,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
         weighted_ = false; // emitters seen in a mirror cannot be connected to
     }
     region_ = regionBeyond(surface, exit->direction, region_);
-    ray_ = Ray{hit.position, exit->direction, scene_.rayEpsilon};
+    ray_ = hit.leave(exit->direction);
     return continueRoulette();
 }
 
@@ -186,16 +186,15 @@ void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction&
     if (isBlack(scattering)) return;
     const float pdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
     const Region region = regionBeyond(surface, light->direct.direction, region_);
-    addConnection(*light, scattering, pdf, {surface.hit.position, light->direct.direction, scene_.rayEpsilon}, region);
+    addConnection(*light, scattering, pdf, surface.hit.leave(light->direct.direction), region);
 }
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, const Rgb& scattering, float directionPdf,
-                                                  const Ray& ray, const Region& region) {
-    const bool toSurface = light.emitter.isArea();
-    const float distance = light.direct.distance;
+                                                  Ray ray, const Region& region) {
+    ray.tMax = light.direct.reach();
     const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, distance, toSurface, region, counters_.shadowRays);
+        traceConnection(scene_, forwardBoundaries_, ray, light.direct.distance, region, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !rendered(interactions_ + visibility.crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
     const float pdf = light.direct.pdf;
@@ -219,24 +218,24 @@ void PathWalk<TimeResolved, Media>::connectSurfaceToSource(const SurfaceInteract
     const Vec3f offset = source_->point.position - surface.hit.position;
     const float distance = offset.length();
     const Vec3f direction = offset / distance;
-    if (!(distance > scene_.rayEpsilon) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
+    if (!(distance > 0.0f) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
     const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
                                               surface.frame.toLocal(direction));
     const Region region = regionBeyond(surface, direction, region_);
-    addSource(scattering, {surface.hit.position, direction, scene_.rayEpsilon}, distance, region);
+    addSource(scattering, surface.hit.leave(direction), distance, region);
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addSource(const Rgb& scattering, const Ray& ray, float distance,
-                                              const Region& region) {
+void PathWalk<TimeResolved, Media>::addSource(const Rgb& scattering, Ray ray, float distance, const Region& region) {
     if (!orderCounts(source_->mediumScatters)) return;
     ++counters_.connections;
     if constexpr (TimeResolved)
         if (!arrival_.mayConnect(time_, distance, source_->start)) return;
     const Rgb light = scattering * source_->intensity(-ray.direction) / sqr(distance);
     if (isBlack(light)) return;
+    ray.tMax = source_->point.margin().before(ray.direction, distance);
     const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, distance, source_->onSurface, region, counters_.shadowRays);
+        traceConnection(scene_, forwardBoundaries_, ray, distance, region, counters_.shadowRays);
     if (isBlack(visibility.transmittance)) return;
     if (!rendered(interactions_ + visibility.crossings + source_->interactions)) return;
     sink_.add(throughput_ * light * visibility.transmittance, time_ + visibility.time + source_->start);

@@ -54,10 +54,10 @@ class PathWalk : private CameraPath {
     void connectSurfaceToSource(const SurfaceInteraction& surface);
     /// Adds light through a connection whose scattering value (cosine included) and density of the walk's own sampling
     /// are given. The ray starts in `region`; its tMin is above 0 when it leaves a surface.
-    void addConnection(const LightSample& light, const Rgb& scattering, float directionPdf, const Ray& ray,
+    void addConnection(const LightSample& light, const Rgb& scattering, float directionPdf, Ray ray,
                        const Region& region);
     /// The same for the virtual source, seen along `direction` at `distance`.
-    void addSource(const Rgb& scattering, const Ray& ray, float distance, const Region& region);
+    void addSource(const Rgb& scattering, Ray ray, float distance, const Region& region);
     bool continueRoulette();
     void advanceClock(float length);
     /// Whether light found from `position` on can still arrive inside the gate.

@@ -37,9 +37,10 @@ void traceReflection(const Scene& scene, const Emitter& emitter, float probabili
         vertex.glossy = *glossy;
         return vertex;
     };
-    const auto hit = scene.geometry->intersect({from.hit.position, direction, scene.rayEpsilon});
+    const Ray onward = from.hit.leave(direction);
+    const auto hit = scene.geometry->intersect(onward);
     const float flight = flights.sample(sampler.next1D()), density = flights.pdf(flight);
-    if (flight > scene.rayEpsilon && density > 0.0f && (!hit || flight < hit->t)) {
+    if (flight > onward.tMin && density > 0.0f && (!hit || flight < hit->t)) {
         vertices.push_back(end(flight, density));
         vertices.back().power = power / density;
     }
@@ -58,12 +59,12 @@ void traceReflection(const Scene& scene, const Emitter& emitter, float probabili
 
 bool reflectsSharply(const Bsdf& bsdf) {
     const LobeMask lobes = bsdf.lobes();
-    return (lobes & lobe::GlossyReflection) != 0 && (lobes & lobe::Transmissive) == 0;
+    return (lobes & lobe::GlossyReflection) != 0 && (lobes & lobe::Through) == 0;
 }
 
 bool endsReflectedLight(const Bsdf& bsdf) {
     const LobeMask lobes = bsdf.lobes();
-    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Transmissive)) == 0;
+    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
 }
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights) {

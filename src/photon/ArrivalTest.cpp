@@ -6,6 +6,9 @@ namespace tungsten::photon {
 
 namespace {
 
+/// Relative, of times of arrival.
+constexpr double Tolerance = 1e-6;
+
 /// Where the path from `position` along `direction` and then straight to `target` is `length` long; 0 if it always is
 /// longer.
 double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec3d& target, double length) {
@@ -20,15 +23,29 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
 
 ArrivalTest::ArrivalTest(const Scene& scene, const EffectPlan& plan)
     : sensor_(Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
-      highestSpeed_(double(highestSpeed(scene))) {
+      highestSpeed_(double(plan.highestSpeed)) {
+    setGate(scene.transport.gate);
     const Vec3f position = scene.camera.position();
     camera_ = Vec3d(position.x, position.y, position.z);
     straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;
     directView_ = straightTimesKnown_ && !plan.specularSensorPaths;
-    if (const auto* lens = std::get_if<ThinLens>(&scene.camera.model)) slack_ = double(lens->apertureRadius);
+    slack_ = double(scene.camera.aperture());
     if (std::holds_alternative<Orthographic>(scene.camera.model)) slack_ = std::numeric_limits<double>::infinity();
-    // One speed everywhere that counts: the camera's own.
-    if (straightTimesKnown_) highestSpeed_ = double(scene.cameraRegion.speed);
+}
+
+void ArrivalTest::setGate(const TimeGate& gate) {
+    sensor_.gate = gate;
+    // Rounding at the gate's ends must not lose what the gather would accept.
+    begin_ = gate.start - Tolerance * std::abs(gate.end());
+    end_ = gate.end() + Tolerance * std::abs(gate.end());
+}
+
+ArrivalTest ArrivalTest::ofFrame(int frame) const {
+    ArrivalTest test = *this;
+    // The gather tests the sequence's ends; between frames there is no tolerance, or what is in it would count twice.
+    if (frame > 0) test.begin_ = sensor_.gate.frameStart(frame);
+    if (frame < sensor_.gate.frames - 1) test.end_ = sensor_.gate.frameStart(frame + 1);
+    return test;
 }
 
 double ArrivalTest::soonestArrival(const Vec3f& position, double time) const {
@@ -38,11 +55,10 @@ double ArrivalTest::soonestArrival(const Vec3f& position, double time) const {
 }
 
 bool ArrivalTest::insideGate(double arrival, bool testStart) const {
-    // Rounding at the gate's ends must not lose what the gather would accept.
-    const double tolerance = 1e-6 * std::abs(arrival);
-    if (!(arrival < sensor_.gate.end() + tolerance)) return false;
+    if (!(arrival < end_)) return false;
     if (!testStart) return true;
-    return arrival >= sensor_.gate.start - tolerance && sensor_.mayWeigh(arrival - tolerance, arrival + tolerance);
+    const double tolerance = Tolerance * std::abs(arrival);
+    return arrival >= begin_ && sensor_.mayWeigh(arrival - tolerance, arrival + tolerance);
 }
 
 bool ArrivalTest::mayCount(const Vec3f& position, double time) const {
@@ -56,16 +72,17 @@ bool ArrivalTest::seenStraight(const Vec3f& position, double time) const {
 FlightPart ArrivalTest::part(const Vec3f& position, const Vec3f& direction, double time, double speed,
                              bool testStart) const {
     if (sensor_.gate.steadyState) return {0.0, std::numeric_limits<double>::infinity()};
-    const double tolerance = 1e-6 * std::abs(sensor_.gate.end());
-    const double untilStart = sensor_.gate.start - tolerance - time, untilEnd = sensor_.gate.end() + tolerance - time;
+    const double untilStart = begin_ - time, untilEnd = end_ - time;
     if (unwarped_) return {std::max(untilStart * speed, 0.0), untilEnd * speed};
     const Vec3d from(position.x, position.y, position.z), along(direction.x, direction.y, direction.z);
+    // Where the arrival is that late. The flight alone says so where the way to the camera is unknown, and where it is
+    // slower than the highest speed.
     const auto distance = [&](double duration) {
-        return distanceOfLength(from, along, camera_, duration * highestSpeed_ + slack_);
+        const double flight = duration * speed;
+        if (std::isinf(slack_)) return flight;
+        return std::min(distanceOfLength(from, along, camera_, duration * highestSpeed_ + slack_), flight);
     };
-    // The flight alone ends it where the way to the camera is unknown, and where it is slower than the highest speed.
-    const double end = std::isinf(slack_) ? untilEnd * speed : std::min(distance(untilEnd), untilEnd * speed);
-    return {testStart ? distance(untilStart) : 0.0, end};
+    return {testStart ? std::max(distance(untilStart), 0.0) : 0.0, distance(untilEnd)};
 }
 
 FlightPart ArrivalTest::countingPart(const Vec3f& position, const Vec3f& direction, double time, double speed) const {
@@ -77,7 +94,7 @@ FlightPart ArrivalTest::straightPart(const Vec3f& position, const Vec3f& directi
 }
 
 bool ArrivalTest::mayContinue(const Vec3f& position, double time) const {
-    return sensor_.gate.steadyState || soonestArrival(position, time) < sensor_.gate.end();
+    return sensor_.gate.steadyState || soonestArrival(position, time) < end_;
 }
 
 } // namespace tungsten::photon

@@ -38,7 +38,10 @@ class ArrivalTest {
     [[nodiscard]] FlightPart straightPart(const Vec3f& position, const Vec3f& direction, double time,
                                           double speed) const;
     /// Tests against this gate from now on instead of the scene's.
-    void setGate(const TimeGate& gate) { sensor_.gate = gate; }
+    void setGate(const TimeGate& gate);
+    /// The same test against one frame of the gate, for paths that aim at it alone: with directView every deposit
+    /// counts for one frame, whatever rounding makes of its arrival later.
+    [[nodiscard]] ArrivalTest ofFrame(int frame) const;
 
   private:
     /// With or without the gate's start.
@@ -54,6 +57,7 @@ class ArrivalTest {
     Vec3d camera_{0, 0, 0};
     double slack_ = 0.0; ///< distance by which sensor rays can start nearer than the camera's position
     double highestSpeed_ = 1.0;
+    double begin_ = 0.0, end_ = 0.0; ///< of arrivals that pass, half open
 };
 
 } // namespace tungsten::photon

@@ -143,20 +143,14 @@ class Splatter {
                             s < r.high && t > start && t <= load(piece.end);
         if (!xsimd::any(inside)) return false;
         Batch weight = xsimd::sqrt(inverse);
-        if (r.simple) weight = weight * xsimd::exp((start - t - s - r.fromBase) * r.sigmaT) * phase(r, cosine);
+        if (r.simple)
+            weight =
+                weight * xsimd::exp((start - t - s - r.fromBase) * r.sigmaT) * henyeyGreenstein(r.g, w, dx, dy, dz);
         xsimd::select(inside, weight, Batch(0.0f)).store_aligned(found.weight);
         s.store_aligned(found.alongBeam);
         t.store_aligned(found.alongRay);
         if (!timeless_) xsimd::sqrt(t * t + squaredDistance).store_aligned(found.toCamera);
         return true;
-    }
-    /// Henyey-Greenstein between the beam's direction and the way back along the rays.
-    static Batch phase(const Ribbon& r, const Batch& cosine) {
-        const float g = r.g;
-        if (g == 0.0f) return Batch(0.25f * InvPi);
-        const Batch d =
-            xsimd::max(1.0f + g * g + 2.0f * g * cosine, Batch((1.0f - std::abs(g)) * (1.0f - std::abs(g))));
-        return (1.0f - g * g) * 0.25f * InvPi / (d * xsimd::sqrt(d));
     }
 
     [[nodiscard]] bool rendered(int interactions) const {

@@ -7,7 +7,8 @@ CameraView::CameraView(const Camera& camera) : position_(camera.position()), fra
     if (const auto* pinhole = std::get_if<Pinhole>(&camera.model)) fov = *pinhole;
     if (const auto* lens = std::get_if<ThinLens>(&camera.model)) {
         fov = *lens;
-        aperture_ = lens->apertureRadius * (1.0f + 1.0f / std::max(lens->focusDistance, 1e-6f));
+        const float focus = lens->focusDistance * camera.toWorld.z.length();
+        aperture_ = camera.aperture() * (1.0f + 1.0f / std::max(focus, 1e-6f));
     }
     const float width = float(camera.resolution.x), height = float(camera.resolution.y);
     halfWidth_ = 1.0f / fov.planeDistance;

@@ -33,8 +33,8 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
 
 } // namespace
 
-GlossyLight::GlossyLight(const Scene& scene, bool speedsDiffer)
-    : scene_(scene), lights_(scene, speedsDiffer), oversampled_(pixelsNearGlossy(scene)) {}
+GlossyLight::GlossyLight(const Scene& scene, const EffectPlan& plan)
+    : scene_(scene), lights_(scene, plan), oversampled_(pixelsNearGlossy(scene)) {}
 
 std::optional<ArrivedLight> GlossyLight::connect(const Sensor& sensor, const SensorState& state,
                                                  const SurfaceInteraction& surface, Sampler& sampler,

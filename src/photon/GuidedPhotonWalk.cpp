@@ -72,10 +72,10 @@ bool GuidedPhotonWalk::emit() {
 
 bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide* guide) {
     const SurfaceSample start = sampleEmissionPoint(emitter, sampler_.next2D());
-    ray_ = Ray{start.position, Vec3f(0.0f), emitter.isArea() ? scene_.rayEpsilon : 0.0f};
+    ray_ = Ray{start.position, Vec3f(0.0f)};
     connectable_ = true;
     if (!arrival_->mayContinue(ray_.origin, time_)) return false;
-    connectToSurfaces(emitter.isArea(), InSphere * meanComponent(emitterPower(emitter)),
+    connectToSurfaces(start.margin(), InSphere * meanComponent(emitterPower(emitter)),
                       [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
     const EmissionDirections own(emitter, start);
     float inversePdf = 0.0f;
@@ -88,14 +88,15 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
         ray_.direction = darts::to<Vec3f>(direction);
         inversePdf = 1.0f / own.pdf(direction);
     }
+    ray_ = start.leave(ray_.direction);
     power_ = power_ * emittedIntensity(emitter, start, ray_.direction) * inversePdf;
     return !isBlack(power_);
 }
 
 template <typename Scattering>
-void GuidedPhotonWalk::connectToSurfaces(bool onSurface, float usual, const Scattering& scattering) {
-    if (!connections_) return;
-    const LightVertex vertex{ray_.origin, onSurface, time_, bounce_, region_, power_, usual};
+void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering) {
+    if (!connections_ || !bears(power_)) return;
+    const LightVertex vertex{ray_.origin, margin, time_, bounce_, region_, power_, usual};
     if (connections_->hasTarget())
         connections_->connect(vertex, gate_, scattering, sampler_, draws_, deposits_.arrivals, counters_.rays);
     else
@@ -109,7 +110,7 @@ bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
         const Region behind = region_;
         ray_.origin = hit.position;
         // Light leaves to the side of the direction; a boundary's other side is another region.
-        connectToSurfaces(true, 2.0f * InSphere, [&](const Vec3f& direction) {
+        connectToSurfaces(hit.margin(), 2.0f * InSphere, [&](const Vec3f& direction) {
             if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
             const Region ahead = regionBeyond(surface_, direction, behind);
             if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
@@ -193,7 +194,7 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     fromLight_ = false;
     if (!look(guide) || !survives(guide)) return false;
     if (flights_ < medium.maxBounces) // else no flight would leave here
-        connectToSurfaces(false, InSphere,
+        connectToSurfaces({}, InSphere,
                           [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
     const float inversePdf = redirect(guide, darts::PhaseScatterer{medium.phase, before});
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);
@@ -216,13 +217,15 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
     if (!guidance_.directView())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
-    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power, bounce_ + 1);
+    // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
+    store(context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power,
+          bounce_ + 1);
 }
 
 void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
     if (!guidance_.directView()) return depositBeam(medium, surface);
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
-    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeRadius);
+    if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
+    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeReach());
     const float end = std::min(surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
     storeBeam(deposits_.beams, *arrival_, medium,
@@ -237,15 +240,16 @@ void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& g
         share = controlVertexShare(guide.pdfControlVertex(reachable_, h, distance), meanComponent(medium.sigmaT()),
                                    distance);
     const Vec3f position = ray_.at(distance);
-    store(position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power_ * (1.0f - share),
-          bounce_ + 1);
+    store(*arrival_, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
+          power_ * (1.0f - share), bounce_ + 1);
 }
 
-void GuidedPhotonWalk::store(const Vec3f& position, double time, const Rgb& power, int bounce) {
-    if (isBlack(power) || bounce > MostPhotonBounces) return;
-    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeRadius)) return;
+void GuidedPhotonWalk::store(const ArrivalTest& arrival, const Vec3f& position, double time, const Rgb& power,
+                             int bounce) {
+    if (!bears(power) || bounce > MostPhotonBounces) return;
+    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeReach())) return;
     ++counters_.volumeDeposits;
-    if (!arrival_->mayCount(position, time)) return;
+    if (!arrival.mayCount(position, time)) return;
     ++counters_.countingDeposits;
     deposits_.volume.photons.push_back(
         {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});

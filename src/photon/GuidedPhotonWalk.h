@@ -22,7 +22,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
     bool emitFromPoint(const Emitter& emitter, const darts::Guide* guide);
     template <typename Scattering>
-    void connectToSurfaces(bool onSurface, float usual, const Scattering& scattering);
+    void connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering);
     bool meetSurface(const SurfaceHit& hit);
     /// A flight through a scattering medium: its control vertex, then the next vertex. False ends the path.
     bool crossMedium(const Medium& medium, const darts::Guide& guide);
@@ -32,7 +32,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     void depositSeenBeam(const Medium& medium, float surface);
     /// Ordinary photons share with control vertices where sensor paths can fold.
     void depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h);
-    void store(const Vec3f& position, double time, const Rgb& power, int bounce);
+    void store(const ArrivalTest& arrival, const Vec3f& position, double time, const Rgb& power, int bounce);
     bool survives(const darts::Guide& guide);
     /// Residual at the ray's origin, and the length of the next connection.
     bool look(const darts::Guide& guide);

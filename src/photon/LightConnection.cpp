@@ -2,8 +2,8 @@
 
 namespace tungsten::photon {
 
-LightConnector::LightConnector(const Scene& scene, bool speedsDiffer)
-    : scene_(scene), lights_(scene), highestSpeed_(double(highestSpeed(scene))), oneSpeed_(!speedsDiffer) {}
+LightConnector::LightConnector(const Scene& scene, const EffectPlan& plan)
+    : scene_(scene), lights_(scene), highestSpeed_(double(plan.highestSpeed)), oneSpeed_(!plan.speedsDiffer) {}
 
 /// Of light that leaves at `start`; the exact test is left to the frames.
 bool LightConnector::mayArrive(const TimeGate& gate, double start, double distance) const {
@@ -28,9 +28,10 @@ std::optional<LightConnection> LightConnector::connect(const Sensor& sensor, con
     const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
                                               surface.frame.toLocal(direct->direction));
     if (isBlack(scattering)) return std::nullopt;
+    Ray ray = surface.hit.leave(direct->direction);
+    ray.tMax = direct->reach();
     const Visibility visibility =
-        traceVisibility(scene_, surface.hit.position, true, direct->direction, direct->distance, emitter.isArea(),
-                        regionBeyond(surface, direct->direction, state.region), rays);
+        traceVisibility(scene_, ray, direct->distance, regionBeyond(surface, direct->direction, state.region), rays);
     const int interactions = state.interactions + 1 + visibility.crossings;
     if (isBlack(visibility.transmittance) || interactions < transport.minBounces ||
         interactions >= transport.maxBounces)

@@ -5,6 +5,7 @@
 #include "photon/SensorPath.h"
 
 #include "tungsten/emitter/Emitter.h"
+#include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::photon {
@@ -23,7 +24,7 @@ struct LightConnection {
 
 class LightConnector {
   public:
-    LightConnector(const Scene& scene, bool speedsDiffer);
+    LightConnector(const Scene& scene, const EffectPlan& plan);
 
     /// `state` is the path up to the surface. None when nothing arrives, or outside the sensor's gate. Adds the rays
     /// traced to `rays`.

@@ -9,11 +9,6 @@ namespace {
 /// sequences of 3.5 and 7 mean free paths in a cube of fog: 1.64 to 0.60, 0.17 to 0.08.
 constexpr double WideGate = 2.0;
 
-double aperture(const Camera& camera) {
-    const auto* lens = std::get_if<ThinLens>(&camera.model);
-    return lens ? double(lens->apertureRadius) : 0.0;
-}
-
 } // namespace
 
 std::string PhotonGuidance::obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan) {
@@ -32,9 +27,8 @@ std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const d
 }
 
 PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
-    : view_(scene.camera), camera_(scene.camera.position()),
-      speed_(double(plan.speedsDiffer ? highestSpeed(scene) : scene.cameraRegion.speed)),
-      slack_(scene.transport.cameraUnwarped ? 0.0 : aperture(scene.camera) / speed_),
+    : view_(scene.camera), camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
+      slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
       unwarped_(scene.transport.cameraUnwarped), sensor_(Sensor::of(scene, scene.transport.gate)) {
     const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
     directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;

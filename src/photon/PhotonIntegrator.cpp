@@ -148,13 +148,13 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
     straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
     rules_ = {settings_.includeSurfaces, plan.glossySensorPaths};
-    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan.speedsDiffer);
+    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
     foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }
 
-std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t pass) const {
-    const float factor = pointRadiusFactor(pass, settings_.volumeAlpha);
+std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t step) const {
+    const float factor = pointRadiusFactor(step, settings_.volumeAlpha);
     if (settings_.fixedVolumeRadius) return {settings_.volumeRadius * factor};
     std::vector<float> radii = adaptiveRadii(store.photons);
     // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
@@ -162,20 +162,32 @@ std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint3
     return radii;
 }
 
-TimeGate PhotonIntegrator::gate(uint32_t pass) const {
+uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
+    return settings_.progressive ? pass.index : 0;
+}
+
+TimeGate PhotonIntegrator::gate(uint32_t step) const {
     const TimeGate& gate = scene_->transport.gate;
     if (!gate.delta) return gate;
-    const double tau = settings_.temporalRadius * deltaGateFactor(pass, settings_.volumeAlpha);
+    const double tau = settings_.temporalRadius * deltaGateFactor(step, settings_.volumeAlpha);
     return {false, false, gate.start - tau, 2.0 * tau, 1};
 }
 
-void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record,
+template <typename Use>
+void PhotonIntegrator::forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics,
+                                     const Use& use) const {
+    use(first);
+    for (uint32_t s = 1; s < pass.samples; ++s)
+        use(recordSensorPaths(*scene_, false, rules_, {pass.index, pass.firstSample + s, 1, pass.seed}, 1, statistics));
+}
+
+void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
                                     StoreParts& parts, GatherStructures& structures, Film& film,
                                     Statistics& statistics) const {
     std::vector<float> radii;
     {
         const StageTimer timer(statistics, "build");
-        radii = volumeRadii(maps.volume, pass);
+        radii = volumeRadii(maps.volume, step(pass));
         selectStraight(photonPass_->arrival(), maps.volume, radii, parts.straightPoints, parts.straightRadii);
         const Sensor& sensor = structures.sensor;
         if (!structures.splatted) {
@@ -196,17 +208,20 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, uint32_t pass, const
     const StageTimer timer(statistics, "splat");
     const bool all = parts.straightPoints.paths == 0;
     const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const uint64_t gathered =
-        splatPhotons(*scene_, structures.sensor, record, all ? maps.volume : parts.straightPoints,
-                     all ? radii : parts.straightRadii, double(maps.volume.scale()) / width, film);
-    statistics.add("gathered photons", gathered);
+    const double scale = double(maps.volume.scale()) / (width * double(pass.samples));
+    forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
+        statistics.add("gathered photons",
+                       splatPhotons(*scene_, structures.sensor, sample, all ? maps.volume : parts.straightPoints,
+                                    all ? radii : parts.straightRadii, scale, film));
+    });
 }
 
-void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
-                                   GatherStructures& structures, Film& film, Statistics& statistics) const {
+void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
+                                   StoreParts& parts, GatherStructures& structures, Film& film,
+                                   Statistics& statistics) const {
     const ArrivalTest& arrival = photonPass_->arrival();
-    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(pass, settings_.volumeAlpha))
-                                                      : beamRadiusFactor(pass, settings_.alpha);
+    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(step(pass), settings_.volumeAlpha))
+                                                      : beamRadiusFactor(step(pass), settings_.alpha);
     const float radius = settings_.volumeRadius * factor;
     const std::vector<PhotonBeam>& all = maps.beams.beams;
     const bool single = arrival.directView() || !arrival.straightTimesKnown();
@@ -231,19 +246,18 @@ void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, uint32_t pass, const 
     if (!structures.splatted) return;
     const StageTimer timer(statistics, "splat");
     const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const uint64_t gathered = splatBeams(*scene_, structures.sensor, record, single ? all : parts.straightBeams, radius,
-                                         double(maps.beams.scale()) / width, film);
-    statistics.add("gathered beams", gathered);
+    const double scale = double(maps.beams.scale()) / (width * double(pass.samples));
+    forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
+        statistics.add("gathered beams", splatBeams(*scene_, structures.sensor, sample,
+                                                    single ? all : parts.straightBeams, radius, scale, film));
+    });
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    // Without progression every pass looks at the photons of the first.
-    PassInfo photons = pass;
-    if (!settings_.progressive) photons.index = 0;
-    const Sensor sensor = Sensor::of(*scene_, gate(photons.index));
-    const bool recordable = straightRays_ && pass.samples == 1;
-    const bool splat = recordable && (photonPass_->storesVolume() || photonPass_->storesBeams());
-    const bool connect = recordable && connects_;
+    const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
+    const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
+    const bool splat = straightRays_ && (photonPass_->storesVolume() || photonPass_->storesBeams());
+    const bool connect = straightRays_ && connects_;
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
@@ -251,7 +265,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         record = recordSensorPaths(*scene_, connect, rules_, pass,
                                    connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
         if (connect) {
-            const auto spread = Spread::of(settings_.gatherRadius, surfaceRadiusFactor(photons.index, settings_.alpha));
+            const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
             connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass, spread);
         }
     }
@@ -259,24 +273,23 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     {
         const StageTimer timer(statistics, "photon pass");
         photonPass_->setGate(sensor.gate);
-        maps = photonPass_->trace(photons, connections.get(), statistics);
+        maps = photonPass_->trace(pass, connections.get(), statistics);
     }
     StoreParts parts{};
-    parts.uFolded = Sampler(pass.seed, RandomStream::Folded, photons.index, 0).next1D();
+    parts.uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
     GatherStructures structures{
         maps, sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(), settings_.gatherCount};
-    if (!maps.volume.photons.empty()) gatherPoints(maps, photons.index, record, parts, structures, film, statistics);
-    if (!maps.beams.beams.empty()) gatherBeams(maps, photons.index, record, parts, structures, film, statistics);
+    if (!maps.volume.photons.empty()) gatherPoints(maps, pass, record, parts, structures, film, statistics);
+    if (!maps.beams.beams.empty()) gatherBeams(maps, pass, record, parts, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
         if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
-        structures.surfaceRadius = settings_.gatherRadius * surfaceRadiusFactor(photons.index, settings_.alpha);
+        structures.surfaceRadius = settings_.gatherRadius * surfaceFactor;
     }
     if (connect) {
         const StageTimer timer(statistics, "share arrivals");
-        const auto kernel =
-            SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(), settings_.gatherRadius,
-                              surfaceRadiusFactor(photons.index, settings_.alpha));
+        const auto kernel = SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(),
+                                              settings_.gatherRadius, surfaceFactor);
         shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
     }
     const StageTimer timer(statistics, "sensor pass");

@@ -9,8 +9,8 @@
 
 namespace tungsten::photon {
 
-/// `photon_map`, `progressive_photon_map` and their transient forms. The progressive ones trace new photons and shrink
-/// the radii every pass; the others trace the same photons in every pass.
+/// `photon_map`, `progressive_photon_map` and their transient forms. All trace new photons in every pass; the
+/// progressive ones shrink the radii from pass to pass.
 class PhotonIntegrator : public Integrator {
   public:
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
@@ -19,20 +19,26 @@ class PhotonIntegrator : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
+    /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that
+    /// shared them would share their error, which no spread of passes tells.
+    [[nodiscard]] uint32_t step(const PassInfo& pass) const;
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
-    [[nodiscard]] TimeGate gate(uint32_t pass) const;
+    [[nodiscard]] TimeGate gate(uint32_t step) const;
     void planVolume(EffectPlan& plan) const;
     void planGlossyPaths(EffectPlan& plan) const;
     void describeGuidance(EffectPlan& plan) const;
     /// Why guided light paths do not connect to surfaces; empty if they do.
     [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
+    /// Calls use(record) with the straight rays of every sample of the pass; `first` holds the first sample's.
+    template <typename Use>
+    void forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics, const Use& use) const;
     /// Photons to pixels, or structures over them; `parts` holds what only straight or only folded rays look at.
     struct StoreParts;
-    void gatherPoints(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
+    void gatherPoints(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record, StoreParts& parts,
                       GatherStructures& structures, Film& film, Statistics& statistics) const;
-    void gatherBeams(const PhotonMaps& maps, uint32_t pass, const SensorRecord& record, StoreParts& parts,
+    void gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record, StoreParts& parts,
                      GatherStructures& structures, Film& film, Statistics& statistics) const;
-    [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t pass) const;
+    [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t step) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;

@@ -1,6 +1,7 @@
 #include "photon/PhotonPass.h"
 
 #include "photon/GuidedPhotonWalk.h"
+#include "photon/StoreFilling.h"
 
 #include <tbb/parallel_for.h>
 
@@ -43,27 +44,12 @@ bool needsPhotonsBesideConnections(const Scene& scene, const EffectPlan& plan) {
            });
 }
 
-/// Appends the deposits path by path until the store is full.
-template <typename Record>
-void append(StoreState& store, std::vector<Record>& records, const std::vector<Record>& deposits,
-            const std::vector<uint32_t>& pathEnds, uint64_t capacity) {
-    if (store.full) return;
-    size_t start = 0;
-    for (const uint32_t end : pathEnds) {
-        if (records.size() + (end - start) > capacity) {
-            store.full = true;
-            return;
-        }
-        records.insert(records.end(), deposits.begin() + ptrdiff_t(start), deposits.begin() + ptrdiff_t(end));
-        ++store.paths;
-        start = end;
-    }
-}
-
-void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings) {
-    append(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount);
-    append(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount);
-    append(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount);
+void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings, Sampler& sampler) {
+    appendPaths(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount,
+                sampler);
+    appendPaths(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount,
+                sampler);
+    appendPaths(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount, sampler);
     maps.arrivals.insert(maps.arrivals.end(), d.arrivals.begin(), d.arrivals.end());
 }
 
@@ -93,11 +79,7 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
-    const TimeGate& gate = scene.transport.gate;
-    for (int frame = 0; frame < gate.frames; ++frame) {
-        frameArrivals_.push_back(arrival_);
-        frameArrivals_.back().setGate({false, false, gate.frameStart(frame), gate.frameWidth, 1});
-    }
+    for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameArrivals_.push_back(arrival_.ofFrame(frame));
 }
 
 void PhotonPass::setGate(const TimeGate& gate) {
@@ -141,6 +123,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     uint64_t traced = 0;
     const uint64_t least =
         connections ? std::min(ConnectionsPerPoint * connections->points(), MostLeast) / uint64_t(MostPerPath) : 0;
+    Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
     const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     const auto finished = [&] {
         return maps.volume.full && maps.beams.full && (connections ? traced >= least : maps.surface.full);
@@ -167,9 +150,10 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
         });
         if (traced == 0) reserveStores(maps, batches, settings_);
         for (const Batch& batch : batches) {
-            append(maps, batch.deposits, settings_);
+            append(maps, batch.deposits, settings_, thinning);
             statistics.add("rays", batch.counters.rays);
             statistics.add("control vertices", batch.counters.controlVertices);
+            statistics.add("non-finite samples", batch.counters.nonFinite);
             statistics.add("volume deposits", batch.counters.volumeDeposits);
             statistics.add("volume deposits that may count", batch.counters.countingDeposits);
         }

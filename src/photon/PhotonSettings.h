@@ -27,6 +27,12 @@ struct PhotonSettings {
     float alpha = 0.3f;       ///< surface radius reduction
     float volumeAlpha = 0.3f; ///< volume radius reduction
     darts::Scheme scheme;     ///< how light paths are guided
+
+    /// From sensor rays that a volume photon or beam can show on. Any, where radii follow the density: they are known
+    /// when the store is full, and what is stored makes the density.
+    [[nodiscard]] float volumeReach() const {
+        return primitive == VolumePrimitive::Beams || fixedVolumeRadius ? volumeRadius : Infinity;
+    }
 };
 
 /// Reads the block; problems and warnings go to the reader's diagnostics.

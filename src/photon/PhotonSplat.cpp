@@ -172,13 +172,10 @@ class Splatter {
 
     /// Between the photon's direction and the way back along the rays.
     static Batch phase(const MediumTerms& medium, const Vec3f& w, const Meeting& met) {
-        const float g = medium.g;
         if (medium.isotropic()) return Batch(0.25f * InvPi);
-        const Batch cosine = -(met.dx * w.x + met.dy * w.y + met.dz * w.z);
-        if (medium.rayleigh) return 3.0f / 16.0f * InvPi * (1.0f + cosine * cosine);
-        const Batch d =
-            xsimd::max(1.0f + g * g - 2.0f * g * cosine, Batch((1.0f - std::abs(g)) * (1.0f - std::abs(g))));
-        return (1.0f - g * g) * 0.25f * InvPi / (d * xsimd::sqrt(d));
+        if (!medium.rayleigh) return henyeyGreenstein(medium.g, w, met.dx, met.dy, met.dz);
+        const Batch cosine = met.dx * w.x + met.dy * w.y + met.dz * w.z;
+        return 3.0f / 16.0f * InvPi * (1.0f + cosine * cosine);
     }
 
     const Scene& scene_;

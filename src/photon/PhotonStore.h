@@ -21,7 +21,7 @@ static_assert(sizeof(Photon) == 48, "millions are stored: no padding");
 /// Longest light path that a photon's bounce can tell.
 inline constexpr int MostPhotonBounces = 65535;
 
-/// A store takes whole paths: it is full when the next path no longer fits, and that path is neither kept nor counted.
+/// A store takes whole paths: it is full when the next path no longer fits (StoreFilling.h).
 struct StoreState {
     uint64_t paths = 0; ///< light paths that the content stands for
     bool full = false;

@@ -38,8 +38,13 @@ bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     time_ = emitter.emissionTime;
     region_ = scene_.regionOf(emitter);
     ray_ = emission.ray;
-    ray_.tMin = emitter.isArea() ? scene_.rayEpsilon : 0.0f;
     return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
+}
+
+bool PhotonWalk::bears(const Rgb& power) {
+    if (isFinite(power)) return !isBlack(power);
+    ++counters_.nonFinite;
+    return false;
 }
 
 bool PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
@@ -49,7 +54,7 @@ bool PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& po
 }
 
 void PhotonWalk::depositBeam(const Medium& medium, float reach) {
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
     storeBeam(deposits_.beams, *arrival_, medium,
               {time_, ray_.origin, ray_.direction, power_, 0.0f, reach, uint16_t(bounce_), int16_t(region_.medium)});
 }
@@ -61,7 +66,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     ++consecutiveMedium_;
     if (!arrival_->mayContinue(position, time_)) return false;
     const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
-    if (context_.storeVolume && orderCounts) {
+    if (context_.storeVolume && orderCounts && bears(power_)) {
         ++counters_.volumeDeposits;
         if (deposit(deposits_.volume, position, power_, region_.medium)) ++counters_.countingDeposits;
     }
@@ -84,8 +89,9 @@ bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
     if (!(geometric > 0.0f)) return true;
     const bool connected = context_.connects && connectable_ && receivesConnections(*surface_.bsdf);
     if (connected && context_.densityPhotons) deposit(deposits_.surface, hit.position, Rgb(0.0f), -1);
-    if (!connected && !foundBySensorPaths())
-        deposit(deposits_.surface, hit.position, power_ * (shading / geometric), -1);
+    if (connected || foundBySensorPaths()) return true;
+    const Rgb power = power_ * (shading / geometric);
+    if (bears(power)) deposit(deposits_.surface, hit.position, power, -1);
     return true;
 }
 
@@ -107,7 +113,7 @@ bool PhotonWalk::leaveSurface() {
     power_ = power_ * exit->weight;
     if (isBlack(power_)) return false;
     region_ = ahead;
-    ray_ = Ray{surface_.hit.position, exit->direction, scene_.rayEpsilon};
+    ray_ = surface_.hit.leave(exit->direction);
     return true;
 }
 

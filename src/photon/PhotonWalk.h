@@ -15,6 +15,7 @@ struct WalkCounters {
     uint64_t rays = 0, controlVertices = 0;
     /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
     uint64_t volumeDeposits = 0, countingDeposits = 0;
+    uint64_t nonFinite = 0; ///< powers: nothing was stored
 };
 
 /// What every walk of a pass shares.
@@ -55,6 +56,8 @@ class PhotonWalk {
     bool leaveSurface();
     /// Whether sensor paths along its glossy lobes find the light that arrives on surface_.
     [[nodiscard]] bool foundBySensorPaths() const;
+    /// False, and counted if it is not finite, for a power that leaves nothing.
+    bool bears(const Rgb& power);
     /// False if it cannot be gathered.
     bool deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
 

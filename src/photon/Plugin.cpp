@@ -16,9 +16,9 @@ void add(tungsten::IntegratorRegistry& registry, const std::string& type, const 
 }
 
 void registerIntegrators(tungsten::IntegratorRegistry& registry) {
-    add(registry, "photon_map", "photon map, steady state, the same photons in every pass", false);
+    add(registry, "photon_map", "photon map, steady state", false);
     add(registry, "progressive_photon_map", "progressive photon map, steady state", true);
-    add(registry, "transient_photon_map", "time-resolved photon map, the same photons in every pass", false);
+    add(registry, "transient_photon_map", "time-resolved photon map", false);
     add(registry, "progressive_transient_photon_map", "time-resolved progressive photon map", true);
 }
 

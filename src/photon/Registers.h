@@ -1,6 +1,8 @@
 #pragma once
 // Registers of floats.
 
+#include "tungsten/core/Types.h"
+
 #include <xsimd/xsimd.hpp>
 
 namespace tungsten::photon {
@@ -9,5 +11,16 @@ using Batch = xsimd::batch<float>;
 inline constexpr int Lanes = int(Batch::size);
 static_assert(Lanes <= 16);
 alignas(64) inline constexpr float LaneNumbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+/// Henyey-Greenstein from the direction `before` to the way back along rays (dx, dy, dz), about its peak as
+/// PhaseFunction has it.
+inline Batch henyeyGreenstein(float g, const Vec3f& before, const Batch& dx, const Batch& dy, const Batch& dz) {
+    if (g == 0.0f) return Batch(0.25f * InvPi);
+    const float strength = std::abs(g);
+    const Vec3f peak = g < 0.0f ? -before : before;
+    const Batch x = dx + peak.x, y = dy + peak.y, z = dz + peak.z;
+    const Batch d = (1.0f - strength) * (1.0f - strength) + strength * (x * x + y * y + z * z);
+    return (1.0f - strength) * (1.0f + strength) * 0.25f * InvPi / (d * xsimd::sqrt(d));
+}
 
 } // namespace tungsten::photon

@@ -186,9 +186,10 @@ SensorClusters::PointWeights SensorClusters::weighPoints(const ClusterQuery& que
         const Batch distance = xsimd::sqrt(squared + 1e-30f), length = distance + load(cameraLength_);
         auto inTime = length < -1.0f;
         for (const LengthRange& range : query.open) inTime = inTime || (length >= range.least && length < range.most);
-        const Batch height = xsimd::abs(dx * load(nx_) + dy * load(ny_) + dz * load(nz_)), spread = load(spread_);
-        const Batch lifted = squared + spread * (2.0f * height + spread) + 1e-30f;
-        const Batch weight = xsimd::max((height + spread) / xsimd::sqrt(lifted), Batch(LeastCosine)) / lifted;
+        const Batch height = xsimd::abs(dx * load(nx_) + dy * load(ny_) + dz * load(nz_));
+        const Batch lift = xsimd::max(load(spread_) - height, Batch(0.0f));
+        const Batch lifted = squared + lift * (2.0f * height + lift) + 1e-30f;
+        const Batch weight = xsimd::max((height + lift) / xsimd::sqrt(lifted), Batch(LeastCosine)) / lifted;
         inTime = inTime && lanes < float(count - i);
         weights.add(i, xsimd::select(inTime, weight, Batch(0.0f)));
     }

@@ -75,7 +75,7 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPat
         }
         state.throughput = state.throughput * exit->weight;
         state.region = regionBeyond(surface, exit->direction, state.region);
-        state.ray = Ray{hit->position, exit->direction, scene.rayEpsilon};
+        state.ray = hit->leave(exit->direction);
     }
     return rays;
 }

@@ -38,8 +38,8 @@ struct SensorRecord {
     std::vector<SensorPoint> points;   ///< in pixel order
 };
 
-/// Traces the pass's camera rays; they are those of the sensor pass that follows. One sample per pixel, from a camera
-/// with a single position; with `samples` above 1 further paths look for surface points alone: what a narrow gate
+/// Traces the camera rays of the pass's first sample; they are those of the sensor pass that follows. For a camera with
+/// a single position; with `samples` above 1 further paths look for surface points alone: what a narrow gate
 /// lights is finer than pixels.
 SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
                                const PassInfo& pass, uint32_t samples, Statistics& statistics);

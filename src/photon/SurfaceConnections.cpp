@@ -77,8 +77,9 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     if (!surface.consistent(toVertex, scene_.transport.consistencyChecks) ||
         ((surface.bsdf->lobes() & lobe::Transmissive) == 0 && surface.frame.toLocal(toVertex).z * surface.wi.z <= 0.0f))
         return;
-    const Visibility visibility = traceVisibility(scene_, vertex.position, vertex.onSurface, draw.direction,
-                                                  draw.distance, true, vertex.region, rays);
+    const Ray ray{vertex.position, draw.direction, vertex.margin.beyond(draw.direction),
+                  point.hit.margin().before(draw.direction, draw.distance)};
+    const Visibility visibility = traceVisibility(scene_, ray, draw.distance, vertex.region, rays);
     if (isBlack(visibility.transmittance)) return;
     const int interactions = point.interactions + vertex.bounce + 1 + visibility.crossings;
     if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return;

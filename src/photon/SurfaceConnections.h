@@ -22,7 +22,7 @@ inline bool receivesConnections(const Bsdf& bsdf) {
 /// A vertex of a light path that can be connected to.
 struct LightVertex {
     Vec3f position;
-    bool onSurface;
+    SurfaceMargin margin; ///< of the surface it is on, if any
     double time;
     int bounce; ///< interactions up to and including the vertex
     Region region;
@@ -62,7 +62,7 @@ class SurfaceConnections {
                  std::vector<PointDraw>& draws, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
         find(vertex, gate, sampler, draws);
         for (const PointDraw& draw : draws) {
-            if (vertex.onSurface && isBlack(scattering(draw.direction))) continue; // not on this side
+            if (vertex.margin.onSurface() && isBlack(scattering(draw.direction))) continue; // not on this side
             const SpreadArrival spread = seenFrom(draw);
             const Rgb light = vertex.power * spread.light(scattering) * (draw.inverseExpectation * perListed_);
             if (!isBlack(light)) arrive(vertex, gate, draw, {draw.point, 0, spread.from, light}, arrivals, rays);

@@ -34,6 +34,22 @@ TEST(Camera, PinholeIsNotMirroredAndItsFieldOfViewIsHorizontal) {
     EXPECT_NEAR(top.direction.length(), 1.0f, 1e-6f);
 }
 
+TEST(Camera, TheApertureIsTheLensInTheWorld) {
+    Camera camera = lookingAlongMinusZ();
+    EXPECT_EQ(camera.aperture(), 0.0f);
+    camera.model = ThinLens{60.0f, 2.0f, 0.1f};
+    camera.toWorld.x *= 5.0f;
+    camera.toWorld.y *= 5.0f;
+    float furthest = 0.0f;
+    for (int i = 0; i < 100; ++i) {
+        const Ray ray = camera.generateRay({20, 10}, {0.5f, 0.5f}, {1.0f - 0.01f * float(i), 0.3f});
+        furthest = std::max(furthest, (ray.origin - camera.position()).length());
+    }
+    EXPECT_NEAR(camera.aperture(), 0.5f, 1e-6f);
+    EXPECT_LE(furthest, camera.aperture() * 1.0001f);
+    EXPECT_GT(furthest, 0.9f * camera.aperture());
+}
+
 TEST(Camera, OrthographicSpansTwiceItsSize) {
     Camera camera = lookingAlongMinusZ();
     camera.model = Orthographic{2.0f};
@@ -45,7 +61,7 @@ TEST(Camera, OrthographicSpansTwiceItsSize) {
 
 TEST(Camera, ThinLensFocusesAndLeavesOutHalfAPixel) {
     Camera camera = lookingAlongMinusZ();
-    camera.model = ThinLens{90.0f, 5.0f, 0.3f, 0.0f};
+    camera.model = ThinLens{90.0f, 5.0f, 0.3f};
     Vec3f first;
     for (int i = 0; i < 20; ++i) {
         Sampler s(1, RandomStream::Test, 0, uint64_t(i));

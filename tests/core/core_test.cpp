@@ -53,7 +53,11 @@ TEST(Warp, DirectionsFollowTheirDensities) {
         test::chiSquareSphere([](Sampler& s) { return std::optional(warp::squareToCosineHemisphere(s.next2D())); },
                               [](const Vec3f& v) { return double(warp::squareToCosineHemispherePdf(v)); }),
         test::SmallestPValue);
-    // A cone whose edge is a cell boundary of the test.
+    // Cones whose edge is a cell boundary of the test.
+    EXPECT_GT(
+        test::chiSquareSphere([](Sampler& s) { return std::optional(warp::squareToCosineCone(s.next2D(), 0.5f)); },
+                              [](const Vec3f& v) { return double(warp::squareToCosineConePdf(v, 0.5f)); }),
+        test::SmallestPValue);
     EXPECT_GT(
         test::chiSquareSphere([](Sampler& s) { return std::optional(warp::squareToCone(s.next2D(), 0.5f)); },
                               [](const Vec3f& v) { return v.z >= 0.5f ? double(warp::squareToConePdf(0.5f)) : 0.0; }),

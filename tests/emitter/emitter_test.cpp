@@ -31,6 +31,12 @@ struct QuadLamp {
     }
 };
 
+/// A disk of radius 1 that shines downward with radiance 5, into a cone of half angle 60 degrees.
+struct ConeDiskLamp {
+    Shape shape = Disk{Vec3f(0, 3, 0), 1.0f, Frame(Vec3f(0, -1, 0)), 0.5f};
+    Emitter emitter = withModel(AreaEmitter{&shape, 0, Texture(5.0f), std::make_shared<const AreaSampler>(shape)});
+};
+
 SpotEmitter spot() {
     SpotEmitter lamp;
     lamp.position = Vec3f(0, 0, 0);
@@ -43,6 +49,7 @@ SpotEmitter spot() {
 
 TEST(Emitter, PhotonsCarryTheEmittersPower) {
     const QuadLamp quad;
+    const ConeDiskLamp coneDisk;
     CollimatedEmitter beam;
     beam.position = Vec3f(1, 2, 3);
     beam.radius = 0.5f;
@@ -51,7 +58,8 @@ TEST(Emitter, PhotonsCarryTheEmittersPower) {
         {withModel(PointEmitter{Vec3f(0.0f), Rgb(3.0f)}), 12.0 * 3.14159265358979},
         {withModel(spot()), 2.0 * 2.0 * 3.14159265358979 * (1.0 - 0.625)},
         {withModel(beam), 7.0},
-        {quad.emitter, 5.0 * 4.0 * 3.14159265358979}};
+        {quad.emitter, 5.0 * 4.0 * 3.14159265358979},
+        {coneDisk.emitter, 5.0 * 3.14159265358979 * 3.14159265358979 * 0.75}};
     for (const auto& [emitter, power] : cases) {
         EXPECT_NEAR(double(emitterPower(emitter).x), power, 1e-4 * power);
         double sum = 0.0, squared = 0.0;
@@ -85,6 +93,32 @@ TEST(Emitter, DirectionsFollowTheirDensities) {
     EXPECT_GT(test::chiSquareSphere(direction(quad.emitter),
                                     [](const Vec3f& w) { return double(std::max(-w.y, 0.0f)) / 3.14159265358979; }),
               test::SmallestPValue);
+}
+
+/// What arrives straight below a disk with a cone, by connections and by photons on a small target.
+TEST(Emitter, ConnectionsAndPhotonsAgreeOnTheConeOfADisk) {
+    const ConeDiskLamp lamp;
+    // Two below, a cone of 60 degrees reaches 3.46 beyond the disk's rim at 1.
+    for (const float aside : {0.0f, 3.5f, 5.0f}) {
+        const Vec3f target(aside, 1.0f, 0.0f);
+        constexpr int Count = 400000;
+        constexpr float Radius = 0.3f;
+        double connected = 0.0, hits = 0.0;
+        for (uint64_t i = 0; i < Count; ++i) {
+            Sampler s(3, RandomStream::Test, 0, i);
+            if (const auto light = sampleDirect(lamp.emitter, target, s.next2D()))
+                connected += double(light->weight.x * light->direction.y);
+            const Vec2f uPosition = s.next2D();
+            const EmissionSample photon = sampleEmission(lamp.emitter, uPosition, s.next2D());
+            EXPECT_LE(photon.pdfDirection, 1.01f * InvPi / 0.75f);
+            const Vec3f at = photon.ray.at((target.y - photon.ray.origin.y) / photon.ray.direction.y);
+            if ((at - target).length2() < Radius * Radius) hits += double(photon.power.x);
+        }
+        const double flux = hits / Count / double(Pi * Radius * Radius), irradiance = connected / Count;
+        const double each = double(emitterPower(lamp.emitter).x) / Count / double(Pi * Radius * Radius);
+        EXPECT_NEAR(flux, irradiance, 5.0 * std::sqrt(std::max(flux, irradiance) * each) + 0.01 * irradiance) << aside;
+        EXPECT_EQ(irradiance > 0.0, aside < 5.0f) << aside;
+    }
 }
 
 TEST(Emitter, ConnectionsGiveTheIrradianceOfClosedForms) {

@@ -48,7 +48,9 @@ class AmbientOcclusion : public Integrator {
         if (!hit) return 0.0f;
         const Frame frame(hit->ng.dot(ray.direction) < 0.0f ? hit->ng : -hit->ng);
         const Vec3f direction = frame.toWorld(warp::squareToCosineHemisphere(uDirection));
-        return scene_->geometry->occluded({hit->position, direction, scene_->rayEpsilon, distance_}) ? 0.0f : 1.0f;
+        Ray shadow = hit->leave(direction);
+        shadow.tMax = distance_;
+        return scene_->geometry->occluded(shadow) ? 0.0f : 1.0f;
     }
 
     std::shared_ptr<const Scene> scene_;

@@ -56,6 +56,19 @@ TEST(Film, MomentsMatchDirectFormulas) {
     EXPECT_NEAR(film.relativeStandardError(), std::sqrt(moment / 3.0 / weight) / mean, 1e-6);
 }
 
+TEST(Film, StandardErrorIsUnknownWithOnePassAndRelativelyWithABlackFilm) {
+    Film film(1, 1, 2);
+    for (uint32_t pass = 0; pass < 2; ++pass) {
+        EXPECT_TRUE(std::isnan(film.standardError(1).at(0, 0).x)) << pass;
+        EXPECT_TRUE(std::isnan(film.standardErrorOverFrames().at(0, 0).x)) << pass;
+        EXPECT_TRUE(std::isnan(film.relativeStandardError())) << pass;
+        film.beginPass();
+        film.endPass(1.0);
+    }
+    EXPECT_EQ(film.standardError(1).at(0, 0).x, 0.0f);
+    EXPECT_TRUE(std::isnan(film.relativeStandardError()));
+}
+
 TEST(Film, StandardErrorPredictsTheSpreadOfMeans) {
     // 400 films of 25 passes: the spread of their means against their own claims.
     double sum = 0.0, squared = 0.0, claimed = 0.0;

@@ -163,6 +163,7 @@ TEST_P(FlightParts, AreWhereDepositsCount) {
     plan.timeResolved = true;
     plan.specularSensorPaths = c.folds;
     plan.speedsDiffer = c.flightSpeed != 1.0f;
+    plan.highestSpeed = std::max(c.flightSpeed, 1.0f);
     const ArrivalTest arrival(scene, plan);
     Sampler sampler(5, RandomStream::Test, 0, 0);
     int inside = 0, outside = 0;
@@ -196,6 +197,39 @@ INSTANTIATE_TEST_SUITE_P(Views, FlightParts,
                                          PartCase{"Unwarped", true, false, 1.0f}, PartCase{"Slow", false, false, 0.6f},
                                          PartCase{"UnwarpedSlow", true, true, 0.6f}),
                          [](const auto& test) { return std::string(test.param.name); });
+
+/// Frames as short as rounding makes a tolerance: each deposit inside the sequence counts for one of them, and the
+/// parts of a flight follow each other.
+TEST(ArrivalTest, SharesTheSequenceOutAmongItsFrames) {
+    Scene scene = test::fogScene();
+    const TimeGate gate{false, false, 6.0, 3e-5, 8};
+    scene.transport.gate = gate;
+    scene.camera.model = Pinhole{};
+    EffectPlan plan;
+    plan.timeResolved = true;
+    const ArrivalTest whole(scene, plan);
+    std::vector<ArrivalTest> frames;
+    for (int frame = 0; frame < gate.frames; ++frame) frames.push_back(whole.ofFrame(frame));
+    Sampler sampler(6, RandomStream::Test, 0, 0);
+    for (int i = 0; i < 2000; ++i) {
+        const Vec3f position = warp::squareToSphere(sampler.next2D()) * (3.0f * sampler.next1D());
+        const Vec3f direction = warp::squareToSphere(sampler.next2D());
+        const double arrival = gate.start + (gate.end() - gate.start) * double(sampler.next1D());
+        const double time =
+            arrival - std::hypot(double(position.x), double(position.y), double(position.z)); // of flight to the camera
+        int counting = 0;
+        for (const ArrivalTest& frame : frames) counting += frame.mayCount(position, time) ? 1 : 0;
+        EXPECT_EQ(counting, 1) << i;
+        // From before the sequence to after it.
+        const double early = time - 1e-3;
+        double end = frames.front().countingPart(position, direction, early, 1.0).start;
+        for (const ArrivalTest& frame : frames) {
+            const FlightPart part = frame.countingPart(position, direction, early, 1.0);
+            EXPECT_EQ(part.start, end) << i;
+            end = part.end;
+        }
+    }
+}
 
 } // namespace
 } // namespace tungsten::photon

@@ -106,6 +106,54 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
     }
 }
 
+/// Several camera samples of one pass: surfaces are connected and photons splatted on each sample's rays.
+TEST_P(GuidedMaps, AgreeWithPathsAtSeveralSamplesAPass) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 9, "transient_time_width": 2)");
+    const auto photons = guided(json, {{setting("photon_count", 12000)}, 40, 3});
+    if (GetParam().darts == Best) {
+        EXPECT_GT(photons->statistics.counter("surface connections"), 10000u);
+    }
+    expectSameBlocks(*photons, *renderPaths(json, {{}, 20, 64}), 0, 0.05, 0.25);
+    const char* counter = GetParam().beams ? "gathered beams" : "gathered photons";
+    const auto single = guided(json, {{setting("photon_count", 12000)}, 40, 1});
+    const double expected = 3.0 * double(single->statistics.counter(counter));
+    EXPECT_NEAR(double(photons->statistics.counter(counter)), expected, 0.05 * expected);
+}
+
+/// Rounding moves photons across the ends of short frames, where paths that aim at one of them lose no light.
+TEST(GuidedFrames, MayBeShort) {
+    const std::string json = test::fogOverFloor(R"("start_time": 7, "transient_time_width": 1e-5, "frame_num": 8)");
+    const auto mean = [&](const char* single) {
+        const Overrides overrides{std::string(R"(integrator.darts={"preset": "published", "single_frames": )") +
+                                      single + "}",
+                                  "integrator.include_surfaces=false", "integrator.photon_count=20000"};
+        double sum = 0.0;
+        const auto rendered = renderPhotons(json, {overrides, 32, 1});
+        for (int frame = 0; frame < 8; ++frame) sum += rendered->mean(frame) / 8.0;
+        return sum;
+    };
+    const double whole = mean("false");
+    EXPECT_GT(whole, 0.0);
+    EXPECT_NEAR(mean("true"), whole, 0.005 * whole);
+}
+
+/// Where radii follow the density the largest fixed radius does not matter, not at the image's border either: photons
+/// beyond it show in the image, and are what the density there is.
+TEST(GuidedPoints, AreNotCulledByARadiusThatIsNotTheirs) {
+    const std::string json = test::fogOverFloor(R"("transient_time_center": 7, "transient_time_width": 1)");
+    const auto mean = [&](const std::string& radius) {
+        return renderPhotons(
+                   json, {{Best, "integrator.fixed_volume_radius=false", "integrator.include_surfaces=false",
+                           "camera.fov=3", "integrator.volume_gather_radius=" + radius, setting("photon_count", 4000)},
+                          4,
+                          1})
+            ->mean();
+    };
+    const double all = mean("1000");
+    EXPECT_GT(all, 0.0);
+    EXPECT_NEAR(mean("0.0005"), all, 1e-5 * all);
+}
+
 TEST_P(GuidedMaps, FullStoresStayUnbiased) {
     const std::string json = test::configurationA(2, false);
     // A wide view keeps more: the ray is the same.
@@ -199,6 +247,29 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
     expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
 }
 
+/// Fog at half the speed and a gate of twice the times are the same scene; the speed of a vacuum that no path can reach
+/// does not matter. Straight from a lamp to rough metal.
+TEST(GlossySurfaces, KnowTheSpeedThatMatters) {
+    const auto mean = [](double speed) {
+        const std::string json = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.02}],
+         "primitives": [{"type": "quad", "bsdf": {"type": "rough_conductor", "material": "Al", "roughness": 0.3}, "transform": {"scale": [6, 1, 6]}},
+                        {"type": "point", "emission": 20, "ext_medium": "fog", "transform": {"position": [0, 2, 1]}}],
+         "camera": {"type": "pinhole", "resolution": [16, 16], "fov": 45, "medium": "fog", "reconstruction_filter": "box",
+                    "transform": {"position": [0, 1.5, 3], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+         "integrator": {"type": "progressive_transient_photon_map", "photon_count": 100, "max_bounces": 2, "volume_gather_radius": 0.05}})";
+        return renderPhotons(
+                   json, {{Best, "media.fog.speed_of_light=" + std::to_string(speed),
+                           setting("transient_time_center", 5.6 / speed), setting("transient_time_width", 1.0 / speed)},
+                          8,
+                          1})
+                   ->mean() /
+               speed;
+    };
+    const double expected = mean(1.0);
+    EXPECT_GT(expected, 0.0);
+    EXPECT_NEAR(mean(0.5), expected, 0.02 * expected);
+}
+
 /// Light by way of a mirror on rough metal: the part that photons bring.
 TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
@@ -242,7 +313,7 @@ TEST(GlossySurfaces, ShowFog) {
         Overrides maps = best;
         maps.push_back(std::string("integrator.volume_photon_type=") + primitive);
         const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
-            return renderPhotons(json, {maps, 12, 1, seed});
+            return renderPhotons(json, {maps, 16, 1, seed});
         });
         EXPECT_NEAR(mean, expected, 5.0 * std::hypot(error, pathError) + 0.02 * expected);
         EXPECT_LT(std::hypot(error, pathError), 0.04 * expected) << "the test would not see a wrong value";

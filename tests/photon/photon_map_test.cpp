@@ -118,6 +118,35 @@ TEST(PhotonMap, FullStoresStayUnbiased) {
     EXPECT_LT(small->pixelError(), 0.1 * small->mean());
 }
 
+/// Without progression too: what the spread of a render's passes tells is what the spread over seeds is. Radii are
+/// those of a progressive map's first pass.
+TEST(PhotonMap, WithoutProgressionTellsItsError) {
+    const test::SceneFile file(test::foggedBox());
+    const auto render = [&](uint64_t seed, uint32_t passes, bool progressive) {
+        const test::RenderOptions options{
+            {"integrator.photon_count=1000", "integrator.volume_gather_radius=0.3", "integrator.volume_alpha=0.5"},
+            passes,
+            1,
+            seed};
+        return test::render(file.path(), options, [&](auto scene, const ObjectReader& settings) {
+            return std::make_unique<PhotonIntegrator>(std::move(scene), settings, progressive);
+        });
+    };
+    constexpr int Seeds = 200;
+    double sum = 0.0, squares = 0.0, told = 0.0;
+    for (uint64_t seed = 1; seed <= Seeds; ++seed) {
+        const auto rendered = render(seed, 8, false);
+        sum += rendered->mean();
+        squares += rendered->mean() * rendered->mean();
+        told += rendered->pixelError() * rendered->pixelError() / Seeds;
+    }
+    const double made = (squares - sum * sum / Seeds) / (Seeds - 1);
+    // The variance of 200 means has a relative error of sqrt(2 / 199).
+    EXPECT_NEAR(told, made, 5.0 * 0.1 * made);
+    EXPECT_GT(made, 0.0);
+    EXPECT_EQ(render(1, 1, false)->mean(), render(1, 1, true)->mean());
+}
+
 TEST(PhotonMap, UnusedStagesCostNothing) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4)");
     const auto noSurfaces = renderPhotons(json, {{"integrator.include_surfaces=false"}, 1, 1});

@@ -131,9 +131,8 @@ TEST(SensorClusters, BringAboutTheTargetWithEachDraw) {
         for (const PointDraw& draw : draws) {
             const ClusterPoint& point = corner.points[draw.point];
             const SpreadArrival seen = spreadArrival(-draw.direction * draw.distance, point.normal, point.spread);
-            const Vec3f lifted = position + point.normal * point.spread - point.position;
             const double cosine = double(std::max(seen.from.dot(point.normal), 0.05f));
-            const double brought = cosine / double(lifted.length2()) * double(draw.inverseExpectation);
+            const double brought = cosine * double(seen.weight) * double(draw.inverseExpectation);
             EXPECT_NEAR(brought, 20.0, 0.1);
         }
     }

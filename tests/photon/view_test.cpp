@@ -39,7 +39,7 @@ double pValue(const Directions& directions) {
 TEST(CameraView, DirectionsFollowTheirDensity) {
     for (const float fov : {35.0f, 70.0f, 120.0f}) {
         EXPECT_GT(pValue(CameraView(slantedCamera(Pinhole{fov}))), test::SmallestPValue) << fov;
-        EXPECT_GT(pValue(CameraView(slantedCamera(ThinLens{fov, 2.0f, 0.1f, 0.0f}))), test::SmallestPValue) << fov;
+        EXPECT_GT(pValue(CameraView(slantedCamera(ThinLens{fov, 2.0f, 0.1f}))), test::SmallestPValue) << fov;
     }
 }
 
@@ -110,8 +110,8 @@ INSTANTIATE_TEST_SUITE_P(Cameras, Sight,
                          testing::Values(ViewCase{"Pinhole", Pinhole{60.0f}, FilterType::Box},
                                          ViewCase{"Tele", Pinhole{5.0f}, FilterType::Lanczos},
                                          ViewCase{"Wide", Pinhole{110.0f}, FilterType::Gaussian},
-                                         ViewCase{"Lens", ThinLens{50.0f, 3.0f, 0.2f, 0.0f}, FilterType::Tent},
-                                         ViewCase{"NearFocus", ThinLens{40.0f, 0.5f, 0.1f, 0.0f}, FilterType::Box}),
+                                         ViewCase{"Lens", ThinLens{50.0f, 3.0f, 0.2f}, FilterType::Tent},
+                                         ViewCase{"NearFocus", ThinLens{40.0f, 0.5f, 0.1f}, FilterType::Box}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(EmissionDirections, FollowTheirDensity) {
@@ -120,19 +120,45 @@ TEST(EmissionDirections, FollowTheirDensity) {
     Emitter emitter;
     emitter.model = PointEmitter{Vec3f(0.0f), White};
     EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
-    emitter.model = AreaEmitter{};
-    EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue);
+    for (const float coneAngle : {90.0f, 60.0f, 30.0f}) {
+        const Shape disk = makeDisk(Transform{}, coneAngle);
+        emitter.model = AreaEmitter{&disk, 0, Texture(1.0f), nullptr};
+        EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << coneAngle;
+    }
     for (const float cosOuter : {-0.3f, 0.5f, 0.9f}) {
         emitter.model = SpotEmitter{Vec3f(0.0f), start.normal, White, 0.95f, cosOuter};
         EXPECT_GT(pValue(EmissionDirections(emitter, start)), test::SmallestPValue) << cosOuter;
     }
 }
 
+/// Also at the edge of a narrow cone, where rounding is a large part of the angle.
+TEST(EmissionDirections, HaveADensityWhereverTheyAreDrawn) {
+    Sampler sampler(1, RandomStream::Test, 0, 0);
+    for (const float degrees : {0.1f, 0.15f, 1.0f, 30.0f, 120.0f}) {
+        int without = 0;
+        for (int i = 0; i < 200000; ++i) {
+            SpotEmitter spot;
+            spot.direction = warp::squareToSphere(sampler.next2D());
+            spot.cosOuter = std::cos(degrees * Pi / 180.0f);
+            const EmissionDirections directions(Emitter{"", spot}, {});
+            const float u = i % 2 == 0 ? 0x1.fffffep-1f : sampler.next1D(); // often the edge itself
+            without += directions.pdf(directions.sample(u, sampler.next1D())) > 0.0f ? 0 : 1;
+        }
+        EXPECT_EQ(without, 0) << degrees;
+    }
+}
+
 /// The integral of the density over what the emitter lights: the emission weighted by it is the emitter's power.
 TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
-    std::vector<Emitter> emitters(2);
+    std::vector<Emitter> emitters(3);
+    const Shape disk = makeDisk(Transform{}, 40.0f);
+    emitters[2].model = AreaEmitter{&disk, 0, Texture(1.0f), std::make_shared<const AreaSampler>(disk)};
     emitters[0].model = PointEmitter{Vec3f(0.0f), White};
     emitters[1].model = SpotEmitter{Vec3f(0.0f), Vec3f(0.48f, -0.6f, 0.64f), White, 0.9f, 0.6f};
+    // The cosine tells the edge of a narrow cone in ten steps.
+    for (const Vec3f& axis : {Vec3f(2.0f, 4.0f, 2.0f), Vec3f(-1.0f, 2.0f, 5.0f), Vec3f(3.0f, -1.0f, 0.2f)})
+        emitters.push_back(Emitter{"", SpotEmitter{Vec3f(0.0f), axis.normalized(), White,
+                                                   std::cos(0.135f * Pi / 180.0f), std::cos(0.15f * Pi / 180.0f)}});
     for (const Emitter& emitter : emitters) {
         const SurfaceSample start = sampleEmissionPoint(emitter, Vec2f(0.5f, 0.5f));
         const EmissionDirections directions(emitter, start);
@@ -144,7 +170,7 @@ TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
             sum += double(emittedIntensity(emitter, start, Vec3f(d.x, d.y, d.z)).x) / double(directions.pdf(d));
         }
         const double power = double(emitterPower(emitter).x);
-        EXPECT_NEAR(sum / (Side * Side), power, 1e-3 * power);
+        EXPECT_NEAR(sum / (Side * Side), power, 4e-3 * power);
     }
 }
 

@@ -42,6 +42,7 @@ TEST(EffectPlan, ABareSceneCallsForLittle) {
     EXPECT_FALSE(plan.environment);
     EXPECT_FALSE(plan.textures);
     EXPECT_FALSE(plan.speedsDiffer);
+    EXPECT_EQ(plan.highestSpeed, 1.0f);
     expectIn(textOf(plan), {"steady state", "'floor'", "no reachable medium scatters"});
 }
 

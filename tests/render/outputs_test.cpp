@@ -133,7 +133,7 @@ TEST(Outputs, APfmSequenceIsASeriesAndTheMeanOverTheGate) {
 }
 
 TEST(Outputs, TransientsBuffersNameTheSeries) {
-    SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "output_buffers": [{"type": "transients",
+    SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "spp_step": 2, "output_buffers": [{"type": "transients",
         "ldr_output_file": "t/ldr.png", "hdr_output_file": "t/hdr.exr"}])"));
     const SessionResult& result = session.run();
     EXPECT_TRUE(session.has("t/ldr_2.png"));
@@ -158,12 +158,17 @@ TEST(Outputs, ColorBuffersAreFurtherFilesOfTheImageWithoutItsToneMap) {
 
 TEST(Outputs, IntegralsAreMeansTimesTheFrameWidth) {
     const std::string renderer = R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.pfm")";
-    SessionFixture session(tinyScene(std::string(ThreeFrames) + R"(, "time_normalization": "integral")", renderer));
-    const SessionResult& result = session.run();
-    const Image frame = readPfm(session.folder() / "image_1.pfm"), whole = readPfm(session.folder() / "image.pfm");
-    for (size_t i = 0; i < frame.pixels.size(); ++i) {
-        EXPECT_FLOAT_EQ(frame.pixels[i].x, 0.5f * result.film.mean(1).pixels[i].x);
-        EXPECT_FLOAT_EQ(whole.pixels[i].x, 3 * 0.5f * result.film.meanOverFrames().pixels[i].x);
+    // A width of 1 leaves a frame's integral equal to its mean, but not that of the sequence.
+    for (const float width : {0.5f, 1.0f}) {
+        SessionFixture session(tinyScene(R"("start_time": 0, "frame_num": 3, "time_normalization": "integral",
+            "transient_time_width": )" + std::to_string(width),
+                                         renderer));
+        const SessionResult& result = session.run();
+        const Image frame = readPfm(session.folder() / "image_1.pfm"), whole = readPfm(session.folder() / "image.pfm");
+        for (size_t i = 0; i < frame.pixels.size(); ++i) {
+            EXPECT_FLOAT_EQ(frame.pixels[i].x, width * result.film.mean(1).pixels[i].x);
+            EXPECT_FLOAT_EQ(whole.pixels[i].x, 3 * width * result.film.meanOverFrames().pixels[i].x);
+        }
     }
 }
 

@@ -50,8 +50,10 @@ TEST(Progress, ResumedSamplesTakeNoTimeAgain) {
 
 TEST(Progress, OnePassHasNoErrorYet) {
     ProgressState state = half();
-    state.relativeError = 0.0;
-    EXPECT_TRUE(contains(progressLine(state), "two passes needed"));
+    state.relativeError = std::numeric_limits<double>::quiet_NaN();
+    state.targetError = 0.01;
+    EXPECT_TRUE(contains(progressLine(state), "not known yet"));
+    EXPECT_DOUBLE_EQ(progressFraction(state), 0.5);
 }
 
 TEST(Progress, LongTimesAreInHours) {

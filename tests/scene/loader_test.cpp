@@ -2,6 +2,7 @@
 
 #include "support/SceneFile.h"
 
+#include "tungsten/film/ImageIo.h"
 #include "tungsten/scene/Interaction.h"
 #include "tungsten/scene/SceneLoader.h"
 
@@ -181,23 +182,102 @@ TEST(SceneLoader, InlineMediaAndBsdfsWork) {
     EXPECT_TRUE(loaded.scene->emitters[0].isArea());
 }
 
+std::string warningsOf(const std::string& json) {
+    const SceneFile file(json);
+    std::string text;
+    const LoadedScene loaded = loadScene(file.path());
+    for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text() + "\n";
+    return text;
+}
+
+/// Warnings of a lamp at `height` above a unit cube of fog, seen from outside or from within fog that is everywhere.
+std::string warningsOfLamp(const std::string& lamp, double height, bool everywhere) {
+    return warningsOf(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_s": 1}], "primitives": [
+        {"name": "cloud", "type": "cube", "int_medium": "haze", )" +
+                      std::string(everywhere ? R"("ext_medium": "haze", )" : "") + R"("bsdf": {"type": "forward"}},
+        {"name": "bulb", "emission": 3, )" +
+                      lamp + R"(, "transform": {"position": [0.1, )" + std::to_string(height) +
+                      R"(, 0], "scale": 0.2}}], "camera": {)" + (everywhere ? R"("medium": "haze", )" : "") +
+                      R"("transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}}})");
+}
+
+TEST(SceneLoader, LightsInAMediumTheyDoNotNameAreWarnedAbout) {
+    for (const std::string lamp :
+         {R"("type": "point")", R"("type": "sphere", "bsdf": {"type": "null"})", R"("type": "quad")"}) {
+        SCOPED_TRACE(lamp);
+        const std::string named = lamp + R"(, "ext_medium": "haze")";
+        for (const auto& [height, everywhere] : {std::pair{0.0, false}, {2.0, true}}) {
+            const std::string warning = warningsOfLamp(lamp, height, everywhere);
+            for (const char* part : {"primitives[1].ext_medium", "'bulb'", "'haze'"})
+                EXPECT_NE(warning.find(part), std::string::npos) << part << " in " << warning;
+            EXPECT_EQ(warningsOfLamp(named, height, everywhere), "");
+        }
+        EXPECT_EQ(warningsOfLamp(lamp, 2.0, false), "");
+    }
+}
+
+TEST(SceneLoader, WhatIsNotDoneIsSaid) {
+    const std::string lamp = R"({"primitives": [{"type": "point", "emission": 1}], )";
+    const std::string lens = lamp + R"("camera": {"type": "thinlens", "cateye": )";
+    EXPECT_NE(warningsOf(lens + "0.5}}").find("camera.cateye"), std::string::npos);
+    EXPECT_EQ(warningsOf(lens + "0}}"), "");
+    const std::string gate = lamp + R"("integrator": {"type": "path_tracer", "transient_time_width": 0.5)";
+    EXPECT_NE(warningsOf(gate + R"(, "transient_time_center": -2}})").find("steady state"), std::string::npos);
+    EXPECT_NE(warningsOf(gate + "}}").find("steady state"), std::string::npos);
+    for (const char* more :
+         {R"(, "transient_time_center": 2}})", R"(, "frame_num": 2}})", R"(, "temporal_response": {"type": "box"}}})"})
+        EXPECT_EQ(warningsOf(gate + more).find("steady state"), std::string::npos) << more;
+}
+
+TEST(SceneLoader, BitmapsThatDifferInAScaleFarBelowOneAreTwo) {
+    const SceneFile file(R"({"bsdfs": [
+        {"name": "a", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "scale": 1e-7}},
+        {"name": "b", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "scale": 3e-7}}],
+        "primitives": [{"type": "quad", "bsdf": "a"}, {"type": "quad", "bsdf": "b"}]})");
+    Image grey(2, 2);
+    for (Rgb& pixel : grey.pixels) pixel = Rgb(0.5f);
+    writePfm(file.path().parent_path() / "grey.pfm", grey);
+    const LoadedScene loaded = loadScene(file.path());
+    const auto albedo = [&](size_t i) { return loaded.scene->primitives[i].bsdfs[0]->albedo.rgb({0.5f, 0.5f}).x; };
+    EXPECT_FLOAT_EQ(albedo(0), 0.5e-7f);
+    EXPECT_FLOAT_EQ(albedo(1), 1.5e-7f);
+}
+
+/// Where nothing is refracted light goes on, as through a smooth interface.
+TEST(SceneLoader, RoughDielectricsWithoutContrastLetEverythingThrough) {
+    for (const char* ior : {"1", "1.00001", "0.99999"}) {
+        const SceneFile file(R"({"primitives": [{"type": "quad", "bsdf": {"type": "rough_dielectric", "roughness": 0.3,
+            "ior": )" + std::string(ior) +
+                             "}}]}");
+        const LoadedScene loaded = loadScene(file.path());
+        const Bsdf& bsdf = *loaded.scene->primitives[0].bsdfs[0];
+        const Vec3f wi(0.6f, 0.0f, 0.8f);
+        for (const float u : {0.1f, 0.5f, 0.9f}) {
+            const auto drawn = bsdf.sample({}, wi, {{u, 0.4f}, u});
+            ASSERT_TRUE(drawn) << ior;
+            EXPECT_EQ(drawn->weight, Rgb(1.0f)) << ior;
+            EXPECT_LT((drawn->wo + wi).length(), 1e-6f) << ior;
+        }
+    }
+}
+
 TEST(Visibility, TimeTransmittanceAndCrossingsThroughABoundary) {
     const SceneFile file(Fog);
     const auto loaded = loadScene(file.path());
     uint64_t rays = 0;
     // Straight down through the unit cube of fog (speed 0.75) in vacuum (speed 1), from y = 1 to y = -1.
-    const Visibility through = traceVisibility(*loaded.scene, Vec3f(0.1f, 1, 0.1f), false, Vec3f(0, -1, 0), 2.0f, false,
-                                               Region{-1, 1.0f}, rays);
+    const Visibility through =
+        traceVisibility(*loaded.scene, {Vec3f(0.1f, 1, 0.1f), Vec3f(0, -1, 0), 0, 2}, 2.0f, Region{-1, 1.0f}, rays);
     EXPECT_EQ(through.crossings, 2);
     EXPECT_NEAR(through.time, 1.0 + 1.0 / 0.75, 1e-6);
     EXPECT_NEAR(through.transmittance.x, std::exp(-3.0f), 1e-6f);
     EXPECT_NEAR(through.transmittance.z, std::exp(-7.0f), 1e-6f);
-    const Visibility blocked = traceVisibility(*loaded.scene, Vec3f(0.1f, 1, 0.1f), false, Vec3f(0, -1, 0), 4.0f, false,
-                                               Region{-1, 1.0f}, rays);
+    const Visibility blocked =
+        traceVisibility(*loaded.scene, {Vec3f(0.1f, 1, 0.1f), Vec3f(0, -1, 0), 0, 4}, 4.0f, Region{-1, 1.0f}, rays);
     EXPECT_EQ(blocked.transmittance, Rgb(0.0f));
     // From inside the fog outward: one crossing.
     const Visibility outward =
-        traceVisibility(*loaded.scene, Vec3f(0, 0, 0), false, Vec3f(1, 0, 0), 1.0f, false, Region{0, 0.75f}, rays);
+        traceVisibility(*loaded.scene, {Vec3f(0, 0, 0), Vec3f(1, 0, 0), 0, 1}, 1.0f, Region{0, 0.75f}, rays);
     EXPECT_EQ(outward.crossings, 1);
     EXPECT_NEAR(outward.time, 0.5 / 0.75 + 0.5, 1e-6);
 }

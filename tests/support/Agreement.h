@@ -263,7 +263,8 @@ inline BlockMeans renderBlocks(const AgreementScene& scene, const Method& method
             const size_t i = result.index(frame, block);
             result.shrink[i] = shrink.mean(frame, block);
             result.mean[i] = values.mean(frame, block) - result.shrink[i] / 3.0;
-            result.error[i] = values.error(frame, block) + shrink.error(frame, block) / 3.0;
+            result.error[i] = values.error(frame, block);
+            if (method.kernel) result.error[i] += shrink.error(frame, block) / 3.0;
         }
     }
     return result;

@@ -105,7 +105,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     app.add_option("--resolution", resolution, "WIDTHxHEIGHT in pixels");
     app.add_option("--stats", statistics, "write times, counters, memory and standard error to this JSON file");
     app.add_option("--target-error", options.targetError,
-                   "stop when the relative standard error is below this (0.01 is 1 %)")
+                   "stop when the relative standard error is at most this (0.01 is 1 %)")
         ->check(CLI::PositiveNumber);
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");

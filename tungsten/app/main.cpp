@@ -86,7 +86,7 @@ void printSummary(const SessionResult& result) {
     std::printf("%u passes, %llu samples per pixel in %.1f s (%s)", result.film.passes(),
                 static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str());
     const double error = result.film.relativeStandardError();
-    if (error > 0.0) std::printf(", standard error %.3g %%", 100.0 * error);
+    if (!std::isnan(error)) std::printf(", standard error %.3g %%", 100.0 * error);
     std::printf("\n");
     constexpr size_t MostListed = 12;
     for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)

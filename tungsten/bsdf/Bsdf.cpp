@@ -29,7 +29,9 @@ std::optional<BsdfSample> Bsdf::sample(const BsdfQuery& query, const Vec3f& wi, 
 
 Rgb Bsdf::forwardWeight(const Vec2f& uv) const {
     if ((lobes_ & lobe::Forward) == 0) return Rgb(0.0f);
-    return std::visit([&](const auto& m) { return forwardOf(m, uv); }, model);
+    const BsdfQuery query{uv};
+    const ModelPoint at{query, albedo.rgb(uv)};
+    return std::visit([&](const auto& m) { return forwardOf(m, at); }, model);
 }
 
 } // namespace tungsten

@@ -28,7 +28,8 @@ inline constexpr LobeMask SpecularTransmission = 16;
 inline constexpr LobeMask Forward = 32; ///< straight through, index matched
 inline constexpr LobeMask Smooth = DiffuseReflection | GlossyReflection | GlossyTransmission;
 inline constexpr LobeMask Specular = SpecularReflection | SpecularTransmission;
-inline constexpr LobeMask Transmissive = GlossyTransmission | SpecularTransmission | Forward;
+inline constexpr LobeMask Transmissive = GlossyTransmission | SpecularTransmission;
+inline constexpr LobeMask Through = Transmissive | Forward; ///< all that brings light to the other side
 inline constexpr LobeMask All = 63;
 } // namespace lobe
 
@@ -132,7 +133,8 @@ class Bsdf {
     [[nodiscard]] float pdf(const BsdfQuery& query, const Vec3f& wi, const Vec3f& wo) const;
     /// Draws a continuation among the requested lobes; none when it absorbs.
     [[nodiscard]] std::optional<BsdfSample> sample(const BsdfQuery& query, const Vec3f& wi, const BsdfRandom& u) const;
-    /// Weight of going straight through (forward: 1; transparency: 1 - alpha; mixed: the ratio of its parts; else 0).
+    /// Weight of going straight through (forward: 1; transparency: 1 - alpha; mixed: the ratio of its parts,
+    /// times the albedo; else 0).
     [[nodiscard]] Rgb forwardWeight(const Vec2f& uv) const;
     /// Every lobe the model can have.
     [[nodiscard]] LobeMask lobes() const { return lobes_; }

@@ -62,7 +62,7 @@ MaybeSample sampleModel(const Forward&, const ModelPoint& at, const Vec3f& wi, c
     return passStraight(wi, Rgb(1.0f), 1.0f);
 }
 template <>
-Rgb forwardOf(const Forward&, const Vec2f&) {
+Rgb forwardOf(const Forward&, const ModelPoint&) {
     return Rgb(1.0f);
 }
 
@@ -92,8 +92,8 @@ MaybeSample sampleModel(const Transparency& model, const ModelPoint& at, const V
     return sample;
 }
 template <>
-Rgb forwardOf(const Transparency& model, const Vec2f& uv) {
-    return Rgb(1.0f - model.alpha.alpha(uv));
+Rgb forwardOf(const Transparency& model, const ModelPoint& at) {
+    return Rgb(1.0f - model.alpha.alpha(at.query.uv));
 }
 
 template <>
@@ -126,9 +126,10 @@ MaybeSample sampleModel(const Mixed& model, const ModelPoint& at, const Vec3f& w
     return sample;
 }
 template <>
-Rgb forwardOf(const Mixed& model, const Vec2f& uv) {
-    const float ratio = model.ratio.scalar(uv);
-    return model.bsdf0->forwardWeight(uv) * ratio + model.bsdf1->forwardWeight(uv) * (1.0f - ratio);
+Rgb forwardOf(const Mixed& model, const ModelPoint& at) {
+    const float ratio = model.ratio.scalar(at.query.uv);
+    return at.albedo *
+           (model.bsdf0->forwardWeight(at.query.uv) * ratio + model.bsdf1->forwardWeight(at.query.uv) * (1.0f - ratio));
 }
 
 } // namespace tungsten

@@ -43,6 +43,11 @@ Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& u
     return {toWorld.point(start), toWorld.vector((focus - start).normalized()).normalized()};
 }
 
+float Camera::aperture() const {
+    const auto* lens = std::get_if<ThinLens>(&model);
+    return lens ? lens->apertureRadius * std::max(toWorld.x.length(), toWorld.y.length()) : 0.0f;
+}
+
 std::optional<Vec2f> Camera::project(const Vec3f& point) const {
     const Frame frame = toWorld.rotation();
     const Vec3f local = frame.toLocal(point - position());

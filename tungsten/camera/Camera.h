@@ -21,7 +21,6 @@ struct Pinhole : FieldOfView {};
 struct ThinLens : FieldOfView {
     float focusDistance = 1.0f; ///< along the axis
     float apertureRadius = 0.001f;
-    float catEye = 0.0f;
 };
 struct Orthographic {
     float size = 1.0f; ///< half the image height
@@ -43,6 +42,8 @@ class Camera {
     /// Raster position of a world point (pinhole and thin lens: through the lens centre; orthographic: along the axis);
     /// none behind the camera. May lie outside the image.
     [[nodiscard]] std::optional<Vec2f> project(const Vec3f& point) const;
+    /// How far from position() the rays of a lens start at most: its radius in the world; 0 for other cameras.
+    [[nodiscard]] float aperture() const;
     /// Every sensor ray leaves the same point.
     [[nodiscard]] bool hasSinglePosition() const { return std::holds_alternative<Pinhole>(model); }
 };

@@ -25,6 +25,11 @@ Vec3f squareToCosineHemisphere(const Vec2f& u) {
     return {p.x, p.y, std::sqrt(std::max(1.0f - p.x * p.x - p.y * p.y, 0.0f))};
 }
 
+Vec3f squareToCosineCone(const Vec2f& u, float cosHalfAngle) {
+    const Vec2f p = squareToDisk(u) * std::sqrt((1.0f - cosHalfAngle) * (1.0f + cosHalfAngle));
+    return {p.x, p.y, std::sqrt(std::max(1.0f - p.x * p.x - p.y * p.y, 0.0f))};
+}
+
 Vec3f squareToCone(const Vec2f& u, float cosHalfAngle) {
     const float oneMinusCos = u.x * (1.0f - cosHalfAngle);
     const float radius = std::sqrt(oneMinusCos * (2.0f - oneMinusCos));

@@ -5,13 +5,22 @@
 
 namespace tungsten {
 
+float AreaEmitter::cosCone() const {
+    const auto* disk = std::get_if<Disk>(shape);
+    return disk ? disk->cosConeAngle : 0.0f;
+}
+
+float AreaEmitter::extent() const {
+    return Pi * (1.0f - sqr(cosCone())) * areaSampler->area();
+}
+
 EmissionSample sampleEmission(const AreaEmitter& area, const Vec2f& uPosition, const Vec2f& uDirection) {
     const SurfaceSample start = area.areaSampler->sample(*area.shape, uPosition);
-    const Vec3f local = warp::squareToCosineHemisphere(uDirection);
+    const float cone = area.cosCone();
+    const Vec3f local = warp::squareToCosineCone(uDirection, cone);
     const Vec3f direction = Frame(start.normal).toWorld(local).normalized();
-    // L cos / (1/A · cos/pi) = pi A L. A disk's cone does not restrict photons (a rule of the format).
-    const Rgb power = area.radiance.rgb(start.uv) * (Pi * area.areaSampler->area());
-    return {{start.position, direction}, power, warp::squareToCosineHemispherePdf(local), start.normal};
+    const Rgb power = area.radiance.rgb(start.uv) * area.extent(); // L cos over the densities of position and direction
+    return {start.leave(direction), power, warp::squareToCosineConePdf(local, cone), start.normal};
 }
 
 std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& receiver, const Vec2f& u) {
@@ -21,10 +30,9 @@ std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& r
     if (!(distance > 0.0f)) return std::nullopt;
     const Vec3f direction = offset / distance;
     const float cosine = -direction.dot(point.normal);
-    if (cosine <= 0.0f) return std::nullopt;
-    if (const auto* disk = std::get_if<Disk>(area.shape); disk && cosine < disk->cosConeAngle) return std::nullopt;
+    if (!area.shinesAt(cosine)) return std::nullopt;
     const float pdf = sqr(distance) / (cosine * area.areaSampler->area());
-    return DirectSample{direction, distance, area.radiance.rgb(point.uv) / pdf, pdf, point.position};
+    return DirectSample{direction, distance, area.radiance.rgb(point.uv) / pdf, pdf, point.position, point.margin()};
 }
 
 } // namespace tungsten

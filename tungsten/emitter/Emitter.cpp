@@ -27,9 +27,10 @@ SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u) {
 Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction) {
     if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) return point->intensity;
     if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model))
-        return spot->intensity * spot->falloff(direction.dot(spot->direction));
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model))
-        return area->radiance.rgb(start.uv) * (std::max(direction.dot(start.normal), 0.0f) * area->areaSampler->area());
+        return spot->intensity * spot->falloffTowards(direction);
+    const float cosine = direction.dot(start.normal);
+    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model); area && area->shinesAt(cosine))
+        return area->radiance.rgb(start.uv) * (cosine * area->areaSampler->area());
     return Rgb(0.0f);
 }
 
@@ -58,10 +59,7 @@ float pdfDirect(const Emitter& emitter, const Vec3f& receiver, const Vec3f& posi
 
 Rgb emittedRadiance(const Emitter& emitter, const Vec2f& uv, const Vec3f& ng, const Vec3f& towards) {
     const auto* area = std::get_if<AreaEmitter>(&emitter.model);
-    const float cosine = ng.dot(towards);
-    if (!area || cosine <= 0.0f) return Rgb(0.0f);
-    if (const auto* disk = std::get_if<Disk>(area->shape); disk && cosine < disk->cosConeAngle) return Rgb(0.0f);
-    return area->radiance.rgb(uv);
+    return area && area->shinesAt(ng.dot(towards)) ? area->radiance.rgb(uv) : Rgb(0.0f);
 }
 
 Rgb emitterPower(const Emitter& emitter) {
@@ -70,8 +68,7 @@ Rgb emitterPower(const Emitter& emitter) {
         return spot->intensity * spotSolidAngle(spot->cosInner, spot->cosOuter);
     if (const auto* beam = std::get_if<DirectionalPointEmitter>(&emitter.model)) return beam->power;
     if (const auto* beam = std::get_if<CollimatedEmitter>(&emitter.model)) return beam->power;
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model))
-        return area->radiance.average() * (Pi * area->areaSampler->area());
+    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) return area->radiance.average() * area->extent();
     const auto& sky = std::get<InfiniteSphereEmitter>(emitter.model);
     return sky.radiance.average() * (4.0f * Pi * Pi * sqr(sky.sceneRadius));
 }

@@ -36,6 +36,11 @@ struct SpotEmitter {
     float cosInner = 0.9f, cosOuter = 0.8f;
 
     [[nodiscard]] float falloff(float cosTheta) const;
+    /// Towards a unit direction. By the difference from the axis: in a narrow cone a dot product's rounding is a large
+    /// part of the edge.
+    [[nodiscard]] float falloffTowards(const Vec3f& unit) const {
+        return falloff(1.0f - 0.5f * (unit - direction).length2());
+    }
 };
 /// Any surface with emission: one-sided radiance on the side of the geometric normal.
 struct AreaEmitter {
@@ -43,6 +48,12 @@ struct AreaEmitter {
     uint32_t primitive = 0; ///< index in Scene::primitives
     Texture radiance;
     std::shared_ptr<const AreaSampler> areaSampler;
+
+    /// Cosine of the half angle of the cone about the normal that it shines into: 0 but for disks with a cone_angle.
+    [[nodiscard]] float cosCone() const;
+    [[nodiscard]] bool shinesAt(float cosine) const { return cosine > 0.0f && cosine >= cosCone(); }
+    /// What its radiance is multiplied by for the power: area times projected solid angle.
+    [[nodiscard]] float extent() const;
 };
 /// Environment (steady state only): constant or bitmap radiance.
 struct InfiniteSphereEmitter {
@@ -94,6 +105,10 @@ struct DirectSample {
     Rgb weight;      ///< radiance / pdf (area, environment) or intensity / distance^2 (points); visibility not included
     float pdf;       ///< per solid angle at the receiver; 0 for point-like emitters (no MIS with directions)
     Vec3f position;  ///< on the emitter
+    SurfaceMargin margin{};
+
+    /// The length of a ray to the emitter on which only other surfaces are met.
+    [[nodiscard]] float reach() const { return margin.before(direction, distance); }
 };
 /// None when the emitter cannot light the point (behind it, outside the cone, single direction).
 std::optional<DirectSample> sampleDirect(const Emitter& emitter, const Vec3f& receiver, const Vec2f& u);

@@ -56,7 +56,7 @@ std::optional<DirectSample> sampleDirect(const PointEmitter& point, const Vec3f&
 std::optional<DirectSample> sampleDirect(const SpotEmitter& spot, const Vec3f& receiver, const Vec2f&) {
     auto sample = connectToPoint(spot.position, receiver);
     if (!sample) return sample;
-    const float falloff = spot.falloff(-sample->direction.dot(spot.direction));
+    const float falloff = spot.falloffTowards(-sample->direction);
     if (falloff <= 0.0f) return std::nullopt;
     sample->weight = sample->weight * spot.intensity * falloff;
     return sample;

@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <istream>
+#include <limits>
 #include <ostream>
 
 namespace tungsten {
@@ -13,6 +14,7 @@ namespace tungsten {
 namespace {
 
 constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
+constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '1'};
 
 struct StateHeader {
@@ -38,8 +40,7 @@ void fold(const Rgb& value, double weight, double totalBefore, Rgb& mean, Rgb& m
 /// Standard error of a weighted mean whose passes have variance inversely proportional to their weight.
 Image errorImage(int width, int height, const Rgb* moment2, uint32_t passes, double weight) {
     Image image(width, height);
-    if (passes < 2) return image;
-    const double scale = 1.0 / (double(passes - 1) * weight);
+    const double scale = passes < 2 ? Unknown : 1.0 / (double(passes - 1) * weight);
     for (size_t i = 0; i < image.pixels.size(); ++i)
         for (int c = 0; c < 3; ++c) image.pixels[i][c] = float(std::sqrt(std::max(double(moment2[i][c]), 0.0) * scale));
     return image;
@@ -124,7 +125,7 @@ Image Film::standardErrorOverFrames() const {
 }
 
 double Film::relativeStandardError() const {
-    if (passes_ < 2) return 0.0;
+    if (passes_ < 2) return Unknown;
     double moments = 0.0, means = 0.0;
     for (size_t i = 0; i < mean_.size(); ++i)
         for (int c = 0; c < 3; ++c) {
@@ -133,7 +134,7 @@ double Film::relativeStandardError() const {
         }
     const double count = 3.0 * double(mean_.size());
     const double rms = std::sqrt(moments / (double(passes_ - 1) * weight_) / count);
-    return means > 0.0 ? rms / (means / count) : 0.0;
+    return means > 0.0 ? rms / (means / count) : Unknown;
 }
 
 size_t Film::memoryBytes() const {

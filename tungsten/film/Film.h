@@ -47,13 +47,13 @@ class Film {
     void countNonFinite(uint64_t n) { nonFinite_ += n; }
 
     [[nodiscard]] Image mean(int frame) const;
-    /// Standard error of mean(frame) per pixel; zero with fewer than two passes.
+    /// Standard error of mean(frame) per pixel; NaN while it is unknown, with fewer than two passes.
     [[nodiscard]] Image standardError(int frame) const;
     /// Mean over the frames: the image of the whole gate.
     [[nodiscard]] Image meanOverFrames() const;
     [[nodiscard]] Image standardErrorOverFrames() const;
-    /// rms over pixels and frames of the standard error, relative to the mean pixel value (0 for a black film or one
-    /// pass).
+    /// rms over pixels and frames of the standard error, relative to the mean pixel value. NaN while it is unknown:
+    /// with fewer than two passes, or black.
     [[nodiscard]] double relativeStandardError() const;
     [[nodiscard]] size_t memoryBytes() const;
 

@@ -41,12 +41,22 @@ float intersectShape(const Disk& disk, const Vec3f& origin, const Vec3f& directi
     return offset.dot(offset) <= double(disk.radius) * double(disk.radius) ? float(t) : -1.0f;
 }
 
+Vec3f pointOn(const Sphere& sphere, const Vec3d& offset) {
+    return Vec3f(Vec3d(sphere.centre) + offset * (double(sphere.radius) / std::sqrt(offset.dot(offset))));
+}
+
+Vec3f pointOn(const Disk& disk, const Vec3d& offset) {
+    const Vec3d n(disk.frame.n);
+    return Vec3f(Vec3d(disk.centre) + offset - n * (offset.dot(n) / n.dot(n)));
+}
+
 void completeHit(const Sphere& sphere, const Ray& ray, SurfaceHit& hit) {
     const Vec3d offset = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t) - Vec3d(sphere.centre);
     const double length = std::sqrt(offset.dot(offset));
     hit.ng = length > 0.0 ? Vec3f(offset / length) : sphere.frame.n;
     hit.ns = hit.ng;
-    hit.position = sphere.centre + hit.ng * sphere.radius;
+    hit.position = pointOn(sphere, length > 0.0 ? offset : Vec3d(hit.ng));
+    hit.error = roundingError(hit.position, hit.ng);
     const Vec3f local = sphere.frame.toLocal(hit.ng);
     hit.uv = sphereUv(local);
     const float sinTheta = std::hypot(local.x, local.y);
@@ -59,10 +69,11 @@ void completeHit(const Sphere& sphere, const Ray& ray, SurfaceHit& hit) {
 void completeHit(const Disk& disk, const Ray& ray, SurfaceHit& hit) {
     const Vec3d offset = Vec3d(ray.origin) + Vec3d(ray.direction) * double(hit.t) - Vec3d(disk.centre);
     const Vec3f s = disk.frame.s, t = disk.frame.t;
-    // Back into the plane: t carries a rounding error along the ray.
     const Vec2f inPlane(float(offset.dot(Vec3d(s))), float(offset.dot(Vec3d(t))));
     hit.ng = hit.ns = disk.frame.n;
-    hit.position = disk.centre + s * inPlane.x + t * inPlane.y;
+    // Back into the plane: t carries a rounding error along the ray.
+    hit.position = pointOn(disk, offset);
+    hit.error = roundingError(hit.position, hit.ng);
     hit.uv = diskUv(inPlane / disk.radius);
     const float radius = inPlane.length();
     if (!(radius > 1e-6f * disk.radius)) return setDefaultTangents(hit); // the centre

@@ -10,6 +10,11 @@ namespace tungsten {
 float intersectShape(const Sphere& sphere, const Vec3f& origin, const Vec3f& direction, float tMin, float tMax);
 float intersectShape(const Disk& disk, const Vec3f& origin, const Vec3f& direction, float tMin, float tMax);
 
+/// The point of the surface in direction `offset` from the centre; nearest to `offset` from it. In double precision up
+/// to the coordinates' rounding.
+Vec3f pointOn(const Sphere& sphere, const Vec3d& offset);
+Vec3f pointOn(const Disk& disk, const Vec3d& offset);
+
 /// Everything of `hit` but shape, face and material, from its t.
 void completeHit(const Sphere& sphere, const Ray& ray, SurfaceHit& hit);
 void completeHit(const Disk& disk, const Ray& ray, SurfaceHit& hit);

@@ -27,6 +27,8 @@ struct TriangleMesh {
     /// Normalised (p1 - p0) x (p2 - p0); (0, 1, 0) for a degenerate triangle.
     [[nodiscard]] Vec3f faceNormal(uint32_t triangle) const;
     [[nodiscard]] float faceArea(uint32_t triangle) const;
+    /// At the barycentric weights `b1`, `b2` of the second and third corner.
+    [[nodiscard]] Vec3f pointOn(uint32_t triangle, float b1, float b2) const;
 };
 
 /// Reads .wo3, .obj, .ply, .gltf, .glb (by extension, case-insensitive; glTF node transforms applied, all nodes

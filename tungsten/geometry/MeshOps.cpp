@@ -66,6 +66,13 @@ float TriangleMesh::faceArea(uint32_t triangle) const {
     return float(0.5 * std::sqrt(n.dot(n)));
 }
 
+Vec3f TriangleMesh::pointOn(uint32_t triangle, float b1, float b2) const {
+    // From a corner: the edges are shorter than the corners may be far from the origin.
+    const auto& v = triangles[triangle].v;
+    const Vec3f& p0 = positions[v[0]];
+    return p0 + ((positions[v[1]] - p0) * b1 + (positions[v[2]] - p0) * b2);
+}
+
 void recomputeNormals(TriangleMesh& mesh) {
     const float cosCrease = std::cos(0.15f * Pi);
     const size_t originals = mesh.positions.size();

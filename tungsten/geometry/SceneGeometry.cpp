@@ -58,16 +58,25 @@ void setTangents(const TriangleMesh& mesh, const Triangle& triangle, SurfaceHit&
     hit.dpdv = frame.t;
 }
 
+/// The point where the ray meets the triangle's plane. On a vast triangle it is far better known from the ray than from
+/// the corners.
+Vec3f pointOnPlane(const TriangleMesh& mesh, const Triangle& triangle, const Ray& ray, float t) {
+    const Vec3d p0(mesh.positions[triangle.v[0]]), point = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
+    const Vec3d n = (Vec3d(mesh.positions[triangle.v[1]]) - p0).cross(Vec3d(mesh.positions[triangle.v[2]]) - p0);
+    return Vec3f(point - n * ((point - p0).dot(n) / n.dot(n)));
+}
+
 /// `b1`, `b2` are the barycentric weights of the second and third corner.
-void completeHit(const TriangleMesh& mesh, float b1, float b2, SurfaceHit& hit) {
+void completeHit(const TriangleMesh& mesh, const Ray& ray, float b1, float b2, SurfaceHit& hit) {
     const Triangle& triangle = mesh.triangles[hit.face];
     const float b0 = 1.0f - b1 - b2;
     const auto blend = [&](const auto& values) {
         return values[triangle.v[0]] * b0 + values[triangle.v[1]] * b1 + values[triangle.v[2]] * b2;
     };
     hit.material = mesh.materials.empty() ? 0 : mesh.materials[hit.face];
-    hit.position = blend(mesh.positions);
+    hit.position = pointOnPlane(mesh, triangle, ray, hit.t);
     hit.ng = mesh.faceNormal(hit.face);
+    hit.error = roundingError(mesh, hit.face, b1, b2, hit.position, hit.ng);
     hit.ns = hit.ng;
     hit.uv = mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs);
     setTangents(mesh, triangle, hit);
@@ -208,7 +217,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
     hit.face = query.hit.primID;
     const Shape& shape = *shapes_[hit.shape];
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape))
-        completeHit(*mesh, query.hit.u, query.hit.v, hit);
+        completeHit(*mesh, ray, query.hit.u, query.hit.v, hit);
     else if (const auto* sphere = std::get_if<Sphere>(&shape))
         completeHit(*sphere, ray, hit);
     else
@@ -217,6 +226,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
 }
 
 bool SceneGeometry::occluded(const Ray& ray) const {
+    if (!(ray.tMin < ray.tMax)) return false; // below 0 the end would pass for Embree's answer
     RTCRay query = embreeRay(ray);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

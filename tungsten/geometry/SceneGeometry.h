@@ -23,6 +23,11 @@ struct SurfaceHit {
     Vec3f ns;         ///< shading normal, unit; not flipped
     Vec3f dpdu, dpdv; ///< parametrisation tangents (for bump and anisotropy)
     Vec2f uv;
+    float error = 0.0f; ///< of the margin
+
+    [[nodiscard]] SurfaceMargin margin() const { return {ng, error}; }
+    /// A ray from here that does not meet the surface here.
+    [[nodiscard]] Ray leave(const Vec3f& direction) const { return {position, direction, margin().beyond(direction)}; }
 };
 
 /// Owns the Embree scene over shapes that outlive it. Immutable; safe to query from many threads.

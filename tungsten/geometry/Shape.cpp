@@ -26,19 +26,24 @@ SurfaceSample sampleOn(const TriangleMesh& mesh, const Distribution1D& triangles
     const auto blend = [&](const auto& values) {
         return values[triangle.v[0]] * b0 + values[triangle.v[1]] * b.x + values[triangle.v[2]] * b.y;
     };
-    return {blend(mesh.positions), mesh.faceNormal(uint32_t(chosen.index)),
-            mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs)};
+    const auto face = uint32_t(chosen.index);
+    const Vec3f position = mesh.pointOn(face, b.x, b.y), normal = mesh.faceNormal(face);
+    return {position, normal, mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs),
+            roundingError(mesh, face, b.x, b.y, position, normal)};
 }
 
 SurfaceSample sampleOn(const Sphere& sphere, const Vec2f& u) {
     const Vec3f local = warp::squareToSphere(u);
     const Vec3f normal = sphere.frame.toWorld(local).normalized();
-    return {sphere.centre + normal * sphere.radius, normal, sphereUv(local)};
+    const Vec3f position = pointOn(sphere, Vec3d(normal));
+    return {position, normal, sphereUv(local), roundingError(position, normal)};
 }
 
 SurfaceSample sampleOn(const Disk& disk, const Vec2f& u) {
     const Vec2f local = warp::squareToDisk(u);
-    return {disk.centre + (disk.frame.s * local.x + disk.frame.t * local.y) * disk.radius, disk.frame.n, diskUv(local)};
+    const Vec3f& n = disk.frame.n;
+    const Vec3f position = pointOn(disk, Vec3d((disk.frame.s * local.x + disk.frame.t * local.y) * disk.radius));
+    return {position, n, diskUv(local), roundingError(position, n)};
 }
 
 } // namespace

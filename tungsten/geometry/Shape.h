@@ -2,6 +2,7 @@
 // The closed set of shapes: triangle meshes (quads and cubes too), spheres, disks. World space.
 
 #include "tungsten/geometry/Mesh.h"
+#include "tungsten/geometry/SurfaceMargin.h"
 
 #include "tungsten/core/Distribution.h"
 
@@ -36,6 +37,11 @@ struct SurfaceSample {
     Vec3f position;
     Vec3f normal; ///< geometric
     Vec2f uv;
+    float error = 0.0f; ///< of the margin; 0: a point in space
+
+    [[nodiscard]] SurfaceMargin margin() const { return {normal, error}; }
+    /// A ray from here that does not meet the surface here.
+    [[nodiscard]] Ray leave(const Vec3f& direction) const { return {position, direction, margin().beyond(direction)}; }
 };
 
 /// Draws points uniformly over a shape's surface.

@@ -1,5 +1,5 @@
 #pragma once
-// Phase functions: cosTheta between the directions of propagation before and after; g > 0 scatters forward.
+// Phase functions; g > 0 scatters forward.
 
 #include "tungsten/core/Types.h"
 
@@ -7,18 +7,22 @@
 
 namespace tungsten {
 
+// Models are functions of h = 1 - cos of the angle between the direction after and the peak: the direction of
+// propagation before, or its opposite where more is scattered back than forward. About a peak that is narrow nothing
+// cancels in h, as it does in the cosine.
+
 struct Isotropic {
-    [[nodiscard]] float eval(float cosTheta) const;
-    [[nodiscard]] float sampleCosine(float u) const;
+    [[nodiscard]] float eval(float h) const;
+    [[nodiscard]] float sample(float u) const;
 };
 struct HenyeyGreenstein {
     float g = 0.0f;
-    [[nodiscard]] float eval(float cosTheta) const;
-    [[nodiscard]] float sampleCosine(float u) const;
+    [[nodiscard]] float eval(float h) const;
+    [[nodiscard]] float sample(float u) const;
 };
 struct Rayleigh {
-    [[nodiscard]] float eval(float cosTheta) const;
-    [[nodiscard]] float sampleCosine(float u) const;
+    [[nodiscard]] float eval(float h) const;
+    [[nodiscard]] float sample(float u) const;
 };
 
 /// Normalised over the sphere: eval is also the density per solid angle of sample.
@@ -31,6 +35,9 @@ class PhaseFunction {
     [[nodiscard]] Vec3f sample(const Vec3f& before, const Vec2f& u) const;
     /// Mean cosine.
     [[nodiscard]] float g() const;
+
+  private:
+    [[nodiscard]] Vec3f peak(const Vec3f& before) const { return g() < 0.0f ? -before : before; }
 };
 
 } // namespace tungsten

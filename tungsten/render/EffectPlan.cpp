@@ -135,6 +135,7 @@ EffectPlan analyseScene(const Scene& scene) {
 
     const std::set<float> speeds = speedsOf(scene);
     plan.speedsDiffer = plan.timeResolved && speeds.size() > 1;
+    plan.highestSpeed = *speeds.rbegin();
     plan.describe("several speeds of light", plan.speedsDiffer,
                   speeds.size() > 1
                       ? std::to_string(speeds.size()) + " speeds, from " + formatted(double(*speeds.begin())) + " to " +

@@ -24,6 +24,7 @@ struct EffectPlan {
     bool specularSensorPaths = false; ///< mirrors or refraction exist: sensor paths can fold
     bool glossySensorPaths = false;   ///< they go on at glossy surfaces too: an integrator's choice
     bool speedsDiffer = false;        ///< light travels at different speeds in different regions
+    float highestSpeed = 1.0f;        ///< of light, in any region that a path can reach
     bool greyMedia = true;            ///< all media have equal coefficients in all channels
     bool forwardBoundaries = false;   ///< index-matched boundaries: shadow rays must look through them
     bool surfaceEmission = false;     ///< emitters that camera rays can hit

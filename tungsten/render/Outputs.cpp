@@ -47,10 +47,8 @@ std::string extensionOf(const fs::path& file) {
 class ImageWriter {
   public:
     ImageWriter(const Film& film, const Scene& scene)
-        : film_(film), scene_(scene),
-          scale_(scene.transport.integrateOverGate && !scene.transport.gate.steadyState && !scene.transport.gate.delta
-                     ? float(scene.transport.gate.frameWidth)
-                     : 1.0f) {}
+        : film_(film), scene_(scene), integrals_(scene.transport.integrateOverGate &&
+                                                 !scene.transport.gate.steadyState && !scene.transport.gate.delta) {}
 
     /// The image of the whole gate; formats that hold several frames get all of them.
     void whole(const fs::path& file) { whole(file, scene_.toneMap); }
@@ -75,9 +73,9 @@ class ImageWriter {
                 if (extension == ".exr")
                     writeExr(framePath(file, frame), {exrPart(frame)});
                 else if (extension == ".pfm")
-                    writePfm(framePath(file, frame), scaled(film_.mean(frame)));
+                    writePfm(framePath(file, frame), overFrame(film_.mean(frame)));
                 else
-                    writePng(framePath(file, frame), scaled(film_.mean(frame)), scene_.toneMap);
+                    writePng(framePath(file, frame), overFrame(film_.mean(frame)), scene_.toneMap);
             });
     }
     void cube(const fs::path& file) {
@@ -99,22 +97,22 @@ class ImageWriter {
             problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
         }
     }
-    [[nodiscard]] Image scaled(Image image, float factor = 1.0f) const {
-        if (scale_ * factor != 1.0f)
-            for (Rgb& pixel : image.pixels) pixel *= scale_ * factor;
-        return image;
+    /// An average over `frames` frames as the output asks for it: as it is, or as their integral.
+    [[nodiscard]] Image overFrames(Image average, int frames) const {
+        if (!integrals_) return average;
+        const float width = float(scene_.transport.gate.frameWidth * frames);
+        for (Rgb& pixel : average.pixels) pixel *= width;
+        return average;
     }
-    /// Mean over the frames; the sum of the frames' integrals when integrals are asked for.
-    [[nodiscard]] Image wholeImage() const {
-        return scaled(film_.meanOverFrames(), scale_ != 1.0f ? float(film_.frames()) : 1.0f);
-    }
+    [[nodiscard]] Image overFrame(Image average) const { return overFrames(std::move(average), 1); }
+    [[nodiscard]] Image wholeImage() const { return overFrames(film_.meanOverFrames(), film_.frames()); }
     [[nodiscard]] ExrPart exrPart(int frame) const {
         const TimeGate& gate = scene_.transport.gate;
         char name[32];
         std::snprintf(name, sizeof name, "frame.%04d", frame);
         return {name,
-                scaled(film_.mean(frame)),
-                scaled(film_.standardError(frame)),
+                overFrame(film_.mean(frame)),
+                overFrame(film_.standardError(frame)),
                 !gate.steadyState,
                 gate.frameStart(frame),
                 gate.frameStart(frame + 1)};
@@ -126,13 +124,13 @@ class ImageWriter {
     }
     void writeCube(const fs::path& file) const {
         std::vector<Image> frames;
-        for (int frame = 0; frame < film_.frames(); ++frame) frames.push_back(scaled(film_.mean(frame)));
+        for (int frame = 0; frame < film_.frames(); ++frame) frames.push_back(overFrame(film_.mean(frame)));
         writeNpy(file, frames);
     }
 
     const Film& film_;
     const Scene& scene_;
-    float scale_; ///< frame width when integrals over a frame are asked for
+    bool integrals_; ///< integrals over a frame are asked for, not averages
     std::vector<fs::path> written_;
     std::vector<Problem> problems_;
 };

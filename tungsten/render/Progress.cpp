@@ -21,7 +21,7 @@ std::string clockText(double seconds) {
 }
 
 std::string errorText(double relative) {
-    if (relative <= 0.0) return "standard error: two passes needed";
+    if (std::isnan(relative)) return "standard error not known yet";
     char text[48];
     std::snprintf(text, sizeof text, "standard error %.3g %%", 100.0 * relative);
     return text;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace tungsten {
@@ -12,10 +13,10 @@ struct ProgressState {
     uint32_t passes = 0, totalPasses = 0;
     int64_t samples = 0, totalSamples = 0; ///< per pixel
     double elapsedSeconds = 0.0;
-    double timeoutSeconds = 0.0; ///< 0: none
-    double relativeError = 0.0;  ///< 0: not known yet
-    double targetError = 0.0;    ///< 0: none
-    int64_t resumedSamples = 0;  ///< taken before this run started
+    double timeoutSeconds = 0.0;                                     ///< 0: none
+    double relativeError = std::numeric_limits<double>::quiet_NaN(); ///< NaN: not known yet
+    double targetError = 0.0;                                        ///< 0: none
+    int64_t resumedSamples = 0;                                      ///< taken before this run started
 };
 
 /// Fraction of the render that is done, by whichever limit comes first.

@@ -4,6 +4,7 @@
 #include "tungsten/render/Checkpoint.h"
 #include "tungsten/render/Progress.h"
 
+#include <bit>
 #include <chrono>
 #include <cstdio>
 
@@ -12,6 +13,12 @@ namespace tungsten {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Whether a target error is looked at after so many passes. Few passes know their own error badly, and every look is
+/// another chance to stop at an estimate that happens to be low: looks are rare, each after twice the work.
+bool checksError(uint32_t passes) {
+    return passes >= LeastPassesForTargetError && std::has_single_bit(passes);
+}
 
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -89,9 +96,8 @@ class Session {
         if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
         if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
-        if (options_.targetError <= 0.0) return false;
-        const double error = result_.film.relativeStandardError();
-        return error > 0.0 && error <= options_.targetError && because(StopReason::TargetReached);
+        if (options_.targetError <= 0.0 || !checksError(result_.film.passes())) return false;
+        return result_.film.relativeStandardError() <= options_.targetError && because(StopReason::TargetReached);
     }
 
     void checkpointIfDue() {

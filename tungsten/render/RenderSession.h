@@ -12,6 +12,9 @@
 
 namespace tungsten {
 
+/// A target error is first looked at after so many passes, then whenever their number has doubled.
+inline constexpr uint32_t LeastPassesForTargetError = 8;
+
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
     int64_t spp = 32, sppStep = 16;
@@ -19,7 +22,7 @@ struct SessionOptions {
     double checkpointSeconds = 0.0;                 ///< 0: none
     bool resumeEnabled = false;                     ///< write and read the state file
     bool restart = false;                           ///< ignore a saved state
-    double targetError = 0.0;                       ///< stop when the relative standard error is below; 0: none
+    double targetError = 0.0;                       ///< stop when the relative standard error is at most this; 0: none
     bool quiet = false;                             ///< no progress bar
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: finish the pass, write, stop
 };

@@ -4,14 +4,6 @@
 
 namespace tungsten {
 
-float highestSpeed(const Scene& scene) {
-    float speed = std::max(scene.transport.vacuumSpeed, scene.cameraRegion.speed);
-    for (const Medium& medium : scene.media) speed = std::max(speed, medium.speedOfLight);
-    for (const Primitive& primitive : scene.primitives)
-        if (primitive.boundsRegion) speed = std::max({speed, primitive.inside.speed, primitive.outside.speed});
-    return speed;
-}
-
 Region Scene::regionOf(const Emitter& emitter) const {
     if (emitter.medium >= 0) return {emitter.medium, media[size_t(emitter.medium)].speedOfLight};
     return {-1, emitter.vacuumSpeed > 0.0f ? emitter.vacuumSpeed : transport.vacuumSpeed};
@@ -36,9 +28,8 @@ SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, co
     interaction.primitive = &scene.primitives[hit.shape];
     interaction.bsdf = &scene.bsdfOf(hit);
     interaction.frame = shadingFrame(*interaction.bsdf, hit.ns, hit.dpdu, hit.dpdv, hit.uv);
-    interaction.twoSided =
-        scene.transport.twoSidedShading && (interaction.bsdf->lobes() & lobe::Transmissive) == lobe::None;
-    if (interaction.twoSided && rayDirection.dot(hit.ng) > 0.0f) {
+    const bool transmissive = (interaction.bsdf->lobes() & lobe::Transmissive) != 0;
+    if (scene.transport.twoSidedShading && !transmissive && rayDirection.dot(hit.ng) > 0.0f) {
         interaction.frame.n = -interaction.frame.n;
         interaction.frame.s = -interaction.frame.s;
     }
@@ -73,14 +64,20 @@ Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, c
     return region.medium < 0 && inside == cameFromInside ? current : region;
 }
 
-Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
-                           float distance, bool toSurface, Region region, uint64_t& rays) {
+Region regionAt(const Scene& scene, Ray ray, const Region& atEnd) {
+    while (const auto hit = scene.geometry->intersect(ray)) {
+        const Primitive& primitive = scene.primitives[hit->shape];
+        if (primitive.boundsMedium) return ray.direction.dot(hit->ng) > 0.0f ? primitive.inside : primitive.outside;
+        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
+    }
+    return atEnd;
+}
+
+Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region region, uint64_t& rays) {
     Visibility result;
     result.transmittance = Rgb(1.0f);
-    const float end = toSurface ? distance - scene.rayEpsilon : distance;
     float start = 0.0f;
     const float speed = region.speed;
-    Ray ray{origin, direction, fromSurface ? scene.rayEpsilon : 0.0f, end};
     const auto advance = [&](float to) {
         const float length = to - start;
         if (const Medium* medium = scene.medium(region))
@@ -101,8 +98,8 @@ Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSur
         }
         advance(hit->t);
         result.transmittance = result.transmittance * through;
-        region = regionOnSide(scene.primitives[hit->shape], direction.dot(hit->ng) < 0.0f, region);
-        ray.tMin = hit->t + scene.rayEpsilon;
+        region = regionOnSide(scene.primitives[hit->shape], ray.direction.dot(hit->ng) < 0.0f, region);
+        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
     }
     advance(distance);
     return result;

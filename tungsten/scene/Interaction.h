@@ -10,9 +10,8 @@ struct SurfaceInteraction {
     SurfaceHit hit;
     const Primitive* primitive = nullptr;
     const Bsdf* bsdf = nullptr;
-    Frame frame;           ///< shading frame, flipped toward the ray for two-sided models
-    Vec3f wi;              ///< local direction back along the ray
-    bool twoSided = false; ///< the frame was, or would be, flipped (no transmissive lobes, two-sided shading on)
+    Frame frame; ///< shading frame, flipped toward the ray for two-sided models
+    Vec3f wi;    ///< local direction back along the ray
 
     [[nodiscard]] BsdfQuery query(TransportMode mode, LobeMask requested = lobe::All) const {
         return {hit.uv, mode, requested};
@@ -44,6 +43,9 @@ std::optional<SurfaceExit> sampleExit(const SurfaceInteraction& surface, const B
 /// from behind, and what they reflect goes back to where it came from.
 Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, const Region& current);
 
+/// The region at a ray's origin: that before the first surface on it that bounds a medium; `atEnd` if there is none.
+Region regionAt(const Scene& scene, Ray ray, const Region& atEnd);
+
 /// A straight connection between two points through index-matched boundaries.
 struct Visibility {
     Rgb transmittance{0.0f}; ///< 0 when blocked
@@ -51,9 +53,9 @@ struct Visibility {
     int crossings = 0;       ///< forward surfaces passed: each counts as a bounce
     bool oneSpeed = true;    ///< light went at the speed of the starting region all the way
 };
-/// From `origin` (in `region`) along the unit `direction` for `distance`; `fromSurface` and `toSurface` say whether the
-/// ends lie on surfaces (ray offsets). `distance` may be Infinity. `rays` is increased by the number of rays traced.
-Visibility traceVisibility(const Scene& scene, const Vec3f& origin, bool fromSurface, const Vec3f& direction,
-                           float distance, bool toSurface, Region region, uint64_t& rays);
+/// Along a ray that starts in `region`, for `distance`, which may be Infinity. Between the ray's limits something may
+/// be in the way: where the ends lie on surfaces they are short of them. `rays` is increased by the number of rays
+/// traced.
+Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region region, uint64_t& rays);
 
 } // namespace tungsten

@@ -59,8 +59,12 @@ BsdfModel readDielectric(LoadContext&, const ObjectReader& reader) {
 }
 
 BsdfModel readRoughDielectric(LoadContext& context, const ObjectReader& reader) {
-    return RoughDielectric{readIor(reader), readDistribution(reader, "ggx"), readRoughness(context, reader, 0.1f),
-                           reader.flag("enable_refraction", true)};
+    RoughDielectric rough{readIor(reader), readDistribution(reader, "ggx"), readRoughness(context, reader, 0.1f),
+                          reader.flag("enable_refraction", true)};
+    // Where hardly anything is refracted, directions no longer tell the facet they passed.
+    constexpr float LeastContrast = 1e-4f;
+    if (std::abs(rough.ior - 1.0f) < LeastContrast) return Dielectric{1.0f, rough.enableRefraction};
+    return rough;
 }
 
 BsdfModel readPlastic(LoadContext&, const ObjectReader& reader) {

@@ -14,7 +14,8 @@ ThinLens readThinLens(const ObjectReader& reader) {
     ThinLens lens{fieldOfView(reader)};
     lens.focusDistance = float(reader.number("focus_distance", 1.0, Range::positive()));
     lens.apertureRadius = float(reader.number("aperture_size", 0.001, Range::nonNegative()));
-    lens.catEye = float(reader.number("cateye", 0.0, Range::nonNegative()));
+    if (reader.number("cateye", 0.0, Range::nonNegative()) > 0.0)
+        reader.warn("cateye", "not simulated: the whole lens is open towards every pixel");
     if (const auto aperture = reader.isObject("aperture") ? reader.object("aperture") : std::nullopt) {
         if (aperture->text("type", "") != "disk") reader.problem("aperture", "only the disk aperture is supported");
     } else if (reader.has("aperture")) {

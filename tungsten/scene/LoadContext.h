@@ -19,6 +19,7 @@ struct LoadContext {
     std::map<std::string, int> media;                             ///< by name
     std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps; ///< by file and lookup settings
     std::vector<std::filesystem::path> resources;                 ///< every file read, for the hash
+    std::vector<ObjectReader> emitters;                           ///< the objects of the scene's emitters
 
     /// Resolves against the scene's (or the input) directory and remembers the file.
     std::filesystem::path resource(const std::string& name);

@@ -17,5 +17,7 @@ std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader
 double readEmissionTime(const ObjectReader& reader);
 /// Default light of a scene without emitters, and the checks that need all of them.
 void finishEmitters(LoadContext& context, const ObjectReader& root);
+/// Warns about lights in a medium that they do not name; once the geometry is there.
+void warnAboutMediaOfEmitters(const LoadContext& context);
 
 } // namespace tungsten

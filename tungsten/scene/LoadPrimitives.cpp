@@ -107,6 +107,7 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     emitter.model = AreaEmitter{&stored.shape, uint32_t(context.scene.primitives.size() - 1), *radiance,
                                 std::make_shared<const AreaSampler>(stored.shape)};
     context.scene.emitters.push_back(std::move(emitter));
+    context.emitters.push_back(reader);
 }
 
 void readPrimitive(LoadContext& context, const ObjectReader& reader) {

@@ -55,6 +55,9 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
         gate = {false, false, centre - 0.5 * width, width, 1};
     } else if (isTransientType(type)) {
         reader.problem("transient_time_width", "a time gate needs a width above 0 (or delta_time_gate)");
+    } else if (width > 0.0 && !reader.has("temporal_response")) {
+        reader.warn("transient_time_width",
+                    "no gate without a transient_time_center of at least 0, or frame_num: rendered in steady state");
     }
     return gate;
 }

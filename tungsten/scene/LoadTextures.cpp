@@ -1,5 +1,7 @@
 #include "tungsten/scene/LoadContext.h"
 
+#include <bit>
+
 namespace tungsten {
 
 namespace {
@@ -8,7 +10,7 @@ std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::stri
                                            bool interpolate, bool clamp, float scale) {
     const std::filesystem::path path = context.resource(file);
     const std::string key = path.string() + '\n' + (gammaCorrect ? 'g' : '-') + (interpolate ? 'i' : '-') +
-                            (clamp ? 'c' : '-') + std::to_string(scale);
+                            (clamp ? 'c' : '-') + std::to_string(std::bit_cast<uint32_t>(scale));
     auto& entry = context.bitmaps[key];
     if (entry) return entry;
     const std::shared_ptr<Bitmap> bitmap = loadBitmap(path);

@@ -89,8 +89,6 @@ struct Scene {
     ToneMap toneMap = ToneMap::Gamma;
     TransportSettings transport;
     std::unique_ptr<SceneGeometry> geometry;
-    /// Ray offset after a surface, relative to the scene's coordinates.
-    float rayEpsilon = 1e-4f;
 
     [[nodiscard]] const Bsdf& bsdfOf(const SurfaceHit& hit) const {
         const Primitive& primitive = primitives[hit.shape];
@@ -103,8 +101,5 @@ struct Scene {
     /// Region in which an emitter's light starts.
     [[nodiscard]] Region regionOf(const Emitter& emitter) const;
 };
-
-/// An upper bound of the speeds that light travels at anywhere.
-float highestSpeed(const Scene& scene);
 
 } // namespace tungsten

@@ -2,6 +2,7 @@
 
 #include "tungsten/scene/Json.h"
 #include "tungsten/scene/LoadContext.h"
+#include "tungsten/scene/LoadEmitters.h"
 
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
@@ -53,11 +54,6 @@ void finishGeometry(Scene& scene) {
     for (const Primitive& primitive : scene.primitives) shapes.push_back(&primitive.shape);
     scene.geometry = std::make_unique<SceneGeometry>(shapes);
     const Vec3f low = scene.geometry->boundsMin(), high = scene.geometry->boundsMax();
-    float largest = 0.0f;
-    for (int axis = 0; axis < 3; ++axis) largest = std::max({largest, std::abs(low[axis]), std::abs(high[axis])});
-    // Hit points carry an error of a few float steps of the largest coordinate; grazing rays stretch it.
-    constexpr float RelativeOffset = 2e-5f;
-    scene.rayEpsilon = std::max(RelativeOffset * largest, 1e-30f);
     for (Emitter& emitter : scene.emitters) {
         auto* sky = std::get_if<InfiniteSphereEmitter>(&emitter.model);
         if (!sky) continue;
@@ -92,7 +88,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     auto scene = std::make_shared<Scene>();
     scene->file = file;
     LoadContext context{
-        *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}};
+        *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}, {}};
     scene->transport = readTransport(integrator, type);
     readMedia(context, root);
     readBsdfs(context, root);
@@ -103,6 +99,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     throwIfProblems(*diagnostics);
 
     finishGeometry(*scene);
+    warnAboutMediaOfEmitters(context);
     return {scene, renderer, type, integrator, diagnostics, hashScene(*document, context.resources)};
 }
 
