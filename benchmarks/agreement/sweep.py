@@ -4,8 +4,8 @@ or turned and moved as a whole: all must agree.
 
     sweep.py FOLDER [--fast] [--scenes NAME ...] [--effort FACTOR]
 
-Writes FOLDER/SWEEP.md; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the same
-command, and only what changed is rendered again. Seeds are fixed.
+Writes FOLDER/SWEEP.md; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the
+same command, and only what changed is rendered again. Seeds are fixed.
 """
 
 import argparse
@@ -28,7 +28,8 @@ from sweep_vocabulary import write_assets
 
 PROJECT = Path(__file__).resolve().parents[2]
 SEEDS = 8
-LIMIT_SECONDS = 120  # for one render
+LIMIT_SECONDS = 300    # for one render
+COARSE, FINE = 1.0, 0.5  # parts of the scene's kernel radius
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,8 @@ def scene_json(scene, method, radius, effort=1.0):
     integrator = {**scene.integrator, **method.settings}
     samples = method.samples
     if method.photons:
-        integrator.update({"type": scene.integrator.get("photon_map", photon_map(scene)), "photon_count": int(method.photons * effort), "gather_radius": radius, "volume_gather_radius": radius})
+        integrator.update({"type": scene.integrator.get("photon_map", photon_map(scene)), "gather_radius": radius,
+                           "volume_gather_radius": radius, "photon_count": int(method.photons * effort)})
     else:
         samples = max(1, int(samples * effort))
     integrator.pop("photon_map", None)
@@ -107,8 +109,8 @@ class Renderer:
         (self.folder / "scenes" / f"{name}.json").write_text(text)
 
     def means(self, name, seed):
-        """Means of one render of a stored scene, its frames, and the processor's seconds. Throws RuntimeError with the renderer's
-        message."""
+        """Means of one render of a stored scene, its frames, and the processor's seconds. Throws RuntimeError with the
+        renderer's message."""
         file = self.folder / "scenes" / f"{name}.json"
         text = file.read_text()
         key = hashlib.sha256(f"{self.build} {seed} {text}".encode()).hexdigest()[:24]
@@ -124,8 +126,8 @@ class Renderer:
     def _render(self, file, seed, key):
         image = self.folder / "renders" / f"{key}.npy"
         statistics = image.with_suffix(".json")
-        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png", "-e", image.name,
-                   "--stats", statistics, file]
+        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png",
+                   "-e", image.name, "--stats", statistics, file]
         done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS)
         if done.returncode != 0:
             raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
@@ -143,8 +145,8 @@ def render_scene(scene, effort, renderer, pool):
     for copy, (change, first) in COPIES.items():
         changed = change(scene)
         for method in methods_of(scene):
-            for part in (1.0, 0.5) if method.photons else (0.5,):
-                name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == 1.0 else ''}"
+            for part in (COARSE, FINE) if method.photons else (FINE,):
+                name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == COARSE else ''}"
                 renderer.store(name, scene_json(changed, method, part * changed.radius, effort))
                 for seed in range(first + 1, first + SEEDS + 1):
                     jobs[copy, method.name, part, seed - first] = pool.submit(renderer.means, name, seed)
@@ -153,17 +155,21 @@ def render_scene(scene, effort, renderer, pool):
 
 
 def gathered(method, results):
-    """One method's samples by copy, and the processor's seconds for its renders."""
-    frames = next(iter(results.values()))[1]
-    copies = {}
-    for copy in COPIES:
-        fine, coarse = ([results[copy, method.name, part, s + 1][0] for s in range(SEEDS)] if method.photons or part == 0.5 else None
-                        for part in (0.5, 1.0))
-        values, blur = without_kernel(fine, coarse) if coarse else (np.asarray(fine), np.zeros_like(fine[0]))
-        copies[copy] = Samples([values], blur, frames)
-    together = Samples([copies["original"].groups[0], copies["moved"].groups[0]],
-                       (copies["original"].blur + copies["moved"].blur) / 2, frames)
+    """One method's samples by copy, those of all copies with random numbers of their own, and the processor's seconds."""
+    copies = {copy: samples_of(copy, method, results) for copy in COPIES}
+    original, elsewhere = copies["original"], copies["moved"]
+    together = Samples(original.groups + elsewhere.groups, (original.blur + elsewhere.blur) / 2, original.frames)
     return copies, together, sum(seconds for _, _, seconds in results.values())
+
+
+def samples_of(copy, method, results):
+    def renders(part):
+        return np.array([results[copy, method.name, part, seed][0] for seed in range(1, SEEDS + 1)])
+
+    frames = results[copy, method.name, FINE, 1][1]
+    if not method.photons:
+        return Samples([renders(FINE)], np.zeros_like(renders(FINE)[0]), frames)
+    return Samples(*without_kernel(renders(FINE), renders(COARSE)), frames)
 
 
 def compare_scene(rendered):

@@ -20,9 +20,8 @@ def means(images):
 
 def without_kernel(fine, coarse):
     """Means at half the radius and at the whole one, from the same photons: extrapolated to no radius at all, the bias's
-    leading term being of the radius squared; and the change (coarse - fine), from the mean over seeds."""
-    fine, coarse = np.asarray(fine), np.asarray(coarse)
-    return fine - (coarse - fine) / 3.0, (coarse - fine).mean(axis=0)
+    leading term being of the radius squared, as a group of samples; and the change (coarse - fine), the mean over seeds."""
+    return [fine - (coarse - fine) / 3.0], (coarse - fine).mean(axis=0)
 
 
 @dataclass(frozen=True)
@@ -45,8 +44,8 @@ class Samples:
         return np.sqrt(squares / self.freedom / count)
 
     def error_at(self, level):
-        """The same, relative to `level` nowhere below the median: means that no rare bright path has reached yet do not know their
-        error."""
+        """The same, relative to `level` nowhere below the median: means that no rare bright path has reached yet do not know
+        their error."""
         lit = self.mean > 0.0
         usual = np.median(self.error[lit] / self.mean[lit]) if lit.any() else 0.0
         return np.maximum(self.error, usual * level)

@@ -6,12 +6,12 @@ from sweep_measures import MOST_SIGMAS, RELATIVE_BIAS
 
 INTRODUCTION = f"""# Sweep of small scenes
 
-`benchmarks/agreement/sweep.py FOLDER`: plain and best points, beams and paths, and copies of each in units 7 times as short (of time:
-3 times) or turned and moved as a whole, 16 x 16 pixels, 8 seeds each. Compared are the means over the image, every frame, and 16
-blocks of it, each channel by itself. Errors are those of the seeds, as normal deviates of Student's t; allowed besides are
-{100 * RELATIVE_BIAS:g} % of the image's mean and two thirds of what half the kernel's radius changes, the means of photons being
-extrapolated to no radius. More than {MOST_SIGMAS:g} sigmas disagree. The largest error is the standard error of the noisiest method's
-image mean: what is much larger than 1 % proves little about single blocks.
+`benchmarks/agreement/sweep.py FOLDER`: plain and best points, beams and paths, and copies of each in other units (lengths
+in sevenths, times in thirds) or turned and moved as a whole, 16 x 16 pixels, 8 seeds each. Compared are the means over the image,
+every frame, and 16 blocks of it, each channel by itself. Errors are those of the seeds, as normal deviates of Student's t; allowed
+besides are {100 * RELATIVE_BIAS:g} % of the image's mean and two thirds of what half the kernel's radius changes, the means of
+photons being extrapolated to no radius. More than {MOST_SIGMAS:g} sigmas disagree. The largest error is the standard error of the
+noisiest method's image mean: what is much larger than 1 % proves little about single blocks.
 """
 SCENE_HEAD = """| scene | shows | worst ratio of methods | sigmas | of copies | sigmas | largest error, % | CPU s | |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
@@ -24,7 +24,8 @@ def report(results, failures, messages):
     disagreements = [line for result in results.values() for line in _disagreements(*result)]
     parts.append("## Disagreements\n\n" + ("\n".join(disagreements) or "None."))
     parts.append("## Means over the image, relative to the first method's\n\n" + _means_table(results))
-    left_out = [f"- {scene.name}: {method}: {reason}" for scene, *_ in results.values() for method, reason in scene.without.items()]
+    left_out = [f"- {scene.name}: {method}: {reason}" for scene, *_ in results.values()
+                for method, reason in scene.without.items()]
     if left_out:
         parts.append("## Left out\n\n" + "\n".join(left_out))
     if failures:
@@ -46,8 +47,8 @@ def scene_row(scene, rendered, methods, copies):
     seconds = sum(seconds for *_, seconds in rendered.values())
     error = max(together.whole_error / together.whole for _, together, _ in rendered.values())
     agree = all(c.agrees for c in [*methods.values(), *copies.values()])
-    return (f"| {scene.name} | {scene.shows} | {ratio:.3f} | {sigmas:.1f} | {copy_ratio:.3f} | {copy_sigmas:.1f} | {100 * error:.1f} "
-            f"| {seconds:.0f} | {'' if agree else '**disagrees**'} |")
+    return (f"| {scene.name} | {scene.shows} | {ratio:.3f} | {sigmas:.1f} | {copy_ratio:.3f} | {copy_sigmas:.1f} "
+            f"| {100 * error:.1f} | {seconds:.0f} | {'' if agree else '**disagrees**'} |")
 
 
 def _disagreements(scene, _, methods, copies):

@@ -6,7 +6,7 @@ from sweep_copies import scaled
 from sweep_vocabulary import (SweepScene, at, body, camera, facing, frames, gate, lambert, lamp, looking, medium,
                               room, steady)
 
-FAST = ("nested-cubes", "lamp-in-body", "orthographic-haze", "mixed-and-alpha", "zero-channels", "slow-and-fast")
+FAST = ("spot-outside", "lamp-in-body", "orthographic-haze", "mixed-and-alpha", "zero-channels", "slow-and-fast")
 KEPT = "sensor paths keep the light that fog sends to visible surfaces, photons do not; so has the format"
 BEAM = "a sensor path cannot hit a light without a surface that shines in one direction"
 WAVES = {"type": "bitmap", "file": "../assets/waves.pfm", "scale": 2.0}
@@ -19,7 +19,8 @@ def scene(name, shows, media, primitives, view, integrator, radius=0.2, **fields
 
 def dense(*parts, **fields):
     """Small bodies of dense fog: a radius that they are large for, and many photons, since most miss them."""
-    return scene(*parts, radius=0.06, effort={"plain points": 2.0, "plain beams": 3.0, "best points": 2.0, "best beams": 2.0}, **fields)
+    return scene(*parts, radius=0.06, effort={"plain points": 2.0, "plain beams": 3.0, "best points": 2.0,
+                                              "best beams": 2.0}, **fields)
 
 
 def bulb(x=1.2, y=1.2, z=1.4, size=0.3, emission=40.0, outside=None, **fields):
@@ -65,7 +66,8 @@ def inside_and_outside():
                 [body("cube", at(0, 0, 0, 3.0), "fog"), bulb(0.9, 0.9, -2.2)], camera((0, 0, 1.2), fov=50, inside="fog"),
                 gate(3.4, 4.6))
     yield dense("behind-fog", "a wall seen through a slab of fog in front of it, lit beside the slab", [fog],
-                [body("cube", at(0, 0, 0.8, (2, 2, 0.5)), "fog"), *room(3.0), bulb(0, 1.1, 0.2, 0.25)], camera(fov=24), gate(7.6, 8.8))
+                [body("cube", at(0, 0, 0.8, (2, 2, 0.5)), "fog"), *room(3.0), bulb(0, 1.1, 0.2, 0.25)], camera(fov=24),
+                gate(7.6, 8.8))
     yield dense("deep-cube", "a cube of 8 mean free paths, from afar", [medium("milk", 8.0, 0.02)],
                 [body("cube", at(0, 0, 0, 1.0, 15), "milk"), bulb(2, 2, 4, 0.5, 60.0)], camera((0, 0, 8), fov=10), gate(12.0, 13.2, 96))
     yield dense("fog-ball-and-wall", "a fog ball that touches nothing lights a wall behind it", [medium("ball", 4.0, 0.0, 0.3)],
@@ -80,7 +82,8 @@ def refraction():
     yield scene("glass-ball-of-milk", "a lamp in milk in a refracting sphere", [milk],
                 [body("sphere", at(0, 0, 0, 0.8), "milk", bsdf=glass), inner], camera(), gate(4.6, 6.0, 24), radius=0.08)
     yield scene("glass-cube-in-fog", "a refracting cube of milk with a lamp inside, in fog", [milk, medium("fog", 0.3)],
-                [body("cube", at(0, 0, 0, 1.1, 30), "milk", "fog", glass), inner], camera(inside="fog"), gate(4.6, 6.0, 24), radius=0.08)
+                [body("cube", at(0, 0, 0, 1.1, 30), "milk", "fog", glass), inner], camera(inside="fog"), gate(4.6, 6.0, 24),
+                radius=0.08)
     yield scene("ior-one", "walls of index 1 refract nothing", [milk],
                 [body("cube", at(0, 0, 0, 1.2, 30), "milk", bsdf={"type": "dielectric", "ior": 1.0}), inner], camera(),
                 gate(4.6, 6.0, 24), radius=0.08)
@@ -100,23 +103,28 @@ def lights():
 
     where = (1.1, 1.1, 1.0)
     yield lit("quad-light", "a quad in fog, and a ball", lamp("quad", facing(where, target, 0.6), 30.0, "fog"))
-    yield lit("disk-light", "a disk in fog, given by its power", {**lamp("disk", facing(where, target, 0.4), 1.0, "fog"), "power": [40, 30, 20]})
+    yield lit("disk-light", "a disk in fog, given by its power", {**lamp("disk", facing(where, target, 0.4), 1.0, "fog"),
+                                                                  "power": [40, 30, 20]})
     yield lit("cube-light", "a turned cube that shines on all sides", lamp("cube", at(*where, 0.4, 30), 20.0, "fog"))
-    yield lit("mesh-light", "a ball of triangles that shines", lamp("mesh", at(*where, 0.3), 20.0, "fog", file="../assets/ball.obj"))
+    yield lit("mesh-light", "a ball of triangles that shines", lamp("mesh", at(*where, 0.3), 20.0, "fog",
+                                                                    file="../assets/ball.obj"))
     yield lit("point-light", "a point in fog beside the picture", lamp("point", at(*where), 5.0, "fog"))
-    yield lit("spot-light", "a spot across the picture", lamp("spot", looking((1.6, 0.6, 0), (0, 0, 0)), 8.0, "fog", cone_angle=35,
+    yield lit("spot-light", "a spot across the picture", lamp("spot", looking((1.6, 0.6, 0), (0, 0, 0)), 8.0, "fog",
+                                                              cone_angle=35,
                                                               edge_angle=10), times=(6.0, 7.4))
     yield lit("laser", "a collimated beam of finite radius across the picture",
               {**lamp("collimated", looking((1.5, 0.3, 0), (0, 0.3, 0)), 60.0, "fog"), "radius": 0.1}, times=(6.0, 7.4),
               without={"plain paths": BEAM, "best paths": BEAM})
-    yield lit("pulses", "lamps of several shapes that flash at different times", lamp("quad", facing(where, target, 0.5), 20.0, "fog"),
+    yield lit("pulses", "lamps of several shapes that flash at different times", lamp("quad", facing(where, target, 0.5),
+                                                                                      20.0, "fog"),
               bulb(-1.2, 1.0, 0.8, 0.25, [5, 20, 40], "fog", emission_time=0.4),
               lamp("disk", facing((0, -1.4, 1), target, 0.3), [40, 10, 5], "fog", emission_time=-0.3))
     yield dense("spot-outside", "a spot outside shines into a cube of fog", [fog],
                 [body("cube", at(0, 0, 0, 1.5), "fog"), lamp("spot", looking((1.6, 1.2, 0.5), target), 30.0, cone_angle=25)],
                 camera(), gate(6.4, 7.8))
     yield dense("sky", "a cloud and a ball under a constant sky, in steady state", [medium("cloud", 2.0, 0.2, 0.5)],
-                [body("sphere", at(0, 0.2, 0, 0.6), "cloud"), body("quad", facing((0, -0.7, 0), (0, 1, 0), 3.0), bsdf=lambert(0.6)),
+                [body("sphere", at(0, 0.2, 0, 0.6), "cloud"), body("quad", facing((0, -0.7, 0), (0, 1, 0), 3.0),
+                                                                   bsdf=lambert(0.6)),
                  lamp("infinite_sphere", at(0, 0, 0), [1.0, 1.2, 1.5])], camera((0, 0.5, 5)), steady())
 
 
@@ -144,7 +152,8 @@ def surfaces():
 
     def inner(name, shows, *things, times=(6.0, 7.6), **fields):
         integrator = gate(*times, **fields.pop("switches", {}))
-        return scene(name, shows, lit["media"], [*things, bulb(0.6, 0.8, 1.0, 0.25, outside="fog")], lit["view"], integrator, **fields)
+        return scene(name, shows, lit["media"], [*things, bulb(0.6, 0.8, 1.0, 0.25, outside="fog")], lit["view"], integrator,
+                     **fields)
 
     back = body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert([0.5, 0.6, 0.7]))
     yield inner("bump-and-smooth", "a bumpy wall, and a ball of triangles with smooth normals",
@@ -156,17 +165,20 @@ def surfaces():
                 body("quad", facing((0.4, 0, 0.2), (1.5, 0, -5), 0.8),
                      bsdf={"type": "transparency", "alpha": 0.6, "base": lambert(0.7)}),
                 body("sphere", at(0, -0.5, 0.2, 0.25),
-                     bsdf={"type": "mixed", "ratio": 0.4, "bsdf0": lambert(0.8), "bsdf1": {"type": "rough_conductor", "material": "Au",
+                     bsdf={"type": "mixed", "ratio": 0.4, "bsdf0": lambert(0.8), "bsdf1": {"type": "rough_conductor",
+                                                                                           "material": "Au",
                                                                                          "roughness": 0.3}}))
     yield inner("glossy", "rough metal and rough plastic in fog",
-                body("quad", facing((0, -0.7, 0), (0, 1, 0), 2.6), bsdf={"type": "rough_plastic", "albedo": 0.5, "roughness": 0.25}),
+                body("quad", facing((0, -0.7, 0), (0, 1, 0), 2.6), bsdf={"type": "rough_plastic", "albedo": 0.5,
+                                                                         "roughness": 0.25}),
                 body("sphere", at(0, 0, 0, 0.45), bsdf={"type": "rough_conductor", "material": "Cu", "roughness": 0.35}))
     yield inner("specular", "a mirror, a metal ball and smooth plastic in fog", back,
                 body("quad", facing((-0.6, 0, -0.4), (0.5, 0, 2), 1.0), bsdf={"type": "mirror"}),
                 body("sphere", at(0.5, 0.3, 0, 0.3), bsdf={"type": "conductor", "material": "Al"}),
                 body("sphere", at(0.3, -0.5, 0.3, 0.3), bsdf={"type": "plastic", "albedo": [0.2, 0.5, 0.7]}))
     yield inner("one-sided", "rough chalk that is black from behind, shading on one side", back,
-                body("quad", facing((-0.4, 0, 0.2), (-1, 0, -5), 0.7), bsdf={"type": "oren_nayar", "albedo": 0.7, "sigma": 0.5}),
+                body("quad", facing((-0.4, 0, 0.2), (-1, 0, -5), 0.7), bsdf={"type": "oren_nayar", "albedo": 0.7,
+                                                                             "sigma": 0.5}),
                 body("quad", facing((0.4, 0, 0.2), (1, 0, 5), 0.7), bsdf={"type": "oren_nayar", "albedo": 0.7, "sigma": 0.5}),
                 switches={"enable_two_sided_shading": False})
 
@@ -180,20 +192,24 @@ def odd_bodies():
     yield dense("striped-fog", "dense fog behind walls with holes, lamp and camera in vacuum", [dense_fog],
                 [body("cube", at(0, 0, 0, 1.1, 30), "dense", bsdf={**veil, "alpha": STRIPES}), bulb()], camera(), gate(6.2, 7.4))
     yield dense("mesh-of-fog", "fog in a stretched ball of triangles", [dense_fog],
-                [body("mesh", at(0, 0, 0, (0.7, 0.5, 0.7), 20), "dense", file="../assets/ball.obj"), bulb()], camera(), gate(6.4, 7.4))
+                [body("mesh", at(0, 0, 0, (0.7, 0.5, 0.7), 20), "dense", file="../assets/ball.obj"), bulb()], camera(),
+                gate(6.4, 7.4))
     yield dense("fog-on-wall", "fog that touches a wall, just under a lamp", [dense_fog],
-                [body("cube", at(0, 0, -0.2, 1.0), "dense"), body("quad", facing((0, 0, -0.7005), (0, 0, 5), 2.6), bsdf=lambert(0.6)),
+                [body("cube", at(0, 0, -0.2, 1.0), "dense"), body("quad", facing((0, 0, -0.7005), (0, 0, 5), 2.6),
+                                                                  bsdf=lambert(0.6)),
                  lamp("quad", facing((0, 0.55, -0.2), (0, 0, -0.2), 0.5), 20.0)], camera(), gate(5.2, 6.4))
     yield scene("textured-light", "a wall of stripes and a lamp of stripes in fog", [fog],
                 [body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert({**STRIPES, "scale": 0.8})),
                  lamp("quad", facing((1.1, 1.1, 1.0), (0, 0, 0), 0.6), 30.0, "fog"),
-                 lamp("quad", facing((-1.1, 1.1, 1.0), (0, 0, 0), 0.6), {**STRIPES, "interpolate": True, "scale": 30.0}, "fog")],
+                 lamp("quad", facing((-1.1, 1.1, 1.0), (0, 0, 0), 0.6), {**STRIPES, "interpolate": True, "scale": 30.0},
+                      "fog")],
                 view, gate(6.2, 7.6))
 
 
 def media_and_colours():
     def filled(name, shows, fog, lamps=None, integrator=None, **fields):
-        return scene(name, shows, [fog], [*(lamps or [bulb(outside="fog")]), body("sphere", at(0, -0.2, 0, 0.3), bsdf=lambert([0.7, 0, 0.2]))],
+        return scene(name, shows, [fog], [*(lamps or [bulb(outside="fog")]), body("sphere", at(0, -0.2, 0, 0.3),
+                                                                                  bsdf=lambert([0.7, 0, 0.2]))],
                      camera(inside="fog"), integrator or gate(6.2, 7.6), **fields)
 
     yield filled("zero-channels", "fog that scatters no green, absorbs no red; a ball without green",
@@ -202,7 +218,8 @@ def media_and_colours():
     yield filled("forward", "fog with g 0.6", medium("fog", 0.8, 0.02, 0.6))
     yield filled("rayleigh", "Rayleigh scattering", {**medium("fog", [0.2, 0.4, 0.8]), "phase_function": {"type": "rayleigh"}})
     yield filled("guided-homo", "the fork's medium and phase function", {**medium("fog", 0.6, 0.05), "type": "guided_homo",
-                                                                       "phase_function": {"type": "henyey_greenstein", "g": 0.3}})
+                                                                       "phase_function": {"type": "henyey_greenstein",
+                                                                                          "g": 0.3}})
     yield filled("absorber", "fog that mostly absorbs", medium("fog", 0.3, 0.9))
 
 
@@ -231,7 +248,8 @@ def switches():
     yield dense("sequence-outside", "six frames of a body of fog seen from outside", [thick],
                 [body("cube", at(0, 0, 0, 1.0, 20), "thick"), bulb()], camera(), frames(6.2, 0.3, 6))
     yield switched("integral", "frames that integrate", frames(6.0, 0.7, 2, time_normalization="integral"))
-    yield scene("no-low-orders", "low_order_scattering off, in fog alone", [thick], [bulb(outside="thick")], camera(inside="thick"),
+    yield scene("no-low-orders", "low_order_scattering off, in fog alone", [thick], [bulb(outside="thick")],
+                camera(inside="thick"),
                 gate(5.8, 7.6, low_order_scattering=False))
     yield switched("no-surfaces", "include_surfaces off", gate(5.8, 7.6, include_surfaces=False),
                    without={"plain paths": KEPT, "best paths": KEPT})
@@ -243,7 +261,8 @@ def switches():
     yield switched("single-frames", "light paths that aim at one frame each", frames(5.8, 0.6, 3, single_frames=True))
     yield switched("steady-fog", "everything that arrives", steady())
     yield switched("roulette", "roulette of dark paths", gate(5.8, 7.6, enable_rr=True))
-    yield switched("consistency", "consistency checks on smooth and bumpy things", gate(5.8, 7.6, enable_consistency_checks=True),
+    yield switched("consistency", "consistency checks on smooth and bumpy things", gate(5.8, 7.6,
+                                                                                        enable_consistency_checks=True),
                    body("mesh", at(0.4, 0.3, 0.2, 0.35), bsdf=lambert(0.7), file="../assets/ball.obj", smooth=True),
                    body("quad", facing((0, 0, -0.8), (0, 0, 5), 2.6), bsdf=lambert(0.6, bump=WAVES)))
     yield switched("one-map", "the same photons in every pass", gate(5.8, 7.6, photon_map="transient_photon_map"))
@@ -255,5 +274,6 @@ def switches():
 
 def all_scenes():
     """In the order of the report; names are unique."""
-    groups = (several_media, inside_and_outside, refraction, lights, cameras, surfaces, odd_bodies, media_and_colours, units_and_speeds, switches)
+    groups = (several_media, inside_and_outside, refraction, lights, cameras, surfaces, odd_bodies, media_and_colours,
+              units_and_speeds, switches)
     return [entry for group in groups for entry in group()]

@@ -82,7 +82,7 @@ class Comparisons(unittest.TestCase):
         self.assertEqual(np.count_nonzero(values), 2)
 
     def test_extrapolation_removes_a_quadratic_bias(self):
-        fine, blur = without_kernel([[1.0 + 0.01]], [[1.0 + 0.04]])
+        [fine], blur = without_kernel(np.array([[1.01]]), np.array([[1.04]]))
         self.assertAlmostEqual(fine[0, 0], 1.0)
         self.assertAlmostEqual(blur[0], 0.03)
 
