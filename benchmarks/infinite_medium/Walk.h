@@ -103,8 +103,9 @@ class Walk {
             if (guide_.settings().elliptical) connect(state, connection, h, order, use);
             if (order == route_.mostScatterings && guide_.settings().elliptical) return order;
             const float throughput = state.throughput;
-            const auto step = guide_.sampleDistance(Form::distanceRange(state.residual, connection), h, Surface,
-                                                    {throughput, throughput, throughput}, random);
+            const auto step =
+                guide_.sampleDistance(Form::distanceRange(state.residual, connection), {state.direction, h}, Surface,
+                                      {throughput, throughput, throughput}, random);
             if (!(step.transmittanceOverPdf.x > 0)) return order;
             state.throughput *= sigmaS_ * step.transmittanceOverPdf.x;
             state.position = state.position + state.direction * step.distance;

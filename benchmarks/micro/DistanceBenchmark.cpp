@@ -16,7 +16,7 @@ void distance(benchmark::State& state, darts::Settings settings, int candidates,
     size_t i = 0;
     for (auto _ : state) {
         const auto& [residual, h, u] = walk[i++ % walk.size()];
-        benchmark::DoNotOptimize(sampler.sample(residual, h, 10.0f, {1, 1, 1}, {u[0], u[1], u[2], u[3]}));
+        benchmark::DoNotOptimize(sampler.sample(residual, {{}, h}, 10.0f, {1, 1, 1}, {u[0], u[1], u[2], u[3]}));
     }
 }
 

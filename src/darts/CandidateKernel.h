@@ -2,92 +2,10 @@
 // The inner loop of DistanceSampler: candidates, target and choice, written once for one candidate at a time (float)
 // and for a register of them (xsimd::batch).
 
+#include "darts/CandidateTarget.h"
 #include "darts/DistanceSampler.h"
-#include "darts/Lanes.h"
 
 namespace darts {
-
-/// A draw in the medium: where candidates may lie, where they come from, what they are for.
-struct CandidateDraw {
-    Ellipse<float> latest;
-    float firstLeg = 0;    ///< t(S_hi)
-    float gateWidth = 0;   ///< of the connections' range
-    float bound = 0;       ///< candidates lie in [0, bound)
-    float probability = 1; ///< of the medium event
-    float floor = 0;
-    Proposals proposals = Proposals::Exponential;
-    bool overlap = false;
-    Vec3 throughput;
-    const Medium* medium = nullptr;
-};
-
-inline float channel(const Vec3& v, int i) {
-    return i == 0 ? v.x : i == 1 ? v.y : v.z;
-}
-
-/// A candidate's place: path length s left at the latest arrival, rho to the target, 1 - rho^2 / s^2, and the part of
-/// the gate still reachable (1 without overlap; 0 where nothing can be in time).
-template <typename Batch>
-struct Reach {
-    Batch s, inverseS, rho, causal, reachable;
-
-    Reach() = default;
-    [[gnu::always_inline]] Reach(const CandidateDraw& draw, const Batch& d) {
-        using lanes::select;
-        using std::min;
-        using std::sqrt;
-        const Ellipse<float>& e = draw.latest;
-        const Batch toCentre = d - e.C;
-        rho = sqrt(toCentre * toCentre + (2.0f * e.C * e.h) * d);
-        // 2 A (t_M - d) = (s - rho)(s + rho): what is left of the excess, without a difference of lengths.
-        const Batch left = (2.0f * e.denominator()) * (draw.firstLeg - d);
-        const auto inTime = left > 0.0f;
-        s = select(inTime, e.length() - d, Batch(e.length()));
-        inverseS = 1.0f / s;
-        const Batch overlap = draw.overlap ? Batch(min(left / (s + rho), Batch(draw.gateWidth))) : Batch(1.0f);
-        causal = select(inTime, left * inverseS * inverseS, Batch(1.0f));
-        reachable = select(inTime, overlap, Batch(0.0f));
-    }
-};
-
-/// The target in one channel as a product of an exponential, whose exponent is kept apart, and a moderate factor; up to
-/// a constant that all candidates share in grey media.
-template <Greens G>
-struct Target {
-    float sigmaS, sigmaT, reducedS, fourthInverseD, constant = 0, length;
-
-    Target(const CandidateDraw& draw, int index, bool grey) {
-        const Medium& medium = *draw.medium;
-        const float sigmaA = channel(medium.sigmaA, index);
-        length = draw.latest.length();
-        sigmaS = channel(medium.sigmaS, index);
-        sigmaT = sigmaA + sigmaS;
-        reducedS = std::max(sigmaS * (1.0f - medium.g), 1e-20f);
-        fourthInverseD = 0.75f * (sigmaA + reducedS); // 1 / (4 D)
-        if (grey) return;
-        constant = std::log(std::max(channel(draw.throughput, index) * sigmaS, 1e-30f));
-        if (G == Greens::Diffusion) constant += 1.5f * std::log(fourthInverseD) - sigmaA * length;
-        if (G == Greens::Causal) constant += std::log(reducedS) - (reducedS + sigmaA) * length;
-    }
-
-    /// At distance d, with s = S - d left, rho from the target, and 1 - rho^2 / s^2 = causal > 0.
-    template <typename Batch>
-    Batch exponent(const Batch& d, const Reach<Batch>& at, Batch& factor) const {
-        using std::sqrt;
-        if constexpr (G == Greens::None) {
-            factor = Batch(1.0f);
-            return constant - sigmaT * d;
-        }
-        const Batch part = at.inverseS * length; // S / s
-        if constexpr (G == Greens::Diffusion) {
-            factor = part * sqrt(part);
-            return constant - sigmaS * d - at.rho * at.rho * fourthInverseD * at.inverseS;
-        }
-        const Batch root = sqrt(at.causal), x = reducedS * at.s * root * sqrt(root);
-        factor = sqrt((x + 2.026f) / root) * (part * part);
-        return constant + x - (sigmaS - reducedS) * d;
-    }
-};
 
 /// Where candidates come from: a deterministic mixture, the first ones exponential of the medium's rates, the others of
 /// a second density; and the mixture's density.
@@ -201,7 +119,7 @@ struct Proposal {
 };
 
 /// N candidates and their weights target / density; the target is relative to the largest exponent among them.
-template <typename Batch, Greens G, int N, int Channels>
+template <typename Batch, Shape G, int N, int Channels>
 struct Candidates {
     static constexpr int Width = lanes::Width<Batch>, Registers = N / Width;
     alignas(64) std::array<float, size_t(N)> distance, target, weight;
@@ -224,7 +142,7 @@ struct Candidates {
             const Batch d = proposal.sample(u, r * Width, density[r], through);
             if constexpr (Channels == 1) lanes::put(transmittance.data() + r * Width, through);
             lanes::put(distance.data() + r * Width, d);
-            const Reach<Batch> at(draw, d);
+            const PlaceOf<G, Batch> at(draw, d);
             reachable[r] = at.reachable;
             for (int i = 0; i < Channels; ++i) {
                 const Target<G> target_(draw, i, Channels == 1);
@@ -251,7 +169,7 @@ struct Candidates {
 
 /// Chooses a candidate in proportion to its weight and returns its distance; the estimate is zero when no candidate can
 /// be in time.
-template <typename Batch, Greens G, int N, int Channels>
+template <typename Batch, Shape G, int N, int Channels>
 float resample(const CandidateDraw& draw, const DistanceRandom& random, Vec3& transmittanceOverPdf) {
     const Candidates<Batch, G, N, Channels> candidates(draw, random);
     float sum = 0;

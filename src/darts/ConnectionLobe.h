@@ -21,6 +21,10 @@ class ConnectionLobe {
     /// Photon pass: proportional to 1 / (delta + C h); the image's second moment goes with 1 / (delta + C h)^2.
     static ConnectionLobe photon(Real C, Real delta) { return ConnectionLobe(delta / C); }
 
+    /// Proportional to 1 / (rate - pull cos), pull < rate: where walks go whose next flights, exponential of that rate
+    /// otherwise, gain e^{pull d cos} by going d in the direction of the axis.
+    static ConnectionLobe drift(Real rate, Real pull) { return ConnectionLobe((rate - pull) / pull); }
+
     /// u in [0, 1) -> h in [0, 2]. Never NaN (kappa has bounds), so std::min serves: fmin would be a call.
     [[nodiscard]] Real sample(Real u) const { return std::min(kappa_ * fastExpm1(u * range_), Real(2)); }
     /// Density per solid angle.

@@ -9,33 +9,50 @@
 namespace darts {
 
 /// Density of the connection length on [low, low + width): exponential of rate sigmaT, truncated; uniform for sigmaT =
-/// 0. Its shape is the transmittance that the whole connection carries.
+/// 0. Its shape is the transmittance that the whole connection carries. With a `needle` above 0 half of the lengths are
+/// drawn in proportion to 1 / (needle + low + offset), low an excess over the straight way: light that a forward peak
+/// hardly turns arrives within about that excess.
 template <typename Real>
 struct ConnectionLength {
-    Real low = 0, width = 0, sigmaT = 0;
+    Real low = 0, width = 0, sigmaT = 0, needle = 0;
 
     struct Draw {
         Real offset, inversePdf; ///< S - low, and 1 / its density per length
     };
     /// u in [0, 1) -> S = low - log(1 - u (1 - e^{-sigmaT width})) / sigmaT.
     [[nodiscard]] Draw sample(Real u) const {
+        if (!(needle > 0)) return sampleExponential(u);
+        const Real start = needle + low;
+        const Real offset =
+            u < Real(0.5) ? sampleExponential(2 * u).offset : start * fastExpm1((2 * u - 1) * fastLog1p(width / start));
+        return {std::min(offset, width), 1 / pdf(std::min(offset, width))};
+    }
+    /// Density per length of S = low + offset.
+    [[nodiscard]] Real pdf(Real offset) const {
+        if (!(offset >= 0) || offset > width) return 0;
+        const Real exponential = pdfExponential(offset);
+        if (!(needle > 0)) return exponential;
+        const Real start = needle + low;
+        return Real(0.5) * exponential + Real(0.5) / ((start + offset) * fastLog1p(width / start));
+    }
+
+  private:
+    /// Depths of the range below which the density is uniform to as many digits as are kept.
+    static constexpr Real Shallow = Real(1e-6);
+
+    [[nodiscard]] Draw sampleExponential(Real u) const {
         const Real depth = sigmaT * width;
         if (depth < Shallow) return {u * width, width};
         const Real all = -fastExpm1(-depth), gone = u * all;
         // gone < 1 and sigmaT > 0: never NaN, so std::min serves; fmin would be a call.
         return {std::min(-fastLog1p(-gone) / sigmaT, width), all / (sigmaT * (1 - gone))};
     }
-    /// Density per length of S: sigmaT e^{-sigmaT offset} / (1 - e^{-sigmaT width}) at offset = S - low.
-    [[nodiscard]] Real pdf(Real offset) const {
-        if (!(offset >= 0) || offset > width) return 0;
+    /// sigmaT e^{-sigmaT offset} / (1 - e^{-sigmaT width}).
+    [[nodiscard]] Real pdfExponential(Real offset) const {
         const Real depth = sigmaT * width;
         if (depth < Shallow) return 1 / width;
         return sigmaT * std::exp(-sigmaT * offset) / -fastExpm1(-depth);
     }
-
-  private:
-    /// Depths of the range below which the density is uniform to as many digits as are kept.
-    static constexpr Real Shallow = Real(1e-6);
 };
 
 /// Density per length along the ray of the vertex of a connection whose length has density `lengthPdf`:

@@ -2,6 +2,7 @@
 // Directions drawn for the connection that is to follow, mixed with what the scatterer prefers.
 
 #include "darts/ConnectionLobe.h"
+#include "darts/DirectionsOut.h"
 #include "darts/EdaTable.h"
 #include "darts/PhaseFunction.h"
 #include "darts/ResidualRange.h"
@@ -12,13 +13,13 @@
 
 namespace darts {
 
-/// A direction, its h = 1 - cos to the target's direction, and what the estimate is divided by.
-struct DirectionSample {
-    Vec3 direction;
-    float h = 0;
+/// A direction and what the estimate is divided by.
+struct DirectionSample : Heading {
     /// 1 / density per solid angle; for resampled directions an unbiased estimate of it.
     float inversePdf = 0;
 };
+
+inline constexpr float BelowOne = 0x1.fffffep-1f;
 
 /// The target's own view, from which a share of the guided directions comes: sample(u, v) -> unit direction seen from
 /// the target, pdf(direction) per solid angle. NoView where there is none.
@@ -27,24 +28,44 @@ struct NoView {
     [[nodiscard]] float pdf(const Vec3&) const { return 0; }
 };
 
-/// The guided distribution at a vertex: one about the target's direction, with sample(u) -> h and pdf(h) per solid
-/// angle (a connection lobe, a row of an EDA table), and the view's directions to the coming control vertex.
-template <typename AboutTarget, typename View>
+/// Directions about the target's: a Lobe has sample(u) -> h and pdf(h) per solid angle (a connection lobe, a row of an
+/// EDA table).
+template <typename Lobe>
+struct AboutTarget {
+    Lobe lobe;
+    Vec3 axis;
+
+    [[nodiscard]] Vec3 sample(float, float u, float v) const { return directionAbout(axis, lobe.sample(u), v); }
+    [[nodiscard]] float pdf(const Vec3&, float h) const { return lobe.pdf(h); }
+    /// What a direction of density `guide` is good for, about 1 on the average over the sphere.
+    [[nodiscard]] static float usefulness(const Heading&, float guide, float last) {
+        constexpr float Uniform = 1.0f / (4.0f * Pi), Floor = 0.2f * Uniform;
+        return guide * last * (1.0f / Uniform) + Floor;
+    }
+};
+
+/// The guided distribution at a vertex: a base of directions (AboutTarget, DirectionsOut), and the view's to the coming
+/// control vertex.
+template <typename Base, typename View>
 class GuidedDirections {
   public:
-    GuidedDirections(const AboutTarget& aboutTarget, const Residual& residual, float excess, const View& view,
-                     float focus)
-        : residual_(residual), excess_(excess), view_(view), focus_(focus), aboutTarget_(aboutTarget) {}
+    GuidedDirections(const Base& base, const Residual& residual, float excess, const View& view, float focus)
+        : residual_(residual), excess_(excess), view_(view), focus_(focus), base_(base) {}
 
     /// choice, u, v in [0, 1) -> unit direction.
     [[nodiscard]] Vec3 sample(float choice, float u, float v) const {
         if (choice < focus_) return fromView(view_.sample(u, v));
-        return directionAbout(residual_.axis, aboutTarget_.sample(u), v);
+        return base_.sample(std::min((choice - focus_) / (1.0f - focus_), BelowOne), u, v);
     }
     /// Density per solid angle; h = 1 - cos between the direction and residual.axis.
     [[nodiscard]] float pdf(const Vec3& direction, float h) const {
-        const float about = aboutTarget_.pdf(h);
-        return focus_ > 0 ? (1.0f - focus_) * about + focus_ * viewPdf(direction, h) : about;
+        const float base = base_.pdf(direction, h);
+        return focus_ > 0 ? (1.0f - focus_) * base + focus_ * viewPdf(direction, h) : base;
+    }
+    /// What a direction of this density is good for, whose connection's last turn has the density `last` per solid
+    /// angle.
+    [[nodiscard]] float usefulness(const Heading& ray, float pdf, float last) const {
+        return base_.usefulness(ray, pdf, last);
     }
 
   private:
@@ -66,7 +87,7 @@ class GuidedDirections {
     float excess_;
     const View& view_;
     float focus_;
-    AboutTarget aboutTarget_;
+    Base base_;
 };
 
 /// Mixtures of a guided distribution with a scatterer's own. A scatterer has sample(u, v) -> unit direction and
@@ -76,7 +97,7 @@ class DirectionSampler {
     /// Direction::Eda uses `table`; without one that of the medium's mean albedo and g, built here unless another
     /// sampler in the process holds it already.
     DirectionSampler(const Settings& settings, const Medium& medium, std::shared_ptr<const EdaTable> table = nullptr)
-        : settings_(settings), g_(medium.g), sigmaT_(mean(medium.sigmaT())) {
+        : settings_(settings), medium_(medium), g_(medium.g), sigmaT_(mean(medium.sigmaT())) {
         if (settings.direction != Direction::Eda) return;
         if (!table && sigmaT_ > 0) table = EdaTable::shared(mean(medium.sigmaS) / sigmaT_, g_);
         table_ = std::move(table);
@@ -90,7 +111,7 @@ class DirectionSampler {
                                          const View& view, Random&& random) const {
         if (settings_.direction == Direction::Phase) return fromScatterer(residual, scatterer, random);
         return withGuided(residual, excess, view, [&](const auto& guided) {
-            if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
+            if (resamples(residual)) return resample(residual, excess, scatterer, guided, random);
             return mix(residual, guideShare(residual, excess), scatterer, guided, random);
         });
     }
@@ -101,7 +122,8 @@ class DirectionSampler {
                             const View& view) const {
         if (settings_.direction == Direction::Phase) return scatterer.pdf(direction);
         const float h = oneMinusCosine(direction, residual.axis);
-        const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
+        const float share =
+            resamples(residual) ? 1.0f - candidatesAt(residual).ownShare() : guideShare(residual, excess);
         return withGuided(residual, excess, view, [&](const auto& guided) {
             return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         });
@@ -109,23 +131,49 @@ class DirectionSampler {
 
     /// gamma = (C / S) / (C / S + alpha).
     [[nodiscard]] float guideShare(const Residual& residual, float excess) const {
+        if (residual.way == Way::Out) return OutShare;
         const float ratio = residual.C / (residual.C + excess);
-        return ratio > 0 ? ratio / (ratio + settings_.alpha) : 0.0f;
+        const float alpha =
+            residual.way == Way::Through ? settings_.alpha : std::max(settings_.alpha, LeastAlphaOutside);
+        return ratio > 0 ? ratio / (ratio + alpha) : 0.0f;
     }
 
   private:
     static constexpr int MostDirections = 8;
-    static constexpr float BelowOne = 0x1.fffffep-1f;
+    // Bench: study bodies, paths.
+    /// Where boundaries of unknown kind lie between, the lobe is a rougher guess.
+    static constexpr float LeastAlphaOutside = 0.5f;
+    /// Share of the guided directions where light must leave a body.
+    static constexpr float OutShare = 0.8f;
+    /// Phase functions of |g| up to this are even enough for a share of their own directions.
+    static constexpr float MostEven = 0.3f;
 
+    /// Resampling's candidates: the first `own` are the scatterer's.
+    struct Candidates {
+        int count, own;
+        [[nodiscard]] float ownShare() const { return float(own) / float(count); }
+    };
+    [[nodiscard]] Candidates candidatesAt(const Residual& residual) const {
+        if (residual.way == Way::Out) return {MostDirections, 6};
+        const int count = std::min(settings_.directionCandidates, MostDirections);
+        return {count, count / 2};
+    }
+
+    [[nodiscard]] bool resamples(const Residual& residual) const {
+        return settings_.direction == Direction::Ris || (residual.way == Way::Out && std::abs(g_) > MostEven);
+    }
     /// use(the vertex's guided distribution).
     template <typename View, typename Use>
     [[nodiscard]] auto withGuided(const Residual& residual, float excess, const View& view, Use&& use) const {
         const float C = residual.C, delta = std::max(excess, 1e-6f * C);
-        if (settings_.direction == Direction::Eda)
-            return use(GuidedDirections(table_->row(C, delta, sigmaT_), residual, delta, view, focus<View>(C + delta)));
-        const auto lobe = settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, delta)
-                                                       : ConnectionLobe<float>::photon(C, delta);
-        return use(GuidedDirections(lobe, residual, delta, view, focus<View>(C + delta)));
+        if (residual.way == Way::Out) return use(DirectionsOut(residual, delta, medium_));
+        const auto about = [&](const auto& lobe) {
+            return use(
+                GuidedDirections(AboutTarget{lobe, residual.axis}, residual, delta, view, focus<View>(C + delta)));
+        };
+        if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
+        return about(settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, delta)
+                                                  : ConnectionLobe<float>::photon(C, delta));
     }
     /// Share of the view's directions for connections of length S: long chains of scatterings forget where they began.
     template <typename View>
@@ -150,27 +198,27 @@ class DirectionSampler {
         const float pdf = share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         return {direction, h, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
-    /// Target: scatterer's density x (guided density x phase function at the control vertex + a floor).
+    /// Target: scatterer's density x usefulness.
     template <typename Scatterer, typename Guided, typename Random>
     [[nodiscard]] DirectionSample resample(const Residual& residual, float excess, const Scatterer& scatterer,
                                            const Guided& guided, Random& random) const {
-        constexpr float Uniform = 1.0f / (4.0f * Pi), Floor = 0.2f * Uniform;
-        const int count = std::min(settings_.directionCandidates, MostDirections);
+        const auto [count, owns] = candidatesAt(residual);
+        const float ownShare = candidatesAt(residual).ownShare();
         std::array<DirectionSample, MostDirections> candidates;
         std::array<float, MostDirections> weights{};
         float sum = 0.0f;
         for (int i = 0; i < count; ++i) {
             DirectionSample& c = candidates[size_t(i)];
             const float choice = random(), u = random(), v = random();
-            c.direction = 2 * i < count ? scatterer.sample(u, v) : guided.sample(choice, u, v);
+            c.direction = i < owns ? scatterer.sample(u, v) : guided.sample(choice, u, v);
             c.h = oneMinusCosine(c.direction, residual.axis);
             const float own = scatterer.pdf(c.direction), guide = guided.pdf(c.direction, c.h);
             const Ellipse<float> e{residual.C, excess, c.h};
             const Vec3 onward = residual.axis * residual.C - c.direction * e.firstLeg();
             const HenyeyGreenstein phase{c.direction, g_};
             const float last = phase.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
-            const float target = own * (guide * last * (1.0f / Uniform) + Floor);
-            const float mixture = 0.5f * (own + guide);
+            const float target = own * guided.usefulness(c, guide, last);
+            const float mixture = ownShare * own + (1.0f - ownShare) * guide;
             weights[size_t(i)] = mixture > 0 ? target / mixture : 0.0f;
             c.inversePdf = target > 0 ? 1.0f / target : 0.0f;
             sum += weights[size_t(i)];
@@ -189,6 +237,7 @@ class DirectionSampler {
     }
 
     Settings settings_;
+    Medium medium_;
     float g_, sigmaT_;
     std::shared_ptr<const EdaTable> table_; ///< null unless Direction::Eda
 };

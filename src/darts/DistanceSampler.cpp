@@ -1,6 +1,7 @@
 #include "darts/DistanceSampler.h"
 
 #include "darts/CandidateKernel.h"
+#include <cstdlib>
 
 #include <stdexcept>
 
@@ -10,12 +11,12 @@ namespace {
 
 using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3&);
 
-template <Greens G, int N>
+template <Shape G, int N>
 Kernel kernelFor(bool grey) {
     return grey ? resample<RegisterOf<N>, G, N, 1> : resample<RegisterOf<N>, G, N, 3>;
 }
 
-template <Greens G>
+template <Shape G>
 Kernel kernelFor(int candidates, bool grey, bool scalar) {
     if (scalar && candidates == 8) return grey ? resample<float, G, 8, 1> : resample<float, G, 8, 3>;
     switch (candidates) {
@@ -32,23 +33,37 @@ Kernel kernelFor(int candidates, bool grey, bool scalar) {
     }
 }
 
+Kernel kernelFor(Shape shape, int candidates, bool grey, bool scalar) {
+    switch (shape) {
+    case Shape::TimeBound:
+        return kernelFor<Shape::TimeBound>(candidates, grey, scalar);
+    case Shape::Diffusion:
+        return kernelFor<Shape::Diffusion>(candidates, grey, scalar);
+    case Shape::Causal:
+        return kernelFor<Shape::Causal>(candidates, grey, scalar);
+    case Shape::FirstPassage:
+        return kernelFor<Shape::FirstPassage>(candidates, grey, scalar);
+    }
+    throw std::invalid_argument("unknown shape of the target");
+}
+
+Shape shapeOf(Greens greens) {
+    return greens == Greens::None ? Shape::TimeBound : greens == Greens::Diffusion ? Shape::Diffusion : Shape::Causal;
+}
+
 } // namespace
 
-DistanceSampler::Kernel DistanceSampler::chooseKernel(const Settings& settings, bool grey, bool scalar) {
-    switch (settings.greens) {
-    case Greens::None:
-        return kernelFor<Greens::None>(settings.candidates, grey, scalar);
-    case Greens::Diffusion:
-        return kernelFor<Greens::Diffusion>(settings.candidates, grey, scalar);
-    case Greens::Causal:
-        return kernelFor<Greens::Causal>(settings.candidates, grey, scalar);
-    }
-    throw std::invalid_argument("unknown Green's function");
+DistanceSampler::Kernels DistanceSampler::chooseKernels(const Settings& settings, bool grey, bool scalar) {
+    const auto kernel = [&](Shape shape) { return kernelFor(shape, settings.candidates, grey, scalar); };
+    // Without a Green's function nothing but the bound in time is wanted.
+    const bool shaped = settings.greens != Greens::None;
+    return {kernel(shapeOf(settings.greens)), kernel(shaped ? Shape::FirstPassage : Shape::TimeBound),
+            kernel(Shape::TimeBound)};
 }
 
 DistanceSampler::DistanceSampler(const Settings& settings, const Medium& medium, bool scalar)
     : settings_(settings), medium_(medium), sigmaT_(medium.sigmaT()), meanSigmaT_(mean(sigmaT_)),
-      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernel_(chooseKernel(settings, grey_, scalar)) {}
+      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernels_(chooseKernels(settings, grey_, scalar)) {}
 
 Vec3 DistanceSampler::transmittance(float distance) const {
     if (grey_) {
@@ -58,11 +73,11 @@ Vec3 DistanceSampler::transmittance(float distance) const {
     return {std::exp(-sigmaT_.x * distance), std::exp(-sigmaT_.y * distance), std::exp(-sigmaT_.z * distance)};
 }
 
-DistanceSample DistanceSampler::sample(const Residual& residual, float h, float surface, const Vec3& throughput,
-                                       const DistanceRandom& random) const {
+DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
+                                       const Vec3& throughput, const DistanceRandom& random) const {
     DistanceSample sample;
     CandidateDraw draw;
-    draw.latest = residual.latest(h);
+    draw.latest = residual.latest(ray.h);
     draw.firstLeg = draw.latest.firstLeg();
     if ((surface < draw.firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity()) {
         const Vec3 reaching = transmittance(surface);
@@ -70,7 +85,7 @@ DistanceSample DistanceSampler::sample(const Residual& residual, float h, float 
         const float natural = !scatters_              ? 1.0f
                               : grey_ || !(total > 0) ? reaching.x
                                                       : dot(throughput, reaching) / total;
-        const float odds = settings_.surfaceOdds;
+        const float odds = residual.way == Way::Out ? residual.exit.leaveOdds : settings_.surfaceOdds;
         const float probability = natural * odds / (natural * odds + (1.0f - natural));
         if (probability > 0 && random.event < probability) {
             sample.surface = true;
@@ -89,7 +104,12 @@ DistanceSample DistanceSampler::sample(const Residual& residual, float h, float 
     draw.floor = settings_.floor;
     draw.throughput = throughput;
     draw.medium = &medium_;
-    sample.distance = kernel_(draw, random, sample.transmittanceOverPdf);
+    draw.exit = &residual.exit;
+    draw.direction = ray.direction;
+    const Kernel kernel = residual.way == Way::Through ? kernels_.through
+                          : residual.way == Way::Out   ? kernels_.out
+                                                       : kernels_.unknown;
+    sample.distance = kernel(draw, random, sample.transmittanceOverPdf);
     return sample;
 }
 

@@ -25,18 +25,18 @@ struct DistanceSample {
 
 /// Resampled importance sampling (Talbot et al. 2005) of N candidates with the target
 ///   p(d) = e^{-sigmaT d} Phi(|x + d w - q|, S_hi - d) o(d),
-/// Phi a Green's function, o(d) the length of the gate still reachable. All causality is tested at S_hi, which does not
-/// change from vertex to vertex: a target length redrawn per vertex would be biased. Any positive target is exact.
-/// The transmittances that the estimate needs are computed to float precision, the target to about 1e-3.
+/// Phi a Green's function, or the first passage out of the body (FirstPassage.h) where the target lies outside, o(d)
+/// the length of the gate still reachable. All causality is tested at S_hi, which does not change from vertex to
+/// vertex: a target length redrawn per vertex would be biased. Any positive target is exact. The transmittances that
+/// the estimate needs are computed to float precision, the target to about 1e-3.
 class DistanceSampler {
   public:
     /// Candidates in SIMD registers; `scalar` takes one by one (for comparison).
     DistanceSampler(const Settings& settings, const Medium& medium, bool scalar = false);
 
-    /// `h` = 1 - cos between the ray and residual.axis; `surface` the distance to the first surface, possibly infinite;
-    /// `throughput` the walk's, for coloured media.
-    [[nodiscard]] DistanceSample sample(const Residual& residual, float h, float surface, const Vec3& throughput,
-                                        const DistanceRandom& random) const;
+    /// `surface` is the distance to the first surface, possibly infinite; `throughput` the walk's, for coloured media.
+    [[nodiscard]] DistanceSample sample(const Residual& residual, const Heading& ray, float surface,
+                                        const Vec3& throughput, const DistanceRandom& random) const;
     /// Where the candidates end: nothing beyond can be in time. The ray need not be traced farther.
     [[nodiscard]] float bound(const Residual& residual, float h) const {
         return settings_.bounded ? residual.latest(h).firstLeg() : std::numeric_limits<float>::infinity();
@@ -47,14 +47,18 @@ class DistanceSampler {
 
   private:
     using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3& transmittanceOverPdf);
-    static Kernel chooseKernel(const Settings& settings, bool grey, bool scalar);
+    /// By how light gets to the target.
+    struct Kernels {
+        Kernel through = nullptr, out = nullptr, unknown = nullptr;
+    };
+    static Kernels chooseKernels(const Settings& settings, bool grey, bool scalar);
 
     Settings settings_;
     Medium medium_;
     Vec3 sigmaT_;
     float meanSigmaT_;
     bool grey_, scatters_;
-    Kernel kernel_;
+    Kernels kernels_;
 };
 
 } // namespace darts

@@ -41,7 +41,11 @@ class Guide {
         : settings_(settings), medium_(medium),
           connectionSigmaT_(settings.uniformLength ? 0.0f : smallest(medium.sigmaT())),
           meanSigmaA_(mean(medium.sigmaA)), meanSigmaS_(mean(medium.sigmaS)), distance_(settings, medium),
-          direction_(settings, medium, std::move(edaTable)) {}
+          direction_(settings, medium, std::move(edaTable)) {
+        // Two turns within the peak, whose width is 1 - cos = (1 - g)^2 / 2 g, cost about this length a mean free path.
+        if (settings.peakLengths && medium.g >= LeastPeak)
+            needle_ = (1.0f - medium.g) * (1.0f - medium.g) / (2.0f * medium.g * mean(medium.sigmaT()));
+    }
 
     [[nodiscard]] const Settings& settings() const { return settings_; }
     [[nodiscard]] const Medium& medium() const { return medium_; }
@@ -52,8 +56,7 @@ class Guide {
                                                     const ResponseAt& at = {}) const {
         if (at.response) return sampleResponse(residual, u, at);
         if (!(residual.width > 0)) return {residual.low, 1.0f};
-        const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
-        const auto [offset, inversePdf] = density.sample(u);
+        const auto [offset, inversePdf] = lengths(residual).sample(u);
         return {residual.low + offset, inversePdf};
     }
     /// The part of the residual range whose connections along the ray end before the surface: for lengths drawn after
@@ -76,6 +79,26 @@ class Guide {
         return ControlVertex{legs.first, legs.second, legs.firstPerLength * connection.inversePdf};
     }
 
+    /// The probability with which a control vertex is worth tracing: what it brings, about, relative to all that is
+    /// still to come from the vertex it was drawn at. What diffuses in a body has most of its connections end deep
+    /// under the boundary. `last` is the density of its turn to the target per solid angle.
+    [[nodiscard]] float chance(const Residual& residual, const Vec3& direction, const ControlVertex& vertex,
+                               float last) const {
+        if (residual.way != Way::Out) return 1.0f;
+        const Exit::Face& face = residual.exit.faces[0];
+        const float depth = std::max(face.depth - vertex.distance * dot(direction, face.normal), 0.0f);
+        const float inside = vertex.distance + depth * residual.exit.inside / std::max(face.depth, 1e-6f * residual.C);
+        const float logged = -mean(medium_.sigmaT()) * inside - logWayOut(residual);
+        const float worth = meanSigmaS_ * vertex.inversePdf * 4.0f * Pi * last * std::exp(std::min(logged, 20.0f));
+        return std::min(worth / WorthTracing, 1.0f);
+    }
+    /// Light is about to leave its body: it has few transport mean free paths left.
+    [[nodiscard]] bool leavesSoon(const Residual& residual) const {
+        if (residual.way != Way::Out || settings_.greens == Greens::None) return false;
+        const Departure<float> here = departure(residual);
+        return here.to(residual.exit.faces[0]).longest * medium_.reducedSigmaS() < LastMeanFreePaths;
+    }
+
     /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a
     /// function of the ray alone, for the balance heuristic.
     [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance) const {
@@ -84,9 +107,8 @@ class Guide {
         const double exact = double(residual.excess) - excessBeyond(residual, h, distance) - double(residual.low);
         if (!(exact >= -rounding && exact <= double(residual.width) + rounding)) return 0.0f;
         const float offset = std::clamp(float(exact), 0.0f, residual.width);
-        const ConnectionLength<float> density{residual.low, residual.width, connectionSigmaT_};
         const Ellipse<float> connection{residual.C, residual.low + offset, h};
-        return controlVertexPdf(connection, density.pdf(offset));
+        return controlVertexPdf(connection, lengths(residual).pdf(offset));
     }
 
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the latest arrival.
@@ -103,10 +125,10 @@ class Guide {
 
     /// The next vertex along the ray; see DistanceSampler.
     template <typename Random>
-    [[nodiscard]] DistanceSample sampleDistance(const Residual& residual, float h, float surface,
+    [[nodiscard]] DistanceSample sampleDistance(const Residual& residual, const Heading& ray, float surface,
                                                 const Vec3& throughput, Random&& random) const {
         const float row = random(), rotation = random(), choice = random(), event = random();
-        return distance_.sample(residual, h, surface, throughput, {row, rotation, choice, event});
+        return distance_.sample(residual, ray, surface, throughput, {row, rotation, choice, event});
     }
 
     /// Logarithm of throughput x Phi(C, S_hi) x reachable gate: what a walk at this vertex is good for, and by what it
@@ -115,6 +137,8 @@ class Guide {
         const float S = residual.C + residual.excess,
                     reach = std::min(residual.excess, std::max(residual.width, 1e-6f * S));
         const float own = std::log(std::max(throughput * reach, 1e-37f));
+        if (settings_.greens == Greens::None || residual.way == Way::Unknown) return own;
+        if (residual.way == Way::Out) return std::log(std::max(throughput, 1e-37f)) + logWayOut(residual);
         if (settings_.greens == Greens::Diffusion)
             return own + DiffusionGreensFunction<float>{meanSigmaA_, meanSigmaS_, medium_.g}.log(residual.C, S);
         if (settings_.greens == Greens::Causal) {
@@ -138,6 +162,25 @@ class Guide {
         if (!(left > 0)) return left;
         return 2 * latest.denominator() * left / (latest.length() - d + latest.distanceToTarget(d));
     }
+    /// Of connection lengths: by the transmittance of the whole connection, or, where its second leg is mostly free
+    /// flight, by half the rate, as boundaries are oblique, and for the forward peak.
+    [[nodiscard]] ConnectionLength<float> lengths(const Residual& residual) const {
+        if (residual.way == Way::Through) return {residual.low, residual.width, connectionSigmaT_};
+        return {residual.low, residual.width, OutsideRate * connectionSigmaT_, needle_};
+    }
+    // Bench: study bodies, paths.
+    static constexpr float OutsideRate = 0.5f;
+    static constexpr float LeastPeak = 0.5f;
+    static constexpr float WorthTracing = 0.01f;
+    static constexpr float LastMeanFreePaths = 4.0f;
+    /// Logarithm of the first passage from the vertex.
+    [[nodiscard]] float logWayOut(const Residual& residual) const {
+        const FirstPassage passage(medium_, residual.exit);
+        return passage.log(departure(residual));
+    }
+    [[nodiscard]] static Departure<float> departure(const Residual& residual) {
+        return {residual.exit, residual.latest(0), residual.axis, 0.0f};
+    }
     [[nodiscard]] float directionExcess(const Residual& residual, const ConnectionSample& connection) const {
         return settings_.lengthFirst ? connection.excess : residual.excess;
     }
@@ -156,6 +199,7 @@ class Guide {
     Settings settings_;
     Medium medium_;
     float connectionSigmaT_, meanSigmaA_, meanSigmaS_;
+    float needle_ = 0; ///< see ConnectionLength; 0 without a forward peak
     DistanceSampler distance_;
     DirectionSampler direction_;
 };

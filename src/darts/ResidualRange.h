@@ -3,6 +3,7 @@
 // inside the time gate.
 
 #include "darts/Ellipse.h"
+#include "darts/Exit.h"
 #include "darts/Vec3.h"
 
 #include <cstdint>
@@ -38,14 +39,18 @@ struct ResidualRange {
     }
 };
 
+struct Heading;
+
 /// The rest of a path seen from a vertex at distance C from its target, in excess lengths delta = S - C.
 struct Residual {
-    Vec3 axis;           ///< unit, towards the target; arbitrary at C = 0
-    float C = 0;         ///< distance to the target
-    float excess = 0;    ///< S_hi - C: nothing arrives in time if it is not positive
-    float low = 0;       ///< of the connections' range of excess lengths [max(S_lo - C, 0), S_hi - C]
-    float width = 0;     ///< of that range, formed in double; 0 at a delta gate
-    double shortest = 0; ///< max(S_lo, C): the range's lower end as a length, in double
+    Vec3 axis;              ///< unit, towards the target; arbitrary at C = 0
+    float C = 0;            ///< distance to the target
+    float excess = 0;       ///< S_hi - C: nothing arrives in time if it is not positive
+    float low = 0;          ///< of the connections' range of excess lengths [max(S_lo - C, 0), S_hi - C]
+    float width = 0;        ///< of that range, formed in double; 0 at a delta gate
+    double shortest = 0;    ///< max(S_lo, C): the range's lower end as a length, in double
+    Way way = Way::Through; ///< which model shapes the sampling; any is exact
+    Exit exit;              ///< of Way::Out
 
     /// `toTarget` = target - position.
     static Residual of(const Vec3& toTarget, const ResidualRange& range) {
@@ -68,6 +73,18 @@ struct Residual {
     [[nodiscard]] bool alive() const { return excess > 1e-6f * C && excess > 0; }
     /// Along a ray with h = 1 - cos to the axis, at the latest arrival.
     [[nodiscard]] Ellipse<float> latest(float h) const { return {C, excess, h}; }
+    /// Unit direction.
+    [[nodiscard]] inline Heading heading(const Vec3& direction) const;
 };
+
+/// Where a ray goes: a unit direction, and h = 1 - cos to the target's.
+struct Heading {
+    Vec3 direction;
+    float h = 0;
+};
+
+inline Heading Residual::heading(const Vec3& direction) const {
+    return {direction, oneMinusCosine(direction, axis)};
+}
 
 } // namespace darts

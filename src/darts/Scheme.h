@@ -36,6 +36,11 @@ struct Scheme {
     std::optional<bool> singleFrames;
     [[nodiscard]] bool aimsAtSingleFrames() const { return singleFrames.value_or(published); }
 
+    /// Bodies of media end where their boundaries are, for sampling too; otherwise every medium is taken for infinite,
+    /// as by default in the paper's preset.
+    std::optional<bool> bodies;
+    [[nodiscard]] bool followsBodies() const { return on && bodies.value_or(!published); }
+
     std::optional<Direction> direction;
     std::optional<Greens> greens;
     std::optional<Proposals> proposals;
@@ -49,11 +54,8 @@ struct Scheme {
         Settings s = published ? darts::published(mode) : best(mode, g);
         if (published && !asksDirection) s.direction = Direction::Phase;
         if (!guideDistance || !(asksDistance || everyMedium)) {
-            // A plain free flight is one exponential candidate without a target.
-            s.greens = Greens::None;
-            s.proposals = Proposals::Exponential;
-            s.candidates = 1;
-            s.bounded = s.overlap = s.mixDenseOnly = false;
+            s = plainFlights(s);
+            s.bounded = false;
         }
         s.elliptical = elliptical;
         const auto set = [](auto& field, const auto& value) {
@@ -148,6 +150,7 @@ void readSwitches(const Block& block, Scheme& scheme) {
     scheme.surfaceConnections = flag(block, "surface_connections");
     scheme.glossySensorPaths = flag(block, "glossy_sensor_paths");
     scheme.singleFrames = flag(block, "single_frames");
+    scheme.bodies = flag(block, "bodies");
 }
 
 } // namespace detail

@@ -11,6 +11,10 @@ struct Medium {
     float g = 0; ///< mean cosine of the phase function
 
     [[nodiscard]] Vec3 sigmaT() const { return sigmaA + sigmaS; }
+    /// sigmaS (1 - g), mean over the channels; never 0.
+    [[nodiscard]] float reducedSigmaS() const { return std::max(mean(sigmaS) * (1.0f - g), 1e-20f); }
+    /// How far light goes straight on after a scattering, on the average: 1 / (sigmaS (1 - g)) - 1 / sigmaS.
+    [[nodiscard]] float persistence() const { return g / reducedSigmaS(); }
     [[nodiscard]] bool isGrey() const {
         const auto equal = [](const Vec3& a) { return a.x == a.y && a.y == a.z; };
         return equal(sigmaA) && equal(sigmaS);
@@ -64,6 +68,7 @@ struct Settings {
     bool mixDenseOnly = false; ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
 
     bool elliptical = true;     ///< control vertices at all
+    bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
     bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
     float surfaceOdds = 1.0f;   ///< factor on the odds of a surface in reach against scattering before it
     float roulette = 0.1f;      ///< walks end at random below this part of their first usefulness; 0: never
@@ -94,6 +99,7 @@ inline Settings best(Mode mode, float g) {
     Settings s;
     s.mode = mode;
     s.direction = peaked ? Direction::Ris : Direction::Connection;
+    s.peakLengths = peaked;
     if (mode == Mode::Photon) {
         s.lobe = Lobe::Photon;
         s.alpha = 0.2f;
@@ -107,6 +113,24 @@ inline Settings best(Mode mode, float g) {
         s.roulette = 0.03f;
         s.greens = peaked ? Greens::Diffusion : Greens::Causal;
     }
+    return s;
+}
+
+/// The same with plain free flights: one exponential candidate without a target.
+inline Settings plainFlights(Settings s) {
+    s.greens = Greens::None;
+    s.proposals = Proposals::Exponential;
+    s.candidates = 1;
+    s.overlap = s.mixDenseOnly = false;
+    return s;
+}
+
+/// The same with nothing but bounds in time: plain flights, the scatterer's own directions, no control vertices.
+inline Settings timeBoundAlone(const Settings& settings) {
+    Settings s = plainFlights(settings);
+    s.direction = Direction::Phase;
+    s.elliptical = s.peakLengths = false;
+    s.roulette = 0.0f;
     return s;
 }
 

@@ -16,13 +16,8 @@ struct Ball {
 Ball ballAround(const Shape& shape) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return {sphere->centre, sphere->radius};
     if (const auto* disk = std::get_if<Disk>(&shape)) return {disk->centre, disk->radius};
-    Vec3f low(Infinity), high(-Infinity);
-    for (const Vec3f& p : std::get<TriangleMesh>(shape).positions)
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
-    return {(low + high) * 0.5f, 0.5f * (high - low).length()};
+    const Imath::Box3f box = boundsOf(shape);
+    return {box.center(), 0.5f * box.size().length()};
 }
 
 Vec3f positionOf(const EmitterModel& model) {

@@ -25,10 +25,12 @@ void GuidedPathWalk::connectElliptically(const Medium& medium, const darts::Guid
         pending_.reset();
         return;
     }
+    drawn_.guide = nullptr;
     if (!residual_.alive()) return;
     const darts::Residual before = darts::Guide::beforeSurface(residual_, h, surface);
     if (!before.alive()) return;
     const darts::ConnectionSample connection = drawConnection(guide, before);
+    if (sharesConnections()) drawn_ = {&guide, before, h, 0.0f};
     const auto vertex = guide.controlVertex(residual_, connection, h, surface);
     if (vertex) addControlVertex(medium, *vertex, arrivalOf(connection));
 }
@@ -63,17 +65,30 @@ void GuidedPathWalk::addControlVertex(const Medium& medium, const darts::Control
     const Rgb light = target_->intensity(-way.direction);
     if (isBlack(light)) return;
     const float phase = medium.phase.eval(ray_.direction, way.direction);
+    const float chance = guideOf(region_).chance(residual_, darts::vec3(ray_.direction), vertex, phase);
+    if (chance < 1.0f && !(next() < chance)) return;
     const Visibility visibility =
         traceConnection(scene_, context_.forwardBoundaries, toTarget({position, way.direction}, way), way.distance,
                         region_, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !counts(1 + visibility.crossings, 1)) return;
-    const Rgb radiance = throughput_ * medium.sigmaS * medium.transmittance(vertex.distance) * light *
-                         visibility.transmittance * (phase / sqr(vertex.toTarget) * vertex.inversePdf);
+    const float share = shareOfControlVertex(medium, vertex.distance);
+    const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
+    const Rgb radiance =
+        throughput_ * medium.sigmaS * medium.transmittance(vertex.distance) * light * visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
     sink_.addInside(context_.sensor.gate.delta ? radiance * region_.speed : radiance, arrival);
 }
 
-void GuidedPathWalk::connectFromMedium(const Medium& medium) {
+float GuidedPathWalk::shareOfControlVertex(const Medium& medium, float distance) const {
+    if (!drawn_.guide) return 1.0f;
+    const float pdf = drawn_.guide->pdfControlVertex(drawn_.residual, drawn_.h, drawn_.behind + distance);
+    const float sigmaT = meanComponent(medium.sigmaT());
+    return pdf / (pdf + sigmaT * std::exp(-sigmaT * distance));
+}
+
+void GuidedPathWalk::connectFromMedium(const Medium& medium, float controlShare) {
+    if (residual_.exit.sealed) return;
+    if (controlShare == 1.0f && context_.arrival.oneSpeed()) return; // control vertices find it
     const Straight way = straightFrom(ray_.origin);
     ++counters_.connections;
     if (!mayConnect(time_, way.distance)) return;
@@ -83,9 +98,10 @@ void GuidedPathWalk::connectFromMedium(const Medium& medium) {
         traceConnection(scene_, context_.forwardBoundaries, toTarget({ray_.origin, way.direction}, way), way.distance,
                         region_, counters_.shadowRays);
     if (isBlack(visibility.transmittance) || !counts(visibility.crossings, 0)) return;
-    if (elliptical(guideOf(region_)) && visibility.oneSpeed) return; // control vertices find it
+    const float share = visibility.oneSpeed ? 1.0f - controlShare : 1.0f;
+    if (!(share > 0.0f)) return;
     const float phase = medium.phase.eval(ray_.direction, way.direction);
-    sink_.add(throughput_ * light * visibility.transmittance * (phase / sqr(way.distance)),
+    sink_.add(throughput_ * light * visibility.transmittance * (phase / sqr(way.distance) * share),
               time_ + visibility.time + target_->start);
 }
 

@@ -12,6 +12,10 @@ void GuidedPathWalk::run(const Ray& ray, const PathTarget& target) {
     region_ = scene_.cameraRegion;
     ++counters_.paths;
     if (timed()) lookAhead(ray_.origin);
+    goOn();
+}
+
+void GuidedPathWalk::goOn() {
     while (interactions_ < scene_.transport.maxBounces) {
         const Medium* medium = scene_.medium(region_);
         if (!medium || !medium->scatters()) {
@@ -42,6 +46,19 @@ void GuidedPathWalk::lookAhead(const Vec3f& position) {
     const float more = target_->reach + faster * std::max(float(range.high), 0.0f);
     reachable_.excess += more;
     reachable_.width += more;
+    surplus_ = more;
+    lookedOut_ = false;
+}
+
+void GuidedPathWalk::lookOut(const transport::Start& start) {
+    if (lookedOut_ || !context_.waysOut) return;
+    lookedOut_ = true;
+    const transport::Aim aim{target_->point.position, target_->surrounding, target_->point.margin(), nullptr, true};
+    context_.waysOut->look(start, region_, aim, residual_, counters_.rays);
+    reachable_.way = residual_.way;
+    reachable_.exit = residual_.exit;
+    // What cannot be connected to is met by chance, anywhere on the emitter.
+    if (reachable_.exit.connects) reachable_.exit.surplus = surplus_;
 }
 
 bool GuidedPathWalk::crossEmpty() {
@@ -60,19 +77,23 @@ bool GuidedPathWalk::crossEmpty() {
 bool GuidedPathWalk::crossMedium(const Medium& medium) {
     if (!mayFly(&medium) || !reachable_.alive()) return false;
     ++flights_;
+    lookOut(transport::Start::along(ray_));
     const darts::Guide& guide = guideOf(region_);
     startRoulette(guide);
-    const float h = darts::oneMinusCosine(darts::vec3(ray_.direction), residual_.axis);
+    const darts::Heading heading = residual_.heading(darts::vec3(ray_.direction));
+    const float h = heading.h;
     ray_.tMax = guide.distance().bound(reachable_, h);
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
     const float surface = hit ? hit->t : Infinity;
+    if (hit && reachable_.way == darts::Way::Out && reachable_.exit.connects)
+        reachable_.exit.leaveOdds = context_.waysOut->leaveOdds(region_, ray_.direction, *hit);
     connectElliptically(medium, guide, h, surface);
     // In expectation, whether or not the walk goes there.
     if (hit) findAt(*hit, throughput_ * medium.transmittance(surface));
     const darts::Guide& flights = mediumScatters_ == 0 ? context_.guides.view[size_t(region_.medium)] : guide;
     const darts::DistanceSample flight =
-        flights.sampleDistance(reachable_, h, surface, darts::vec3(throughput_), [this] { return next(); });
+        flights.sampleDistance(reachable_, heading, surface, darts::vec3(throughput_), [this] { return next(); });
     throughput_ = throughput_ * darts::to<Rgb>(flight.transmittanceOverPdf);
     if (isBlack(throughput_)) return false;
     if (flight.surface) return scatterOnSurface(*hit);
@@ -86,32 +107,30 @@ bool GuidedPathWalk::crossUntimed(const Medium& medium) {
     ++flights_;
     lookAhead(ray_.origin);
     const double reach = double(reachable_.C) + double(reachable_.excess);
-    const Vec3f toTarget = target_->point.position - ray_.origin;
-    ray_.tMax = float(ShellChord(toTarget, ray_.direction, 0.0, reach, double(Infinity)).end());
-    if (!(ray_.tMax > 0.0f)) return false;
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
     const float surface = hit ? hit->t : Infinity;
     connectUntimed(medium, surface);
+    // Only vertices in the medium must lie in the ball from which light is in time: mirrors farther away still count.
+    const Vec3f toTarget = target_->point.position - ray_.origin;
+    const ShellChord inTime(toTarget, ray_.direction, 0.0, reach, double(surface));
     if (hit) {
         const Rgb reaching = medium.transmittance(surface);
         findAt(*hit, throughput_ * reaching);
-        const float probability = meanComponent(reaching);
+        const float probability = inTime.empty() ? 1.0f : meanComponent(reaching);
         if (next() < probability) {
             throughput_ = throughput_ * reaching / probability;
             return scatterOnSurface(*hit);
         }
         throughput_ = throughput_ / (1.0f - probability);
     }
-    const auto distance = sampleUntimed(medium, std::min(surface, ray_.tMax));
+    const auto distance = sampleUntimed(medium, inTime);
     return distance && !isBlack(throughput_) && scatterInMedium(medium, *distance);
 }
 
 /// A distance from which light may still arrive, half of them by transmittance, half by angle; the throughput includes
 /// its scattering.
-std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, float surface) {
-    const double reach = double(reachable_.C) + double(reachable_.excess);
-    const ShellChord chord(target_->point.position - ray_.origin, ray_.direction, 0.0, reach, double(surface));
+std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const ShellChord& chord) {
     if (chord.empty()) return std::nullopt;
     const darts::ConnectionLength<double> flights{chord.begin(), chord.end() - chord.begin(),
                                                   double(meanComponent(medium.sigmaT()))};
@@ -124,7 +143,10 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, float s
 }
 
 void GuidedPathWalk::startRoulette(const darts::Guide& guide) {
-    if (rouletteStarted_) return;
+    // Models do not compare: what one promises, another may keep.
+    if (rouletteStarted_ && rouletteMedium_ == region_.medium && rouletteWay_ == reachable_.way) return;
+    rouletteMedium_ = region_.medium;
+    rouletteWay_ = reachable_.way;
     firstUsefulness_ = guide.logUsefulness(reachable_, meanComponent(throughput_));
     rouletteStarted_ = true;
 }

@@ -16,6 +16,8 @@
 
 #include "darts/Guide.h"
 
+#include "transport/WaysOut.h"
+
 namespace tungsten::path {
 
 /// Sampling by medium.
@@ -24,6 +26,7 @@ struct PathGuides {
     std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
     std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
     std::vector<darts::Guide> view;     ///< for flights from the camera
+    std::vector<darts::Guide> plain;    ///< bounds in time alone, where refraction hides where light goes
 };
 
 /// What guided walks share.
@@ -34,8 +37,11 @@ struct GuidedContext {
     const PathGuides& guides;
     const LightPaths& lightPaths;
     const ArrivalBound& arrival;
-    bool forwardBoundaries; ///< connections must look through index-matched surfaces
+    const transport::WaysOut* waysOut; ///< null: media are taken for infinite
+    bool forwardBoundaries;            ///< connections must look through index-matched surfaces
 };
+
+class ShellChord;
 
 class GuidedPathWalk : private CameraPath {
   public:
@@ -53,6 +59,14 @@ class GuidedPathWalk : private CameraPath {
         darts::ControlVertex vertex; ///< at a distance from the ray's origin
         double arrival = 0.0;        ///< total time of flight of its connection
     };
+    /// How the control vertex of a straight way was drawn, where ordinary connections share with it (balance
+    /// heuristic): in bodies that light must leave, whose directions do not follow the connections' weights so closely.
+    struct Drawn {
+        const darts::Guide* guide = nullptr; ///< none: it does not share
+        darts::Residual residual;            ///< of the connection's length
+        float h = 0.0f;
+        float behind = 0.0f; ///< distance from where it was drawn to the ray's origin
+    };
     /// From a vertex to the target.
     struct Straight {
         Vec3f direction;
@@ -66,18 +80,27 @@ class GuidedPathWalk : private CameraPath {
     };
 
     // Flights. False ends the path.
+    void goOn();
     bool crossMedium(const Medium& medium);
     bool crossUntimed(const Medium& medium);
     bool crossEmpty();
-    std::optional<float> sampleUntimed(const Medium& medium, float surface);
+    std::optional<float> sampleUntimed(const Medium& medium, const ShellChord& inTime);
     [[nodiscard]] bool mayFly(const Medium* medium) const { return !medium || flights_ < medium->maxBounces; }
     /// What may still come from `position`, at the present time and in the present region.
     void lookAhead(const Vec3f& position);
+    /// How light gets from here to the target; once, before anything is sampled.
+    void lookOut(const transport::Start& start);
     void startRoulette(const darts::Guide& guide);
     bool roulette(const darts::Guide& guide);
+    /// Once on a path, where diffusing light is about to leave its body: most of the variance is in the last few
+    /// scatterings, most of the time in those before. The copies share the throughput; goOn(copy) is each one's rest.
+    template <typename GoOn>
+    void split(const darts::Guide& guide, GoOn&& goOn);
 
     // Vertices. False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
+    /// From a vertex in the medium, reached in the direction `before`.
+    bool leaveInMedium(const Medium& medium, const Vec3f& before);
     bool scatterOnSurface(const SurfaceHit& hit);
     [[nodiscard]] const darts::Guide* guideFor(const SurfaceInteraction& surface, const Vec3f& back) const;
     bool leavePlainly(const SurfaceInteraction& surface);
@@ -91,14 +114,17 @@ class GuidedPathWalk : private CameraPath {
     void forgetConnection() {
         connectionDrawn_ = false;
         pending_.reset();
+        drawn_.guide = nullptr;
     }
 
     // Ways to find light.
     void connectElliptically(const Medium& medium, const darts::Guide& guide, float h, float surface);
     void connectUntimed(const Medium& medium, float surface);
     void addControlVertex(const Medium& medium, const darts::ControlVertex& vertex, double arrival);
-    /// An ordinary connection from the ray's origin.
-    void connectFromMedium(const Medium& medium);
+    /// An ordinary connection from the ray's origin, less the part that control vertices bring.
+    void connectFromMedium(const Medium& medium, float controlShare);
+    /// The part of a path with a vertex in the medium at `distance` along the ray that control vertices bring.
+    [[nodiscard]] float shareOfControlVertex(const Medium& medium, float distance) const;
     /// Light by way of a light vertex, and by way of light that a glossy surface reflects, from the ray's origin: on
     /// `surface`, or in the medium if there is none.
     void connectToLightPaths(const SurfaceInteraction* surface);
@@ -131,7 +157,10 @@ class GuidedPathWalk : private CameraPath {
         return timed() ? time_ + double(length) / double(region_.speed) : time_;
     }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
-        return context_.guides.media[size_t(region.medium)];
+        return (residual_.exit.connects ? context_.guides.media : context_.guides.plain)[size_t(region.medium)];
+    }
+    [[nodiscard]] bool sharesConnections() const {
+        return residual_.way != darts::Way::Through && !context_.sensor.gate.delta;
     }
     [[nodiscard]] bool elliptical(const darts::Guide& guide) const { return guide.settings().elliptical; }
     /// Whether a path with this many further interactions and medium scatters counts.
@@ -153,8 +182,13 @@ class GuidedPathWalk : private CameraPath {
     darts::Residual reachable_;    ///< the same for everything the walk may find: whole emitters, at the highest speed
     bool connectionDrawn_ = false; ///< this straight way's control vertex is pending, behind, or void
     std::optional<Pending> pending_;
-    float firstUsefulness_ = 0.0f; ///< logarithm
-    bool rouletteStarted_ = false;
+    Drawn drawn_;
+    float surplus_ = 0.0f;         ///< of reachable_ over residual_, a length
+    bool lookedOut_ = false;       ///< residual_.way is chosen
+    float firstUsefulness_ = 0.0f; ///< logarithm, since the model of what comes is the present one
+    bool rouletteStarted_ = false, split_ = false;
+    int rouletteMedium_ = -1;
+    darts::Way rouletteWay_ = darts::Way::Through;
 };
 
 } // namespace tungsten::path

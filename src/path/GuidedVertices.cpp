@@ -43,10 +43,25 @@ darts::DirectionSample GuidedPathWalk::sampleDirection(const darts::Guide& guide
         guide.sampleDirection(residual_, connection, scatterer, darts::NoView{}, [this] { return next(); });
     if (lengthFirst && elliptical(guide)) {
         connectionDrawn_ = true;
+        if (sharesConnections()) drawn_ = {&guide, residual_, sample.h, 0.0f};
         const auto vertex = guide.controlVertex(residual_, connection, sample.h, Infinity);
         if (vertex) pending_ = Pending{*vertex, arrivalOf(connection)};
     }
     return sample;
+}
+
+template <typename GoOn>
+void GuidedPathWalk::split(const darts::Guide& guide, GoOn&& goOn) {
+    // Bench: study bodies, paths.
+    constexpr int Copies = 8;
+    if (split_ || !guide.leavesSoon(reachable_)) return;
+    split_ = true;
+    throughput_ = throughput_ / float(Copies);
+    for (int i = 1; i < Copies; ++i) {
+        GuidedPathWalk copy(*this);
+        goOn(copy);
+        sampler_ = copy.sampler_;
+    }
 }
 
 bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
@@ -56,17 +71,26 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
     ++mediumScatters_;
     scattered_ = true;
     last_ = Last::Medium;
-    const darts::Guide& guide = guideOf(region_);
     const Vec3f before = ray_.direction;
+    const float controlShare = elliptical(guideOf(region_)) ? shareOfControlVertex(medium, distance) : 0.0f;
     ray_ = Ray{ray_.at(distance), before};
     arrivalPdf_ = reflectedTried_ ? scatteringPdf_ * context_.lightPaths.flights().pdf(distance) / sqr(distance) : 0.0f;
     arrivalNormal_ = Vec3f(0.0f);
     reflectedTried_ = false;
     lookAhead(ray_.origin);
     if (!reachable_.alive()) return false;
-    if (!elliptical(guide) || !context_.arrival.oneSpeed()) connectFromMedium(medium);
+    lookOut({ray_.origin});
+    connectFromMedium(medium, controlShare);
+    const darts::Guide& guide = guideOf(region_);
     if (interactions_ + 1 >= scene_.transport.maxBounces || !roulette(guide)) return false;
+    split(guide, [&](GuidedPathWalk& copy) {
+        if (copy.leaveInMedium(medium, before)) copy.goOn();
+    });
+    return leaveInMedium(medium, before);
+}
 
+bool GuidedPathWalk::leaveInMedium(const Medium& medium, const Vec3f& before) {
+    const darts::Guide& guide = guideOf(region_);
     forgetConnection();
     connectToLightPaths(nullptr);
     if (!residual_.alive() || guide.settings().direction == darts::Direction::Phase) {
@@ -119,10 +143,13 @@ bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts:
     scattered_ = true;
     region_ = regionBeyond(surface, -ray_.direction, region_);
     lookAhead(surface.hit.position);
-    if (residual_.alive() && !roulette(guide)) return false;
     last_ = Last::Surface;
     vertex_ = surface.hit.position;
     ray_ = Ray{vertex_, ray_.direction};
+    if (residual_.alive()) {
+        lookOut({vertex_, surface.hit.margin()});
+        if (!roulette(guide)) return false;
+    }
     connectToLightPaths(&surface);
     if (!residual_.alive()) return leavePlainly(surface);
     forgetConnection();
@@ -162,6 +189,7 @@ void GuidedPathWalk::passBoundary(const SurfaceInteraction& surface, const Vec3f
         forgetConnection();
     else if (pending_)
         pending_->vertex.distance -= surface.hit.t;
+    drawn_.behind += surface.hit.t;
 }
 
 } // namespace tungsten::path

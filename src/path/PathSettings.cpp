@@ -1,6 +1,10 @@
 #include "path/PathSettings.h"
 
+#include "transport/Body.h"
+
 #include "tungsten/render/EffectPlan.h"
+
+#include <algorithm>
 
 namespace tungsten::path {
 
@@ -19,7 +23,7 @@ std::string deltaGateProblem(const PathSettings& settings, const EffectPlan& pla
     return {};
 }
 
-void readGuidance(const ObjectReader& block, const EffectPlan& plan, PathSettings& settings) {
+void readGuidance(const ObjectReader& block, const Scene& scene, const EffectPlan& plan, PathSettings& settings) {
     settings.scheme = darts::readScheme(block);
     if (!settings.scheme.on) return;
     if (!plan.timeResolved) {
@@ -31,7 +35,20 @@ void readGuidance(const ObjectReader& block, const EffectPlan& plan, PathSetting
                    "guided paths connect to emitters; without it paths are sampled plainly");
     } else if (!plan.mediumScattering) {
         settings.scheme.on = false;
+    } else if (settings.scheme.followsBodies() && !plan.surfaceScattering && !scene.transport.gate.delta) {
+        settings.scheme.on = !transport::isSealed(scene);
     }
+}
+
+/// A camera path meets such light with probability zero; it is found from the first vertex on.
+void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene) {
+    const auto beam = std::find_if(scene.emitters.begin(), scene.emitters.end(),
+                                   [](const Emitter& emitter) { return emitter.isDelta(); });
+    if (beam == scene.emitters.end()) return;
+    const std::string name = beam->name.empty() ? "" : " of '" + beam->name + "'";
+    block.warn("type", "paths miss what the camera sees of the light" + name +
+                           " where it is scattered for the first time, as it shines in a single direction; photon maps "
+                           "show it");
 }
 
 } // namespace
@@ -44,7 +61,8 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     settings.lowOrderScattering = block.flag("low_order_scattering", true);
     settings.includeSurfaces = block.flag("include_surfaces", true);
     settings.russianRoulette = block.flag("enable_rr", !plan.timeResolved);
-    readGuidance(block, plan, settings);
+    readGuidance(block, scene, plan, settings);
+    warnAboutSingleDirections(block, scene);
     if (scene.transport.gate.delta) {
         const std::string problem = deltaGateProblem(settings, plan);
         if (!problem.empty()) block.problem("delta_time_gate", problem);

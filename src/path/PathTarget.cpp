@@ -8,13 +8,7 @@ namespace {
 float diameter(const Shape& shape) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return 2.0f * sphere->radius;
     if (const auto* disk = std::get_if<Disk>(&shape)) return 2.0f * disk->radius;
-    Vec3f low(Infinity), high(-Infinity);
-    for (const Vec3f& p : std::get<TriangleMesh>(shape).positions)
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], p[axis]);
-            high[axis] = std::max(high[axis], p[axis]);
-        }
-    return (high - low).length();
+    return boundsOf(shape).size().length();
 }
 
 bool chosenFrom(const Emitter& emitter, TargetChoice::Emitters emitters) {
@@ -64,6 +58,7 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
     if (emitter.isDelta()) return scatterBeam(std::move(target), sampler, counters);
     target.index = int(chosen.index);
     target.point = sampleEmissionPoint(emitter, sampler.next2D());
+    target.surrounding = emitter.medium;
     target.reach = radii_[chosen.index];
     return target;
 }
@@ -94,13 +89,17 @@ std::optional<PathTarget> TargetChoice::scatterBeam(PathTarget target, Sampler& 
             target.power = target.power * flight.weight;
             target.point = {beam.ray.at(length), beam.ray.direction, {0.0f, 0.0f}};
             target.medium = medium;
+            target.surrounding = beam.region.medium;
             ++target.mediumScatters;
             return target;
         }
         if (medium)
             target.power = target.power * (medium->transmittance(length) / probabilityFlightExits(*medium, length));
         if (!meetSurface(target, beam, *hit, sampler)) return std::nullopt;
-        if (target.surface) return target;
+        if (target.surface) {
+            target.surrounding = beam.region.medium;
+            return target;
+        }
     }
     return std::nullopt;
 }

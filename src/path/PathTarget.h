@@ -15,6 +15,7 @@ struct PathTarget {
     const Emitter* emitter = nullptr;
     int index = -1; ///< of the emitter; -1 for virtual sources, which cannot be hit
     SurfaceSample point{Vec3f(0.0f), Vec3f(0.0f), Vec2f(0.0f)};
+    int surrounding = -1;                      ///< medium about the point
     float reach = 0.0f;                        ///< distance from `point` to the emitter's farthest point
     double start = 0.0;                        ///< when light leaves the point
     float probability = 1.0f;                  ///< of the emitter's choice

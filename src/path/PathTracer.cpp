@@ -5,6 +5,8 @@
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace tungsten::path {
 
 namespace {
@@ -56,6 +58,7 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
             settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
+        guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
         darts::Settings view = settings, surface = settings, glossy = settings;
         if (!scheme.published) {
             view.surfaceOdds = ViewSurfaceOdds;
@@ -93,13 +96,19 @@ std::string PathTracer::lightVertexObstacle(const EffectPlan& plan) const {
 }
 
 void PathTracer::plan(EffectPlan& plan) const {
+    const bool beams = std::any_of(scene_->emitters.begin(), scene_->emitters.end(),
+                                   [](const Emitter& emitter) { return emitter.isDelta(); });
+    if (beams)
+        plan.describe("light of a single direction in view", false,
+                      "camera paths meet it with probability zero where it is scattered for the first time");
     plan.describe("Russian roulette", settings_.russianRoulette,
                   settings_.russianRoulette ? "enable_rr, or its default in steady state"
                                             : "off by default in time-resolved renders");
     const std::string sampling = settings_.scheme.published ? "published DARTS sampling" : "DARTS sampling";
     plan.describe("guided paths", settings_.scheme.on,
                   settings_.scheme.on ? sampling + " of scattering media"
-                                      : "no time gate, no scattering medium, or not asked for");
+                                      : "no time gate, no scattering medium but behind refraction, or not asked for");
+    if (settings_.scheme.on) transport::WaysOut::plan(*scene_, settings_.scheme, plan);
     const std::string obstacle = lightVertexObstacle(plan);
     plan.describe("light vertices", obstacle.empty(),
                   obstacle.empty() ? "paths connect to surface points that light reaches first" : obstacle);
@@ -120,6 +129,7 @@ void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
     if (!settings_.scheme.on) return;
     const StageTimer timer(statistics, "guide preparation");
     guides_ = makeGuides(*scene_, settings_.scheme);
+    waysOut_ = transport::WaysOut::make(*scene_, settings_.scheme);
     if (tracesLightPaths_) lightPaths_.prepare(*scene_, targets_, statistics);
 }
 
@@ -182,7 +192,8 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
 }
 
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const GuidedContext context{*scene_, settings_, sensor_, guides_, lightPaths_, *arrival_, forwardBoundaries_};
+    const GuidedContext context{*scene_,     settings_, sensor_,        guides_,
+                                lightPaths_, *arrival_, waysOut_.get(), forwardBoundaries_};
     renderTiles(pass, film, statistics, targets_,
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
                     const std::optional<PathTarget> target = targets_.sample(u, sampler, counters);

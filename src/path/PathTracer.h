@@ -36,7 +36,8 @@ class PathTracer : public Integrator {
     TargetChoice targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> arrival_;
     PathGuides guides_;
-    LightPaths lightPaths_; ///< of the pass
+    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
+    LightPaths lightPaths_;                             ///< of the pass
     bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true, tracesLightPaths_ = false;
 };
 

@@ -40,6 +40,12 @@ float CameraView::pdf(const darts::Vec3& direction) const {
     return Sphere + (1.0f - SphereShare) / (4.0f * halfWidth_ * halfHeight_ * local.z * local.z * local.z);
 }
 
+std::array<Vec3f, 4> CameraView::sides() const {
+    const auto side = [&](const Vec3f& local) { return frame_.toWorld(local.normalized()); };
+    return {side({1.0f, 0.0f, -marginX_}), side({-1.0f, 0.0f, -marginX_}), side({0.0f, 1.0f, -marginY_}),
+            side({0.0f, -1.0f, -marginY_})};
+}
+
 bool CameraView::sees(const Vec3f& point, float radius) const {
     const Vec3f local = frame_.toLocal(point - position_);
     const float reach = radius + aperture_ * (1.0f + std::max(local.z, 0.0f));

@@ -24,6 +24,9 @@ class CameraView {
     /// The part of a ray whose points it sees: an interval, as what a pinhole sees is convex. A thin lens: all of it.
     [[nodiscard]] FlightPart seenPart(const Vec3f& origin, const Vec3f& direction, float radius) const;
 
+    /// Outward unit normals of the planes through the position inside which points are seen.
+    [[nodiscard]] std::array<Vec3f, 4> sides() const;
+
   private:
     static constexpr float SphereShare = 0.1f;
 

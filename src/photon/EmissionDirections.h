@@ -3,15 +3,21 @@
 
 #include "darts/Vec3.h"
 
+#include "transport/Body.h"
+
 #include "tungsten/emitter/Emitter.h"
+
+#include <span>
+#include <vector>
 
 namespace tungsten::photon {
 
 /// Uniform over what the emitter lights: the sphere of a point, the cone of a spot; cosine-weighted for surfaces, in
-/// the cone of a disk.
+/// the cone of a disk. A share goes towards bodies of fog that are small from there, each as much as the other.
 class EmissionDirections {
   public:
-    EmissionDirections(const Emitter& emitter, const SurfaceSample& start) {
+    EmissionDirections(const Emitter& emitter, const SurfaceSample& start,
+                       std::span<const transport::BodySphere> bodies = {}) {
         if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) {
             axis_ = darts::vec3(spot->direction);
             widest_ = 1.0f - spot->cosOuter;
@@ -20,31 +26,67 @@ class EmissionDirections {
             widest_ = 1.0f - area->cosCone();
             cosine_ = true;
         }
+        for (const transport::BodySphere& body : bodies) addCone(start.position, body);
+        if (!cones_.empty()) share_ = TowardsBodies;
     }
     [[nodiscard]] darts::Vec3 sample(float u, float v) const {
+        if (u < share_) {
+            const float scaled = u / share_ * float(cones_.size());
+            const size_t chosen = std::min(size_t(scaled), cones_.size() - 1);
+            return darts::directionAbout(cones_[chosen].axis, (scaled - float(chosen)) * cones_[chosen].widest, v);
+        }
+        const float rest = (u - share_) / (1.0f - share_);
         // sin^2 is uniform for the cosine: with x for it, h = 1 - sqrt(1 - x) = x / (1 + sqrt(1 - x)).
-        const float x = u * sineSquared();
-        return darts::directionAbout(axis_, cosine_ ? x / (1.0f + std::sqrt(1.0f - x)) : widest_ * u, v);
+        const float x = rest * sineSquared();
+        return darts::directionAbout(axis_, cosine_ ? x / (1.0f + std::sqrt(1.0f - x)) : widest_ * rest, v);
     }
     /// Above 0 for whatever sample() draws.
     [[nodiscard]] float pdf(const darts::Vec3& direction) const {
         const float h = darts::oneMinusCosine(direction, axis_);
-        // Rounding carries directions across the cone's edge, by as much as it moves their difference from the axis.
-        // Beyond it nothing is emitted, so that the density there does not matter.
-        if (h > widest_ + Rounding * std::sqrt(widest_)) return 0.0f;
-        return cosine_ ? std::max(1.0f - h, LeastCosine) / (darts::Pi * sineSquared())
-                       : 1.0f / (2.0f * darts::Pi * widest_);
+        float own = uniform(h, widest_);
+        if (cosine_ && own > 0.0f) own = std::max(1.0f - h, LeastCosine) / (darts::Pi * sineSquared());
+        if (cones_.empty()) return own;
+        float towards = 0.0f;
+        for (const Cone& cone : cones_) towards += uniform(darts::oneMinusCosine(direction, cone.axis), cone.widest);
+        return (1.0f - share_) * own + share_ * towards / float(cones_.size());
     }
 
   private:
     static constexpr float Rounding = 1e-6f, LeastCosine = 1e-6f;
+    /// At most twice as bad as all or nothing, wherever the light counts.
+    static constexpr float TowardsBodies = 0.5f;
+
+    struct Cone {
+        darts::Vec3 axis;
+        float widest; ///< largest 1 - cos
+    };
 
     /// Of the cone's half angle.
     [[nodiscard]] float sineSquared() const { return widest_ * (2.0f - widest_); }
+    /// Rounding carries directions across a cone's edge, by as much as it moves their difference from the axis. Beyond
+    /// the emitter's own edge nothing is emitted, so that the density there does not matter.
+    [[nodiscard]] static float uniform(float h, float widest) {
+        const float edge = widest + Rounding * std::sqrt(widest);
+        return h <= edge ? 1.0f / (2.0f * darts::Pi * widest) : 0.0f;
+    }
+    void addCone(const Vec3f& position, const transport::BodySphere& body) {
+        const Vec3f offset = body.centre - position;
+        const float distance = offset.length();
+        if (!(distance > body.radius)) return;
+        const darts::Vec3 axis = darts::vec3(offset / distance);
+        const float sine = body.radius / distance, widest = sine * sine / (1.0f + std::sqrt(1.0f - sine * sine));
+        // Half of what the emitter lights, or more, needs no help.
+        if (widest > 0.5f * widest_) return;
+        const auto angle = [](float h) { return std::acos(std::clamp(1.0f - h, -1.0f, 1.0f)); };
+        if (angle(darts::oneMinusCosine(axis, axis_)) < angle(widest_) + angle(widest))
+            cones_.push_back({axis, widest});
+    }
 
     darts::Vec3 axis_{0, 0, 1};
     float widest_ = 2.0f; ///< largest 1 - cos
     bool cosine_ = false;
+    std::vector<Cone> cones_;
+    float share_ = 0.0f;
 };
 
 } // namespace tungsten::photon

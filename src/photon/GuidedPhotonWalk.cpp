@@ -77,10 +77,11 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     if (!arrival_->mayContinue(ray_.origin, time_)) return false;
     connectToSurfaces(start.margin(), InSphere * meanComponent(emitterPower(emitter)),
                       [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
-    const EmissionDirections own(emitter, start);
+    // What is guided aims at the camera itself.
+    const EmissionDirections own(emitter, start, guide ? std::span<const transport::BodySphere>() : guidance_.bodies());
     float inversePdf = 0.0f;
     if (guide) {
-        if (!look(*guide)) return false;
+        if (!look(*guide, {start.position, start.margin()})) return false;
         inversePdf = redirect(*guide, own);
     } else {
         const float u = sampler_.next1D(), v = sampler_.next1D();
@@ -122,10 +123,11 @@ bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
     return leaveSurface();
 }
 
-bool GuidedPhotonWalk::look(const darts::Guide& guide) {
-    residual_ = guidance_.residual(ray_.origin, time_, gate_);
+bool GuidedPhotonWalk::look(const darts::Guide& guide, const transport::Start& start) {
+    residual_ = guidance_.residual(start, region_, time_, gate_, counters_.rays);
     looked_ = true;
-    connected_ = guide.settings().lengthFirst;
+    // Along a direction that is fixed the surface ahead bounds the lengths: they are drawn when it is known.
+    connected_ = guide.settings().lengthFirst && !(start.ahead.length2() > 0.0f);
     if (connected_) connection_ = drawConnection(guide, residual_);
     // A density of 0: the response is over, or the delta gate, but surfaces may still be seen in its kernel.
     return residual_.alive() && (!connected_ || connection_.inversePdf > 0.0f || guidance_.meetsDeltaGate());
@@ -148,9 +150,12 @@ float GuidedPhotonWalk::redirect(const darts::Guide& guide, const Scatterer& sca
 bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
     if (!(guide.settings().roulette > 0.0f)) return true;
     const float useful = guide.logUsefulness(residual_, meanComponent(power_));
-    if (!started_) {
+    // Models do not compare: what one promises, another may keep.
+    if (!started_ || rouletteMedium_ != region_.medium || rouletteWay_ != residual_.way) {
         firstUsefulness_ = useful;
         started_ = true;
+        rouletteMedium_ = region_.medium;
+        rouletteWay_ = residual_.way;
         return true;
     }
     const float survival = guide.survival(useful, firstUsefulness_);
@@ -162,24 +167,27 @@ bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
 
 bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& guide) {
     if (++flights_ > medium.maxBounces) return false;
-    if (!looked_ && (!look(guide) || !survives(guide))) return false; // after a surface
-    const float h = darts::oneMinusCosine(darts::vec3(ray_.direction), residual_.axis);
+    if (!looked_ && (!look(guide, transport::Start::along(ray_)) || !survives(guide))) return false; // after a surface
+    const darts::Heading heading = residual_.heading(darts::vec3(ray_.direction));
+    const float h = heading.h;
     ray_.tMax = guide.distance().bound(residual_, h);
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
     ray_.tMax = Infinity;
     const float surface = hit ? hit->t : Infinity;
+    if (hit && residual_.way == darts::Way::Out && residual_.exit.connects)
+        residual_.exit.leaveOdds = guidance_.leaveOdds(region_, ray_.direction, *hit);
     if (context_.storeVolume) placeControlVertex(medium, guide, h, surface);
     if (context_.storeBeams) depositSeenBeam(medium, surface);
 
     const auto random = [this] { return sampler_.next1D(); };
-    const darts::DistanceSample step = guide.sampleDistance(residual_, h, surface, darts::vec3(power_), random);
+    const darts::DistanceSample step = guide.sampleDistance(residual_, heading, surface, darts::vec3(power_), random);
     power_ = power_ * Rgb(step.transmittanceOverPdf.x, step.transmittanceOverPdf.y, step.transmittanceOverPdf.z);
     looked_ = connected_ = false;
     if (isBlack(power_)) return false;
     if (step.surface) return meetSurface(*hit);
     power_ = power_ * medium.sigmaS;
-    if (context_.storeVolume && (!guidance_.directView() || !guide.settings().elliptical))
+    if (context_.storeVolume && (storesPhotons() || !guide.settings().elliptical))
         depositPhoton(medium, guide, step.distance, h);
     return scatter(medium, guide, step.distance);
 }
@@ -192,7 +200,7 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     ray_ = Ray{position, before};
     connectable_ = true;
     fromLight_ = false;
-    if (!look(guide) || !survives(guide)) return false;
+    if (!look(guide, {position}) || !survives(guide)) return false;
     if (flights_ < medium.maxBounces) // else no flight would leave here
         connectToSurfaces({}, InSphere,
                           [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
@@ -215,7 +223,7 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     ++counters_.controlVertices;
     const Vec3f position = ray_.at(vertex->distance);
     Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
-    if (!guidance_.directView())
+    if (storesPhotons())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
     store(context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power,

@@ -32,10 +32,15 @@ class GuidedPhotonWalk : private PhotonWalk {
     void depositSeenBeam(const Medium& medium, float surface);
     /// Ordinary photons share with control vertices where sensor paths can fold.
     void depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h);
+    /// Ordinary photons share with the control vertices of this flight, by the balance heuristic: where these alone are
+    /// not complete, and in bodies that light must leave, whose directions do not follow the connections so closely.
+    [[nodiscard]] bool storesPhotons() const {
+        return !guidance_.directView() || (residual_.way != darts::Way::Through && !guidance_.meetsDeltaGate());
+    }
     void store(const ArrivalTest& arrival, const Vec3f& position, double time, const Rgb& power, int bounce);
     bool survives(const darts::Guide& guide);
     /// Residual at the ray's origin, and the length of the next connection.
-    bool look(const darts::Guide& guide);
+    bool look(const darts::Guide& guide, const transport::Start& start);
     /// From a vertex with this residual.
     darts::ConnectionSample drawConnection(const darts::Guide& guide, const darts::Residual& residual);
     /// Draws the direction of the flight ahead; the ray's origin and residual_ are set.
@@ -53,6 +58,8 @@ class GuidedPhotonWalk : private PhotonWalk {
     bool looked_ = false;    ///< residual_ belongs to the ray's origin
     float firstUsefulness_ = 0.0f;
     bool started_ = false; ///< firstUsefulness_ is known
+    int rouletteMedium_ = -1;
+    darts::Way rouletteWay_ = darts::Way::Through;
 };
 
 } // namespace tungsten::photon

@@ -27,11 +27,14 @@ std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const d
 }
 
 PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
-    : view_(scene.camera), camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
+    : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
+      camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
       unwarped_(scene.transport.cameraUnwarped), sensor_(Sensor::of(scene, scene.transport.gate)) {
     const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
     directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
+    if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, scheme);
+    if (scheme.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     const TimeGate& gate = scene.transport.gate;
     setGate(gate);
     const bool exact = directView_ && straight && slack_ == 0.0;
@@ -60,10 +63,18 @@ void PhotonGuidance::setGate(const TimeGate& gate) {
     gate_ = {frames_.all().begin - slack_, frames_.all().end + slack_};
 }
 
-darts::Residual PhotonGuidance::residual(const Vec3f& position, double elapsed, const darts::TimeGate& gate) const {
+darts::Residual PhotonGuidance::residual(const transport::Start& start, const Region& region, double elapsed,
+                                         const darts::TimeGate& gate, uint64_t& rays) const {
     const auto range = darts::ResidualRange::of(gate, elapsed, speed_);
     if (unwarped_) return darts::Residual::withoutTarget(range);
-    return darts::Residual::of(darts::vec3(camera_ - position), range);
+    darts::Residual residual = darts::Residual::of(darts::vec3(camera_ - start.position), range);
+    if (!waysOut_ || !residual.alive()) return residual;
+    waysOut_->look(start, region, {camera_, cameraMedium_, {}, &sides_}, residual, rays);
+    // Ranges are of the highest speed.
+    const double slower = double(region.speed) / speed_;
+    residual.exit.gate *= float(slower);
+    if (residual.exit.connects) residual.exit.surplus = float((1.0 - slower) * range.high);
+    return residual;
 }
 
 } // namespace tungsten::photon

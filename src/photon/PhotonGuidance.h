@@ -7,6 +7,8 @@
 #include "darts/Guide.h"
 #include "darts/Scheme.h"
 
+#include "transport/WaysOut.h"
+
 #include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/Scene.h"
 
@@ -26,8 +28,17 @@ class PhotonGuidance {
     [[nodiscard]] const darts::Guide* guide(const Region& region) const {
         return region.medium < 0 ? nullptr : guides_[size_t(region.medium)].get();
     }
-    /// What is left of a path that got to `position` at `elapsed`, for arrival inside `gate`.
-    [[nodiscard]] darts::Residual residual(const Vec3f& position, double elapsed, const darts::TimeGate& gate) const;
+    /// What is left of a path at the start of a flight (transport::WaysOut::look) through `region` at `elapsed`, for
+    /// arrival inside `gate`. Adds the rays traced to `rays`.
+    [[nodiscard]] darts::Residual residual(const transport::Start& start, const Region& region, double elapsed,
+                                           const darts::TimeGate& gate, uint64_t& rays) const;
+
+    /// Bodies that light from outside is sent towards.
+    [[nodiscard]] const std::vector<transport::BodySphere>& bodies() const { return bodies_; }
+    /// transport::WaysOut::leaveOdds
+    [[nodiscard]] float leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const {
+        return waysOut_->leaveOdds(region, direction, hit);
+    }
 
     /// Every sensor path is one straight chain at one speed: control vertices alone are complete. Otherwise ordinary
     /// photons share the work with them, by the balance heuristic.
@@ -65,6 +76,10 @@ class PhotonGuidance {
 
     std::vector<std::unique_ptr<darts::Guide>> guides_; ///< by medium
     CameraView view_;
+    std::array<Vec3f, 4> sides_;                        ///< of the view
+    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
+    std::vector<transport::BodySphere> bodies_;
+    int cameraMedium_;
     Vec3f camera_;
     double speed_;
     double slack_; ///< of arrival times, from the aperture

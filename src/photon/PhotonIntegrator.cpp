@@ -125,6 +125,7 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
     const auto guidance = PhotonGuidance::make(*scene_, settings_.scheme, plan);
     plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
     if (!guidance) return;
+    if (!scene_->transport.cameraUnwarped) transport::WaysOut::plan(*scene_, settings_.scheme, plan);
     if (scene_->transport.gate.frames > 1)
         plan.describe("frames one by one", guidance->choosesFrames(),
                       guidance->choosesFrames() ? "each light path aims at one frame"

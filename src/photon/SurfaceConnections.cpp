@@ -73,6 +73,10 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     const SensorPoint& point = points_[draw.point];
     const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
     const Vec3f toVertex = -draw.direction;
+    // The other side of a thin wall: rounding tells neither side from the other, and spreading would lift light
+    // through.
+    const float height = std::abs(toVertex.dot(point.hit.ng)) * draw.distance;
+    if (vertex.margin.onSurface() && height < 4.0f * (vertex.margin.error + point.hit.error)) return;
     // Not by the value of the BSDF: neighbours whose texture is not black here may share what arrives.
     if (!surface.consistent(toVertex, scene_.transport.consistencyChecks) ||
         ((surface.bsdf->lobes() & lobe::Transmissive) == 0 && surface.frame.toLocal(toVertex).z * surface.wi.z <= 0.0f))

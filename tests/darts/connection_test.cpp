@@ -63,6 +63,26 @@ TEST(ConnectionLength, SamplesFollowTheDensity) {
     }
 }
 
+TEST(ConnectionLength, SamplesFollowTheDensityOfForwardPeaks) {
+    for (const double low : {0.0, 0.1})
+        for (const double needle : {1e-3, 0.3})
+            for (const double sigmaT : {0.5, 20.0}) {
+                const ConnectionLength<double> length{low, 2.0, sigmaT, needle};
+                const auto cumulative = [&](double x) {
+                    return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+                        [&](double y) { return length.pdf(y); }, 0.0, x, 10, 1e-7);
+                };
+                EXPECT_NEAR(cumulative(2.0), 1.0, 1e-5) << low << " " << needle << " " << sigmaT;
+                const auto sample = length.sample(0.73);
+                EXPECT_NEAR(sample.inversePdf * length.pdf(sample.offset), 1.0, 1e-9);
+                EXPECT_GT(tungsten::test::chiSquareInterval(
+                              [&](Sampler& s) { return length.sample(s.nextDouble()).offset; },
+                              [&](double x) { return length.pdf(x); }, tungsten::test::ratioEdges(1e-5, 2.0, 40)),
+                          tungsten::test::SmallestPValue)
+                    << low << " " << needle << " " << sigmaT;
+            }
+}
+
 using Lobe = ConnectionLobe<double>;
 
 void testLobe(Lobe (*make)(double C, double delta)) {

@@ -85,7 +85,7 @@ void expectUnbiased(const Case& c, const Settings& settings, bool scalar, uint64
     Sums medium[3], surface[3];
     for (uint64_t i = 0; i < 20000; ++i) {
         Sampler s(seed, RandomStream::Test, 0, i);
-        const DistanceSample sample = sampler.sample(residual, float(c.h), float(c.surface), {0.3f, 1.0f, 0.7f},
+        const DistanceSample sample = sampler.sample(residual, {{}, float(c.h)}, float(c.surface), {0.3f, 1.0f, 0.7f},
                                                      {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
         for (int k = 0; k < 3; ++k) {
             const double weight = double(k == 0   ? sample.transmittanceOverPdf.x
@@ -138,7 +138,8 @@ TEST(DistanceSampler, BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean
     const Residual residual = Residual::of({0, 0, 1}, {3.0, 3.1});
     const float natural = std::exp(-0.8f), reached = 4 * natural / (4 * natural + 1 - natural);
     for (const float event : {0.99f * reached, 1.01f * reached})
-        EXPECT_EQ(sampler.sample(residual, 1.0f, 0.8f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, event}).surface, event < reached);
+        EXPECT_EQ(sampler.sample(residual, {{}, 1.0f}, 0.8f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, event}).surface,
+                  event < reached);
 }
 TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     uint64_t seed = 900;
@@ -163,8 +164,8 @@ TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
             Sampler s(77, RandomStream::Test, 0, i);
             const DistanceRandom random{s.next1D(), s.next1D(), s.next1D(), s.next1D()};
             const Residual residual = residualOf(c);
-            const auto a = simd.sample(residual, float(c.h), float(c.surface), {1, 1, 1}, random);
-            const auto b = scalar.sample(residual, float(c.h), float(c.surface), {1, 1, 1}, random);
+            const auto a = simd.sample(residual, {{}, float(c.h)}, float(c.surface), {1, 1, 1}, random);
+            const auto b = scalar.sample(residual, {{}, float(c.h)}, float(c.surface), {1, 1, 1}, random);
             ASSERT_EQ(a.surface, b.surface);
             // A choice on the border of two candidates may fall to either.
             if (std::abs(a.distance - b.distance) > 1e-3f * float(c.S)) continue;
@@ -176,10 +177,10 @@ TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
 TEST(DistanceSampler, NothingScattersInAnAbsorber) {
     const DistanceSampler sampler(best(Mode::Photon, 0.0f), Medium{{1, 1, 1}, {0, 0, 0}, 0.0f});
     const Residual residual = Residual::of({0, 0, 1}, {2.0, 2.1});
-    const DistanceSample sample = sampler.sample(residual, 1.0f, 0.5f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f});
+    const DistanceSample sample = sampler.sample(residual, {{}, 1.0f}, 0.5f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f});
     EXPECT_TRUE(sample.surface);
     EXPECT_NEAR(sample.transmittanceOverPdf.x, std::exp(-0.5f), 1e-6f);
-    EXPECT_EQ(sampler.sample(residual, 1.0f, float(Infinite), {1, 1, 1}, {}).transmittanceOverPdf.x, 0.0f);
+    EXPECT_EQ(sampler.sample(residual, {{}, 1.0f}, float(Infinite), {1, 1, 1}, {}).transmittanceOverPdf.x, 0.0f);
 }
 
 TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
@@ -202,7 +203,7 @@ TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
         const float surface = s.next1D() < 0.5f ? float(scale * logUniform(1e-6, 10.0)) : float(Infinite);
         if (!residual.alive() || residual.latest(h).isNeedle()) continue;
         const DistanceSample sample =
-            sampler.sample(residual, h, surface, {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+            sampler.sample(residual, {{}, h}, surface, {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
         ASSERT_TRUE(sample.distance >= 0.0f && (std::isfinite(sample.distance))) << C << " " << S << " " << h;
         for (const float w : {sample.transmittanceOverPdf.x, sample.transmittanceOverPdf.y})
             ASSERT_TRUE(std::isfinite(w) && w >= 0.0f) << C << " " << S << " " << h << " " << depth << " " << w;

@@ -138,7 +138,7 @@ TEST(TemporalResponse, ControlVerticesHitTwoPeaksThatPlainConnectionsMiss) {
                 ++elliptical;
                 if (!(peaks.pdf(time) > 0.0)) ++ellipticalOutside;
             }
-            const DistanceSample step = guide.sampleDistance(residual, next.h, INFINITY, {1, 1, 1}, random);
+            const DistanceSample step = guide.sampleDistance(residual, next, INFINITY, {1, 1, 1}, random);
             if (!(step.transmittanceOverPdf.x > 0.0f)) break;
             position = position + next.direction * step.distance;
             direction = next.direction;

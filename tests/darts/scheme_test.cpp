@@ -109,6 +109,8 @@ TEST(Scheme, EverySwitchWorksAlone) {
     EXPECT_FALSE(SwitchReading(Fields{{"surface_connections", false}}).scheme.connectsSurfaces());
     EXPECT_FALSE(SwitchReading(Fields{}).scheme.aimsAtSingleFrames());
     EXPECT_TRUE(SwitchReading(Fields{{"single_frames", true}}).scheme.aimsAtSingleFrames());
+    EXPECT_TRUE(SwitchReading(Fields{}).scheme.followsBodies());
+    EXPECT_FALSE(SwitchReading(Fields{{"bodies", false}}).scheme.followsBodies());
     EXPECT_TRUE(SwitchReading(Fields{}).scheme.followsGlossy());
     EXPECT_FALSE(SwitchReading(Fields{{"glossy_sensor_paths", false}}).scheme.followsGlossy());
 }

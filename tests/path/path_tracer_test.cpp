@@ -208,5 +208,27 @@ TEST(GuidedPaths, ThePlanSaysWhy) {
     EXPECT_EQ(planned(R"("best")", "reflected light"), "off: no glossy surface");
 }
 
+TEST(PathTracer, SaysThatLightOfASingleDirectionIsMissedInView) {
+    const auto warnings = [](const std::string& light) {
+        const test::SceneFile file(R"({"primitives": [{"name": "beam", "emission": 1, )" + light +
+                                   R"(, "transform": {"position": [0, 2, 0], "look_at": [0, 0, 0]}},
+             {"type": "quad", "bsdf": {"type": "lambert"}, "transform": {"scale": 4}}],
+            "camera": {"resolution": 1, "transform": {"position": [0, 2, 2], "look_at": [0, 0, 0]}},
+            "integrator": {"type": "path_tracer"}})");
+        const LoadedScene loaded = loadScene(file.path());
+        EffectPlan plan = analyseScene(*loaded.scene);
+        PathTracer(loaded.scene, loaded.integratorSettings).plan(plan);
+        const bool planned = std::any_of(plan.effects.begin(), plan.effects.end(), [](const Effect& effect) {
+            return effect.name == "light of a single direction in view";
+        });
+        std::string text;
+        for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text();
+        EXPECT_EQ(planned, text.find("paths miss") != std::string::npos);
+        return text;
+    };
+    EXPECT_NE(warnings(R"("type": "collimated", "radius": 0.1)").find("'beam'"), std::string::npos);
+    EXPECT_EQ(warnings(R"("type": "point")").find("paths miss"), std::string::npos);
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -84,5 +84,29 @@ TEST(SpecularTime, GlassBallDelaysAndEchoes) {
     EXPECT_EQ(elsewhere, 0.0) << "nothing arrives before the direct view";
 }
 
+/// Fog behind the camera's back, lit by a lamp there, seen in a mirror ahead; time starts at the scattering, so that
+/// all of it lies near the lamp and the mirror does not.
+TEST(SpecularTime, UnwarpedFogShowsInAMirrorFarFromTheLight) {
+    const std::string scene = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0, "sigma_s": 0.05}],
+        "primitives": [
+        {"type": "quad", "bsdf": {"type": "mirror", "albedo": 0.95},
+         "transform": {"position": [6, 0, 0], "scale": 6, "rotation": [0, 0, 90]}},
+        {"type": "sphere", "bsdf": {"type": "null"}, "emission": 200, "ext_medium": "fog",
+         "transform": {"position": [-3, 0.2, 0], "scale": 0.1}}],
+        "camera": {"type": "pinhole", "resolution": 1, "fov": 12, "medium": "fog",
+                   "transform": {"position": [0, 0, 0], "look_at": [6, 0, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "path_tracer", "max_bounces": 5, "transient_time_center": 0.75,
+                       "transient_time_width": 0.5, "camera_unwarped": true}})";
+    double mean[2], error[2];
+    for (const bool guided : {false, true}) {
+        const auto rendered = renderWithPathTracer(
+            scene, {{guided ? "integrator.darts=best" : "integrator.darts=off"}, 64, guided ? 1000u : 4000u, 9});
+        mean[guided] = rendered->mean();
+        error[guided] = rendered->pixelError();
+    }
+    EXPECT_NEAR(mean[1], mean[0], 4.5 * std::hypot(error[0], error[1]));
+    EXPECT_LT(std::hypot(error[0], error[1]), 0.1 * mean[0]);
+}
+
 } // namespace
 } // namespace tungsten::path

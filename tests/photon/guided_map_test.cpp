@@ -407,5 +407,24 @@ TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
     }
 }
 
+/// A thin wall between lamp and camera: light on its back must not be spread through to its front. The ceiling joins
+/// the two rooms, so that something is connected at all.
+TEST(SurfaceConnections, DoNotPassAThinWall) {
+    const std::string scene = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0, "sigma_s": 1e-4}],
+        "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.7}],
+        "primitives": [{"type": "quad", "bsdf": "grey", "transform": {"rotation": [0, 0, 90], "scale": 2}},
+                       {"type": "quad", "bsdf": "grey", "transform": {"position": [-3, 0, 0], "rotation": [0, 0, -90], "scale": 6}},
+                       {"type": "point", "emission": 9, "ext_medium": "fog", "transform": {"position": [-1, 0.1, 0.2]}}],
+        "camera": {"fov": 30, "resolution": 8, "medium": "fog",
+                   "transform": {"position": [2, 0, 0], "look_at": [0, 0, 0]}},
+        "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 3, "photon_count": 4000,
+                       "volume_photon_count": 4000, "transient_time_center": 8, "transient_time_width": 8,
+                       "darts": "best"}})";
+    const auto rendered = renderPhotons(scene, {{}, 8});
+    EXPECT_GT(rendered->statistics.counter("surface connections"), 0u);
+    // What the fog in front of the wall scatters; through the wall it was 0.01 and more.
+    EXPECT_LT(rendered->mean(), 1e-4);
+}
+
 } // namespace
 } // namespace tungsten::photon

@@ -131,6 +131,35 @@ TEST(EmissionDirections, FollowTheirDensity) {
     }
 }
 
+TEST(EmissionDirections, FollowTheirDensityTowardsABody) {
+    SurfaceSample start{};
+    start.position = Vec3f(0.0f);
+    start.normal = Vec3f(0.48f, -0.6f, 0.64f);
+    const transport::BodySphere body{Vec3f(-3.0f, 3.0f, -3.0f), 1.0f}, around{Vec3f(0.1f, 0.0f, 0.0f), 1.0f};
+    const std::vector<transport::BodySphere> bodies = {body, around};
+    Emitter emitter;
+    emitter.model = PointEmitter{Vec3f(0.0f), White};
+    const EmissionDirections point(emitter, start, bodies);
+    const darts::Vec3 axis = darts::vec3(body.centre.normalized());
+    const double widest = 1.0 - std::sqrt(1.0 - 1.0 / 27.0);
+    std::vector<double> edges{0.0, 0.3 * widest, 0.6 * widest, widest + 1e-6, 2.0 * widest};
+    for (int i = 1; i <= 20; ++i) edges.push_back(0.1 * i + 1e-7);
+    const double p = test::chiSquareInterval(
+        [&](Sampler& sampler) {
+            const Vec2f u = sampler.next2D();
+            return double(darts::oneMinusCosine(point.sample(u.x, u.y), axis));
+        },
+        [&](double h) { return 2.0 * double(Pi) * double(point.pdf(darts::directionAbout(axis, float(h), 0.3f))); },
+        edges);
+    EXPECT_GT(p, test::SmallestPValue);
+    // A half goes there.
+    EXPECT_NEAR(point.pdf(axis), 0.5 * 0.25 * double(InvPi) + 0.5 / (2.0 * double(Pi) * widest), 1e-3);
+    // Behind a surface's back there is nothing to light.
+    const Shape disk = makeDisk(Transform{}, 90.0f);
+    emitter.model = AreaEmitter{&disk, 0, Texture(1.0f), nullptr};
+    EXPECT_NEAR(EmissionDirections(emitter, start, bodies).pdf(darts::vec3(start.normal)), InvPi, 1e-5f);
+}
+
 /// Also at the edge of a narrow cone, where rounding is a large part of the angle.
 TEST(EmissionDirections, HaveADensityWhereverTheyAreDrawn) {
     Sampler sampler(1, RandomStream::Test, 0, 0);
@@ -159,19 +188,23 @@ TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
     for (const Vec3f& axis : {Vec3f(2.0f, 4.0f, 2.0f), Vec3f(-1.0f, 2.0f, 5.0f), Vec3f(3.0f, -1.0f, 0.2f)})
         emitters.push_back(Emitter{"", SpotEmitter{Vec3f(0.0f), axis.normalized(), White,
                                                    std::cos(0.135f * Pi / 180.0f), std::cos(0.15f * Pi / 180.0f)}});
-    for (const Emitter& emitter : emitters) {
-        const SurfaceSample start = sampleEmissionPoint(emitter, Vec2f(0.5f, 0.5f));
-        const EmissionDirections directions(emitter, start);
-        double sum = 0.0;
-        constexpr int Side = 500;
-        for (int i = 0; i < Side * Side; ++i) {
-            const darts::Vec3 d =
-                directions.sample((float(i % Side) + 0.5f) / float(Side), (float(i / Side) + 0.5f) / float(Side));
-            sum += double(emittedIntensity(emitter, start, Vec3f(d.x, d.y, d.z)).x) / double(directions.pdf(d));
+    const std::vector<transport::BodySphere> bodies = {{Vec3f(1.0f, -4.0f, 3.0f), 0.6f},
+                                                       {Vec3f(1.0f, 3.0f, 0.5f), 0.8f}};
+    for (const bool towards : {false, true})
+        for (const Emitter& emitter : emitters) {
+            const SurfaceSample start = sampleEmissionPoint(emitter, Vec2f(0.5f, 0.5f));
+            const EmissionDirections directions(emitter, start,
+                                                towards ? bodies : std::vector<transport::BodySphere>());
+            double sum = 0.0;
+            constexpr int Side = 500;
+            for (int i = 0; i < Side * Side; ++i) {
+                const darts::Vec3 d =
+                    directions.sample((float(i % Side) + 0.5f) / float(Side), (float(i / Side) + 0.5f) / float(Side));
+                sum += double(emittedIntensity(emitter, start, Vec3f(d.x, d.y, d.z)).x) / double(directions.pdf(d));
+            }
+            const double power = double(emitterPower(emitter).x);
+            EXPECT_NEAR(sum / (Side * Side), power, 4e-3 * power);
         }
-        const double power = double(emitterPower(emitter).x);
-        EXPECT_NEAR(sum / (Side * Side), power, 4e-3 * power);
-    }
 }
 
 } // namespace

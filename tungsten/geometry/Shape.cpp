@@ -62,6 +62,27 @@ Disk makeDisk(const Transform& transform, float coneAngleDegrees) {
             coneAngleDegrees < 90.0f ? std::cos(coneAngleDegrees * (Pi / 180.0f)) : 0.0f};
 }
 
+Imath::Box3f boundsOf(const Shape& shape) {
+    Imath::Box3f box;
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
+        for (const Vec3f& position : mesh->positions) box.extendBy(position);
+        return box;
+    }
+    const auto around = [&](const Vec3f& centre, const Vec3f& extent) {
+        box.extendBy(centre - extent);
+        box.extendBy(centre + extent);
+    };
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+        around(sphere->centre, Vec3f(sphere->radius));
+    } else {
+        const Disk& disk = std::get<Disk>(shape);
+        const Vec3f& n = disk.frame.n;
+        const auto half = [&](float c) { return disk.radius * std::sqrt(std::max(1.0f - c * c, 0.0f)); };
+        around(disk.centre, {half(n.x), half(n.y), half(n.z)});
+    }
+    return box;
+}
+
 float surfaceArea(const Shape& shape) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return 4.0f * Pi * sqr(sphere->radius);
     if (const auto* disk = std::get_if<Disk>(&shape)) return Pi * sqr(disk->radius);

@@ -6,6 +6,8 @@
 
 #include "tungsten/core/Distribution.h"
 
+#include <Imath/ImathBox.h>
+
 #include <variant>
 
 namespace tungsten {
@@ -31,6 +33,9 @@ Sphere makeSphere(const Transform& transform);
 Disk makeDisk(const Transform& transform, float coneAngleDegrees);
 
 float surfaceArea(const Shape& shape);
+
+/// Of the shape itself, no wider.
+Imath::Box3f boundsOf(const Shape& shape);
 
 /// A point on a surface, uniform by area; density 1 / area per unit area.
 struct SurfaceSample {

@@ -1,0 +1,195 @@
+#include "transport/WaysOut.h"
+
+#include "tungsten/scene/Interaction.h"
+
+namespace tungsten::transport {
+
+namespace {
+
+/// Light crosses fewer transport mean free paths than these as if nothing were there.
+constexpr float ThinDepth = 1.0f;
+/// Bodies across which there are fewer are taken for infinite, and all of them if the whole rest of the path is
+/// shorter: light hardly scatters twice on its way out. (Bench: study bodies, two rooms and several lights, paths; the
+/// test agreement.SingleScattering, coloured and slow, points.)
+constexpr float ThinBody = 2.0f, ShortRest = 4.0f;
+constexpr int MostLayers = 8;
+/// Flights that enter a body look out from so many transport mean free paths on: from the boundary itself the way out
+/// would miss it.
+constexpr float EntryDepth = 0.05f;
+/// Other faces count up to so many times the depth under the one that the straight way leaves through.
+constexpr float FarthestFace = 4.0f;
+/// Bench: study bodies, MSE x CPU of paths, dense cube and lamp in fog: 3.4 and 0.94 at 1, 1.2 and 0.66 at 0.1, 1.3 and
+/// 0.78 at 0.01. Lower ones would starve what is lit from the bodies.
+constexpr float LeaveOdds = 0.1f;
+
+Region regionBehind(const Scene& scene, const SurfaceHit& hit, const Vec3f& direction, const Region& region) {
+    return regionBeyond(makeInteraction(scene, hit, direction), direction, region);
+}
+
+darts::Exit::Face faceOf(const Body& body, const Body::Face& face, const Vec3f& position, const Vec3f& target) {
+    darts::Exit::Face result;
+    result.normal = darts::vec3(face.normal);
+    result.depth = std::max((face.point - position).dot(face.normal), 0.0f);
+    result.height = std::max((target - face.point).dot(face.normal), 0.0f);
+    Vec3f behind; // the box's corner farthest behind the boundary
+    for (int axis = 0; axis < 3; ++axis)
+        behind[axis] = face.normal[axis] > 0.0f ? body.box.min[axis] : body.box.max[axis];
+    const float thickness = (face.point - behind).dot(face.normal);
+    result.thickness = result.depth < thickness ? thickness : darts::Exit::Infinite;
+    result.beyond = 0.0f;
+    return result;
+}
+
+} // namespace
+
+WaysOut::WaysOut(const Scene& scene) : scene_(scene), bodies_(bodiesOf(scene)) {
+    layered_ = std::count_if(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.scatters(); }) > 1;
+}
+
+std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const darts::Scheme& scheme) {
+    if (!scheme.followsBodies()) return nullptr;
+    auto waysOut = std::make_unique<const WaysOut>(scene);
+    return waysOut->any() ? std::move(waysOut) : nullptr;
+}
+
+void WaysOut::plan(const Scene& scene, const darts::Scheme& scheme, EffectPlan& plan) {
+    const auto waysOut = make(scene, scheme);
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        const Medium& medium = scene.media[i];
+        if (!medium.scatters()) continue;
+        const std::string name =
+            "model of " + (medium.name.empty() ? "#" + std::to_string(i) : "'" + medium.name + "'");
+        plan.describe(name, true,
+                      waysOut                  ? waysOut->describe(int(i))
+                      : scheme.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
+                                               : "infinite medium: the preset or bodies leaves boundaries alone");
+    }
+}
+
+bool WaysOut::any() const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.scatters() && body.ends(); });
+}
+
+void WaysOut::look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
+                   uint64_t& rays) const {
+    if (region.medium < 0 || residual.C == 0.0f) return;
+    const Body& body = bodies_[size_t(region.medium)];
+    const bool thin = body.box.size().length() * body.reducedSigmaT < ThinBody ||
+                      (residual.C + residual.excess) * body.reducedSigmaT < ShortRest;
+    if (!body.ends() || thin || (aim.medium == region.medium && body.insides == 1)) return;
+    if (body.primitive) {
+        const Body::Exit exit = body.leave(start.position, darts::to<Vec3f>(residual.axis));
+        const Bsdf& bsdf = *body.primitive->bsdfs[0];
+        const SurfaceMargin margin{exit.face.normal, roundingError(exit.face.point, exit.face.normal)};
+        return leave({exit, relativeIndex(bsdf), passesStraight(bsdf), body.primitive->outside, margin}, start.position,
+                     region, aim, residual, rays);
+    }
+    const bool entering = start.clear > 0.0f;
+    const Vec3f position = entering
+                               ? start.position + start.ahead * std::max(EntryDepth / body.reducedSigmaT, start.clear)
+                               : start.position;
+    const Vec3f toAim = aim.position - position;
+    const float distance = toAim.length();
+    const Vec3f direction = toAim / distance;
+    ++rays;
+    const auto hit = scene_.geometry->intersect(
+        {position, direction, start.margin.beyond(direction), aim.margin.before(direction, distance)});
+    if (!hit) return;
+    const Bsdf& bsdf = scene_.bsdfOf(*hit);
+    const bool passes = passesStraight(bsdf) || refracts(bsdf);
+    const Region beyond = passes ? regionBehind(scene_, *hit, direction, region) : region;
+    if (beyond.medium == region.medium) { // opaque, or no boundary
+        if (aim.medium != region.medium) residual.way = darts::Way::Unknown;
+        return;
+    }
+    const bool outward = direction.dot(hit->ng) >= 0.0f;
+    const float index = outward ? relativeIndex(bsdf) : 1.0f / relativeIndex(bsdf);
+    leave({{{hit->position, outward ? hit->ng : -hit->ng}, hit->t}, index, passesStraight(bsdf), beyond, hit->margin()},
+          start.position, region, aim, residual, rays);
+}
+
+void WaysOut::leave(const Boundary& boundary, const Vec3f& position, const Region& region, const Aim& aim,
+                    darts::Residual& residual, uint64_t& rays) const {
+    const Body& body = bodies_[size_t(region.medium)];
+    residual.way = darts::Way::Out;
+    darts::Exit& exit = residual.exit;
+    exit.connects = boundary.straight;
+    exit.sealed = body.isSealed();
+    if (!exit.connects && aim.straightOnly) {
+        residual.way = darts::Way::Unknown;
+        return;
+    }
+    exit.gate = residual.width;
+    exit.inside = std::min(boundary.exit.distance, residual.C);
+    exit.faces[0] = faceOf(body, boundary.exit.face, position, aim.position);
+    exit.count = 1;
+    for (const Body::Face& face : body.faces) {
+        if (exit.count == int(exit.faces.size())) break;
+        const bool same = face.normal.dot(boundary.exit.face.normal) > 0.99f;
+        if (same || !((aim.position - face.point).dot(face.normal) > 0.0f)) continue;
+        const darts::Exit::Face other = faceOf(body, face, position, aim.position);
+        if (other.depth < FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT)
+            exit.faces[size_t(exit.count++)] = other;
+    }
+    exit.mismatch = darts::boundaryMismatch(boundary.index);
+    exit.outerSpeed = region.speed / boundary.beyond.speed;
+    if (aim.sides) {
+        exit.narrow = true;
+        for (size_t i = 0; i < exit.sides.size(); ++i) {
+            const Vec3f& normal = (*aim.sides)[i];
+            exit.sides[i] = {darts::vec3(normal), normal.dot(position - aim.position)};
+        }
+    }
+    const Vec3f direction = darts::to<Vec3f>(residual.axis);
+    if (layered_ && exit.connects)
+        lookBeyond(boundary, {position, direction, exit.inside, aim.margin.before(direction, residual.C)}, region,
+                   residual, rays);
+}
+
+void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region& region, darts::Residual& residual,
+                         uint64_t& rays) const {
+    const Body& own = bodies_[size_t(region.medium)];
+    const float cosine = std::abs(way.direction.dot(boundary.exit.face.normal));
+    Region beyond = boundary.beyond;
+    SurfaceMargin margin = boundary.margin;
+    float from = way.tMin, slow = 0.0f; // length, and the time it takes as a length at the body's speed
+    for (int layer = 0; layer < MostLayers && from < way.tMax; ++layer) {
+        ++rays;
+        const auto hit =
+            scene_.geometry->intersect({way.origin, way.direction, margin.beyond(way.direction, from), way.tMax});
+        const float to = hit ? hit->t : residual.C, length = to - from;
+        const Body* body = beyond.medium < 0 ? nullptr : &bodies_[size_t(beyond.medium)];
+        if (body && body->reducedSigmaT * length > ThinDepth)
+            residual.exit.faces[0].beyond += length * cosine * std::sqrt(own.diffusion() / body->diffusion());
+        else
+            slow += length * region.speed / beyond.speed;
+        from = to;
+        if (!hit || !passesStraight(scene_.bsdfOf(*hit))) break;
+        beyond = regionBehind(scene_, *hit, way.direction, beyond);
+        margin = hit->margin();
+    }
+    slow += std::max(residual.C - from, 0.0f) * region.speed / beyond.speed;
+    residual.exit.outerSpeed = slow / std::max(residual.C - way.tMin, 1e-20f);
+}
+
+float WaysOut::leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const {
+    if (!passesStraight(scene_.bsdfOf(hit))) return 1.0f;
+    const Region beyond = regionBehind(scene_, hit, direction, region);
+    const float ahead = beyond.medium < 0 ? 0.0f : bodies_[size_t(beyond.medium)].reducedSigmaT;
+    return ahead < 0.1f * bodies_[size_t(region.medium)].reducedSigmaT ? LeaveOdds : 1.0f;
+}
+
+std::string WaysOut::describe(int medium) const {
+    const Body& body = bodies_[size_t(medium)];
+    const auto nameOf = [&](int primitive) {
+        const std::string& name = scene_.primitives[size_t(primitive)].name;
+        return name.empty() ? "#" + std::to_string(primitive) : "'" + name + "'";
+    };
+    if (!body.ends()) return "infinite medium: no boundary that light passes";
+    std::string text = "infinite medium inside";
+    if (body.straight >= 0) text += ", half-space where light must get out through " + nameOf(body.straight);
+    if (body.refracting >= 0) text += ", half-space with internal reflection behind " + nameOf(body.refracting);
+    return text;
+}
+
+} // namespace tungsten::transport

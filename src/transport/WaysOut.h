@@ -1,0 +1,78 @@
+#pragma once
+// How light gets out of bodies of scattering media on its way to what a walk aims at (method, section 10).
+
+#include "transport/Body.h"
+
+#include "darts/ResidualRange.h"
+#include "darts/Scheme.h"
+
+#include "tungsten/render/EffectPlan.h"
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace tungsten::transport {
+
+/// What a walk aims at: an emitter's point or the camera.
+struct Aim {
+    Vec3f position{0.0f};
+    int medium = -1;        ///< about it
+    SurfaceMargin margin{}; ///< of the surface it is on, if any
+    /// Unit normals, outward, of the planes through the position inside which it looks, or shines; null: everywhere.
+    const std::array<Vec3f, 4>* sides = nullptr;
+    bool straightOnly = false; ///< behind refracting walls nothing about it is of use
+};
+
+/// Where a flight starts.
+struct Start {
+    Vec3f position{0.0f};
+    SurfaceMargin margin{}; ///< of the surface it is on, if any and the direction is not chosen yet
+    Vec3f ahead{0.0f};      ///< unit direction of the flight, if it is chosen, and
+    float clear = 0.0f;     ///< the length after which it is clear of the surface it starts on, 0 if there is none
+
+    static Start along(const Ray& flight) { return {flight.origin, {}, flight.direction, flight.tMin}; }
+};
+
+class WaysOut {
+  public:
+    explicit WaysOut(const Scene& scene);
+    /// Null where all media may be taken for infinite: not asked for, or no scattering medium ends at a boundary that
+    /// light passes.
+    static std::unique_ptr<const WaysOut> make(const Scene& scene, const darts::Scheme& scheme);
+    /// Says in the plan which models the media get.
+    static void plan(const Scene& scene, const darts::Scheme& scheme, EffectPlan& plan);
+
+    [[nodiscard]] const std::vector<Body>& bodies() const { return bodies_; }
+    /// Chooses the model for what lies between the start of a flight through `region` and the aim: residual.way, and
+    /// residual.exit but for its surplus. Adds the rays traced to `rays`.
+    void look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
+              uint64_t& rays) const;
+    /// Factor on the odds of a flight inside a body going on to a surface: what leaves the body has been connected to
+    /// the aim already.
+    [[nodiscard]] float leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const;
+
+  private:
+    [[nodiscard]] bool any() const;
+    /// The models that vertices in a medium get, in words.
+    [[nodiscard]] std::string describe(int medium) const;
+    /// Where the straight way leaves, and what is beyond.
+    struct Boundary {
+        Body::Exit exit;
+        float index;   ///< inside over outside
+        bool straight; ///< index-matched
+        Region beyond;
+        SurfaceMargin margin;
+    };
+    void leave(const Boundary& boundary, const Vec3f& position, const Region& region, const Aim& aim,
+               darts::Residual& residual, uint64_t& rays) const;
+    /// Goes on through index-matched boundaries: what diffuses beyond the exit counts as depth, the rest as free.
+    void lookBeyond(const Boundary& boundary, const Ray& way, const Region& region, darts::Residual& residual,
+                    uint64_t& rays) const;
+
+    const Scene& scene_;
+    std::vector<Body> bodies_; ///< by medium
+    bool layered_ = false;     ///< several media scatter
+};
+
+} // namespace tungsten::transport

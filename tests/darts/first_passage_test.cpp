@@ -1,0 +1,233 @@
+// First passage out of a body: probabilities against the integrated flux, slopes against differences, registers against
+// single places.
+
+#include "darts/DirectionSampler.h"
+#include "darts/DistanceSampler.h"
+#include "darts/Guide.h"
+
+#include "support/BodyExit.h"
+#include "support/ChiSquare.h"
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <gtest/gtest.h>
+
+namespace darts {
+namespace {
+
+using tungsten::RandomStream;
+using tungsten::Sampler;
+using tungsten::test::outOf;
+using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
+
+constexpr double SigmaA = 0.02, ReducedS = 10.0;
+constexpr double D = 1.0 / (3.0 * (SigmaA + ReducedS));
+
+double logPassage(const Residual& residual, float allowance) {
+    const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit, allowance);
+    return double(passage.log({residual.exit, residual.latest(0), residual.axis, 0.0f}));
+}
+
+/// Density per length of leaving at s from depth z under a half-space, but for absorption.
+double flux(double y, double s) {
+    return y / std::sqrt(4.0 * M_PI * D * s * s * s) * std::exp(-y * y / (4.0 * D * s));
+}
+
+TEST(FirstPassage, IsTheFluxThroughTheBoundaryIntegratedOverTheGate) {
+    for (const double depth : {0.05, 0.3, 1.0})
+        for (const double length : {0.5, 2.0, 12.0})
+            for (const double gate : {0.002, 0.2, 0.45}) {
+                // Target straight above: what is left inside is the depth and the whole excess.
+                const Residual residual = outOf(depth, 3.0, 3.0 + length, gate);
+                const double y = depth + 2.0 * D;
+                if (!residual.alive()) continue;
+                const double expected = Quadrature::integrate([&](double s) { return flux(y, s); },
+                                                              std::max(length - gate, depth), length, 15, 1e-9);
+                // The gate's start is moved by at most 1e-4 of a mean free path.
+                const double tolerance = 2e-3 + 2e-5 / gate;
+                EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, tolerance)
+                    << depth << " " << length << " " << gate;
+            }
+}
+
+/// Unpolarised, from inside at relative index n.
+double fresnel(double n, double cosine) {
+    const double sine2 = n * n * (1.0 - cosine * cosine);
+    if (sine2 >= 1.0) return 1.0;
+    const double beyond = std::sqrt(1.0 - sine2);
+    const double parallel = (cosine - n * beyond) / (cosine + n * beyond),
+                 perpendicular = (n * cosine - beyond) / (n * cosine + beyond);
+    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
+}
+
+TEST(FirstPassage, ExtrapolatedFartherWhereTheBoundaryReflects) {
+    EXPECT_EQ(boundaryMismatch(1.0f), 1.0f);
+    for (const double n : {1.2, 1.4, 1.5}) {
+        const double reflectance =
+            Quadrature::integrate([n](double cosine) { return 2.0 * cosine * fresnel(n, cosine); }, 0.0, 1.0, 15, 1e-8);
+        EXPECT_NEAR(boundaryMismatch(float(n)), (1.0 + reflectance) / (1.0 - reflectance), 0.1) << n;
+    }
+    Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
+    residual.exit.mismatch = 2.95f;
+    const double length = 2.0, y = 0.3 + 2.0 * 2.95 * D;
+    const double expected = Quadrature::integrate([&](double s) { return flux(y, s); }, length - 0.2, length, 15, 1e-9);
+    EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, 3e-3);
+}
+
+TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
+    const double thickness = 0.5, length = 4.0;
+    const auto at = [&](double depth, double time) {
+        Residual residual = outOf(depth, 3.0, 3.0 + time, 0.05);
+        residual.exit.faces[0].thickness = float(thickness);
+        return logPassage(residual, 0.0f);
+    };
+    const double wide = thickness + 4.0 * D;
+    const auto exact = [&](double depth) { // image sources
+        double sum = 0.0;
+        for (int m = -6; m <= 6; ++m) sum += flux(depth + 2.0 * D + 2.0 * m * wide, length);
+        return std::log(sum);
+    };
+    EXPECT_NEAR(at(0.4, length) - at(0.1, length), exact(0.4) - exact(0.1), 0.3);
+    EXPECT_LT(at(0.4, length), logPassage(outOf(0.4, 3.0, 3.0 + length, 0.05), 0.0f) - 0.3);
+    // Early light has not felt the back.
+    EXPECT_NEAR(at(0.05, 0.08), logPassage(outOf(0.05, 3.0, 3.08, 0.05), 0.0f), 1e-3);
+}
+
+TEST(FirstPassage, FacesAddUp) {
+    Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
+    const double one = logPassage(residual, 1.0f);
+    residual.exit.faces[1] = residual.exit.faces[0];
+    residual.exit.count = 2;
+    EXPECT_NEAR(logPassage(residual, 1.0f), one + std::log(2.0), 1e-5);
+}
+
+TEST(FirstPassage, PullsTowardsTheBoundaryAndInsideTheSides) {
+    Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
+    const Departure<float> here(residual.exit, residual.latest(0), residual.axis, 0.0f);
+    const FirstPassage::Slopes slopes =
+        FirstPassage(float(SigmaA), float(ReducedS), residual.exit).slopes(here, residual.axis);
+    EXPECT_GT(dot(slopes.pull, residual.exit.faces[0].normal), 0.9f * length(slopes.pull));
+    // Too little time to get anywhere: straight out at great strength; plenty of time: hardly pulled.
+    const Residual hurried = outOf(1.0, 3.0, 4.3, 0.2), patient = outOf(1.0, 3.0, 40.0, 0.2);
+    const auto strength = [](const Residual& r) {
+        const Departure<float> place(r.exit, r.latest(0), r.axis, 0.0f);
+        return length(FirstPassage(float(SigmaA), float(ReducedS), r.exit).slopes(place, r.axis).pull);
+    };
+    EXPECT_GT(strength(hurried), 3.0f * strength(patient));
+    residual.exit.narrow = true;
+    for (Exit::Side& side : residual.exit.sides) side = {{1, 0, 0}, -1.0f};
+    residual.exit.sides[0] = {{0, 1, 0}, 0.5f};
+    const Departure<float> beside(residual.exit, residual.latest(0), residual.axis, 0.0f);
+    EXPECT_LT(FirstPassage(float(SigmaA), float(ReducedS), residual.exit).slopes(beside, residual.axis).pull.y, -0.1f);
+}
+
+TEST(FirstPassage, RegistersAndSinglePlacesAgree) {
+    Residual residual = outOf(0.5, 2.0, 4.0, 0.3);
+    residual.exit.faces[0].thickness = 1.5f;
+    const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit);
+    using Batch = xsimd::batch<float>;
+    const Vec3 direction = directionAbout(residual.axis, 0.6f, 0.2f);
+    const Ellipse<float> latest = residual.latest(0.6f);
+    alignas(64) std::array<float, size_t(lanes::Width<Batch>)> along{}, logs{};
+    for (size_t i = 0; i < along.size(); ++i) along[i] = latest.firstLeg() * float(i) / float(along.size());
+    Batch factor;
+    const Batch power = passage.exponent(
+        Departure<Batch>(residual.exit, latest, direction, Batch::load_unaligned(along.data()), 0.05f), factor);
+    lanes::put(logs.data(), Batch(power + xsimd::log(factor)));
+    for (size_t i = 0; i < along.size(); ++i)
+        EXPECT_NEAR(logs[i], passage.log({residual.exit, latest, direction, along[i], 0.05f}), 1e-3f) << i;
+}
+
+struct Place {
+    double depth, height, longest, gate;
+};
+const Place Places[] = {{0.3, 3.0, 4.5, 0.2}, {1.0, 0.5, 1.7, 0.05}, {0.02, 5.0, 5.5, 0.4}, {2.0, 2.0, 30.0, 1.0}};
+
+Medium medium(float g) {
+    return {{0.02f, 0.02f, 0.02f}, {10.0f, 10.0f, 10.0f}, g};
+}
+
+TEST(DirectionsOut, SampleTheirDensity) {
+    const HenyeyGreenstein phase{{0.6f, 0.0f, 0.8f}, 0.0f};
+    const DirectionSampler sampler(best(Mode::Path, 0.0f), medium(0.0f));
+    for (const Place& p : Places)
+        for (const bool connects : {true, false}) {
+            Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
+            residual.exit.connects = connects;
+            const float excess = std::max(residual.excess, 0.2f); // narrower lobes are thinner than the test's cells
+            const double value = tungsten::test::chiSquareSphere(
+                [&](Sampler& s) {
+                    const auto sample = sampler.sample(residual, excess, phase, NoView{}, [&s] { return s.next1D(); });
+                    const float pdf = sampler.pdf(residual, excess, sample.direction, phase, NoView{});
+                    EXPECT_NEAR(sample.inversePdf * pdf, 1.0f, 2e-3f);
+                    return std::optional(tungsten::Vec3f(sample.direction.x, sample.direction.y, sample.direction.z));
+                },
+                [&](const tungsten::Vec3f& d) {
+                    return double(sampler.pdf(residual, excess, {d.x, d.y, d.z}, phase, NoView{}));
+                });
+            EXPECT_GT(value, tungsten::test::SmallestPValue) << p.depth << " " << connects;
+        }
+}
+
+/// E[F(w) inverse pdf] = the integral of F over the sphere: 1 + g (before . a) for F = phase (1 + w.a).
+TEST(DirectionsOut, ResampledMeansMatchTheIntegral) {
+    const Vec3 before{0.6f, 0.0f, 0.8f}, a{0.2f, -0.9f, 0.3f};
+    for (const Place& p : Places)
+        for (const float g : {0.8f, -0.5f}) {
+            const DirectionSampler sampler(best(Mode::Path, g), medium(g));
+            const Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
+            const HenyeyGreenstein phase{before, g};
+            double sum = 0.0, squares = 0.0;
+            constexpr int Count = 50000;
+            for (uint64_t i = 0; i < Count; ++i) {
+                Sampler s(31, RandomStream::Test, 0, i);
+                const auto sample =
+                    sampler.sample(residual, residual.excess, phase, NoView{}, [&s] { return s.next1D(); });
+                const double x = double(phase.pdf(sample.direction)) * (1.0 + double(dot(sample.direction, a))) *
+                                 double(sample.inversePdf);
+                sum += x, squares += x * x;
+            }
+            const double mean = sum / Count, error = std::sqrt((squares / Count - mean * mean) / Count);
+            EXPECT_NEAR(mean, 1.0 + double(g * dot(before, a)), 4.5 * error) << p.depth << " " << g;
+        }
+}
+
+/// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time.
+TEST(DistancesOut, MeansMatchQuadrature) {
+    for (const Place& p : Places)
+        for (const float g : {0.0f, 0.8f})
+            for (const double h : {0.05, 1.0, 1.9})
+                for (const float leaveOdds : {1.0f, 0.1f}) {
+                    const DistanceSampler sampler(best(Mode::Path, g), medium(g));
+                    Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
+                    residual.exit.leaveOdds = leaveOdds;
+                    const Heading ray{directionAbout(residual.axis, float(h), 0.3f), float(h)};
+                    const double surface = h < 1.0 ? p.depth / (1.0 - h) : 1e30,
+                                 end = std::min(double(residual.latest(float(h)).firstLeg()), surface);
+                    double sum = 0.0, squares = 0.0, reached = 0.0, reachedSquares = 0.0;
+                    constexpr int Count = 20000;
+                    for (uint64_t i = 0; i < Count; ++i) {
+                        Sampler s(32, RandomStream::Test, 0, i);
+                        const DistanceSample sample = sampler.sample(residual, ray, float(surface), {1, 1, 1},
+                                                                     {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+                        const double weight = double(sample.transmittanceOverPdf.x);
+                        const double x = sample.surface ? 0.0 : weight * (1.0 + double(sample.distance));
+                        sum += x, squares += x * x;
+                        reached += sample.surface ? weight : 0.0;
+                        reachedSquares += sample.surface ? weight * weight : 0.0;
+                    }
+                    const auto error = [](double total, double totalSquares) {
+                        return std::sqrt((totalSquares / Count - total * total / (double(Count) * Count)) / Count);
+                    };
+                    const double expected = Quadrature::integrate(
+                        [](double d) { return std::exp(-10.02 * d) * (1.0 + d); }, 0.0, end, 15, 1e-10);
+                    EXPECT_NEAR(sum / Count, expected, 5.0 * error(sum, squares) + 1e-5 * expected)
+                        << p.depth << " " << g << " " << h << " " << leaveOdds;
+                    if (end == surface && end < 0.6) {
+                        EXPECT_NEAR(reached / Count, std::exp(-10.02 * surface),
+                                    5.0 * error(reached, reachedSquares) + 1e-6);
+                    }
+                }
+}
+
+} // namespace
+} // namespace darts

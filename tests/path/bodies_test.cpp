@@ -1,0 +1,111 @@
+// Light from outside a body: guided paths against the diffusion limit and against plain paths.
+
+#include "path/render_paths.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::path {
+namespace {
+
+using test::renderWithPathTracer;
+
+/// A block of unit mean free path, 60 wide, lit and seen from far above; frames of 10 from `start` after the light that
+/// its surface would reflect at once.
+std::string blockScene(double thickness, bool fromBehind, double start, int frames) {
+    const double lamp = fromBehind ? -1000.0 - thickness : 1000.0, least = 1100.0 + (fromBehind ? thickness : 0.0);
+    std::ostringstream json;
+    json << R"({"media": [{"name": "block", "type": "homogeneous", "sigma_s": 1, "sigma_a": 0.002}],
+        "primitives": [{"type": "cube", "int_medium": "block", "bsdf": {"type": "forward"},
+                        "transform": {"position": [0, 0, )"
+         << -0.5 * thickness << R"(], "scale": [60, 60, )" << thickness << R"(]}},
+                       {"type": "point", "emission": 1e6, "transform": {"position": [0, 0, )"
+         << lamp << R"(]}}],
+        "camera": {"type": "pinhole", "fov": 0.5, "resolution": 1, "transform": {"position": [0, 0, 100],
+                   "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "path_tracer", "max_bounces": 1024, "darts": "best", "start_time": )"
+         << least + start << R"(, "transient_time_width": 10, "frame_num": )" << frames << R"(}, "renderer": {}})";
+    return json.str();
+}
+
+constexpr double SigmaA = 0.002, D = 1.0 / (3.0 * (1.0 + SigmaA)), Extrapolated = 2.0 * D;
+
+/// Patterson, Chance and Wilson 1989, over all of the surface: uniform light reflected after the length s, per length.
+double reflectance(double s) {
+    const auto source = [&](double z) { return z * std::exp(-z * z / (4.0 * D * s)); };
+    return 0.5 / std::sqrt(4.0 * M_PI * D * s * s * s) * std::exp(-SigmaA * s) *
+           (source(1.0) + source(1.0 + 2.0 * Extrapolated));
+}
+
+TEST(Bodies, AHalfSpacesReflectanceDecaysAsInTheDiffusionLimit) {
+    const auto rendered = renderWithPathTracer(blockScene(30.0, false, 20.0, 4), {{}, 1024, 16, 5});
+    const auto expected = [](int frame) {
+        double sum = 0.0;
+        for (int i = 0; i < 100; ++i) sum += reflectance(20.0 + 10.0 * frame + 0.1 * (i + 0.5));
+        return sum / 100.0;
+    };
+    for (const int frame : {1, 2, 3}) {
+        const double ratio = rendered->mean(frame) / rendered->mean(0), exact = expected(frame) / expected(0);
+        const double error = ratio * std::hypot(rendered->pixelError(frame) / rendered->mean(frame),
+                                                rendered->pixelError(0) / rendered->mean(0));
+        EXPECT_NEAR(ratio, exact, 4.5 * error + 0.03 * exact) << frame;
+        EXPECT_LT(error, 0.05 * exact) << frame; // the comparison says something
+    }
+}
+
+TEST(Bodies, ASlabsTransmittanceDecaysWithItsLowestMode) {
+    constexpr double Thickness = 6.0;
+    const auto rendered = renderWithPathTracer(blockScene(Thickness, true, 40.0, 3), {{}, 1024, 16, 6});
+    const double wide = Thickness + 2.0 * Extrapolated, rate = SigmaA + D * M_PI * M_PI / (wide * wide);
+    for (const int frame : {1, 2}) {
+        const double ratio = rendered->mean(frame) / rendered->mean(0), exact = std::exp(-10.0 * frame * rate);
+        const double error = ratio * std::hypot(rendered->pixelError(frame) / rendered->mean(frame),
+                                                rendered->pixelError(0) / rendered->mean(0));
+        EXPECT_NEAR(ratio, exact, 4.5 * error + 0.03 * exact) << frame;
+        EXPECT_LT(error, 0.08 * exact) << frame;
+    }
+}
+
+/// A small dense cube, milk or tissue, in nothing or in haze, from afar.
+std::string cubeScene(const std::string& medium, const std::string& haze) {
+    const std::string outside = haze.empty() ? "" : R"("ext_medium": "haze", )";
+    return R"({"media": [{"name": "milk", "type": "homogeneous", )" + medium + "}" +
+           (haze.empty() ? ""
+                         : R"(, {"name": "haze", "type": "homogeneous", "sigma_a": 0.001, "sigma_s": )" + haze + "}") +
+           R"(], "primitives": [{"type": "cube", "int_medium": "milk", )" + outside + R"("bsdf": {"type": "forward"}},
+               {"type": "point", "emission": 1, )" +
+           outside + R"("transform": {"position": [1, 2, 1.5]}}],
+              "camera": {"type": "pinhole", "fov": 14, "resolution": 3, )" +
+           (haze.empty() ? "" : R"("medium": "haze", )") + R"("transform": {"position": [0, 0.5, 4],
+                         "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+              "integrator": {"type": "path_tracer", "max_bounces": 256, "transient_time_center": 6.5,
+                             "transient_time_width": 1.0}, "renderer": {}})";
+}
+
+TEST(Bodies, GuidedPathsAgreeWithPlainOnesSeenFromAfar) {
+    struct Case {
+        std::string medium, haze;
+    };
+    const Case cases[] = {
+        {R"("sigma_s": 30, "sigma_a": 0.1)", ""},
+        {R"("sigma_s": 30, "sigma_a": 0.1)", "0.1"},
+        {R"("sigma_s": 100, "sigma_a": 0.1, "phase_function": {"type": "henyey_greenstein", "g": 0.8})", ""},
+        {R"("sigma_s": [30, 25, 20], "sigma_a": [0.1, 2, 5])", ""}};
+    for (const Case& c : cases) {
+        const std::string scene = cubeScene(c.medium, c.haze);
+        double mean[2], error[2];
+        for (const bool guided : {false, true}) {
+            const auto rendered = renderWithPathTracer(
+                scene, {{guided ? "integrator.darts=best" : "integrator.darts=off"}, guided ? 48u : 128u, 16, 7});
+            const Image variance = rendered->film.standardError(0);
+            double sum = 0.0;
+            for (const Rgb& pixel : variance.pixels) sum += double(meanComponent(pixel)) * double(meanComponent(pixel));
+            mean[guided] = rendered->mean();
+            error[guided] = std::sqrt(sum) / 9.0;
+        }
+        EXPECT_NEAR(mean[1], mean[0], 4.5 * std::hypot(error[0], error[1])) << c.medium << " " << c.haze;
+        EXPECT_LT(std::hypot(error[0], error[1]), 0.1 * mean[0]) << c.medium << " " << c.haze;
+    }
+}
+
+} // namespace
+} // namespace tungsten::path

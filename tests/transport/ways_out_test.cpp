@@ -1,0 +1,120 @@
+// How light gets out of bodies: which model a vertex gets, and the numbers in it.
+
+#include "transport/WaysOut.h"
+
+#include "support/SceneFile.h"
+
+#include "tungsten/scene/SceneLoader.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::transport {
+namespace {
+
+/// A block of milk about the origin, 2 wide and high, 4 deep, in something; camera and lamp outside.
+std::string sceneWith(const std::string& boundary, const std::string& more = "", const std::string& outside = "") {
+    return R"({"media": [{"name": "milk", "type": "homogeneous", "sigma_s": 20, "sigma_a": 1},
+                         {"name": "tissue", "type": "homogeneous", "sigma_s": 5, "sigma_a": 0.25},
+                         {"name": "haze", "type": "homogeneous", "sigma_s": 0.01, "sigma_a": 0}],
+               "primitives": [)" +
+           more + R"({"type": "cube", "int_medium": "milk", )" + outside + R"("bsdf": )" + boundary +
+           R"(, "transform": {"scale": [2, 2, 4]}},
+              {"type": "point", "emission": 1, "transform": {"position": [0, 0, 9]}}],
+              "camera": {"resolution": 1, "transform": {"position": [0, 0, 8], "look_at": [0, 0, 0]}},
+              "integrator": {"type": "path_tracer", "transient_time_center": 15, "transient_time_width": 1},
+              "renderer": {}})";
+}
+const std::string Forward = R"({"type": "forward"})", Glass = R"({"type": "dielectric", "ior": 1.4})";
+
+struct View {
+    LoadedScene loaded;
+    WaysOut waysOut;
+    uint64_t rays = 0;
+
+    explicit View(const std::string& json) : loaded(load(json)), waysOut(*loaded.scene) {}
+    static LoadedScene load(const std::string& json) {
+        const test::SceneFile file(json);
+        return loadScene(file.path());
+    }
+    darts::Residual look(const Vec3f& position, const Aim& aim, int medium = 0) {
+        const Vec3f offset = aim.position - position;
+        darts::Residual residual =
+            darts::Residual::of(darts::vec3(offset), {double(offset.length()), double(offset.length()) + 5.0});
+        waysOut.look({position}, {medium, 1.0f}, aim, residual, rays);
+        return residual;
+    }
+};
+
+TEST(WaysOut, StraightOutOfABlock) {
+    View view(sceneWith(Forward));
+    const Aim aim{{0.0f, 0.0f, 8.0f}};
+    const darts::Residual residual = view.look({0.2f, 0.0f, 1.5f}, aim);
+    ASSERT_EQ(residual.way, darts::Way::Out);
+    const darts::Exit& exit = residual.exit;
+    EXPECT_TRUE(exit.connects);
+    EXPECT_EQ(exit.count, 1);
+    EXPECT_EQ(exit.mismatch, 1.0f);
+    EXPECT_NEAR(exit.faces[0].depth, 0.5f, 1e-5f);
+    EXPECT_NEAR(exit.faces[0].height, 6.0f, 1e-5f);
+    EXPECT_NEAR(exit.faces[0].thickness, 4.0f, 1e-4f);
+    EXPECT_NEAR(exit.faces[0].normal.z, 1.0f, 1e-5f);
+    EXPECT_NEAR(exit.inside, 0.5f * std::sqrt(6.5f * 6.5f + 0.04f) / 6.5f, 1e-4f);
+    EXPECT_EQ(view.rays, 0u); // a block is known
+}
+
+TEST(WaysOut, EveryFaceThatTheTargetSeesFromNearby) {
+    View view(sceneWith(Forward));
+    const Aim aim{{5.0f, 0.0f, 8.0f}};
+    EXPECT_EQ(view.look({0.9f, 0.0f, 1.8f}, aim).exit.count, 2);
+    EXPECT_EQ(view.look({-0.9f, 0.0f, 1.95f}, aim).exit.count, 1); // the other one is far
+}
+
+TEST(WaysOut, RefractionHidesTheWayButNotTheDepth) {
+    View view(sceneWith(Glass));
+    Aim aim{{0.0f, 0.0f, 8.0f}};
+    darts::Residual residual = view.look({0.0f, 0.0f, 1.5f}, aim);
+    EXPECT_EQ(residual.way, darts::Way::Out);
+    EXPECT_FALSE(residual.exit.connects);
+    EXPECT_TRUE(residual.exit.sealed);
+    EXPECT_GT(residual.exit.mismatch, 2.5f);
+    aim.straightOnly = true;
+    EXPECT_EQ(view.look({0.0f, 0.0f, 1.5f}, aim).way, darts::Way::Unknown);
+    EXPECT_TRUE(isSealed(*view.loaded.scene));
+    EXPECT_FALSE(isSealed(*View(sceneWith(Forward)).loaded.scene));
+}
+
+TEST(WaysOut, TargetsInTheSameBodyAndThinFogNeedNoWayOut) {
+    View view(sceneWith(Forward, "", R"("ext_medium": "haze", )"));
+    EXPECT_EQ(view.look({0.0f, 0.0f, 1.5f}, {{0.0f, 0.0f, -1.0f}, 0}).way, darts::Way::Through);
+    EXPECT_EQ(view.look({0.0f, 0.0f, 6.0f}, {{0.0f, 0.0f, -1.0f}, 0}, 2).way, darts::Way::Through);
+    EXPECT_EQ(view.look({0.0f, 0.0f, 1.5f}, {{0.0f, 0.0f, 8.0f}, 2}).way, darts::Way::Out);
+}
+
+TEST(WaysOut, WhatDiffusesFartherOutIsDepth) {
+    // A coat of tissue, 0.5 thick, diffuses 4 times as fast: it delays as much as half its thickness of milk.
+    const std::string coat = R"({"type": "cube", "int_medium": "tissue", "bsdf": {"type": "forward"},
+                                "transform": {"scale": [3, 3, 5]}}, )";
+    View view(sceneWith(Forward, coat, R"("ext_medium": "tissue", )"));
+    const darts::Residual residual = view.look({0.0f, 0.0f, 1.5f}, {{0.0f, 0.0f, 8.0f}});
+    ASSERT_EQ(residual.way, darts::Way::Out);
+    EXPECT_NEAR(residual.exit.faces[0].beyond, 0.5f * std::sqrt(5.25f / 21.0f), 1e-3f);
+    EXPECT_NEAR(residual.exit.faces[0].thickness, 4.5f, 1e-3f); // light in the coat is not lost
+}
+
+TEST(WaysOut, NoneWhereNothingEndsOrTheSchemeLeavesThemOut) {
+    darts::Scheme scheme;
+    scheme.on = true;
+    const View view(sceneWith(Forward));
+    EXPECT_NE(WaysOut::make(*view.loaded.scene, scheme), nullptr);
+    EXPECT_EQ(WaysOut::make(*View(sceneWith(R"({"type": "lambert"})")).loaded.scene, scheme), nullptr);
+    scheme.bodies = false;
+    EXPECT_EQ(WaysOut::make(*view.loaded.scene, scheme), nullptr);
+    EffectPlan plan;
+    scheme.bodies = true;
+    WaysOut::plan(*view.loaded.scene, scheme, plan);
+    ASSERT_EQ(plan.effects.size(), 3u);
+    EXPECT_NE(plan.effects[0].reason.find("half-space"), std::string::npos);
+}
+
+} // namespace
+} // namespace tungsten::transport
