@@ -1,0 +1,231 @@
+#!/usr/bin/python3
+"""Renders small scenes unlike the shipped ones by plain and guided points, beams and paths, and copies of them in other units
+or turned and moved as a whole: all must agree.
+
+    sweep.py FOLDER [--fast] [--scenes NAME ...] [--effort FACTOR]
+
+Writes FOLDER/SWEEP.md; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the
+same command, and only what changed is rendered again. Seeds are fixed.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sweep_copies import moved, scaled
+from sweep_measures import Samples, compare, compare_pairs, means, without_kernel
+from sweep_report import report, scene_row
+from sweep_scenes import FAST, all_scenes
+from sweep_vocabulary import write_assets
+
+PROJECT = Path(__file__).resolve().parents[2]
+SEEDS = 8
+LIMIT_SECONDS = 300    # for one render
+COARSE, FINE = 1.0, 0.5  # parts of the scene's kernel radius
+
+
+@dataclass(frozen=True)
+class Method:
+    name: str
+    settings: dict
+    samples: int     # per pixel of a path tracer, passes of a photon map
+    photons: int = 0  # light paths per pass; 0: no kernel
+
+    @property
+    def guided(self):
+        return self.settings["darts"] != "off"
+
+
+def photon_method(name, primitive, darts, passes, photons):
+    settings = {"type": "photons", "volume_photon_type": primitive, "darts": darts, "alpha": 1.0, "volume_alpha": 1.0,
+                "fixed_volume_radius": True, "gather_photon_count": 1000000, "volume_photon_count": 100000000}
+    return Method(name, settings, passes, photons)
+
+
+METHODS = [
+    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 512),
+    Method("best paths", {"type": "path_tracer", "darts": "best"}, 96),
+    photon_method("plain points", "points", "off", 4, 50000),
+    photon_method("best points", "points", "best", 4, 6000),
+    photon_method("plain beams", "beams", "off", 4, 12000),
+    photon_method("best beams", "beams", "best", 4, 3000),
+]
+
+# Copies, and the seeds that they begin after. Scaled copies use the original's random numbers, with which they can be compared
+# closely; moved ones, whose directions differ in any case, their own.
+COPIES = {"original": (lambda scene: scene, 0), "scaled": (lambda scene: scaled(scene, 7.0, 3.0), 0), "moved": (moved, 100)}
+
+
+def methods_of(scene):
+    """Without a gate there is nothing to guide light paths to."""
+    return [m for m in METHODS if m.name not in scene.without and not (scene.steady and m.guided)]
+
+
+def photon_map(scene):
+    return "progressive_photon_map" if scene.steady else "progressive_transient_photon_map"
+
+
+def scene_json(scene, method, radius, effort=1.0):
+    """The scene file's content; `effort` multiplies the samples or light paths."""
+    effort *= scene.effort.get(method.name, 1.0)
+    integrator = {**scene.integrator, **method.settings}
+    samples = method.samples
+    if method.photons:
+        integrator.update({"type": scene.integrator.get("photon_map", photon_map(scene)), "gather_radius": radius,
+                           "volume_gather_radius": radius, "photon_count": int(method.photons * effort)})
+    else:
+        samples = max(1, int(samples * effort))
+    integrator.pop("photon_map", None)
+    if method.photons:
+        integrator.pop("enable_rr", None)
+    if integrator.pop("single_frames", False) and method.guided:
+        integrator["darts"] = {"preset": integrator["darts"], "single_frames": True}
+    return {"media": scene.media, "primitives": scene.primitives, "camera": scene.camera, "integrator": integrator,
+            "renderer": {"spp": samples, "spp_step": 1 if method.photons else samples, **scene.renderer}}
+
+
+class Renderer:
+    """Renders scene files once and remembers their means, for one build of the renderer."""
+
+    def __init__(self, tungsten, folder):
+        self.tungsten, self.folder = tungsten, folder
+        build = hashlib.sha256()
+        for file in [tungsten, *sorted(tungsten.parent.glob("libtungsten*.so"))]:
+            build.update(file.read_bytes())
+        self.build = build.hexdigest()
+        self.messages = set()
+
+    def store(self, name, content):
+        """Keeps a scene file under a name."""
+        text = json.dumps(content, indent=1, default=lambda value: value.ravel().tolist())
+        (self.folder / "scenes" / f"{name}.json").write_text(text)
+
+    def means(self, name, seed):
+        """Means of one render of a stored scene, its frames, and the processor's seconds. Throws RuntimeError with the
+        renderer's message."""
+        file = self.folder / "scenes" / f"{name}.json"
+        text = file.read_text()
+        key = hashlib.sha256(f"{self.build} {seed} {text}".encode()).hexdigest()[:24]
+        kept = self.folder / "renders" / f"{key}.npz"
+        if not kept.exists():
+            np.savez(kept.with_suffix(".part.npz"), **self._render(file, seed, key))
+            kept.with_suffix(".part.npz").replace(kept)
+        with np.load(kept) as stored:
+            for message in stored["messages"]:
+                self.messages.add((name, str(message)))
+            return stored["means"], int(stored["frames"]), float(stored["seconds"])
+
+    def _render(self, file, seed, key):
+        image = self.folder / "renders" / f"{key}.npy"
+        statistics = image.with_suffix(".json")
+        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png",
+                   "-e", image.name, "--stats", statistics, file]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS)
+        if done.returncode != 0:
+            raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+        pixels = np.load(image).astype(float)
+        seconds = json.loads(statistics.read_text())["process CPU seconds"]
+        for leftover in self.folder.glob(f"renders/{key}*.*"):
+            leftover.unlink()
+        messages = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+        return {"means": means(pixels), "frames": len(pixels), "seconds": seconds, "messages": np.array(messages, str)}
+
+
+def render_scene(scene, effort, renderer, pool):
+    """Samples of every method: all copies together, and copies by name; with the seconds that each method took."""
+    jobs = {}
+    for copy, (change, first) in COPIES.items():
+        changed = change(scene)
+        for method in methods_of(scene):
+            for part in (COARSE, FINE) if method.photons else (FINE,):
+                name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == COARSE else ''}"
+                renderer.store(name, scene_json(changed, method, part * changed.radius, effort))
+                for seed in range(first + 1, first + SEEDS + 1):
+                    jobs[copy, method.name, part, seed - first] = pool.submit(renderer.means, name, seed)
+    return {method.name: gathered(method, {key: job.result() for key, job in jobs.items() if key[1] == method.name})
+            for method in methods_of(scene)}
+
+
+def gathered(method, results):
+    """One method's samples by copy, those of all copies with random numbers of their own, and the processor's seconds."""
+    copies = {copy: samples_of(copy, method, results) for copy in COPIES}
+    original, elsewhere = copies["original"], copies["moved"]
+    together = Samples(original.groups + elsewhere.groups, (original.blur + elsewhere.blur) / 2, original.frames)
+    return copies, together, sum(seconds for _, _, seconds in results.values())
+
+
+def samples_of(copy, method, results):
+    def renders(part):
+        return np.array([results[copy, method.name, part, seed][0] for seed in range(1, SEEDS + 1)])
+
+    frames = results[copy, method.name, FINE, 1][1]
+    if not method.photons:
+        return Samples([renders(FINE)], np.zeros_like(renders(FINE)[0]), frames)
+    return Samples(*without_kernel(renders(FINE), renders(COARSE)), frames)
+
+
+def compare_scene(rendered):
+    """All comparisons: of methods with each other, and of copies with the originals."""
+    names = list(rendered)
+    methods = {(a, b): compare(rendered[a][1], rendered[b][1]) for i, a in enumerate(names) for b in names[i + 1:]}
+    copies = {}
+    for name, (by_copy, _, _) in rendered.items():
+        copies[name, "scaled"] = compare_pairs(by_copy["original"], by_copy["scaled"])
+        copies[name, "moved"] = compare(by_copy["original"], by_copy["moved"])
+    return methods, copies
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--tungsten", type=Path, default=os.environ.get("TUNGSTEN", PROJECT / "build/bin/tungsten"))
+    parser.add_argument("--fast", action="store_true", help="a handful of scenes, for the tests")
+    parser.add_argument("--scenes", nargs="+", default=[], metavar="NAME", help="those whose names hold one of these")
+    parser.add_argument("--effort", type=float, help="factor on all samples and light paths (1; fast: 0.15)")
+    parser.add_argument("--jobs", type=int, default=2, help="renders at a time, one thread each (2)")
+    options = parser.parse_args()
+    options.effort = options.effort or (0.15 if options.fast else 1.0)
+    return options
+
+
+def chosen(options):
+    scenes = all_scenes()
+    if options.fast:
+        scenes = [scene for scene in scenes if scene.name in FAST]
+    return [s for s in scenes if not options.scenes or any(part in s.name for part in options.scenes)]
+
+
+def main():
+    options = arguments()
+    for name in ("scenes", "renders"):
+        (options.folder / name).mkdir(parents=True, exist_ok=True)
+    write_assets(options.folder / "assets")
+    renderer = Renderer(Path(options.tungsten).resolve(), options.folder.resolve())
+    results, failures = {}, {}
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for scene in chosen(options):
+            try:
+                rendered = render_scene(scene, options.effort, renderer, pool)
+            except (RuntimeError, subprocess.TimeoutExpired) as error:
+                failures[scene.name] = str(error)
+                print(f"{scene.name}: {error}", flush=True)
+                continue
+            results[scene.name] = (scene, rendered, *compare_scene(rendered))
+            text, agree = report(results, failures, renderer.messages)
+            (options.folder / "SWEEP.md").write_text(text)
+            print(scene_row(*results[scene.name]), flush=True)
+    text, agree = report(results, failures, renderer.messages)
+    (options.folder / "SWEEP.md").write_text(text)
+    return 0 if agree else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
