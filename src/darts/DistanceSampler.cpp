@@ -85,7 +85,7 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
         const float natural = !scatters_              ? 1.0f
                               : grey_ || !(total > 0) ? reaching.x
                                                       : dot(throughput, reaching) / total;
-        const float odds = residual.way == Way::Out ? residual.exit.leaveOdds : settings_.surfaceOdds;
+        const float odds = settings_.surfaceOdds * (residual.way == Way::Out ? residual.exit.leaveOdds : 1.0f);
         const float probability = natural * odds / (natural * odds + (1.0f - natural));
         if (probability > 0 && random.event < probability) {
             sample.surface = true;

@@ -86,7 +86,8 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
     const float surface = hit ? hit->t : Infinity;
-    if (hit && reachable_.way == darts::Way::Out && reachable_.exit.connects)
+    // What the camera sees beyond the fog, or of lamps there, has been connected to by no vertex.
+    if (hit && reachable_.way == darts::Way::Out && reachable_.exit.connects && mediumScatters_ > 0)
         reachable_.exit.leaveOdds = context_.waysOut->leaveOdds(region_, ray_.direction, *hit);
     connectElliptically(medium, guide, h, surface);
     // In expectation, whether or not the walk goes there.

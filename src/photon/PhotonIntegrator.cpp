@@ -126,6 +126,11 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
     plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
     if (!guidance) return;
     if (!scene_->transport.cameraUnwarped) transport::WaysOut::plan(*scene_, settings_.scheme, plan);
+    const size_t bodies = guidance->bodies().size();
+    plan.describe("light towards bodies", bodies > 0,
+                  bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
+                                   (bodies > 1 ? " bodies" : " body") + " of it"
+                             : "no body of fog in what does not scatter, or left alone");
     if (scene_->transport.gate.frames > 1)
         plan.describe("frames one by one", guidance->choosesFrames(),
                       guidance->choosesFrames() ? "each light path aims at one frame"

@@ -11,7 +11,7 @@ constexpr float ThinDepth = 1.0f;
 /// Bodies across which there are fewer are taken for infinite, and all of them if the whole rest of the path is
 /// shorter: light hardly scatters twice on its way out. (Bench: study bodies, two rooms and several lights, paths; the
 /// test agreement.SingleScattering, coloured and slow, points.)
-constexpr float ThinBody = 2.0f, ShortRest = 4.0f;
+constexpr float ThinBody = 2.0f, ShortRest = 6.0f;
 constexpr int MostLayers = 8;
 constexpr float LeastCosine = 0.05f;
 /// Flights that enter a body look out from so many transport mean free paths on: from the boundary itself the way out
