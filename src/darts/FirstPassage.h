@@ -145,7 +145,8 @@ class FirstPassage {
         if (face.thickness < Exit::Infinite) {
             const float slab = face.thickness + margin_ + extra;
             const Batch wall = max(slab - y, Batch(margin_));
-            factor = factor * (1.0f - lanes::exp(Batch(-4.0f * fourthInverseD_ * slab * wall * inverseEnd)));
+            const Batch kept = 1.0f - lanes::exp(Batch(-4.0f * fourthInverseD_ * slab * wall * inverseEnd));
+            factor = factor * max(kept, Batch(1e-6f)); // never 0: that would be a bias
         }
         return -sigmaA_ * left.longest - p2;
     }

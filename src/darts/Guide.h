@@ -80,8 +80,9 @@ class Guide {
     }
 
     /// The probability with which a control vertex is worth tracing: what it brings, about, relative to all that is
-    /// still to come from the vertex it was drawn at. What diffuses in a body has most of its connections end deep
-    /// under the boundary. `last` is the density of its turn to the target per solid angle.
+    /// still to come from the vertex it was drawn at, but never below a tenth, since light may leave through nearer
+    /// parts of the boundary than the one known. What diffuses in a body has most of its connections end deep under it.
+    /// `last` is the density of its turn to the target per solid angle.
     [[nodiscard]] float chance(const Residual& residual, const Vec3& direction, const ControlVertex& vertex,
                                float last) const {
         if (residual.way != Way::Out) return 1.0f;
@@ -90,7 +91,7 @@ class Guide {
         const float inside = vertex.distance + depth * residual.exit.slant;
         const float logged = -mean(medium_.sigmaT()) * inside - logWayOut(residual);
         const float worth = meanSigmaS_ * vertex.inversePdf * 4.0f * Pi * last * std::exp(std::min(logged, 20.0f));
-        return std::min(worth / WorthTracing, 1.0f);
+        return std::clamp(worth / WorthTracing, LeastChance, 1.0f);
     }
     /// Light is about to leave its body: it has few transport mean free paths left.
     [[nodiscard]] bool leavesSoon(const Residual& residual) const {
@@ -171,7 +172,7 @@ class Guide {
     // Bench: study bodies, paths.
     static constexpr float OutsideRate = 0.5f;
     static constexpr float LeastPeak = 0.5f;
-    static constexpr float WorthTracing = 0.01f;
+    static constexpr float WorthTracing = 0.01f, LeastChance = 0.1f;
     static constexpr float LastMeanFreePaths = 4.0f;
     /// Logarithm of the first passage from the vertex.
     [[nodiscard]] float logWayOut(const Residual& residual) const {

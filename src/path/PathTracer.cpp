@@ -108,7 +108,7 @@ void PathTracer::plan(EffectPlan& plan) const {
     plan.describe("guided paths", settings_.scheme.on,
                   settings_.scheme.on ? sampling + " of scattering media"
                                       : "no time gate, no scattering medium but behind refraction, or not asked for");
-    if (settings_.scheme.on) transport::WaysOut::plan(*scene_, settings_.scheme, plan);
+    if (settings_.scheme.on) transport::WaysOut::plan(*scene_, settings_.scheme, true, plan);
     const std::string obstacle = lightVertexObstacle(plan);
     plan.describe("light vertices", obstacle.empty(),
                   obstacle.empty() ? "paths connect to surface points that light reaches first" : obstacle);

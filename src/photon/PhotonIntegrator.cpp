@@ -125,7 +125,7 @@ void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
     const auto guidance = PhotonGuidance::make(*scene_, settings_.scheme, plan);
     plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
     if (!guidance) return;
-    if (!scene_->transport.cameraUnwarped) transport::WaysOut::plan(*scene_, settings_.scheme, plan);
+    if (!scene_->transport.cameraUnwarped) transport::WaysOut::plan(*scene_, settings_.scheme, false, plan);
     const size_t bodies = guidance->bodies().size();
     plan.describe("light towards bodies", bodies > 0,
                   bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +

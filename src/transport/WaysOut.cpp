@@ -60,7 +60,7 @@ std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const darts::Sc
     return waysOut->any() ? std::move(waysOut) : nullptr;
 }
 
-void WaysOut::plan(const Scene& scene, const darts::Scheme& scheme, EffectPlan& plan) {
+void WaysOut::plan(const Scene& scene, const darts::Scheme& scheme, bool straightOnly, EffectPlan& plan) {
     const auto waysOut = make(scene, scheme);
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
@@ -68,7 +68,7 @@ void WaysOut::plan(const Scene& scene, const darts::Scheme& scheme, EffectPlan& 
         const std::string name =
             "model of " + (medium.name.empty() ? "#" + std::to_string(i) : "'" + medium.name + "'");
         plan.describe(name, true,
-                      waysOut                  ? waysOut->describe(int(i))
+                      waysOut                  ? waysOut->describe(int(i), straightOnly)
                       : scheme.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
                                                : "infinite medium: the preset or bodies leaves boundaries alone");
     }
@@ -78,13 +78,16 @@ bool WaysOut::any() const {
     return std::any_of(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.scatters() && body.ends(); });
 }
 
+bool WaysOut::isThin(const Body& body) {
+    return body.box.size().length() * body.reducedSigmaT < ThinBody;
+}
+
 void WaysOut::look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
                    uint64_t& rays) const {
     if (region.medium < 0 || residual.C == 0.0f) return;
     const Body& body = bodies_[size_t(region.medium)];
-    const bool thin = body.box.size().length() * body.reducedSigmaT < ThinBody ||
-                      (residual.C + residual.excess) * body.reducedSigmaT < ShortRest;
-    if (!body.ends() || thin || (aim.medium == region.medium && body.insides == 1)) return;
+    const bool shortRest = (residual.C + residual.excess) * body.reducedSigmaT < ShortRest;
+    if (!body.ends() || isThin(body) || shortRest || (aim.medium == region.medium && body.insides == 1)) return;
     if (body.primitive) {
         const Body::Exit exit = body.leave(start.position, darts::to<Vec3f>(residual.axis));
         const Bsdf& bsdf = *body.primitive->bsdfs[0];
@@ -209,16 +212,19 @@ float WaysOut::leaveOdds(const Region& region, const Vec3f& direction, const Sur
     return ahead < 0.1f * bodies_[size_t(region.medium)].reducedSigmaT ? LeaveOdds : 1.0f;
 }
 
-std::string WaysOut::describe(int medium) const {
+std::string WaysOut::describe(int medium, bool straightOnly) const {
     const Body& body = bodies_[size_t(medium)];
     const auto nameOf = [&](int primitive) {
         const std::string& name = scene_.primitives[size_t(primitive)].name;
         return name.empty() ? "#" + std::to_string(primitive) : "'" + name + "'";
     };
     if (!body.ends()) return "infinite medium: no boundary that light passes";
+    if (isThin(body)) return "infinite medium: its bodies are too thin for light to diffuse in";
     std::string text = "infinite medium inside";
     if (body.straight >= 0) text += ", half-space where light must get out through " + nameOf(body.straight);
-    if (body.refracting >= 0) text += ", half-space with internal reflection behind " + nameOf(body.refracting);
+    if (body.refracting >= 0)
+        text += (straightOnly ? ", bounds in time alone behind " : ", half-space with internal reflection behind ") +
+                nameOf(body.refracting);
     return text;
 }
 

@@ -41,10 +41,9 @@ class WaysOut {
     /// Null where all media may be taken for infinite: not asked for, or no scattering medium ends at a boundary that
     /// light passes.
     static std::unique_ptr<const WaysOut> make(const Scene& scene, const darts::Scheme& scheme);
-    /// Says in the plan which models the media get.
-    static void plan(const Scene& scene, const darts::Scheme& scheme, EffectPlan& plan);
+    /// Says in the plan which models the media get; `straightOnly` as in Aim.
+    static void plan(const Scene& scene, const darts::Scheme& scheme, bool straightOnly, EffectPlan& plan);
 
-    [[nodiscard]] const std::vector<Body>& bodies() const { return bodies_; }
     /// Chooses the model for what lies between the start of a flight through `region` and the aim: residual.way, and
     /// residual.exit but for its surplus. Adds the rays traced to `rays`.
     void look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
@@ -55,8 +54,10 @@ class WaysOut {
 
   private:
     [[nodiscard]] bool any() const;
+    /// Light hardly scatters twice on its way across.
+    [[nodiscard]] static bool isThin(const Body& body);
     /// The models that vertices in a medium get, in words.
-    [[nodiscard]] std::string describe(int medium) const;
+    [[nodiscard]] std::string describe(int medium, bool straightOnly) const;
     /// Where the straight way leaves, and what is beyond.
     struct Boundary {
         Body::Exit exit;

@@ -22,6 +22,10 @@ using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 constexpr double SigmaA = 0.02, ReducedS = 10.0;
 constexpr double D = 1.0 / (3.0 * (SigmaA + ReducedS));
 
+Medium medium(float g) {
+    return {{0.02f, 0.02f, 0.02f}, {10.0f, 10.0f, 10.0f}, g};
+}
+
 double logPassage(const Residual& residual, float allowance) {
     const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit, allowance);
     return double(passage.log({residual.exit, residual.latest(0), residual.axis, 0.0f}));
@@ -92,6 +96,31 @@ TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
     EXPECT_NEAR(at(0.05, 0.08), logPassage(outOf(0.05, 3.0, 3.08, 0.05), 0.0f), 1e-3);
 }
 
+/// However late: a target of 0 would be a bias.
+TEST(FirstPassage, IsNeverZero) {
+    for (const double length : {1e-3, 1.0, 1e4, 1e7})
+        for (const double gate : {1e-6, 0.1}) {
+            Residual residual = outOf(0.01, 3.0, 3.01 + length, gate);
+            residual.exit.faces[0].thickness = 0.02f;
+            const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit);
+            float factor = 0.0f;
+            (void)passage.exponent(Departure<float>(residual.exit, residual.latest(0), residual.axis, 0.0f), factor);
+            EXPECT_GT(factor, 0.0f) << length << " " << gate;
+        }
+}
+
+/// A control vertex as deep as can be, seen from a boundary that hides nearer ones: rare, but not lost.
+TEST(Guide, TracesControlVerticesInBodiesOftenEnough) {
+    const Guide guide(best(Mode::Path, 0.0f), medium(0.0f));
+    const Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
+    const Vec3 down = residual.axis * -1.0f;
+    EXPECT_FLOAT_EQ(guide.chance(residual, down, {20.0f, 23.0f, 1.0f}, 0.08f), 0.1f);
+    EXPECT_FLOAT_EQ(guide.chance(residual, residual.axis, {0.29f, 3.01f, 1.0f}, 0.08f), 1.0f);
+    Residual through = residual;
+    through.way = Way::Through;
+    EXPECT_EQ(guide.chance(through, down, {20.0f, 23.0f, 1.0f}, 0.08f), 1.0f);
+}
+
 TEST(FirstPassage, FacesAddUp) {
     Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
     const double one = logPassage(residual, 1.0f);
@@ -141,10 +170,6 @@ struct Place {
     double depth, height, longest, gate;
 };
 const Place Places[] = {{0.3, 3.0, 4.5, 0.2}, {1.0, 0.5, 1.7, 0.05}, {0.02, 5.0, 5.5, 0.4}, {2.0, 2.0, 30.0, 1.0}};
-
-Medium medium(float g) {
-    return {{0.02f, 0.02f, 0.02f}, {10.0f, 10.0f, 10.0f}, g};
-}
 
 TEST(DirectionsOut, SampleTheirDensity) {
     const HenyeyGreenstein phase{{0.6f, 0.0f, 0.8f}, 0.0f};

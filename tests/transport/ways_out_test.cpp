@@ -137,9 +137,16 @@ TEST(WaysOut, NoneWhereNothingEndsOrTheSchemeLeavesThemOut) {
     EXPECT_EQ(WaysOut::make(*view.loaded.scene, scheme), nullptr);
     EffectPlan plan;
     scheme.bodies = true;
-    WaysOut::plan(*view.loaded.scene, scheme, plan);
+    WaysOut::plan(*view.loaded.scene, scheme, true, plan);
     ASSERT_EQ(plan.effects.size(), 3u);
-    EXPECT_NE(plan.effects[0].reason.find("half-space"), std::string::npos);
+    EXPECT_NE(plan.effects[0].reason.find("half-space where light must get out"), std::string::npos);
+    // What paths do behind refraction, photons do not.
+    const View sealed(sceneWith(Glass));
+    for (const bool straightOnly : {false, true}) {
+        EffectPlan models;
+        WaysOut::plan(*sealed.loaded.scene, scheme, straightOnly, models);
+        EXPECT_EQ(models.effects[0].reason.find("bounds in time alone") != std::string::npos, straightOnly);
+    }
 }
 
 } // namespace
