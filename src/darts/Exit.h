@@ -3,7 +3,8 @@
 
 #include "darts/Vec3.h"
 
-#include <array>
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 
 namespace darts {
@@ -13,6 +14,33 @@ enum class Way {
     Through, ///< through the vertex's own medium, which may be taken for infinite
     Out,     ///< out of a body of the medium: Exit
     Unknown, ///< only bounds in time hold
+};
+
+/// Up to N of a kind, of which only those that are there are copied: residuals are copied at every vertex.
+template <typename T, size_t N>
+class Few {
+  public:
+    static constexpr size_t Most = N;
+
+    Few() = default;
+    Few(const Few& other) : size_(other.size_) { std::copy_n(other.items_, size_, items_); }
+    Few& operator=(const Few& other) {
+        size_ = other.size_;
+        std::copy_n(other.items_, size_, items_);
+        return *this;
+    }
+    ~Few() = default;
+
+    /// Another one; there is room.
+    void add(const T& item) { items_[size_++] = item; }
+    [[nodiscard]] size_t size() const { return size_; }
+    [[nodiscard]] bool full() const { return size_ == N; }
+    [[nodiscard]] T& operator[](size_t i) { return items_[i]; }
+    [[nodiscard]] const T& operator[](size_t i) const { return items_[i]; }
+
+  private:
+    T items_[N];
+    size_t size_ = 0;
 };
 
 /// How light leaves a body for a target outside, seen from a vertex. Beyond the boundary it flies free. Lengths in one
@@ -34,20 +62,18 @@ struct Exit {
         float outside; ///< of the vertex; negative inside
     };
 
-    std::array<Face, 3> faces; ///< the first one is where the straight way to the target leaves
-    int count = 0;
-    float inside = 0;          ///< length of the straight way up to there
-    float slant = 1;           ///< length of straight ways in the body per depth under that face
-    float mismatch = 1;        ///< A = (1 + R) / (1 - R), R the mean internal reflectance; 1: index-matched
-    float outerSpeed = 1;      ///< speed of light in the body over that beyond
-    float gate = 0;            ///< length of the gate
-    float surplus = 0;         ///< by so much the latest arrival is later than what the target itself allows
-    bool connects = true;      ///< light goes on straight beyond the boundary
-    bool sealed = false;       ///< and does so nowhere: no connection from inside is ever complete
-    float leaveOdds = 1;       ///< factor on the odds of a flight's end at the surface ahead
-    float elsewhere = 0;       ///< part of what leaves by any other way that may get to the target, within the gate
-    bool narrow = false;       ///< sides are set
-    std::array<Side, 4> sides; ///< two pairs of opposite ones
+    Few<Face, 3> faces;   ///< the first one is where the straight way to the target leaves
+    float inside = 0;     ///< length of the straight way up to there
+    float slant = 1;      ///< length of straight ways in the body per depth under that face
+    float mismatch = 1;   ///< A = (1 + R) / (1 - R), R the mean internal reflectance; 1: index-matched
+    float outerSpeed = 1; ///< speed of light in the body over that beyond
+    float gate = 0;       ///< length of the gate
+    float surplus = 0;    ///< by so much the latest arrival is later than what the target itself allows
+    bool connects = true; ///< light goes on straight beyond the boundary
+    bool sealed = false;  ///< and does so nowhere: no connection from inside is ever complete
+    float leaveOdds = 1;  ///< factor on the odds of a flight's end at the surface ahead
+    float elsewhere = 0;  ///< part of what leaves by any other way that may get to the target, within the gate
+    Few<Side, 4> sides;   ///< pairs of opposite ones; none if the target sees everything
 };
 
 /// A from the relative index n = inside over outside; R by Egan and Hilgeman (1973).

@@ -6,8 +6,8 @@ FirstPassage::Slopes FirstPassage::slopes(const Departure<float>& at, const Vec3
     const float step = meanFreePath_;
     Slopes slopes;
     float highest = -Exit::Infinite, total = 0;
-    for (int i = 0; i < exit_.count; ++i) {
-        const Exit::Face& face = exit_.faces[size_t(i)];
+    for (size_t i = 0; i < exit_.faces.size(); ++i) {
+        const Exit::Face& face = exit_.faces[i];
         const Departure<float>::Left here = at.to(face);
         Departure<float>::Left deeper = here, later = here;
         deeper.depth += step;
@@ -26,7 +26,7 @@ FirstPassage::Slopes FirstPassage::slopes(const Departure<float>& at, const Vec3
     }
     slopes.pull = slopes.pull * (1.0f / total);
     slopes.later /= total;
-    for (size_t i = 0; exit_.narrow && i < exit_.sides.size(); i += 2) {
+    for (size_t i = 0; i < exit_.sides.size(); i += 2) {
         const Exit::Side &a = exit_.sides[i], &b = exit_.sides[i + 1], &side = a.outside > b.outside ? a : b;
         if (side.outside > 0.0f)
             slopes.pull =

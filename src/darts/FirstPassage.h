@@ -29,7 +29,6 @@ struct Departure {
         const Batch toCentre = d - latest.C, left = (2.0f * latest.denominator()) * (latest.firstLeg() - d);
         rho = sqrt(toCentre * toCentre + (2.0f * latest.C * latest.h) * d);
         excess = max(Batch(left / (latest.length() - d + rho) - exit.surplus), Batch(0.0f));
-        if (!exit.narrow) return;
         for (size_t i = 0; i < exit.sides.size(); i += 2) {
             const Exit::Side &a = exit.sides[i], &b = exit.sides[i + 1];
             const Batch beside =
@@ -86,7 +85,7 @@ class FirstPassage {
         using std::max;
         const typename Departure<Batch>::Left first = at.to(exit_.faces[0]);
         Batch exponent = through(exit_.faces[0], first, factor);
-        for (int i = 1; i < exit_.count; ++i) {
+        for (size_t i = 1; i < exit_.faces.size(); ++i) {
             const Exit::Face& face = exit_.faces[size_t(i)];
             Batch otherFactor(0.0f);
             const Batch other = through(face, at.to(face), otherFactor);

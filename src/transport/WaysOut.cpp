@@ -86,8 +86,8 @@ void WaysOut::look(const Start& start, const Region& region, const Aim& aim, dar
                    uint64_t& rays) const {
     if (region.medium < 0 || residual.C == 0.0f) return;
     const Body& body = bodies_[size_t(region.medium)];
-    const bool shortRest = (residual.C + residual.excess) * body.reducedSigmaT < ShortRest;
-    if (!body.ends() || isThin(body) || shortRest || (aim.medium == region.medium && body.insides == 1)) return;
+    if (!body.ends() || (aim.medium == region.medium && body.insides == 1)) return;
+    if ((residual.C + residual.excess) * body.reducedSigmaT < ShortRest || isThin(body)) return;
     if (body.primitive) {
         const Body::Exit exit = body.leave(start.position, darts::to<Vec3f>(residual.axis));
         const Bsdf& bsdf = *body.primitive->bsdfs[0];
@@ -154,25 +154,20 @@ void WaysOut::leave(const Boundary& boundary, const Vec3f& position, const Regio
     exit.inside = std::min(boundary.exit.distance, residual.C);
     const Vec3f direction = darts::to<Vec3f>(residual.axis);
     exit.slant = 1.0f / std::max(direction.dot(boundary.exit.face.normal), LeastCosine);
-    exit.faces[0] = faceOf(body, boundary.exit.face, position, aim.position);
-    exit.count = 1;
+    exit.faces.add(faceOf(body, boundary.exit.face, position, aim.position));
     for (const Body::Face& face : body.faces) {
-        if (exit.count == int(exit.faces.size())) break;
+        if (exit.faces.full()) break;
         const bool same = face.normal.dot(boundary.exit.face.normal) > 0.99f;
         if (same || !((aim.position - face.point).dot(face.normal) > 0.0f)) continue;
         const darts::Exit::Face other = faceOf(body, face, position, aim.position);
-        if (other.depth < FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT)
-            exit.faces[size_t(exit.count++)] = other;
+        if (other.depth < FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT) exit.faces.add(other);
     }
     if (layered_ || surfaces_) exit.elsewhere = Elsewhere;
     exit.mismatch = darts::boundaryMismatch(boundary.index);
     exit.outerSpeed = region.speed / boundary.beyond.speed;
     if (aim.sides) {
-        exit.narrow = true;
-        for (size_t i = 0; i < exit.sides.size(); ++i) {
-            const Vec3f& normal = (*aim.sides)[i];
-            exit.sides[i] = {darts::vec3(normal), normal.dot(position - aim.position)};
-        }
+        for (const Vec3f& normal : *aim.sides)
+            exit.sides.add({darts::vec3(normal), normal.dot(position - aim.position)});
     }
     if (layered_ && exit.connects)
         lookBeyond(boundary, {position, direction, exit.inside, aim.margin.before(direction, residual.C)}, region,

@@ -124,8 +124,7 @@ TEST(Guide, TracesControlVerticesInBodiesOftenEnough) {
 TEST(FirstPassage, FacesAddUp) {
     Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
     const double one = logPassage(residual, 1.0f);
-    residual.exit.faces[1] = residual.exit.faces[0];
-    residual.exit.count = 2;
+    residual.exit.faces.add(residual.exit.faces[0]);
     EXPECT_NEAR(logPassage(residual, 1.0f), one + std::log(2.0), 1e-5);
 }
 
@@ -142,9 +141,8 @@ TEST(FirstPassage, PullsTowardsTheBoundaryAndInsideTheSides) {
         return length(FirstPassage(float(SigmaA), float(ReducedS), r.exit).slopes(place, r.axis).pull);
     };
     EXPECT_GT(strength(hurried), 3.0f * strength(patient));
-    residual.exit.narrow = true;
-    for (Exit::Side& side : residual.exit.sides) side = {{1, 0, 0}, -1.0f};
-    residual.exit.sides[0] = {{0, 1, 0}, 0.5f};
+    residual.exit.sides.add({{0, 1, 0}, 0.5f});
+    for (int i = 1; i < 4; ++i) residual.exit.sides.add({{1, 0, 0}, -1.0f});
     const Departure<float> beside(residual.exit, residual.latest(0), residual.axis, 0.0f);
     EXPECT_LT(FirstPassage(float(SigmaA), float(ReducedS), residual.exit).slopes(beside, residual.axis).pull.y, -0.1f);
 }

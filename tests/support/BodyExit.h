@@ -11,8 +11,7 @@ inline darts::Residual outOf(double depth, double height, double longest, double
     darts::Residual residual =
         darts::Residual::of(darts::Vec3{0, 0, 1} * float(depth + height), {longest - gate, longest});
     residual.way = darts::Way::Out;
-    residual.exit.faces[0] = {{0, 0, 1}, float(depth), float(height), darts::Exit::Infinite, 0.0f};
-    residual.exit.count = 1;
+    residual.exit.faces.add({{0, 0, 1}, float(depth), float(height), darts::Exit::Infinite, 0.0f});
     residual.exit.inside = float(depth);
     residual.exit.gate = residual.width;
     return residual;

@@ -52,7 +52,7 @@ TEST(WaysOut, StraightOutOfABlock) {
     ASSERT_EQ(residual.way, darts::Way::Out);
     const darts::Exit& exit = residual.exit;
     EXPECT_TRUE(exit.connects);
-    EXPECT_EQ(exit.count, 1);
+    EXPECT_EQ(exit.faces.size(), 1u);
     EXPECT_EQ(exit.mismatch, 1.0f);
     EXPECT_NEAR(exit.faces[0].depth, 0.5f, 1e-5f);
     EXPECT_NEAR(exit.faces[0].height, 6.0f, 1e-5f);
@@ -65,8 +65,8 @@ TEST(WaysOut, StraightOutOfABlock) {
 TEST(WaysOut, EveryFaceThatTheTargetSeesFromNearby) {
     View view(sceneWith(Forward));
     const Aim aim{{5.0f, 0.0f, 8.0f}};
-    EXPECT_EQ(view.look({0.9f, 0.0f, 1.8f}, aim).exit.count, 2);
-    EXPECT_EQ(view.look({-0.9f, 0.0f, 1.95f}, aim).exit.count, 1); // the other one is far
+    EXPECT_EQ(view.look({0.9f, 0.0f, 1.8f}, aim).exit.faces.size(), 2u);
+    EXPECT_EQ(view.look({-0.9f, 0.0f, 1.95f}, aim).exit.faces.size(), 1u); // the other one is far
 }
 
 TEST(WaysOut, RefractionHidesTheWayButNotTheDepth) {
