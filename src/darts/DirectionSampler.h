@@ -109,7 +109,8 @@ class DirectionSampler {
     template <typename Scatterer, typename View, typename Random>
     [[nodiscard]] DirectionSample sample(const Residual& residual, float excess, const Scatterer& scatterer,
                                          const View& view, Random&& random) const {
-        if (settings_.direction == Direction::Phase) return fromScatterer(residual, scatterer, random);
+        if (settings_.direction == Direction::Phase || leavesToScatterer(residual))
+            return fromScatterer(residual, scatterer, random);
         return withGuided(residual, excess, view, [&](const auto& guided) {
             if (resamples(residual)) return resample(residual, excess, scatterer, guided, random);
             return mix(residual, guideShare(residual, excess), scatterer, guided, random);
@@ -120,7 +121,7 @@ class DirectionSampler {
     template <typename Scatterer, typename View>
     [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction, const Scatterer& scatterer,
                             const View& view) const {
-        if (settings_.direction == Direction::Phase) return scatterer.pdf(direction);
+        if (settings_.direction == Direction::Phase || leavesToScatterer(residual)) return scatterer.pdf(direction);
         const float h = oneMinusCosine(direction, residual.axis);
         const float share =
             resamples(residual) ? 1.0f - candidatesAt(residual).ownShare() : guideShare(residual, excess);
@@ -144,7 +145,7 @@ class DirectionSampler {
     /// Where boundaries of unknown kind lie between, the lobe is a rougher guess.
     static constexpr float LeastAlphaOutside = 0.5f;
     /// Share of the guided directions where light must leave a body.
-    static constexpr float OutShare = 0.8f;
+    static constexpr float OutShare = 0.65f;
     /// Phase functions of |g| up to this are even enough for a share of their own directions.
     static constexpr float MostEven = 0.3f;
 
@@ -161,6 +162,11 @@ class DirectionSampler {
 
     [[nodiscard]] bool resamples(const Residual& residual) const {
         return settings_.direction == Direction::Ris || (residual.way == Way::Out && std::abs(g_) > MostEven);
+    }
+    /// Behind refraction light leaves in more directions than the guide knows; even phase functions do better alone.
+    /// (Bench: study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
+    [[nodiscard]] bool leavesToScatterer(const Residual& residual) const {
+        return residual.way == Way::Out && !residual.exit.connects && !resamples(residual);
     }
     /// use(the vertex's guided distribution).
     template <typename View, typename Use>

@@ -31,6 +31,22 @@ struct ResponseAt {
     double elapsed = 0, speed = 1;
 };
 
+/// Walks that diffuse out of a body are split in two whenever the length left for it has halved: most of the variance
+/// is in the last few scatterings, most of the time in those before. Copies share the throughput, so that roulette ends
+/// those that are good for little.
+class Splits {
+  public:
+    /// Into how many copies a walk goes on that should have been split `count` times by now (Guide::splits).
+    [[nodiscard]] int copies(int count) {
+        const int more = std::max(count - done_, 0);
+        done_ += more;
+        return 1 << more;
+    }
+
+  private:
+    int done_ = 0;
+};
+
 /// Sampling in one medium towards one kind of target. Immutable; a walk keeps the state: position, elapsed time,
 /// throughput and the usefulness it started with.
 class Guide {
@@ -93,11 +109,13 @@ class Guide {
         const float worth = meanSigmaS_ * vertex.inversePdf * 4.0f * Pi * last * std::exp(std::min(logged, 20.0f));
         return std::clamp(worth / WorthTracing, LeastChance, 1.0f);
     }
-    /// Light is about to leave its body: it has few transport mean free paths left.
-    [[nodiscard]] bool leavesSoon(const Residual& residual) const {
-        if (residual.way != Way::Out || settings_.greens == Greens::None) return false;
-        const Departure<float> here = departure(residual);
-        return here.to(residual.exit.faces[0]).longest * medium_.reducedSigmaS() < LastMeanFreePaths;
+    /// How often a walk that must leave a body, with so much length left for it, has been split: see Splits.
+    [[nodiscard]] int splits(const Residual& residual) const {
+        if (residual.way != Way::Out || settings_.greens == Greens::None) return 0;
+        const float left = departure(residual).to(residual.exit.faces[0]).longest * medium_.reducedSigmaS();
+        int count = 0;
+        for (float least = FirstSplit; count < MostSplits && left < least; least *= 0.5f) ++count;
+        return count;
     }
 
     /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a
@@ -173,7 +191,8 @@ class Guide {
     static constexpr float OutsideRate = 0.5f;
     static constexpr float LeastPeak = 0.5f;
     static constexpr float WorthTracing = 0.01f, LeastChance = 0.1f;
-    static constexpr float LastMeanFreePaths = 4.0f;
+    static constexpr float FirstSplit = 16.0f; ///< transport mean free paths
+    static constexpr int MostSplits = 5;
     /// Logarithm of the first passage from the vertex.
     [[nodiscard]] float logWayOut(const Residual& residual) const {
         const FirstPassage passage(medium_, residual.exit);

@@ -92,8 +92,7 @@ class GuidedPathWalk : private CameraPath {
     void lookOut(const transport::Start& start);
     void startRoulette(const darts::Guide& guide);
     bool roulette(const darts::Guide& guide);
-    /// Once on a path, where diffusing light is about to leave its body: most of the variance is in the last few
-    /// scatterings, most of the time in those before. The copies share the throughput; goOn(copy) is each one's rest.
+    /// See darts::Splits; the copies share the throughput, goOn(copy) is each one's rest.
     template <typename GoOn>
     void split(const darts::Guide& guide, GoOn&& goOn);
 
@@ -186,7 +185,8 @@ class GuidedPathWalk : private CameraPath {
     float surplus_ = 0.0f;         ///< of reachable_ over residual_, a length
     bool lookedOut_ = false;       ///< residual_.way is chosen
     float firstUsefulness_ = 0.0f; ///< logarithm, since the model of what comes is the present one
-    bool rouletteStarted_ = false, split_ = false;
+    bool rouletteStarted_ = false;
+    darts::Splits splits_;
     int rouletteMedium_ = -1;
     darts::Way rouletteWay_ = darts::Way::Through;
 };

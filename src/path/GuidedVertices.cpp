@@ -52,12 +52,9 @@ darts::DirectionSample GuidedPathWalk::sampleDirection(const darts::Guide& guide
 
 template <typename GoOn>
 void GuidedPathWalk::split(const darts::Guide& guide, GoOn&& goOn) {
-    // Bench: study bodies, paths.
-    constexpr int Copies = 8;
-    if (split_ || !guide.leavesSoon(reachable_)) return;
-    split_ = true;
-    throughput_ = throughput_ / float(Copies);
-    for (int i = 1; i < Copies; ++i) {
+    const int copies = splits_.copies(guide.splits(reachable_));
+    throughput_ = throughput_ / float(copies);
+    for (int i = 1; i < copies; ++i) {
         GuidedPathWalk copy(*this);
         goOn(copy);
         sampler_ = copy.sampler_;

@@ -37,7 +37,10 @@ void GuidedPhotonWalk::aimAtFrame(uint64_t path) {
 }
 
 void GuidedPhotonWalk::run() {
-    if (!emit()) return;
+    if (emit()) goOn();
+}
+
+void GuidedPhotonWalk::goOn() {
     const int mostBounces = std::min(scene_.transport.maxBounces - 1, MostPhotonBounces);
     while (bounce_ < mostBounces) {
         const darts::Guide* guide = guidance_.guide(region_);
@@ -204,9 +207,25 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     if (flights_ < medium.maxBounces) // else no flight would leave here
         connectToSurfaces({}, InSphere,
                           [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
+    split(guide, medium, before);
+    return leave(medium, guide, before);
+}
+
+bool GuidedPhotonWalk::leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before) {
     const float inversePdf = redirect(guide, darts::PhaseScatterer{medium.phase, before});
     power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);
     return !isBlack(power_);
+}
+
+void GuidedPhotonWalk::split(const darts::Guide& guide, const Medium& medium, const Vec3f& before) {
+    const int copies = splits_.copies(guide.splits(residual_));
+    power_ = power_ / float(copies);
+    for (int i = 1; i < copies; ++i) {
+        GuidedPhotonWalk copy(*this);
+        if (copy.leave(medium, guide, before)) copy.goOn();
+        sampler_ = copy.sampler_;
+        if (connected_) connection_ = drawConnection(guide, residual_);
+    }
 }
 
 void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface) {

@@ -17,6 +17,7 @@ class GuidedPhotonWalk : private PhotonWalk {
     void run();
 
   private:
+    void goOn();
     void aimAtFrame(uint64_t path);
     bool emit();
     /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
@@ -27,6 +28,10 @@ class GuidedPhotonWalk : private PhotonWalk {
     /// A flight through a scattering medium: its control vertex, then the next vertex. False ends the path.
     bool crossMedium(const Medium& medium, const darts::Guide& guide);
     bool scatter(const Medium& medium, const darts::Guide& guide, float distance);
+    /// From a vertex in the medium, reached in the direction `before`.
+    bool leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before);
+    /// See darts::Splits; the copies share the power.
+    void split(const darts::Guide& guide, const Medium& medium, const Vec3f& before);
     void placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface);
     /// In direct view only what the camera's image shows: the store's room is for what can count.
     void depositSeenBeam(const Medium& medium, float surface);
@@ -55,7 +60,8 @@ class GuidedPhotonWalk : private PhotonWalk {
     darts::Residual reachable_; ///< residual_ with the range that connection_ was drawn from
     darts::ConnectionSample connection_;
     bool connected_ = false; ///< connection_ was drawn before the flight's direction
-    bool looked_ = false;    ///< residual_ belongs to the ray's origin
+    darts::Splits splits_;
+    bool looked_ = false; ///< residual_ belongs to the ray's origin
     float firstUsefulness_ = 0.0f;
     bool started_ = false; ///< firstUsefulness_ is known
     int rouletteMedium_ = -1;

@@ -121,6 +121,22 @@ TEST(Guide, TracesControlVerticesInBodiesOftenEnough) {
     EXPECT_EQ(guide.chance(through, down, {20.0f, 23.0f, 1.0f}, 0.08f), 1.0f);
 }
 
+/// In two whenever the length left has halved, however many vertices that takes.
+TEST(Guide, SplitsWalksThatLeaveSoon) {
+    const Guide guide(best(Mode::Path, 0.0f), medium(0.0f)); // a mean free path is 0.1
+    int copies = 1;
+    Splits splits;
+    for (const double left : {3.0, 1.2, 1.3, 0.7, 0.15, 0.01, 0.001}) {
+        const Residual residual = outOf(0.001, 3.0, 3.0 + left, 0.2);
+        copies *= splits.copies(guide.splits(residual));
+        EXPECT_EQ(copies, left > 1.6 ? 1 : left > 0.8 ? 2 : left > 0.4 ? 4 : left > 0.1 ? 16 : 32) << left;
+    }
+    EXPECT_EQ(Splits().copies(guide.splits(outOf(0.001, 3.0, 3.05, 0.2))), 32);
+    Residual through = outOf(0.001, 3.0, 3.05, 0.2);
+    through.way = Way::Through;
+    EXPECT_EQ(guide.splits(through), 0);
+}
+
 TEST(FirstPassage, FacesAddUp) {
     Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
     const double one = logPassage(residual, 1.0f);
