@@ -1,6 +1,6 @@
 #include "path/PathTracer.h"
 
-#include "path/PathWalk.h"
+#include "path/plain/PathWalk.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>

@@ -1,7 +1,7 @@
 #pragma once
 // The integrators `path_tracer` and `transient_path_tracer`: unbiased, steady state or time-resolved.
 
-#include "path/GuidedPathWalk.h"
+#include "path/guided/GuidedPathWalk.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include "darts/TemporalResponse.h"

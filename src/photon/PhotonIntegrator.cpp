@@ -1,10 +1,10 @@
 #include "photon/PhotonIntegrator.h"
 
-#include "photon/BeamSplat.h"
-#include "photon/FoldedSelection.h"
-#include "photon/PhotonSplat.h"
 #include "photon/ProgressiveSchedule.h"
-#include "photon/SharedArrivals.h"
+#include "photon/primitives/beams/BeamSplat.h"
+#include "photon/primitives/points/PointSplat.h"
+#include "photon/store/FoldedSelection.h"
+#include "photon/surface/SharedArrivals.h"
 
 namespace tungsten::photon {
 
@@ -20,7 +20,7 @@ uint32_t surfaceSamples(const Vec2i& resolution) {
 
 /// Copies the photons that straight sensor paths see inside the gate. Leaves `straight` alone where that would be all
 /// or unknown.
-void selectStraight(const ArrivalTest& arrival, const PhotonStore& store, const std::vector<float>& radii,
+void selectStraight(const ArrivalCulling& arrival, const PhotonStore& store, const std::vector<float>& radii,
                     PhotonStore& straight, std::vector<float>& straightRadii) {
     if (arrival.directView() || !arrival.straightTimesKnown()) return;
     straight.paths = store.paths;
@@ -94,7 +94,7 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
                         "direction, and to glossy surfaces"
                       : "smooth surfaces are gathered");
     describeGuidance(plan);
-    const bool direct = ArrivalTest(*scene_, plan).directView();
+    const bool direct = ArrivalCulling(*scene_, plan).directView();
     plan.describe(
         "exact arrival culling", direct && plan.timeResolved,
         !plan.timeResolved ? "steady state: every photon counts"
@@ -225,7 +225,7 @@ void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, const PassInfo& pass
 void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
                                    StoreParts& parts, GatherStructures& structures, Film& film,
                                    Statistics& statistics) const {
-    const ArrivalTest& arrival = photonPass_->arrival();
+    const ArrivalCulling& arrival = photonPass_->arrival();
     const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(step(pass), settings_.volumeAlpha))
                                                       : beamRadiusFactor(step(pass), settings_.alpha);
     const float radius = settings_.volumeRadius * factor;

@@ -1,9 +1,9 @@
 #pragma once
 // The photon-map integrators: a photon pass, structures over its photons, a sensor pass.
 
-#include "photon/PhotonPass.h"
 #include "photon/PhotonSettings.h"
-#include "photon/SensorPass.h"
+#include "photon/light/PhotonPass.h"
+#include "photon/view/SensorPass.h"
 
 #include "tungsten/render/Integrator.h"
 

@@ -1,7 +1,7 @@
 // Light vertices and shell chords: what they sample, against quadrature and their own densities.
 
-#include "path/LightVertices.h"
-#include "path/ShellChord.h"
+#include "path/guided/ShellChord.h"
+#include "path/techniques/LightVertices.h"
 
 #include "support/ChiSquare.h"
 #include "support/SceneFile.h"

@@ -1,6 +1,6 @@
 // Reflected light: what its vertices are worth, and that paths that use it find as much light as paths that do not.
 
-#include "path/ReflectedLight.h"
+#include "path/techniques/ReflectedLight.h"
 
 #include "render_paths.h"
 

@@ -1,6 +1,6 @@
 // Which photons can still be seen in the gate.
 
-#include "photon/ArrivalTest.h"
+#include "photon/store/ArrivalCulling.h"
 
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"
@@ -11,14 +11,14 @@ namespace tungsten::photon {
 namespace {
 
 /// What a ray of the lens sees inside the gate counts, wherever on the lens it starts.
-TEST(ArrivalTest, AScaledLensLosesNothing) {
+TEST(ArrivalCulling, AScaledLensLosesNothing) {
     for (const float scale : {1.0f, 10.0f}) {
         Scene scene;
         scene.camera.model = ThinLens{60.0f, 1.0f, 0.1f};
         scene.camera.toWorld.x *= scale;
         scene.camera.toWorld.y *= scale;
         scene.transport.gate = {false, false, 0.0, 2.0, 1};
-        const ArrivalTest arrival(scene, EffectPlan{});
+        const ArrivalCulling arrival(scene, EffectPlan{});
         int inside = 0;
         for (uint64_t i = 0; i < 2000; ++i) {
             Sampler s(2, RandomStream::Test, 0, i);

@@ -1,6 +1,6 @@
 // Beam-beam estimates through Embree against brute force, and the parts of flights that a gate can see.
 
-#include "photon/BeamGather.h"
+#include "photon/primitives/beams/BeamGather.h"
 
 #include "support/FogScene.h"
 
@@ -164,7 +164,7 @@ TEST_P(FlightParts, AreWhereDepositsCount) {
     plan.specularSensorPaths = c.folds;
     plan.speedsDiffer = c.flightSpeed != 1.0f;
     plan.highestSpeed = std::max(c.flightSpeed, 1.0f);
-    const ArrivalTest arrival(scene, plan);
+    const ArrivalCulling arrival(scene, plan);
     Sampler sampler(5, RandomStream::Test, 0, 0);
     int inside = 0, outside = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -200,15 +200,15 @@ INSTANTIATE_TEST_SUITE_P(Views, FlightParts,
 
 /// Frames as short as rounding makes a tolerance: each deposit inside the sequence counts for one of them, and the
 /// parts of a flight follow each other.
-TEST(ArrivalTest, SharesTheSequenceOutAmongItsFrames) {
+TEST(ArrivalCulling, SharesTheSequenceOutAmongItsFrames) {
     Scene scene = test::fogScene();
     const TimeGate gate{false, false, 6.0, 3e-5, 8};
     scene.transport.gate = gate;
     scene.camera.model = Pinhole{};
     EffectPlan plan;
     plan.timeResolved = true;
-    const ArrivalTest whole(scene, plan);
-    std::vector<ArrivalTest> frames;
+    const ArrivalCulling whole(scene, plan);
+    std::vector<ArrivalCulling> frames;
     for (int frame = 0; frame < gate.frames; ++frame) frames.push_back(whole.ofFrame(frame));
     Sampler sampler(6, RandomStream::Test, 0, 0);
     for (int i = 0; i < 2000; ++i) {
@@ -218,12 +218,12 @@ TEST(ArrivalTest, SharesTheSequenceOutAmongItsFrames) {
         const double time =
             arrival - std::hypot(double(position.x), double(position.y), double(position.z)); // of flight to the camera
         int counting = 0;
-        for (const ArrivalTest& frame : frames) counting += frame.mayCount(position, time) ? 1 : 0;
+        for (const ArrivalCulling& frame : frames) counting += frame.mayCount(position, time) ? 1 : 0;
         EXPECT_EQ(counting, 1) << i;
         // From before the sequence to after it.
         const double early = time - 1e-3;
         double end = frames.front().countingPart(position, direction, early, 1.0).start;
-        for (const ArrivalTest& frame : frames) {
+        for (const ArrivalCulling& frame : frames) {
             const FlightPart part = frame.countingPart(position, direction, early, 1.0);
             EXPECT_EQ(part.start, end) << i;
             end = part.end;

@@ -1,4 +1,4 @@
-#include "photon/FoldedSelection.h"
+#include "photon/store/FoldedSelection.h"
 
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"

@@ -1,7 +1,7 @@
 // Gathers through Embree against brute force.
 
-#include "photon/NearestPhotons.h"
-#include "photon/PointGather.h"
+#include "photon/primitives/points/PointGather.h"
+#include "photon/store/NearestPhotons.h"
 
 #include "support/FogScene.h"
 

@@ -1,6 +1,6 @@
 // Light paths: which photons they store.
 
-#include "photon/PhotonPass.h"
+#include "photon/light/PhotonPass.h"
 
 #include "support/GroundTruthScenes.h"
 #include "support/Render.h"

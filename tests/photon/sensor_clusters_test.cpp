@@ -1,8 +1,8 @@
 // Drawing sensor points in time: as often as expectation() says, nothing in time left out, sums unbiased.
 
-#include "photon/SensorClusters.h"
-#include "photon/SpreadArrival.h"
-#include "photon/SurfaceConnections.h"
+#include "photon/surface/SensorClusters.h"
+#include "photon/surface/SpreadArrival.h"
+#include "photon/surface/SurfaceConnections.h"
 
 #include "support/ChiSquare.h"
 

@@ -1,6 +1,6 @@
 // Connections' light shared among neighbouring sensor points.
 
-#include "photon/SharedArrivals.h"
+#include "photon/surface/SharedArrivals.h"
 
 #include "support/Render.h"
 

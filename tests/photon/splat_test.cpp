@@ -1,9 +1,9 @@
 // Splatted photons and beams against gathered ones, and the record of camera paths.
 
-#include "photon/BeamGather.h"
-#include "photon/BeamSplat.h"
-#include "photon/PhotonSplat.h"
-#include "photon/PointGather.h"
+#include "photon/primitives/beams/BeamGather.h"
+#include "photon/primitives/beams/BeamSplat.h"
+#include "photon/primitives/points/PointGather.h"
+#include "photon/primitives/points/PointSplat.h"
 
 #include "tungsten/core/Warp.h"
 

@@ -1,7 +1,7 @@
 // Light from close by, spread over the surface: how much of it there is, and where.
 
-#include "photon/SpreadArrival.h"
-#include "photon/SurfaceConnections.h"
+#include "photon/surface/SpreadArrival.h"
+#include "photon/surface/SurfaceConnections.h"
 
 #include "tungsten/core/Warp.h"
 

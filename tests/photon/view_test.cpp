@@ -1,7 +1,7 @@
 // What the camera sees, and directions that leave emitters.
 
-#include "photon/CameraView.h"
-#include "photon/EmissionDirections.h"
+#include "photon/light/CameraView.h"
+#include "photon/light/EmissionDirections.h"
 
 #include "tungsten/core/Warp.h"
 

@@ -1,0 +1,69 @@
+#include "path/techniques/LightPaths.h"
+
+namespace tungsten::path {
+
+namespace {
+
+constexpr size_t FewestPaths = 4096, MostPaths = 32768;
+/// Scenes with more lights have none of these: each would be reached by few.
+constexpr size_t MostEmitters = 64;
+
+/// Extinction of the scene's scattering media, on the average.
+Flights flightsIn(const Scene& scene) {
+    float sum = 0.0f;
+    int count = 0;
+    for (const Medium& medium : scene.media) {
+        if (!medium.scatters()) continue;
+        sum += meanComponent(medium.sigmaT());
+        ++count;
+    }
+    return {count > 0 ? sum / float(count) : 1.0f};
+}
+
+} // namespace
+
+bool LightPaths::helpWith(const Scene& scene) {
+    const auto helps = [](const Emitter& emitter) { return !emitter.isDelta() && !emitter.isInfinite(); };
+    return scene.emitters.size() <= MostEmitters && std::any_of(scene.emitters.begin(), scene.emitters.end(), helps);
+}
+
+bool LightPaths::reflectedIn(const Scene& scene) {
+    const auto glossy = [](const BsdfPtr& bsdf) { return reflectsSharply(*bsdf); };
+    return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+        return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), glossy);
+    });
+}
+
+void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, Statistics& statistics) {
+    vertices_.resize(scene.emitters.size());
+    reflected_.resize(scene.emitters.size());
+    if (!reflectedIn(scene)) return;
+    flights_ = flightsIn(scene);
+    for (size_t i = 0; i < reflected_.size(); ++i) {
+        if (!(targets.probability(i) > 0.0f) || scene.emitters[i].isDelta()) continue;
+        reflected_[i].prepare(scene, scene.emitters[i], flights_);
+        statistics.add("light paths", ReflectedLightCache::PilotPaths);
+    }
+}
+
+void LightPaths::trace(const Scene& scene, const TargetChoice& targets, const PassInfo& pass, Statistics& statistics) {
+    const size_t samples = size_t(scene.camera.resolution.x) * size_t(scene.camera.resolution.y) * pass.samples;
+    const auto all = float(std::clamp(samples / 4, FewestPaths, MostPaths));
+    const auto reflected = float(std::clamp(samples / 4, FewestPaths, MostPaths));
+    uint64_t paths = 0;
+    for (size_t i = 0; i < vertices_.size(); ++i) {
+        const float probability = targets.probability(i);
+        if (!(probability > 0.0f) || scene.emitters[i].isDelta()) continue;
+        const Emitter& emitter = scene.emitters[i];
+        const auto share = [&](float number) { return size_t(number * probability) + ArrivalWindow::Size; };
+        vertices_[i].trace(scene, emitter, probability, share(all), pass);
+        paths += share(all);
+        if (reflected_[i].empty()) continue;
+        reflected_[i].trace(scene, emitter, probability, share(reflected), pass, flights_);
+        paths += share(reflected);
+    }
+    statistics.add("light paths", paths);
+    statistics.add("rays", paths);
+}
+
+} // namespace tungsten::path

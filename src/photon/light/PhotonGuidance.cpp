@@ -1,0 +1,80 @@
+#include "photon/light/PhotonGuidance.h"
+
+namespace tungsten::photon {
+
+namespace {
+
+/// Gates above are wide, in mean free paths: most connections are not close to the straight way, so that the direction
+/// need not know their length, and a length drawn after the direction knows where the surface is. MSE x CPU time of
+/// sequences of 3.5 and 7 mean free paths in a cube of fog: 1.64 to 0.60, 0.17 to 0.08.
+constexpr double WideGate = 2.0;
+
+} // namespace
+
+std::string PhotonGuidance::obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan) {
+    if (!scheme.on) return "the scene does not ask for it";
+    if (!plan.timeResolved) return "steady state: there is no gate to aim at";
+    if (!plan.mediumScattering) return "no medium scatters";
+    if (std::holds_alternative<Orthographic>(scene.camera.model))
+        return "an orthographic camera has no position to aim at";
+    return {};
+}
+
+std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const darts::Scheme& scheme,
+                                                     const EffectPlan& plan) {
+    if (!obstacle(scene, scheme, plan).empty()) return nullptr;
+    return std::unique_ptr<PhotonGuidance>(new PhotonGuidance(scene, scheme, plan));
+}
+
+PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
+    : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
+      camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
+      slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
+      unwarped_(scene.transport.cameraUnwarped), sensor_(Sensor::of(scene, scene.transport.gate)) {
+    const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
+    directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
+    if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, scheme);
+    if (scheme.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
+    const TimeGate& gate = scene.transport.gate;
+    setGate(gate);
+    const bool exact = directView_ && straight && slack_ == 0.0;
+    choosesFrames_ = exact && gate.frames > 1 && scheme.aimsAtSingleFrames();
+    drawsByResponse_ = exact && sensor_.response;
+    meetsDeltaGate_ = exact && gate.delta && scheme.elliptical;
+    for (const Medium& medium : scene.media) {
+        guides_.emplace_back();
+        if (!medium.scatters()) continue;
+        darts::Settings settings =
+            scheme.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
+        const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
+        if (width > WideGate && !choosesFrames_ && !scheme.lengthFirst) settings.lengthFirst = false;
+        if (unwarped_) {
+            // Any place seen will do: nothing to aim at, only the bound in time.
+            settings.direction = darts::Direction::Phase;
+            settings.greens = darts::Greens::None;
+        }
+        guides_.back() = std::make_unique<darts::Guide>(
+            settings, darts::Medium{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()});
+    }
+}
+
+void PhotonGuidance::setGate(const TimeGate& gate) {
+    frames_ = {gate.start, gate.frameWidth, gate.frames};
+    gate_ = {frames_.all().begin - slack_, frames_.all().end + slack_};
+}
+
+darts::Residual PhotonGuidance::residual(const transport::Start& start, const Region& region, double elapsed,
+                                         const darts::TimeGate& gate, uint64_t& rays) const {
+    const auto range = darts::ResidualRange::of(gate, elapsed, speed_);
+    if (unwarped_) return darts::Residual::withoutTarget(range);
+    darts::Residual residual = darts::Residual::of(darts::vec3(camera_ - start.position), range);
+    if (!waysOut_ || !residual.alive()) return residual;
+    waysOut_->look(start, region, {camera_, cameraMedium_, {}, &sides_}, residual, rays);
+    // Ranges are of the highest speed.
+    const double slower = double(region.speed) / speed_;
+    residual.exit.gate *= float(slower);
+    if (residual.exit.connects) residual.exit.surplus = float((1.0 - slower) * range.high);
+    return residual;
+}
+
+} // namespace tungsten::photon

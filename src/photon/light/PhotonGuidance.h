@@ -1,0 +1,92 @@
+#pragma once
+// What guides the photon pass: the camera as the target of every light path.
+
+#include "photon/light/CameraView.h"
+#include "photon/view/Sensor.h"
+
+#include "darts/Guide.h"
+#include "darts/Scheme.h"
+
+#include "transport/WaysOut.h"
+
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/scene/Scene.h"
+
+#include <memory>
+
+namespace tungsten::photon {
+
+class PhotonGuidance {
+  public:
+    /// Null when the scheme, the scene or the camera leaves nothing to guide.
+    static std::unique_ptr<PhotonGuidance> make(const Scene& scene, const darts::Scheme& scheme,
+                                                const EffectPlan& plan);
+    /// Why make() returns null; empty if it does not.
+    static std::string obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
+
+    /// Null in regions where nothing scatters.
+    [[nodiscard]] const darts::Guide* guide(const Region& region) const {
+        return region.medium < 0 ? nullptr : guides_[size_t(region.medium)].get();
+    }
+    /// What is left of a path at the start of a flight (transport::WaysOut::look) through `region` at `elapsed`, for
+    /// arrival inside `gate`. Adds the rays traced to `rays`.
+    [[nodiscard]] darts::Residual residual(const transport::Start& start, const Region& region, double elapsed,
+                                           const darts::TimeGate& gate, uint64_t& rays) const;
+
+    /// Bodies that light from outside is sent towards.
+    [[nodiscard]] const std::vector<transport::BodySphere>& bodies() const { return bodies_; }
+    /// transport::WaysOut::leaveOdds
+    [[nodiscard]] float leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const {
+        return waysOut_->leaveOdds(region, direction, hit);
+    }
+
+    /// Every sensor path is one straight chain at one speed: control vertices alone are complete. Otherwise ordinary
+    /// photons share the work with them, by the balance heuristic.
+    [[nodiscard]] bool directView() const { return directView_; }
+    /// Each light path aims at one frame; otherwise at all of them as one gate.
+    [[nodiscard]] bool choosesFrames() const { return choosesFrames_; }
+    [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
+    /// The gate of paths that aim at all frames, with the aperture's slack.
+    [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
+    /// Aims at this gate from now on (a delta gate's temporal kernel) instead of the scene's.
+    void setGate(const TimeGate& gate);
+    /// For connections from a vertex reached at `elapsed`, where a straight way to the camera's one position tells the
+    /// time of arrival. None elsewhere, nor where photons share with control vertices (darts::Guide::pdfControlVertex):
+    /// there only the gather weighs.
+    [[nodiscard]] darts::ResponseAt response(double elapsed) const {
+        return {drawsByResponse_ ? sensor_.response.get() : nullptr, elapsed, lengthPerTime()};
+    }
+    /// Control vertices lie on the delta gate itself, not anywhere in its temporal kernel: where response() would tell
+    /// the time.
+    [[nodiscard]] bool meetsDeltaGate() const { return meetsDeltaGate_; }
+    /// The connection that arrives at the delta gate, to be averaged over the kernel; 1 / density is 0 if there is
+    /// none.
+    [[nodiscard]] darts::ConnectionSample onDeltaGate(const darts::Residual& residual) const {
+        const double kernel = lengthPerTime() * frames_.width;
+        const float excess = residual.excess - float(0.5 * kernel);
+        return excess > 0.0f ? darts::ConnectionSample{excess, float(kernel)}
+                             : darts::ConnectionSample{residual.excess, 0.0f};
+    }
+    [[nodiscard]] const CameraView& view() const { return view_; }
+
+  private:
+    PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
+    /// Of connections by time of arrival: without camera segments residual() has twice the length.
+    [[nodiscard]] double lengthPerTime() const { return unwarped_ ? 2.0 * speed_ : speed_; }
+
+    std::vector<std::unique_ptr<darts::Guide>> guides_; ///< by medium
+    CameraView view_;
+    std::array<Vec3f, 4> sides_;                        ///< of the view
+    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
+    std::vector<transport::BodySphere> bodies_;
+    int cameraMedium_;
+    Vec3f camera_;
+    double speed_;
+    double slack_; ///< of arrival times, from the aperture
+    bool unwarped_, directView_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
+    Sensor sensor_;
+    darts::FrameSequence frames_;
+    darts::TimeGate gate_;
+};
+
+} // namespace tungsten::photon

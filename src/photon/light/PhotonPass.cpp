@@ -1,0 +1,171 @@
+#include "photon/light/PhotonPass.h"
+
+#include "photon/light/GuidedPhotonWalk.h"
+#include "photon/store/StoreFilling.h"
+
+#include <tbb/parallel_for.h>
+
+namespace tungsten::photon {
+
+namespace {
+
+constexpr uint64_t PathsPerBatch = 256;
+constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
+constexpr uint64_t PilotPaths = 256;    ///< before a pass
+
+/// How often the vertices of a pass try to connect to surfaces, about, and those of a path: more in short passes.
+constexpr double ConnectionsPerPass = 1 << 17, LeastPerPath = 4.0, MostPerPath = 16.0;
+/// A pass has paths for so many tries at least, for each point but no more in all; what arrives does not decide, or
+/// dark passes would be longer.
+constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
+
+struct Batch {
+    Deposits deposits;
+    WalkCounters counters;
+};
+
+Distribution1D powerDistribution(const Scene& scene) {
+    std::vector<float> powers;
+    for (const Emitter& emitter : scene.emitters) powers.push_back(meanComponent(emitterPower(emitter)));
+    return Distribution1D(powers);
+}
+
+/// Whether surface photons may have to bring what connections cannot: light by way of mirrors or refraction, of a
+/// single direction, or to surfaces that are glossy only.
+bool needsPhotonsBesideConnections(const Scene& scene, const EffectPlan& plan) {
+    constexpr LobeMask Unconnected = lobe::Specular | lobe::GlossyTransmission;
+    const auto unconnected = [&](const BsdfPtr& bsdf) {
+        return (bsdf->lobes() & Unconnected) != 0 || (!plan.glossySensorPaths && isGlossyOnly(*bsdf));
+    };
+    return std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                       [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); }) ||
+           std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+               return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), unconnected);
+           });
+}
+
+void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings, Sampler& sampler) {
+    appendPaths(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount,
+                sampler);
+    appendPaths(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount,
+                sampler);
+    appendPaths(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount, sampler);
+    maps.arrivals.insert(maps.arrivals.end(), d.arrivals.begin(), d.arrivals.end());
+}
+
+/// Room for what the first wave lets expect, so that growing does not hold the photons twice.
+void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const PhotonSettings& settings) {
+    uint64_t surface = 0, volume = 0, beams = 0, paths = 0;
+    for (const Batch& batch : wave) {
+        surface += batch.deposits.surface.photons.size();
+        volume += batch.deposits.volume.photons.size();
+        beams += batch.deposits.beams.beams.size();
+        paths += batch.deposits.surface.pathEnds.size();
+    }
+    constexpr double Margin = 1.02;
+    const double scale = Margin * double(settings.photonCount) / double(std::max<uint64_t>(paths, 1));
+    maps.surface.photons.reserve(std::min(settings.photonCount, uint64_t(double(surface) * scale)));
+    maps.volume.photons.reserve(std::min(settings.volumePhotonCount, uint64_t(double(volume) * scale)));
+    maps.beams.beams.reserve(std::min(settings.volumePhotonCount, uint64_t(double(beams) * scale)));
+}
+
+} // namespace
+
+PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
+    : scene_(scene), settings_(settings), arrival_(scene, plan),
+      guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
+      storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
+      storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
+      storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths),
+      densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
+    if (!guidance_ || !guidance_->choosesFrames()) return;
+    for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameArrivals_.push_back(arrival_.ofFrame(frame));
+}
+
+void PhotonPass::setGate(const TimeGate& gate) {
+    arrival_.setGate(gate);
+    if (guidance_) guidance_->setGate(gate);
+}
+
+void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
+    // Paths of their own: the target must not depend on the paths that it is for.
+    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, PilotPaths);
+    const WalkContext context{scene_,    settings_, arrival_,     frameArrivals_, 0.0f,
+                              emitters_, false,     storeVolume_, storeBeams_};
+    const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
+    std::vector<Batch> pilots(paths);
+    tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
+        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
+        Batch& pilot = pilots[path];
+        const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
+        GuidedPhotonWalk(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters).run();
+    });
+    std::vector<float> worths;
+    uint64_t deposits = 0;
+    for (const Batch& pilot : pilots) {
+        worths.insert(worths.end(), pilot.deposits.worths.begin(), pilot.deposits.worths.end());
+        deposits += pilot.deposits.volume.photons.size() + pilot.deposits.beams.beams.size();
+        statistics.add("rays", pilot.counters.rays);
+    }
+    // Paths until the store of photons or beams is full.
+    const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
+    const double expected = std::min(double(settings_.volumePhotonCount) * perDeposit, double(settings_.photonCount));
+    const double perPath = std::clamp(ConnectionsPerPass / std::max(expected, 1.0), LeastPerPath, MostPerPath);
+    connections.setTarget(commonTarget(std::move(worths), perPath * double(paths)));
+}
+
+PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
+    if (connections) setTarget(pass, *connections, statistics);
+    PhotonMaps maps;
+    maps.surface.full = !storeSurface_;
+    maps.volume.full = !storeVolume_;
+    maps.beams.full = !storeBeams_;
+    uint64_t traced = 0;
+    const uint64_t least =
+        connections ? std::min(ConnectionsPerPoint * connections->points(), MostLeast) / uint64_t(MostPerPath) : 0;
+    Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
+    const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
+    const auto finished = [&] {
+        return maps.volume.full && maps.beams.full && (connections ? traced >= least : maps.surface.full);
+    };
+    while (traced < settings_.photonCount && !finished()) {
+        const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
+        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
+        const WalkContext context{
+            scene_,          settings_,          arrival_,          frameArrivals_,   frameShift,
+            emitters_,       !maps.surface.full, !maps.volume.full, !maps.beams.full, connections != nullptr,
+            densityPhotons_, glossySensorPaths_};
+        tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
+            Batch& batch = batches[b];
+            for (uint64_t path = first; path < last; ++path) {
+                const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
+                if (guidance_)
+                    GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.deposits, batch.counters)
+                        .run();
+                else
+                    PhotonWalk(context, sampler, batch.deposits, batch.counters).run();
+                batch.deposits.endPath();
+            }
+        });
+        if (traced == 0) reserveStores(maps, batches, settings_);
+        for (const Batch& batch : batches) {
+            append(maps, batch.deposits, settings_, thinning);
+            statistics.add("rays", batch.counters.rays);
+            statistics.add("control vertices", batch.counters.controlVertices);
+            statistics.add("non-finite samples", batch.counters.nonFinite);
+            statistics.add("volume deposits", batch.counters.volumeDeposits);
+            statistics.add("volume deposits that may count", batch.counters.countingDeposits);
+        }
+        traced += wave;
+    }
+    maps.paths = traced;
+    statistics.add("surface connections", maps.arrivals.size());
+    statistics.add("photons", traced);
+    statistics.add("stored surface photons", maps.surface.photons.size());
+    statistics.add("stored volume photons", maps.volume.photons.size());
+    statistics.add("photon beams", maps.beams.beams.size());
+    return maps;
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,54 @@
+#pragma once
+// The photon pass: light paths from the emitters, plain or guided, and what they deposit in the stores.
+
+#include "photon/PhotonSettings.h"
+#include "photon/light/PhotonGuidance.h"
+#include "photon/primitives/beams/PhotonBeam.h"
+#include "photon/store/ArrivalCulling.h"
+#include "photon/surface/SurfaceConnections.h"
+
+#include "tungsten/render/Integrator.h"
+
+namespace tungsten::photon {
+
+/// The stores of one pass.
+struct PhotonMaps {
+    PhotonStore surface, volume;
+    BeamStore beams;
+    /// What vertices sent to sensor points, by all paths of the pass.
+    std::vector<SurfaceArrival> arrivals;
+    uint64_t paths = 0;
+};
+
+class PhotonPass {
+  public:
+    PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan);
+
+    /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
+    /// whatever the threads.
+    /// `connections`: surface points that vertices connect to; may be null. With them, surfaces do not wait for
+    /// photons: the pass ends when the volume store, if any is in use, is full and there were paths for connections.
+    [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
+    /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
+    void setGate(const TimeGate& gate);
+    [[nodiscard]] const ArrivalCulling& arrival() const { return arrival_; }
+    /// Null when light paths are sampled plainly.
+    [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
+    [[nodiscard]] bool storesVolume() const { return storeVolume_; }
+    [[nodiscard]] bool storesBeams() const { return storeBeams_; }
+    [[nodiscard]] bool storesSurface() const { return storeSurface_; }
+
+  private:
+    /// Tells connections what each of them is to bring, from what a few paths find.
+    void setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const;
+
+    const Scene& scene_;
+    const PhotonSettings& settings_;
+    ArrivalCulling arrival_;
+    std::unique_ptr<PhotonGuidance> guidance_;
+    std::vector<ArrivalCulling> frameArrivals_; ///< when light paths aim at single frames
+    Distribution1D emitters_;                   ///< proportional to power
+    bool storeVolume_, storeBeams_, storeSurface_, glossySensorPaths_, densityPhotons_;
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,87 @@
+#include "photon/primitives/beams/BeamGather.h"
+
+namespace tungsten::photon {
+
+namespace {
+
+/// What the filter sees of a query; the context is its first member, so that its address is the query's.
+struct Query {
+    RTCIntersectContext context;
+    const Scene* scene;
+    const Sensor* sensor;
+    const PhotonBeam* beams;
+    const EmbreeBeams::Piece* pieces;
+    const CameraSegment* segment;
+    FrameSums* sums;
+    float radius;
+    uint64_t gathered;
+};
+
+void evaluate(Query& query, uint32_t index) {
+    const EmbreeBeams::Piece& piece = query.pieces[index];
+    const PhotonBeam& beam = query.beams[piece.beam];
+    const CameraSegment& segment = *query.segment;
+    if (beam.medium != segment.medium) return;
+    const auto approach = closestApproach(beam.base, beam.direction, segment.origin, segment.direction);
+    if (!approach || !(approach->distance < query.radius)) return;
+    const float s = approach->alongBeam, t = approach->alongCamera;
+    // Only the piece that holds the closest point counts, so that a beam counts once.
+    if (!(s >= piece.start) || s >= piece.end || !(t > 0.0f) || t > segment.length) return;
+    const TransportSettings& transport = query.scene->transport;
+    const int interactions = segment.interactions + beam.bounce + 1;
+    if (interactions < transport.minBounces || interactions >= transport.maxBounces) return;
+    int frame = 0;
+    float weight = 1.0f;
+    if (!query.sensor->gate.steadyState) {
+        // Through the beam's point, as for photon points: then ArrivalCulling's parts of beams are exact.
+        const float toCamera = transport.cameraUnwarped ? 0.0f : std::sqrt(sqr(t) + sqr(approach->distance));
+        const double cameraTime = transport.cameraUnwarped ? 0.0 : segment.time;
+        const double arrival = beam.time + cameraTime + (double(s) + double(toCamera)) * segment.inverseSpeed;
+        frame = query.sensor->gate.frameOf(arrival);
+        if (frame < 0) return;
+        weight = query.sensor->weight(arrival);
+    }
+    const Medium& medium = query.scene->media[size_t(segment.medium)];
+    weight *= medium.phase.eval(beam.direction, -segment.direction) / (2.0f * query.radius * approach->sine);
+    const Rgb value = beam.power * medium.sigmaS * medium.transmittance(s + t) * weight;
+    (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
+    ++query.gathered;
+}
+
+/// Evaluates every ribbon on the ray and rejects it, so that traversal goes on.
+void filter(const RTCFilterFunctionNArguments* arguments) {
+    auto& query = *reinterpret_cast<Query*>(arguments->context);
+    evaluate(query, RTCHitN_primID(arguments->hit, 1, 0));
+    arguments->valid[0] = 0;
+}
+
+} // namespace
+
+BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius,
+                       bool fewRays)
+    : scene_(scene), sensor_(sensor), beams_(beams), radius_(radius), structure_(beams, radius, fewRays) {}
+
+uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
+    if (beams_.empty()) return 0;
+    Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, 0};
+    rtcInitIntersectContext(&query.context);
+    query.context.filter = filter;
+    // Embree skips ribbons that hold or nearly touch the ray's origin: start two radii behind it and test exactly in
+    // evaluate().
+    const float margin = 2.0001f * radius_;
+    RTCRayHit ray{};
+    ray.ray.org_x = segment.origin.x - segment.direction.x * margin;
+    ray.ray.org_y = segment.origin.y - segment.direction.y * margin;
+    ray.ray.org_z = segment.origin.z - segment.direction.z * margin;
+    ray.ray.dir_x = segment.direction.x;
+    ray.ray.dir_y = segment.direction.y;
+    ray.ray.dir_z = segment.direction.z;
+    ray.ray.tnear = 0.0f;
+    ray.ray.tfar = segment.length + 2.0f * margin;
+    ray.ray.mask = ~0u;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(structure_.scene(), &query.context, &ray);
+    return query.gathered;
+}
+
+} // namespace tungsten::photon

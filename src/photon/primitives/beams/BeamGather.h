@@ -1,0 +1,49 @@
+#pragma once
+// Gathering photon beams along a camera segment with the one-dimensional kernel.
+
+#include "photon/primitives/beams/EmbreeBeams.h"
+#include "photon/primitives/points/PointGather.h"
+
+#include <optional>
+
+namespace tungsten::photon {
+
+/// Where two lines come closest.
+struct Approach {
+    float alongBeam;   ///< s, from the beam's base
+    float alongCamera; ///< t_c, from the camera segment's origin
+    float distance;
+    float sine; ///< of the angle between the lines
+};
+/// None for lines that are parallel to 1e-4 (photon-primitives sections 2.2 and 5). Directions have unit length.
+inline std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& direction, const Vec3f& origin,
+                                               const Vec3f& cameraDirection) {
+    constexpr float LeastSine = 1e-4f;
+    const Vec3f offset = base - origin, normal = direction.cross(cameraDirection);
+    const float squaredSine = normal.length2();
+    if (!(squaredSine > LeastSine * LeastSine)) return std::nullopt;
+    const float sine = std::sqrt(squaredSine);
+    return Approach{offset.cross(cameraDirection).dot(normal) / -squaredSine,
+                    offset.cross(direction).dot(normal) / -squaredSine, std::abs(offset.dot(normal)) / sine, sine};
+}
+
+class BeamGather {
+  public:
+    /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
+    /// `fewRays`: few segments will be asked for.
+    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius,
+               bool fewRays = false);
+
+    /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the
+    /// sensor, to the frames they fall in (photon-primitives, eq. 4). Returns how many were gathered.
+    uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
+
+  private:
+    const Scene& scene_;
+    Sensor sensor_;
+    const std::vector<PhotonBeam>& beams_;
+    float radius_;
+    EmbreeBeams structure_;
+};
+
+} // namespace tungsten::photon

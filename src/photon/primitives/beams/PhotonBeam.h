@@ -1,0 +1,44 @@
+#pragma once
+// Photon beams: flights of light paths through a scattering medium.
+
+#include "photon/store/ArrivalCulling.h"
+#include "photon/store/PhotonStore.h"
+
+namespace tungsten::photon {
+
+/// A flight from a light, a medium vertex or a surface. It stands for every collision along its stored part: the power
+/// that collides per unit of length at s is power sigma_s T(s), with s and T measured from the base (long beams,
+/// photon-primitives section 2.2).
+struct PhotonBeam {
+    double time; ///< at the base, since the clock's zero
+    Vec3f base;
+    Vec3f direction;
+    Rgb power;          ///< leaving the base, of one path; the store's `scale` still divides it by the number of paths
+    float tStart, tEnd; ///< stored part, distances from the base
+    uint16_t bounce;    ///< interactions from the light up to and including the base
+    int16_t medium;     ///< index of the medium the flight crosses
+};
+static_assert(sizeof(PhotonBeam) == 56, "millions are stored: no padding");
+
+/// Beams of consecutive paths; pathEnds[i] is where path i's end.
+struct BeamList {
+    std::vector<PhotonBeam> beams;
+    std::vector<uint32_t> pathEnds;
+    void endPath() { pathEnds.push_back(uint32_t(beams.size())); }
+};
+
+/// Beams in path order.
+struct BeamStore : StoreState {
+    std::vector<PhotonBeam> beams;
+};
+
+/// Appends the part of a flight that sensor paths can see inside the gate; nothing if there is none. `flight` runs from
+/// tStart 0 to tEnd, the next surface (Infinity if there is none).
+void storeBeam(BeamList& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight);
+
+/// The parts of the beams that sensor paths without mirror or refraction can see inside the gate; needs
+/// arrival.straightTimesKnown().
+std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& arrival,
+                                      const std::vector<PhotonBeam>& beams);
+
+} // namespace tungsten::photon

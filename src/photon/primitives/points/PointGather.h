@@ -1,0 +1,56 @@
+#pragma once
+// Gathering volume photons along a camera segment with the two-dimensional kernel.
+
+#include "photon/primitives/points/EmbreePoints.h"
+#include "photon/store/PhotonStore.h"
+#include "photon/view/Sensor.h"
+
+#include "tungsten/scene/Scene.h"
+
+#include <functional>
+#include <memory>
+
+namespace tungsten::photon {
+
+/// Normalised biweight kernel on a disc: 3 / (pi r^2) (1 - d^2/r^2)^2.
+inline float biweight(float squaredDistance, float squaredRadius) {
+    const float x = 1.0f - squaredDistance / squaredRadius;
+    return x > 0.0f ? 3.0f * InvPi / squaredRadius * x * x : 0.0f;
+}
+
+/// A camera segment in one medium.
+struct CameraSegment {
+    Vec3f origin, direction;
+    float length; ///< may be infinite
+    double time;  ///< of the camera path up to the origin
+    double inverseSpeed;
+    int interactions; ///< of the camera path up to the origin
+    int medium;
+};
+
+/// Sums of contributions per frame; doubles, so that the order of the sum shows only beyond the seventh digit.
+using FrameSums = std::vector<Vec3d>;
+
+class PointGather {
+  public:
+    /// `radii` holds one radius per photon, or one for all. `sensor` has the pass's gate: a delta gate's temporal
+    /// kernel is a narrow box.
+    PointGather(const Scene& scene, const Sensor& sensor, const PhotonStore& store, const std::vector<float>& radii);
+
+    /// Adds sum of power K f_p T, weighed by the sensor, over the photons near the segment to the frames they fall in.
+    /// Returns how many were gathered.
+    uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
+
+  private:
+    const Scene& scene_;
+    Sensor sensor_;
+    const PhotonStore& store_;
+    std::vector<float> squaredRadii_;
+    std::unique_ptr<EmbreePoints> points_;
+};
+
+/// Radii that follow the density: r^2 = d_m^2 0.05 sqrt(N) / m, d_m the distance to the m-th nearest photon, m =
+/// min(30, N) (scene format, section 10.4).
+std::vector<float> adaptiveRadii(const std::vector<Photon>& photons);
+
+} // namespace tungsten::photon

@@ -1,0 +1,241 @@
+#include "photon/primitives/points/PointSplat.h"
+
+#include "photon/raster/ImageBand.h"
+#include "photon/raster/ImageFootprint.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <atomic>
+
+namespace tungsten::photon {
+
+namespace {
+
+/// What photons of a medium share.
+struct MediumTerms {
+    Rgb sigmaT;
+    bool grey, rayleigh;
+    float g;
+
+    explicit MediumTerms(const Medium& medium)
+        : sigmaT(medium.sigmaT()), grey(medium.isGrey()),
+          rayleigh(std::holds_alternative<Rayleigh>(medium.phase.model)), g(medium.phase.g()) {}
+    [[nodiscard]] bool isotropic() const { return g == 0.0f && !rayleigh; }
+};
+
+/// A photon as the camera sees it: all that drawing needs.
+struct alignas(64) Spot {
+    int frame; ///< -1: not to be seen
+    int medium, bounce;
+    Vec3f offset, direction;
+    Rgb power; ///< with the kernel's constant and the sensor's weight
+    float inverseSquaredRadius;
+    ImageDisc disc;
+};
+
+/// A register of rays near a spot.
+struct Meeting {
+    Batch dx, dy, dz, start;
+    Batch t;    ///< along the rays
+    Batch part; ///< 1 - squared distance over squared radius
+    Batch::batch_bool_type inside;
+
+    Meeting(const Spot& spot, const BandPiece& piece, const ImageBand& band, size_t i)
+        : dx(Batch::load_unaligned(band.x.data() + i)), dy(Batch::load_unaligned(band.y.data() + i)),
+          dz(Batch::load_unaligned(band.z.data() + i)), start(Batch::load_unaligned(piece.start.data() + i)) {
+        const Vec3f& o = spot.offset;
+        t = dx * o.x + dy * o.y + dz * o.z;
+        // Distance by the part of the offset across the ray: no difference of squares.
+        const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
+        part = 1.0f - (px * px + py * py + pz * pz) * spot.inverseSquaredRadius;
+        inside = part > 0.0f && t > start && t <= Batch::load_unaligned(piece.end.data() + i);
+    }
+};
+
+class Splatter {
+  public:
+    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, double scale)
+        : scene_(scene), sensor_(sensor), record_(record), scale_(float(scale)), footprint_(scene.camera),
+          media_(scene.media.begin(), scene.media.end()) {}
+
+    [[nodiscard]] Spot spot(const Photon& photon, float radius) const {
+        Spot spot{};
+        spot.frame = -1;
+        float weight = scale_;
+        int frame = 0;
+        if (!sensor_.gate.steadyState) {
+            const double arrival = photon.time + cameraTime(photon.position);
+            frame = sensor_.gate.frameOf(arrival);
+            if (frame < 0) return spot;
+            weight *= sensor_.weight(arrival);
+        }
+        const auto disc = footprint_.disc(photon.position, radius);
+        if (!disc) return spot;
+        const float inverse = 1.0f / (radius * radius);
+        return {frame,
+                photon.medium,
+                photon.bounce,
+                photon.position - record_.origin,
+                photon.direction,
+                photon.power * (weight * 3.0f * InvPi * inverse),
+                inverse,
+                *disc};
+    }
+
+    /// Returns how many rays gather the photon.
+    uint64_t draw(const Spot& spot, ImageBand& band) const {
+        const int top = std::max(spot.disc.area.top, band.firstRow),
+                  bottom = std::min(spot.disc.area.bottom, band.lastRow);
+        const auto [left, right] = footprint_.columns(spot.disc, top);
+        const int least = scene_.transport.minBounces - spot.bounce,
+                  most = scene_.transport.maxBounces - spot.bounce - 1;
+        Batch gathered(0.0f);
+        for (BandPiece& piece : band.pieces) {
+            if (!piece.mixed &&
+                (piece.medium != spot.medium || piece.interactions < least || piece.interactions > most))
+                continue;
+            const auto even = piece.mixed ? std::nullopt : evenTerms(spot, piece);
+            for (int row = top; row <= bottom; ++row) {
+                const size_t first = band.at(left[row - top], row), end = band.at(right[row - top], row) + 1;
+                gathered += even ? drawEvenly(spot, *even, piece, band, first, end)
+                                 : drawRow(spot, piece, band, first, end, least, most);
+            }
+        }
+        return uint64_t(xsimd::hadd(gathered));
+    }
+
+  private:
+    [[nodiscard]] double cameraTime(const Vec3f& position) const {
+        if (scene_.transport.cameraUnwarped) return 0.0;
+        const Vec3f& o = record_.origin;
+        const Vec3d way(double(position.x) - double(o.x), double(position.y) - double(o.y),
+                        double(position.z) - double(o.z));
+        return way.length() / double(scene_.cameraRegion.speed);
+    }
+
+    /// For exponents (start - t) sigmaT that differ little from their middle.
+    struct EvenTerms {
+        float sigmaT, middle;
+        Rgb power; ///< the spot's, times phase function and e^middle
+    };
+    /// If the medium is grey and isotropic and the rays that meet the spot have so even exponents that a cubic about
+    /// their middle is exact to rounding.
+    [[nodiscard]] std::optional<EvenTerms> evenTerms(const Spot& spot, const BandPiece& piece) const {
+        constexpr float MostDifference = 0.03f;
+        const MediumTerms& medium = media_[size_t(piece.medium)];
+        if (!medium.grey || !medium.isotropic()) return std::nullopt;
+        const float squared = spot.offset.length2(), farthest = std::sqrt(squared),
+                    nearest = std::sqrt(std::max(squared - 1.0f / spot.inverseSquaredRadius, 0.0f));
+        const float low = (piece.leastStart - farthest) * medium.sigmaT.x,
+                    high = (piece.mostStart - nearest) * medium.sigmaT.x;
+        if (!(high - low < 2.0f * MostDifference)) return std::nullopt;
+        const float middle = 0.5f * (low + high);
+        return EvenTerms{medium.sigmaT.x, middle, spot.power * (0.25f * InvPi * std::exp(middle))};
+    }
+
+    /// Of the rays at [first, end); returns how many gather the photon, lane by lane.
+    static Batch drawEvenly(const Spot& spot, const EvenTerms& terms, BandPiece& piece, const ImageBand& band,
+                            size_t first, size_t end) {
+        Batch gathered(0.0f);
+        for (size_t i = first; i < end; i += size_t(Lanes)) {
+            const Meeting met(spot, piece, band, i);
+            if (!xsimd::any(met.inside)) continue;
+            gathered += select(met.inside, Batch(1.0f), Batch(0.0f));
+            const Batch e = (met.start - met.t) * terms.sigmaT - terms.middle;
+            const Batch transmittance = 1.0f + e * (1.0f + e * (0.5f + e * (1.0f / 6.0f)));
+            const Batch weight = select(met.inside, met.part * met.part * transmittance, Batch(0.0f));
+            for (int k = 0; k < 3; ++k) piece.add(i, weight, k, terms.power[k]);
+        }
+        return gathered;
+    }
+
+    /// The same for any medium.
+    Batch drawRow(const Spot& spot, BandPiece& piece, const ImageBand& band, size_t first, size_t end, int least,
+                  int most) const {
+        const MediumTerms& medium = media_[size_t(spot.medium)];
+        Batch gathered(0.0f);
+        for (size_t i = first; i < end; i += size_t(Lanes)) {
+            const Meeting met(spot, piece, band, i);
+            const auto inside = piece.mixed ? piece.select(met.inside, i, spot.medium, least, most) : met.inside;
+            if (!xsimd::any(inside)) continue;
+            gathered += select(inside, Batch(1.0f), Batch(0.0f));
+            const Batch value = met.part * met.part * phase(medium, spot.direction, met), length = met.start - met.t;
+            Batch weight = select(inside, value * exp(length * medium.sigmaT.x), Batch(0.0f));
+            for (int k = 0; k < 3; ++k) {
+                if (k > 0 && !medium.grey) weight = select(inside, value * exp(length * medium.sigmaT[k]), Batch(0.0f));
+                piece.add(i, weight, k, spot.power[k]);
+            }
+        }
+        return gathered;
+    }
+
+    /// Between the photon's direction and the way back along the rays.
+    static Batch phase(const MediumTerms& medium, const Vec3f& w, const Meeting& met) {
+        if (medium.isotropic()) return Batch(0.25f * InvPi);
+        if (!medium.rayleigh) return henyeyGreenstein(medium.g, w, met.dx, met.dy, met.dz);
+        const Batch cosine = met.dx * w.x + met.dy * w.y + met.dz * w.z;
+        return 3.0f / 16.0f * InvPi * (1.0f + cosine * cosine);
+    }
+
+    const Scene& scene_;
+    Sensor sensor_;
+    const SensorRecord& record_;
+    float scale_;
+    ImageFootprint footprint_;
+    std::vector<MediumTerms> media_;
+};
+
+/// Visible spots frame by frame, as bands hold one frame's sums; then from left to right, as neighbours share the
+/// cache.
+std::vector<uint32_t> drawingOrder(const std::vector<Spot>& spots, int width) {
+    std::vector<std::pair<uint64_t, uint32_t>> places;
+    places.reserve(spots.size());
+    for (size_t i = 0; i < spots.size(); ++i)
+        if (spots[i].frame >= 0)
+            places.emplace_back(uint64_t(spots[i].frame) * uint64_t(width) + uint64_t(spots[i].disc.area.left), i);
+    tbb::parallel_sort(places);
+    std::vector<uint32_t> order;
+    order.reserve(places.size());
+    for (const auto& place : places) order.push_back(place.second);
+    return order;
+}
+
+/// In drawing order: the sums do not depend on the threads.
+std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, const SensorRecord& record) {
+    std::vector<std::vector<uint32_t>> byBand(ImageBand::count(record.height));
+    for (const uint32_t i : drawingOrder(spots, record.width)) {
+        const PixelArea& area = spots[i].disc.area;
+        for (int band = area.top / ImageBand::Rows; band <= area.bottom / ImageBand::Rows; ++band)
+            byBand[size_t(band)].push_back(i);
+    }
+    return byBand;
+}
+
+} // namespace
+
+uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
+                      const std::vector<float>& radii, double scale, Film& film) {
+    const Splatter splatter(scene, sensor, record, scale);
+    std::vector<Spot> spots(store.photons.size());
+    tbb::parallel_for(size_t(0), spots.size(),
+                      [&](size_t i) { spots[i] = splatter.spot(store.photons[i], radii[radii.size() == 1 ? 0 : i]); });
+    const auto byBand = spotsByBand(spots, record);
+    std::atomic<uint64_t> total = 0;
+    tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {
+        const auto& drawn = byBand[number];
+        if (drawn.empty()) return;
+        ImageBand band(record, number);
+        uint64_t gathered = 0;
+        for (size_t i = 0; i < drawn.size(); ++i) {
+            prefetch(spots[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
+            const int frame = spots[drawn[i]].frame;
+            gathered += splatter.draw(spots[drawn[i]], band);
+            if (i + 1 == drawn.size() || spots[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
+        }
+        total += gathered;
+    });
+    return total;
+}
+
+} // namespace tungsten::photon

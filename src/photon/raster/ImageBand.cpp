@@ -1,0 +1,68 @@
+#include "photon/raster/ImageBand.h"
+
+namespace tungsten::photon {
+
+ImageBand::ImageBand(const SensorRecord& record, size_t number)
+    : firstRow(int(number) * Rows), lastRow(std::min(firstRow + Rows, record.height) - 1),
+      stride(size_t(record.width + Lanes)), x(), y(), z(), record_(record) {
+    x = rowsOf(record.x);
+    y = rowsOf(record.y);
+    z = rowsOf(record.z);
+    for (size_t k = 0; k < record.pieces.size(); ++k) addPiece(k);
+}
+
+template <typename T>
+std::vector<float> ImageBand::rowsOf(const std::vector<T>& image) const {
+    std::vector<float> rows(size_t(lastRow - firstRow + 1) * stride);
+    const auto width = size_t(record_.width);
+    for (int row = firstRow; row <= lastRow; ++row)
+        for (size_t column = 0; column < width; ++column)
+            rows[at(int(column), row)] = float(image[size_t(row) * width + column]);
+    return rows;
+}
+
+void ImageBand::addPiece(size_t number) {
+    const StraightPiece& recorded = record_.pieces[number];
+    BandPiece piece;
+    piece.number = number;
+    const auto width = size_t(record_.width), begin = size_t(firstRow) * width, end = size_t(lastRow + 1) * width;
+    bool empty = true;
+    for (size_t i = begin; i < end; ++i) {
+        if (!(recorded.end[i] > recorded.start[i])) continue;
+        if (empty) {
+            piece.medium = recorded.medium[i];
+            piece.interactions = recorded.interactions[i];
+            piece.leastStart = piece.mostStart = recorded.start[i];
+            empty = false;
+        }
+        piece.leastStart = std::min(piece.leastStart, recorded.start[i]);
+        piece.mostStart = std::max(piece.mostStart, recorded.start[i]);
+        piece.mixed =
+            piece.mixed || recorded.medium[i] != piece.medium || int(recorded.interactions[i]) != piece.interactions;
+    }
+    if (empty) return;
+    piece.start = rowsOf(recorded.start);
+    piece.end = rowsOf(recorded.end);
+    if (piece.mixed) {
+        piece.media = rowsOf(recorded.medium);
+        piece.interactionCounts = rowsOf(recorded.interactions);
+    }
+    for (auto& channel : piece.sums) channel.resize(piece.start.size());
+    pieces.push_back(std::move(piece));
+}
+
+void ImageBand::addToFilm(int frame, Film& film) {
+    const auto width = size_t(record_.width);
+    for (BandPiece& piece : pieces) {
+        const std::vector<Rgb>& throughput = record_.pieces[piece.number].throughput;
+        for (int row = firstRow; row <= lastRow; ++row)
+            for (size_t column = 0; column < width; ++column) {
+                const size_t i = at(int(column), row);
+                film.passPixel(frame, int(column), row) += Rgb(piece.sums[0][i], piece.sums[1][i], piece.sums[2][i]) *
+                                                           throughput[size_t(row) * width + column];
+            }
+        for (auto& channel : piece.sums) std::fill(channel.begin(), channel.end(), 0.0f);
+    }
+}
+
+} // namespace tungsten::photon

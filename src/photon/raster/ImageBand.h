@@ -1,0 +1,71 @@
+#pragma once
+// A few rows of the image that one task draws: the recorded rays, a register at a time, and what they have gathered.
+
+#include "photon/raster/Registers.h"
+#include "photon/view/SensorRecord.h"
+
+#include "tungsten/film/Film.h"
+
+#include <array>
+
+namespace tungsten::photon {
+
+/// One piece of the band's rays. Rays without it end at 0.
+struct BandPiece {
+    size_t number; ///< in the record
+    std::vector<float> start, end;
+    float leastStart = 0.0f, mostStart = 0.0f;   ///< of the rays that have this piece
+    bool mixed = false;                          ///< rays differ in medium or interactions
+    int medium = -1, interactions = 0;           ///< of the first ray that has this piece, if any
+    std::vector<float> media, interactionCounts; ///< of every ray, if mixed
+    std::array<std::vector<float>, 3> sums;      ///< by channel, without the rays' throughput
+
+    /// Adds weight times power at pixels `first`...
+    void add(size_t first, const Batch& weight, int channel, float power) {
+        float* sum = sums[size_t(channel)].data() + first;
+        xsimd::fma(weight, Batch(power), Batch::load_unaligned(sum)).store_unaligned(sum);
+    }
+    /// Which of `inside` lie in the medium and have from `least` to `most` interactions.
+    [[nodiscard]] Batch::batch_bool_type select(Batch::batch_bool_type inside, size_t first, int inMedium, int least,
+                                                int most) const {
+        const Batch count = Batch::load_unaligned(interactionCounts.data() + first);
+        return inside && Batch::load_unaligned(media.data() + first) == float(inMedium) && count >= float(least) &&
+               count <= float(most);
+    }
+};
+
+/// Arrays over rows x stride pixels. Behind the last column is room for a register of rays that meet nothing.
+class ImageBand {
+  public:
+    static constexpr int Rows = 4; ///< at most a register of them (ImageFootprint::columns)
+    static_assert(Rows <= Lanes);
+    static size_t count(int imageHeight) { return size_t((imageHeight + Rows - 1) / Rows); }
+
+    ImageBand(const SensorRecord& record, size_t number);
+
+    [[nodiscard]] size_t at(int column, int row) const { return size_t(row - firstRow) * stride + size_t(column); }
+    /// Adds the sums, times throughput, to the pass image and begins new ones.
+    void addToFilm(int frame, Film& film);
+
+    int firstRow, lastRow; ///< inclusive
+    size_t stride;
+    std::vector<float> x, y, z; ///< unit directions
+    std::vector<BandPiece> pieces;
+
+  private:
+    template <typename T>
+    std::vector<float> rowsOf(const std::vector<T>& image) const;
+    void addPiece(size_t number);
+
+    const SensorRecord& record_;
+};
+
+/// A band's photons or beams lie scattered in memory: asks for the one that is drawn DrawnAhead later.
+template <typename T>
+void prefetch(const T& drawnLater) {
+    const auto* bytes = reinterpret_cast<const char*>(&drawnLater);
+    for (size_t line = 0; line < sizeof(T); line += 64) __builtin_prefetch(bytes + line);
+}
+inline constexpr size_t DrawnAhead = 4;
+
+} // namespace tungsten::photon

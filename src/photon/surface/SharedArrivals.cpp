@@ -1,0 +1,132 @@
+#include "photon/surface/SharedArrivals.h"
+
+#include <tbb/parallel_for.h>
+
+namespace tungsten::photon {
+
+namespace {
+
+/// Where each element's group begins in an order by group; one more entry at the end.
+template <typename Group>
+std::vector<uint32_t> beginnings(size_t groups, size_t elements, const Group& group) {
+    std::vector<uint32_t> begin(groups + 1, 0);
+    for (size_t i = 0; i < elements; ++i) ++begin[group(i) + 1];
+    for (size_t g = 0; g < groups; ++g) begin[g + 1] += begin[g];
+    return begin;
+}
+
+/// Points about whose light the other has something to say: near each other on one smooth surface, seen alike.
+bool alike(const SensorPoint& a, const SensorPoint& b, float distance) {
+    constexpr float LeastCosine = 0.95f, MostSlope = 0.2f;
+    if (a.interactions != b.interactions || a.region.medium != b.region.medium) return false;
+    const Vec3f offset = b.hit.position - a.hit.position;
+    const float squared = offset.length2();
+    if (squared > distance * distance || a.hit.ng.dot(b.hit.ng) < LeastCosine) return false;
+    return std::max(sqr(offset.dot(a.hit.ng)), sqr(offset.dot(b.hit.ng))) <= sqr(MostSlope) * squared;
+}
+
+class Sharing {
+  public:
+    Sharing(const Scene& scene, const SensorRecord& record, const std::vector<SurfaceArrival>& arrivals,
+            const SharingKernel& kernel, double scale, Film& film)
+        : scene_(scene), record_(record), kernel_(kernel), scale_(scale), film_(film),
+          reach_(int(std::floor(kernel.pixels))),
+          firstPoint_(
+              beginnings(record.x.size(), record.points.size(), [&](size_t i) { return record.points[i].pixel; })),
+          firstArrival_(
+              beginnings(record.points.size(), arrivals.size(), [&](size_t i) { return arrivals[i].point; })) {
+        std::vector<uint32_t> next(firstArrival_.begin(), firstArrival_.end() - 1);
+        sorted_.resize(arrivals.size());
+        for (const SurfaceArrival& arrival : arrivals) sorted_[next[arrival.point]++] = &arrival;
+    }
+
+    /// Returns how many values were not finite.
+    [[nodiscard]] uint64_t row(int y) const {
+        uint64_t nonFinite = 0;
+        std::vector<Vec3d> sums(size_t(film_.frames()));
+        std::vector<uint32_t> neighbours;
+        for (int x = 0; x < record_.width; ++x) {
+            const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
+            for (uint32_t p = firstPoint_[pixel]; p < firstPoint_[pixel + 1]; ++p) {
+                const size_t among = findNeighbours(p, x, y, neighbours);
+                if (neighbours.empty()) continue;
+                std::fill(sums.begin(), sums.end(), Vec3d(0.0));
+                reflect(record_.points[p], neighbours, sums);
+                for (size_t frame = 0; frame < sums.size(); ++frame) {
+                    const Vec3d value = sums[frame] * (scale_ / double(among));
+                    const Rgb radiance{float(value.x), float(value.y), float(value.z)};
+                    if (isFinite(radiance))
+                        film_.passPixel(int(frame), x, y) += radiance;
+                    else
+                        ++nonFinite;
+                }
+            }
+        }
+        return nonFinite;
+    }
+
+  private:
+    /// Lists the points in the kernel about `p` at which something arrived; returns how many there are in all.
+    size_t findNeighbours(uint32_t p, int x, int y, std::vector<uint32_t>& found) const {
+        found.clear();
+        size_t among = 0;
+        const SensorPoint& point = record_.points[p];
+        for (int v = std::max(y - reach_, 0); v <= std::min(y + reach_, record_.height - 1); ++v) {
+            // Half chord of the disc in this row.
+            const int half = int(std::sqrt(std::max(sqr(kernel_.pixels) - sqr(float(v - y)), 0.0f)));
+            const size_t start = size_t(v) * size_t(record_.width);
+            const uint32_t first = firstPoint_[start + size_t(std::max(x - half, 0))],
+                           last = firstPoint_[start + size_t(std::min(x + half, record_.width - 1)) + 1];
+            for (uint32_t q = first; q < last; ++q) {
+                if (q != p && !alike(point, record_.points[q], kernel_.distance)) continue;
+                ++among;
+                if (firstArrival_[q + 1] > firstArrival_[q]) found.push_back(q);
+            }
+        }
+        return among;
+    }
+
+    void reflect(const SensorPoint& point, const std::vector<uint32_t>& neighbours, std::vector<Vec3d>& sums) const {
+        const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
+        const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
+        for (const uint32_t q : neighbours)
+            for (uint32_t i = firstArrival_[q]; i < firstArrival_[q + 1]; ++i) {
+                const SurfaceArrival& arrival = *sorted_[i];
+                if (!surface.consistent(arrival.from, scene_.transport.consistencyChecks)) continue;
+                const Rgb radiance = surface.bsdf->eval(query, surface.wi, surface.frame.toLocal(arrival.from)) *
+                                     arrival.light * point.throughput;
+                sums[size_t(arrival.frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
+            }
+    }
+
+    const Scene& scene_;
+    const SensorRecord& record_;
+    SharingKernel kernel_;
+    double scale_;
+    Film& film_;
+    int reach_;
+    std::vector<uint32_t> firstPoint_;   ///< of a pixel
+    std::vector<uint32_t> firstArrival_; ///< of a point, in sorted_
+    std::vector<const SurfaceArrival*> sorted_;
+};
+
+} // namespace
+
+SharingKernel SharingKernel::of(size_t points, size_t arrivals, float gatherRadius, float factor) {
+    // cbox at 128x128 without a bound on the distance, MSE x CPU time: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08
+    // with 2.5; then time grows. But without the bound a small image's blocks are off by 4 % (cornell-fog, 64x64).
+    constexpr float Wanted = 100.0f, Least = 2.5f, Most = 4.0f;
+    const float each = float(arrivals) / float(std::max<size_t>(points, 1));
+    const float pixels = std::clamp(std::sqrt(Wanted * InvPi / std::max(each, 1e-3f)), Least, Most);
+    return {pixels * factor, gatherRadius * factor};
+}
+
+void shareArrivals(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                   const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
+                   Statistics& statistics) {
+    if (arrivals.empty()) return;
+    const Sharing sharing(scene, record, arrivals, kernel, scale / sensor.gate.frameWidth, film);
+    tbb::parallel_for(0, record.height, [&](int y) { statistics.add("non-finite samples", sharing.row(y)); });
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,29 @@
+#pragma once
+// Light that connections brought to sensor points, shared among neighbouring ones: a density estimate on what the
+// camera sees, as gathering photons is, but of connections that arrive in time.
+
+#include "photon/store/Deposits.h"
+#include "photon/view/Sensor.h"
+#include "photon/view/SensorRecord.h"
+
+#include "tungsten/film/Film.h"
+
+namespace tungsten::photon {
+
+/// How far apart sensor points on the same smooth surface may be to share: in the image, where below 1 pixel each pixel
+/// keeps its own light and the estimate has no bias, and in the scene.
+struct SharingKernel {
+    float pixels, distance;
+
+    /// Wide in the image where few connections arrive, as wide in the scene as surface photons are gathered; shrinking
+    /// from pass to pass as `factor` (of gather radii) does.
+    static SharingKernel of(size_t points, size_t arrivals, float gatherRadius, float factor);
+};
+
+/// Adds to the pass image, for every sensor point, the mean over the points in its kernel of what arrived there,
+/// reflected by its own BSDF, times `scale`.
+void shareArrivals(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                   const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
+                   Statistics& statistics);
+
+} // namespace tungsten::photon

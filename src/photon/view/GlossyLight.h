@@ -1,0 +1,31 @@
+#pragma once
+// Light that reaches glossy surfaces straight from the lights, where sensor paths follow their lobes
+// (SensorPathRules::glossy).
+
+#include "photon/view/LightConnection.h"
+
+namespace tungsten::photon {
+
+class GlossyLight {
+  public:
+    GlossyLight(const Scene& scene, const EffectPlan& plan);
+
+    /// By a point on a light, weighed against sensor paths that hit the light. `state` is the path up to the glossy
+    /// surface. None when it arrives outside the sensor's gate. Adds the rays traced to `rays`.
+    [[nodiscard]] std::optional<ArrivedLight> connect(const Sensor& sensor, const SensorState& state,
+                                                      const SurfaceInteraction& surface, Sampler& sampler,
+                                                      uint64_t& rays) const;
+    /// Weight of emission that a path hits behind a glossy surface: 0 in mirrors, which photons see to.
+    [[nodiscard]] float emissionWeight(const SensorState& state, const SurfaceInteraction& light) const;
+    /// Highlights are finer than pixels, and a narrow gate leaves lines of them; the fog that a glossy surface shows is
+    /// as fine near lights. Such pixels look for both along HighlightPaths paths, which gather nothing else.
+    [[nodiscard]] bool oversampled(size_t pixel) const { return oversampled_[pixel] != 0; }
+    static constexpr uint32_t HighlightPaths = 16;
+
+  private:
+    const Scene& scene_;
+    LightConnector lights_;
+    std::vector<uint8_t> oversampled_; ///< by pixel
+};
+
+} // namespace tungsten::photon

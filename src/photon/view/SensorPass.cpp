@@ -1,0 +1,202 @@
+#include "photon/view/SensorPass.h"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+namespace tungsten::photon {
+
+namespace {
+
+constexpr size_t TileSide = 8;
+
+struct SensorCounters {
+    uint64_t rays = 0, gathered = 0, gatheredBeams = 0, nonFinite = 0;
+};
+
+/// Buffers that a worker reuses from pixel to pixel.
+struct Workspace {
+    FrameSums volume, sums;
+    std::vector<NearestPhotons::Neighbour> neighbours;
+};
+
+/// Gathers on camera paths.
+class SensorGather {
+  public:
+    /// `lights` draws lights. `oversampled`: what highlight paths find is left to them.
+    SensorGather(const Scene& scene, const GatherStructures& structures, const Sampler& lights, bool oversampled,
+                 Workspace& workspace, SensorCounters& counters)
+        : scene_(scene), structures_(structures), lights_(lights), oversampled_(oversampled), workspace_(workspace),
+          counters_(counters) {}
+
+    void segment(const SensorState& state, float length) {
+        if (structures_.splatted && (!state.folded || oversampled_)) return;
+        const GatherStructures& s = structures_;
+        gatherVolume(state, length, s.straightPoints && !state.folded ? s.straightPoints.get() : s.points.get(),
+                     s.straightBeams && !state.folded ? s.straightBeams.get() : s.beams.get());
+    }
+
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        if (!structures_.includeSurfaces) return;
+        if (surface.primitive->emitter >= 0 && !state.glossy) addEmission(state, surface, 1.0f);
+        if (structures_.glossy && !oversampled_) highlight(state, surface, 1.0f);
+        if (structures_.surfaces && (surface.bsdf->lobes() & lobe::Smooth) != 0) gatherSurface(state, surface);
+    }
+
+    void escaped(const SensorState& state) {
+        if (!structures_.includeSurfaces || scene_.infiniteEmitters.empty() || scene_.medium(state.region) ||
+            state.glossy || !rendered(state.interactions))
+            return;
+        const Emitter& environment = scene_.emitters[size_t(scene_.infiniteEmitters.back())];
+        add(state.throughput * environmentRadiance(environment, state.ray.direction), Infinity);
+    }
+
+    /// Highlight path `part`: a part of what folded rays meet in media.
+    void segmentPart(const SensorState& state, float length, uint32_t part) {
+        if (!structures_.splatted || !state.folded) return;
+        gatherVolume(state, length, structures_.pointParts.empty() ? nullptr : structures_.pointParts[part].get(),
+                     structures_.beamParts.empty() ? nullptr : structures_.beamParts[part].get());
+    }
+
+    /// Light from the lights by way of glossy surfaces; `share`: of the path in its pixel.
+    void highlight(const SensorState& state, const SurfaceInteraction& surface, float share) {
+        if (surface.primitive->emitter >= 0 && state.glossy)
+            addEmission(state, surface, share * structures_.glossy->emissionWeight(state, surface));
+        if (!isGlossyOnly(*surface.bsdf)) return;
+        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.rays);
+        if (light) add(light->radiance * share, light->time);
+    }
+
+  private:
+    void gatherVolume(const SensorState& state, float length, const PointGather* points, const BeamGather* beams) {
+        if (!scene_.medium(state.region) || (!points && !beams)) return;
+        const CameraSegment segment{
+            state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
+            state.interactions, state.region.medium};
+        if (points) addVolume(segment, *points, state.throughput * structures_.maps.volume.scale(), counters_.gathered);
+        if (beams)
+            addVolume(segment, *beams, state.throughput * structures_.maps.beams.scale(), counters_.gatheredBeams);
+    }
+
+    template <typename Gather>
+    void addVolume(const CameraSegment& segment, const Gather& gather, const Rgb& scale, uint64_t& counter) {
+        std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
+        const uint64_t gathered = gather.gather(segment, workspace_.volume);
+        if (gathered == 0) return;
+        counter += gathered;
+        const Vec3d weight(double(scale.x), double(scale.y), double(scale.z));
+        for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
+            workspace_.sums[frame] += workspace_.volume[frame] * weight;
+    }
+
+    void add(const Rgb& radiance, double time) {
+        const Sensor& sensor = structures_.sensor;
+        const int frame = sensor.gate.steadyState ? 0 : sensor.gate.frameOf(time);
+        if (frame < 0) return;
+        const Rgb weighed = radiance * sensor.weight(time);
+        workspace_.sums[size_t(frame)] += Vec3d(double(weighed.x), double(weighed.y), double(weighed.z));
+    }
+
+    [[nodiscard]] bool rendered(int interactions) const {
+        return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
+    }
+
+    void addEmission(const SensorState& state, const SurfaceInteraction& surface, float weight) {
+        if (!rendered(state.interactions)) return;
+        const SurfaceHit& hit = surface.hit;
+        const Emitter& emitter = scene_.emitters[size_t(surface.primitive->emitter)];
+        const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -state.ray.direction);
+        const double time = state.time + double(hit.t) / double(state.region.speed);
+        add(state.throughput * radiance * weight,
+            emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
+    }
+
+    /// Density estimate with a constant kernel over the k nearest photons (scene format, section 10.4).
+    void gatherSurface(const SensorState& state, const SurfaceInteraction& surface) {
+        const auto& photons = structures_.maps.surface.photons;
+        const float squaredRadius = structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,
+                                                               structures_.gatherCount, workspace_.neighbours);
+        if (!(squaredRadius > 0.0f)) return;
+        counters_.gathered += workspace_.neighbours.size();
+        const float scale = structures_.maps.surface.scale() * InvPi / squaredRadius;
+        const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
+        for (const auto& neighbour : workspace_.neighbours) {
+            const Photon& photon = photons[neighbour.index];
+            if (isBlack(photon.power) || !rendered(state.interactions + photon.bounce)) continue; // densityPhotons
+            const Vec3f wo = surface.frame.toLocal(-photon.direction);
+            if (wo.z == 0.0f) continue;
+            const Rgb scattering = surface.bsdf->eval(query, surface.wi, wo) / std::abs(wo.z);
+            // Camera time up to the start of this segment; each photon adds its own distance to it.
+            const double own = double((photon.position - state.ray.origin).length()) / double(state.region.speed);
+            add(state.throughput * photon.power * scattering * scale,
+                photon.time + (scene_.transport.cameraUnwarped ? 0.0 : state.time + own));
+        }
+    }
+
+    const Scene& scene_;
+    const GatherStructures& structures_;
+    Sampler lights_;
+    bool oversampled_;
+    Workspace& workspace_;
+    SensorCounters& counters_;
+};
+
+/// Follows a highlight path.
+struct HighlightVisitor {
+    SensorGather& gather;
+    uint32_t part;
+
+    void segment(const SensorState& state, float length) { gather.segmentPart(state, length, part); }
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        gather.highlight(state, surface, 1.0f / float(GlossyLight::HighlightPaths));
+    }
+    void escaped(const SensorState&) const {}
+};
+
+} // namespace
+
+void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
+                      Statistics& statistics) {
+    const auto width = size_t(scene.camera.resolution.x), height = size_t(scene.camera.resolution.y);
+    const TimeGate& gate = structures.sensor.gate;
+    const double scale = 1.0 / (double(pass.samples) * (gate.steadyState ? 1.0 : gate.frameWidth));
+    const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {
+        std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));
+        for (uint32_t s = 0; s < pass.samples; ++s) {
+            Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample + s),
+                            size_t(y) * width + size_t(x));
+            const size_t pixel = size_t(y) * width + size_t(x);
+            const auto follow = [&](auto&& visitor) {
+                const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+                const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
+                counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
+            };
+            const Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
+            const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
+            SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
+            follow(gather);
+            if (!oversampled) continue;
+            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(HighlightVisitor{gather, k});
+        }
+        for (int frame = 0; frame < gate.frames; ++frame) {
+            const Vec3d value = workspace.sums[size_t(frame)] * scale;
+            const Rgb pixel{float(value.x), float(value.y), float(value.z)};
+            if (isFinite(pixel))
+                film.passPixel(frame, x, y) += pixel;
+            else
+                ++counters.nonFinite;
+        }
+    };
+    tbb::parallel_for(tbb::blocked_range2d<size_t>(0, height, TileSide, 0, width, TileSide), [&](const auto& tile) {
+        SensorCounters counters;
+        Workspace workspace{FrameSums(size_t(gate.frames)), FrameSums(size_t(gate.frames)), {}};
+        for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
+            for (size_t x = tile.cols().begin(); x < tile.cols().end(); ++x)
+                renderPixel(int(x), int(y), workspace, counters);
+        statistics.add("rays", counters.rays);
+        statistics.add("gathered photons", counters.gathered);
+        statistics.add("gathered beams", counters.gatheredBeams);
+        statistics.add("non-finite samples", counters.nonFinite);
+    });
+}
+
+} // namespace tungsten::photon

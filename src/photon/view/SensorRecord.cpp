@@ -1,0 +1,118 @@
+#include "photon/view/SensorRecord.h"
+
+#include "photon/surface/SurfaceConnections.h"
+
+#include <tbb/parallel_for.h>
+
+namespace tungsten::photon {
+
+namespace {
+
+void resize(StraightPiece& piece, size_t pixels) {
+    piece.start.resize(pixels);
+    piece.end.resize(pixels);
+    piece.medium.resize(pixels, -1);
+    piece.interactions.resize(pixels);
+    piece.throughput.resize(pixels, Rgb(0.0f));
+}
+
+struct Piece {
+    uint32_t pixel;
+    float start, end;
+    int16_t medium;
+    uint16_t interactions;
+    Rgb throughput;
+};
+
+/// Visits the camera paths of one row.
+struct Recorder {
+    const Scene& scene;
+    bool includeSurfaces;
+    float share;                            ///< of a path in its pixel
+    std::vector<std::vector<Piece>> pieces; ///< by number along the ray
+    std::vector<SensorPoint> points;
+    uint32_t pixel = 0;
+    size_t next = 0;
+    float behind = 0.0f; ///< length of the straight ray so far
+
+    void begin(uint32_t newPixel) {
+        pixel = newPixel;
+        next = 0;
+        behind = 0.0f;
+    }
+    void segment(const SensorState& state, float length) {
+        if (state.folded) return;
+        const Medium* medium = scene.medium(state.region);
+        if (medium && medium->scatters()) {
+            if (pieces.size() <= next) pieces.emplace_back();
+            pieces[next++].push_back({pixel, behind, behind + length, int16_t(state.region.medium),
+                                      uint16_t(state.interactions), state.throughput});
+        }
+        behind += length;
+    }
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        if (!includeSurfaces || !receivesConnections(*surface.bsdf)) return;
+        points.push_back({surface.hit, state.ray.direction, state.throughput * share,
+                          state.time + double(surface.hit.t) / double(state.region.speed), pixel, state.interactions,
+                          state.region});
+    }
+    void escaped(const SensorState&) {}
+};
+
+} // namespace
+
+SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
+                               const PassInfo& pass, uint32_t samples, Statistics& statistics) {
+    SensorRecord record;
+    record.samples = samples;
+    record.width = scene.camera.resolution.x;
+    record.height = scene.camera.resolution.y;
+    record.origin = scene.camera.position();
+    const size_t pixels = size_t(record.width) * size_t(record.height);
+    for (auto* component : {&record.x, &record.y, &record.z}) component->resize(pixels);
+    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, includeSurfaces, 1.0f / float(samples), {}, {}});
+    tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
+        uint64_t rays = 0;
+        for (int x = 0; x < record.width; ++x) {
+            const size_t pixel = y * size_t(record.width) + size_t(x);
+            Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample), pixel);
+            const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+            const Ray ray = scene.camera.generateRay({x, int(y)}, uFilter, uLens);
+            record.x[pixel] = ray.direction.x;
+            record.y[pixel] = ray.direction.y;
+            record.z[pixel] = ray.direction.z;
+            rows[y].begin(uint32_t(pixel));
+            rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
+            const SurfaceVisitor recordPoint{
+                [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
+            Sampler further(pass.seed, RandomStream::SensorPoint, uint32_t(pass.firstSample), pixel);
+            for (uint32_t s = 1; s < samples; ++s) {
+                const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
+                const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
+                rays += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint);
+            }
+        }
+        statistics.add("rays", rays);
+    });
+    size_t points = 0;
+    for (const Recorder& row : rows) points += row.points.size();
+    record.points.reserve(points);
+    for (Recorder& row : rows) {
+        record.points.insert(record.points.end(), row.points.begin(), row.points.end());
+        std::vector<SensorPoint>().swap(row.points);
+        for (size_t k = 0; k < row.pieces.size(); ++k) {
+            if (record.pieces.size() <= k) resize(record.pieces.emplace_back(), pixels);
+            StraightPiece& piece = record.pieces[k];
+            for (const Piece& p : row.pieces[k]) {
+                piece.start[p.pixel] = p.start;
+                piece.end[p.pixel] = p.end;
+                piece.medium[p.pixel] = p.medium;
+                piece.interactions[p.pixel] = p.interactions;
+                piece.throughput[p.pixel] = p.throughput;
+            }
+        }
+    }
+    return record;
+}
+
+} // namespace tungsten::photon
