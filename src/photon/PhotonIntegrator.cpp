@@ -1,9 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
-#include "photon/ProgressiveSchedule.h"
-#include "photon/primitives/beams/BeamSplat.h"
-#include "photon/primitives/points/PointSplat.h"
-#include "photon/store/FoldedSelection.h"
+#include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/surface/SharedArrivals.h"
 
 namespace tungsten::photon {
@@ -18,59 +15,21 @@ uint32_t surfaceSamples(const Vec2i& resolution) {
     return pixels > SensorClusters::MostPoints ? 1 : uint32_t(std::clamp(Wanted / pixels, Least, Most));
 }
 
-/// Copies the photons that straight sensor paths see inside the gate. Leaves `straight` alone where that would be all
-/// or unknown.
-void selectStraight(const ArrivalCulling& arrival, const PhotonStore& store, const std::vector<float>& radii,
-                    PhotonStore& straight, std::vector<float>& straightRadii) {
-    if (arrival.directView() || !arrival.straightTimesKnown()) return;
-    straight.paths = store.paths;
-    if (radii.size() == 1) straightRadii = radii;
-    for (size_t i = 0; i < store.photons.size(); ++i) {
-        if (!arrival.seenStraight(store.photons[i].position, store.photons[i].time)) continue;
-        straight.photons.push_back(store.photons[i]);
-        if (radii.size() > 1) straightRadii.push_back(radii[i]);
-    }
-}
-
 } // namespace
 
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
-struct PhotonIntegrator::StoreParts {
-    PhotonStore straightPoints, foldedPoints;
-    std::vector<float> straightRadii, foldedRadii;
-    std::vector<PhotonBeam> straightBeams, foldedBeams;
-    // Of what is folded, dealt to highlight paths.
-    std::vector<PhotonStore> pointParts;
-    std::vector<std::vector<float>> pointRadii;
-    std::vector<std::vector<PhotonBeam>> beamParts;
-    float uFolded = 0.0f; ///< chooses what folded rays gather
-
-    void selectFolded(const PhotonStore& store, const std::vector<float>& radii) {
-        const double share = foldedShare(store.photons, radii);
-        foldedPoints.paths = store.paths;
-        foldedPoints.photons = chosenEvenly(store.photons, share, uFolded);
-        if (radii.size() == 1) foldedRadii = radii;
-        if (radii.size() > 1)
-            chooseEvenly(radii.size(), share, uFolded, [&](size_t i) { foldedRadii.push_back(radii[i]); });
-    }
-    void dealPoints(size_t count) {
-        for (auto& photons : dealt(foldedPoints.photons, count))
-            pointParts.push_back({{foldedPoints.paths, false}, std::move(photons)});
-        pointRadii.assign(count, foldedRadii);
-        if (foldedRadii.size() > 1) pointRadii = dealt(foldedRadii, count);
-    }
-};
-
 void PhotonIntegrator::planVolume(EffectPlan& plan) const {
-    const bool beams = settings_.primitive == VolumePrimitive::Beams;
-    const std::string none = "no medium scatters: no volume photon is stored or gathered";
-    plan.describe(beams ? "photon beams" : "volume photon points", plan.mediumScattering,
-                  !plan.mediumScattering ? none
-                  : beams                ? "a medium scatters, volume_photon_type is beams"
-                                         : "a medium scatters");
+    std::visit(
+        [&](const auto& p) {
+            plan.describe(p.Effect, plan.mediumScattering,
+                          plan.mediumScattering ? p.Reason
+                                                : "no medium scatters: no volume photon is stored or gathered");
+        },
+        settings_.primitive);
     const bool delta = scene_->transport.gate.delta;
+    const bool beams = std::holds_alternative<Beams>(settings_.primitive);
     const auto guidance = beams ? nullptr : PhotonGuidance::make(*scene_, settings_.scheme, plan);
     plan.describe(
         "temporal kernel", delta,
@@ -159,15 +118,6 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }
 
-std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint32_t step) const {
-    const float factor = pointRadiusFactor(step, settings_.volumeAlpha);
-    if (settings_.fixedVolumeRadius) return {settings_.volumeRadius * factor};
-    std::vector<float> radii = adaptiveRadii(store.photons);
-    // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
-    for (float& radius : radii) radius *= std::sqrt(factor);
-    return radii;
-}
-
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
     return settings_.progressive ? pass.index : 0;
 }
@@ -187,82 +137,35 @@ void PhotonIntegrator::forEachSample(const SensorRecord& first, const PassInfo& 
         use(recordSensorPaths(*scene_, false, rules_, {pass.index, pass.firstSample + s, 1, pass.seed}, 1, statistics));
 }
 
-void PhotonIntegrator::gatherPoints(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
-                                    StoreParts& parts, GatherStructures& structures, Film& film,
+void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, const SensorRecord& record,
+                                    const SensorRays& rays, GatherStructures& structures, Film& film,
                                     Statistics& statistics) const {
-    std::vector<float> radii;
-    {
-        const StageTimer timer(statistics, "build");
-        radii = volumeRadii(maps.volume, step(pass));
-        selectStraight(photonPass_->arrival(), maps.volume, radii, parts.straightPoints, parts.straightRadii);
-        const Sensor& sensor = structures.sensor;
-        if (!structures.splatted) {
-            structures.points = std::make_unique<PointGather>(*scene_, sensor, maps.volume, radii);
-        } else if (foldedRays_) {
-            parts.selectFolded(maps.volume, radii);
-            structures.points = std::make_unique<PointGather>(*scene_, sensor, parts.foldedPoints, parts.foldedRadii);
-            if (glossy_) parts.dealPoints(GlossyLight::HighlightPaths);
-            for (size_t k = 0; k < parts.pointParts.size(); ++k)
-                structures.pointParts.push_back(
-                    std::make_unique<PointGather>(*scene_, sensor, parts.pointParts[k], parts.pointRadii[k]));
+    const auto build = [&]<typename Primitive>(const Primitive& primitive) {
+        auto& store = std::get<Store<typename Primitive::Record>>(maps);
+        if (store.records.empty()) return;
+        const VolumeGather<Primitive>* gather = nullptr;
+        {
+            const StageTimer timer(statistics, "build");
+            Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass));
+            gather = &structures.volume.template emplace<VolumeGather<Primitive>>(
+                *scene_, structures.sensor, photonPass_->arrival(), std::move(store), std::move(radii), rays);
         }
-        if (!structures.splatted && parts.straightPoints.paths > 0)
-            structures.straightPoints =
-                std::make_unique<PointGather>(*scene_, sensor, parts.straightPoints, parts.straightRadii);
-    }
-    if (!structures.splatted) return;
-    const StageTimer timer(statistics, "splat");
-    const bool all = parts.straightPoints.paths == 0;
-    const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const double scale = double(maps.volume.scale()) / (width * double(pass.samples));
-    forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
-        statistics.add("gathered photons",
-                       splatPhotons(*scene_, structures.sensor, sample, all ? maps.volume : parts.straightPoints,
-                                    all ? radii : parts.straightRadii, scale, film));
-    });
-}
-
-void PhotonIntegrator::gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record,
-                                   StoreParts& parts, GatherStructures& structures, Film& film,
-                                   Statistics& statistics) const {
-    const ArrivalCulling& arrival = photonPass_->arrival();
-    const float factor = scene_->transport.gate.delta ? float(deltaGateFactor(step(pass), settings_.volumeAlpha))
-                                                      : beamRadiusFactor(step(pass), settings_.alpha);
-    const float radius = settings_.volumeRadius * factor;
-    const std::vector<PhotonBeam>& all = maps.beams.beams;
-    const bool single = arrival.directView() || !arrival.straightTimesKnown();
-    {
-        const StageTimer timer(statistics, "build");
-        if (!single) parts.straightBeams = straightParts(*scene_, arrival, all);
-        if (!structures.splatted) {
-            structures.beams = std::make_unique<BeamGather>(*scene_, structures.sensor, all, radius);
-        } else if (foldedRays_) {
-            parts.foldedBeams = chosenEvenly(all, foldedShare(all, radius), parts.uFolded);
-            structures.beams =
-                std::make_unique<BeamGather>(*scene_, structures.sensor, parts.foldedBeams, radius, true);
-            if (glossy_) parts.beamParts = dealt(parts.foldedBeams, GlossyLight::HighlightPaths);
-            for (const auto& beams : parts.beamParts)
-                structures.beamParts.push_back(
-                    std::make_unique<BeamGather>(*scene_, structures.sensor, beams, radius, true));
-        }
-        if (!structures.splatted && !single)
-            structures.straightBeams =
-                std::make_unique<BeamGather>(*scene_, structures.sensor, parts.straightBeams, radius);
-    }
-    if (!structures.splatted) return;
-    const StageTimer timer(statistics, "splat");
-    const double width = structures.sensor.gate.steadyState ? 1.0 : structures.sensor.gate.frameWidth;
-    const double scale = double(maps.beams.scale()) / (width * double(pass.samples));
-    forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
-        statistics.add("gathered beams", splatBeams(*scene_, structures.sensor, sample,
-                                                    single ? all : parts.straightBeams, radius, scale, film));
-    });
+        if (!rays.splatted) return;
+        const StageTimer timer(statistics, "splat");
+        const TimeGate& gate = structures.sensor.gate;
+        const double scale =
+            double(gather->scale()) / ((gate.steadyState ? 1.0 : gate.frameWidth) * double(pass.samples));
+        forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
+            statistics.add(primitive.Gathered, gather->splat(sample, scale, film));
+        });
+    };
+    std::visit(build, settings_.primitive);
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
-    const bool splat = straightRays_ && (photonPass_->storesVolume() || photonPass_->storesBeams());
+    const bool splat = straightRays_ && photonPass_->storesVolume();
     const bool connect = straightRays_ && connects_;
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
@@ -281,15 +184,14 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         photonPass_->setGate(sensor.gate);
         maps = photonPass_->trace(pass, connections.get(), statistics);
     }
-    StoreParts parts{};
-    parts.uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
-    GatherStructures structures{
-        maps, sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(), settings_.gatherCount};
-    if (!maps.volume.photons.empty()) gatherPoints(maps, pass, record, parts, structures, film, statistics);
-    if (!maps.beams.beams.empty()) gatherBeams(maps, pass, record, parts, structures, film, statistics);
+    GatherStructures structures{maps.surface,         sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(),
+                                settings_.gatherCount};
+    const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
+    const SensorRays rays{splat, foldedRays_, glossy_ ? GlossyLight::HighlightPaths : 0, uFolded};
+    gatherVolume(std::move(maps.volume), pass, record, rays, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");
-        if (!maps.surface.photons.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.photons);
+        if (!maps.surface.records.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
         structures.surfaceRadius = settings_.gatherRadius * surfaceFactor;
     }
     if (connect) {

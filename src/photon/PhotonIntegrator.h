@@ -2,8 +2,8 @@
 // The photon-map integrators: a photon pass, structures over its photons, a sensor pass.
 
 #include "photon/PhotonSettings.h"
+#include "photon/SensorPass.h"
 #include "photon/light/PhotonPass.h"
-#include "photon/view/SensorPass.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -32,13 +32,9 @@ class PhotonIntegrator : public Integrator {
     /// Calls use(record) with the straight rays of every sample of the pass; `first` holds the first sample's.
     template <typename Use>
     void forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics, const Use& use) const;
-    /// Photons to pixels, or structures over them; `parts` holds what only straight or only folded rays look at.
-    struct StoreParts;
-    void gatherPoints(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record, StoreParts& parts,
+    /// Records to pixels, or structures over them.
+    void gatherVolume(VolumeStore&& maps, const PassInfo& pass, const SensorRecord& record, const SensorRays& rays,
                       GatherStructures& structures, Film& film, Statistics& statistics) const;
-    void gatherBeams(const PhotonMaps& maps, const PassInfo& pass, const SensorRecord& record, StoreParts& parts,
-                     GatherStructures& structures, Film& film, Statistics& statistics) const;
-    [[nodiscard]] std::vector<float> volumeRadii(const PhotonStore& store, uint32_t step) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;

@@ -11,17 +11,23 @@ VolumePrimitive readPrimitive(const ObjectReader& block) {
     const std::vector<std::string> later{"planes", "planes_1d",     "volumes",          "hypervolumes",
                                          "balls",  "volumes_balls", "mis_volumes_balls"};
     const std::string type = block.text("volume_photon_type", "points");
-    if (type == "beams") return VolumePrimitive::Beams;
-    if (type == "points") return VolumePrimitive::Points;
+    VolumePrimitive primitive;
+    bool supported = false;
+    forEachPrimitive(primitive, [&](const auto& p) {
+        if (type != p.Type) return;
+        primitive = p;
+        supported = true;
+    });
+    if (supported) return primitive;
     const bool known = std::find(later.begin(), later.end(), type) != later.end();
     block.problem("volume_photon_type", known ? "'" + type + "' is not supported; supported: points, beams"
                                               : "expected points or beams, found '" + type + "'");
-    return VolumePrimitive::Points;
+    return primitive;
 }
 
 /// Radius and temporal kernel of the volume store.
 void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
-    const bool beams = settings.primitive == VolumePrimitive::Beams;
+    const bool beams = std::holds_alternative<Beams>(settings.primitive);
     settings.volumeRadius = float(block.number("volume_gather_radius", settings.gatherRadius, Range::positive()));
     settings.fixedVolumeRadius = block.flag("fixed_volume_radius", false);
     if (beams && settings.volumeRadius >= Unbounded)

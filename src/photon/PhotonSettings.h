@@ -1,6 +1,8 @@
 #pragma once
 // Settings of the photon-map integrators' block (scene format, section 10.2).
 
+#include "photon/primitives/VolumePrimitive.h"
+
 #include "darts/Scheme.h"
 
 #include "tungsten/scene/ObjectReader.h"
@@ -8,11 +10,8 @@
 
 namespace tungsten::photon {
 
-/// What the volume store holds.
-enum class VolumePrimitive { Points, Beams };
-
 struct PhotonSettings {
-    VolumePrimitive primitive = VolumePrimitive::Points;
+    VolumePrimitive primitive;
     uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
     uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store, points or beams
     uint32_t gatherCount = 20;            ///< nearest surface photons used
@@ -28,10 +27,9 @@ struct PhotonSettings {
     float volumeAlpha = 0.3f; ///< volume radius reduction
     darts::Scheme scheme;     ///< how light paths are guided
 
-    /// From sensor rays that a volume photon or beam can show on. Any, where radii follow the density: they are known
-    /// when the store is full, and what is stored makes the density.
+    /// From sensor rays that a record of the volume primitive can show on.
     [[nodiscard]] float volumeReach() const {
-        return primitive == VolumePrimitive::Beams || fixedVolumeRadius ? volumeRadius : Infinity;
+        return std::visit([&](const auto& p) { return p.reach(*this); }, primitive);
     }
 };
 

@@ -1,6 +1,6 @@
 // Photon beams against verified values, closed forms, photon points and the path tracer.
 
-#include "photon/ProgressiveSchedule.h"
+#include "photon/primitives/ProgressiveSchedule.h"
 
 #include "render_photons.h"
 

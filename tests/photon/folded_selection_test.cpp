@@ -1,4 +1,4 @@
-#include "photon/store/FoldedSelection.h"
+#include "photon/primitives/VolumePrimitive.h"
 
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"
@@ -72,8 +72,8 @@ TEST(FoldedSelection, LinesMeetAsManyDiscsAsAreWanted) {
                                       return offset.cross(direction).length2() < Radius * Radius;
                                   });
     EXPECT_GT(met, 1.5 * FoldedMeetings);
-    EXPECT_NEAR(foldedShare(photons, {Radius}) * met, FoldedMeetings, 0.05 * FoldedMeetings);
-    EXPECT_EQ(foldedShare(photons, {0.1f * Radius}), 1.0);
+    EXPECT_NEAR(Points::foldedShare(photons, Radius) * met, FoldedMeetings, 0.05 * FoldedMeetings);
+    EXPECT_EQ(Points::foldedShare(photons, 0.1f * Radius), 1.0);
 }
 
 TEST(FoldedSelection, LinesMeetAsManyBeamsAsAreWanted) {
@@ -96,9 +96,9 @@ TEST(FoldedSelection, LinesMeetAsManyBeamsAsAreWanted) {
                        return std::abs(offset.dot(normal)) < Radius * std::sqrt(squaredSine) && s > 0.5f && s < 1.0f;
                    });
     EXPECT_GT(met, 1.5 * FoldedMeetings);
-    EXPECT_NEAR(foldedShare(beams, Radius) * met, FoldedMeetings, 0.05 * FoldedMeetings);
+    EXPECT_NEAR(Beams::foldedShare(beams, Radius) * met, FoldedMeetings, 0.05 * FoldedMeetings);
     beams.resize(100);
-    EXPECT_EQ(foldedShare(beams, Radius), 1.0);
+    EXPECT_EQ(Beams::foldedShare(beams, Radius), 1.0);
 }
 
 } // namespace

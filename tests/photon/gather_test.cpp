@@ -19,18 +19,18 @@ Photon randomPhoton(Sampler& sampler) {
     return {double(sampler.next1D()), position, direction, Rgb(sampler.next1D(), sampler.next1D(), 1.0f), 1, 0};
 }
 
-PhotonStore randomStore(size_t count) {
+Store<Photon> randomStore(size_t count) {
     Sampler sampler(3, RandomStream::Test, 0, 0);
-    PhotonStore store;
+    Store<Photon> store;
     store.paths = count;
-    for (size_t i = 0; i < count; ++i) store.photons.push_back(randomPhoton(sampler));
+    for (size_t i = 0; i < count; ++i) store.records.push_back(randomPhoton(sampler));
     return store;
 }
 
-Vec3d bruteForce(const Scene& scene, const PhotonStore& store, float radius, const CameraSegment& segment,
+Vec3d bruteForce(const Scene& scene, const Store<Photon>& store, float radius, const CameraSegment& segment,
                  uint64_t& count) {
     Vec3d sum(0.0);
-    for (const Photon& photon : store.photons) {
+    for (const Photon& photon : store.records) {
         const Vec3f offset = photon.position - segment.origin;
         const float t = offset.dot(segment.direction);
         const float kernel = biweight((offset - segment.direction * t).length2(), radius * radius);
@@ -56,14 +56,14 @@ TEST(Biweight, IntegratesToOneOverItsDisc) {
 
 TEST(PointGather, LosesNoPhotonNotEvenAtTheOrigin) {
     const Scene scene = test::fogScene();
-    const PhotonStore store = randomStore(20000);
+    const Store<Photon> store = randomStore(20000);
     constexpr float Radius = 0.05f;
-    const PointGather gather(scene, scene.transport.gate, store, {Radius});
+    const PointGather gather(scene, scene.transport.gate, store.records, Radius);
     Sampler sampler(4, RandomStream::Test, 0, 0);
     uint64_t total = 0;
     for (int i = 0; i < 400; ++i) {
         // Origins inside the cloud, some exactly on a photon; segments of every length.
-        const Vec3f origin = i % 3 == 0 ? store.photons[size_t(i)].position
+        const Vec3f origin = i % 3 == 0 ? store.records[size_t(i)].position
                                         : Vec3f(sampler.next1D(), sampler.next1D(), sampler.next1D());
         const CameraSegment segment{
             origin, warp::squareToSphere(sampler.next2D()), i % 5 == 0 ? Infinity : sampler.next1D(), 0.0, 1.0, 0, 0};
@@ -79,8 +79,8 @@ TEST(PointGather, LosesNoPhotonNotEvenAtTheOrigin) {
 }
 
 TEST(NearestPhotons, MatchBruteForce) {
-    const PhotonStore store = randomStore(5000);
-    const NearestPhotons nearest(store.photons);
+    const Store<Photon> store = randomStore(5000);
+    const NearestPhotons nearest(store.records);
     Sampler sampler(5, RandomStream::Test, 0, 0);
     std::vector<NearestPhotons::Neighbour> found;
     for (int i = 0; i < 300; ++i) {
@@ -88,8 +88,8 @@ TEST(NearestPhotons, MatchBruteForce) {
         const float radius = i % 7 == 0 ? 1e30f : 0.02f + 0.3f * sampler.next1D();
         const uint32_t count = 1 + sampler.nextBits() % 40;
         std::vector<NearestPhotons::Neighbour> expected;
-        for (uint32_t p = 0; p < store.photons.size(); ++p) {
-            const float squared = (store.photons[p].position - position).length2();
+        for (uint32_t p = 0; p < store.records.size(); ++p) {
+            const float squared = (store.records[p].position - position).length2();
             if (squared <= radius * radius) expected.push_back({squared, p});
         }
         std::sort(expected.begin(), expected.end());

@@ -88,12 +88,14 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
         const PhotonPass photonPass(*loaded.scene, settings, analyseScene(*loaded.scene));
         std::array<double, 7> counts{};
         Statistics statistics;
-        for (uint32_t index = 0; index < passes; ++index)
-            for (const Photon& photon : photonPass.trace({index, index, 1, 5}, nullptr, statistics).volume.photons) {
+        for (uint32_t index = 0; index < passes; ++index) {
+            const PhotonMaps maps = photonPass.trace({index, index, 1, 5}, nullptr, statistics);
+            for (const Photon& photon : std::get<Store<Photon>>(maps.volume).records) {
                 const double way = double((photon.position - loaded.scene->camera.position()).length());
                 const int frame = loaded.scene->transport.gate.frameOf(photon.time + way);
                 if (frame >= 0) ++counts[size_t(frame)];
             }
+        }
         return counts;
     };
     const auto uneven = countByFrame(10, 84000), even = countByFrame(1400, 600);

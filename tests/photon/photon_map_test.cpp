@@ -1,6 +1,6 @@
 // Photon points and surface photons against closed forms, verified values and the path tracer.
 
-#include "photon/ProgressiveSchedule.h"
+#include "photon/primitives/ProgressiveSchedule.h"
 
 #include "render_photons.h"
 

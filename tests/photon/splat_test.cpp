@@ -46,16 +46,16 @@ Scene foggyScene(const SplatCase& c) {
 }
 
 /// Photons all around the camera and behind it, many right before the lens.
-PhotonStore photonsAround(const Vec3f& camera) {
+Store<Photon> photonsAround(const Vec3f& camera) {
     Sampler sampler(3, RandomStream::Test, 0, 0);
-    PhotonStore store;
+    Store<Photon> store;
     store.paths = 1;
     for (int i = 0; i < 8000; ++i) {
         const float reach = i % 4 == 0 ? 0.3f : 4.0f;
         const Vec3f position = camera + warp::squareToSphere(sampler.next2D()) * (reach * sampler.next1D());
         const Vec3f direction = warp::squareToSphere(sampler.next2D());
         const Rgb power(sampler.next1D(), sampler.next1D(), 1.0f);
-        store.photons.push_back(
+        store.records.push_back(
             {double(3.0f * sampler.next1D()), position, direction, power, uint16_t(1 + i % 4), int16_t(i / 4 % 3)});
     }
     return store;
@@ -184,18 +184,18 @@ int expectScaled(Film& splatted, Film& gathered, int frames, float scale, float 
 TEST_P(Splat, AddsWhatGatheringFinds) {
     const SplatCase& c = GetParam();
     const Scene scene = foggyScene(c);
-    PhotonStore store = photonsAround(scene.camera.position());
-    store.photons = inMediumOf(c, store.photons);
+    Store<Photon> store = photonsAround(scene.camera.position());
+    store.records = inMediumOf(c, store.records);
     const SensorRecord record = recordOf(c, scene);
     std::vector<float> radii{0.15f};
     if (c.radiusEach)
-        for (size_t i = 1; i < store.photons.size(); ++i) radii.push_back(0.02f + 0.3f * float(i % 7) / 7.0f);
+        for (size_t i = 1; i < store.records.size(); ++i) radii.push_back(0.02f + 0.3f * float(i % 7) / 7.0f);
     const TimeGate gate = gateOf(c);
     Film splatted(record.width, record.height, gate.frames), gathered = splatted;
     splatted.beginPass();
     gathered.beginPass();
-    const uint64_t count = splatPhotons(scene, gate, record, store, radii, 3.0, splatted);
-    const uint64_t expected = gatherRecord(PointGather(scene, gate, store, radii), gate, record, gathered);
+    const uint64_t count = splatPhotons(scene, gate, record, store.records, radii, 3.0, splatted);
+    const uint64_t expected = gatherRecord(PointGather(scene, gate, store.records, radii), gate, record, gathered);
     // At the kernel's edge rounding decides.
     EXPECT_NEAR(double(count), double(expected), 1e-4 * double(expected) + 2.0);
     EXPECT_GT(expected, 1000u);
@@ -262,7 +262,7 @@ INSTANTIATE_TEST_SUITE_P(Views, Splat,
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// Pixels whose fog begins at slightly different distances see one photon, to rounding: just within the cubic's range.
-TEST(PhotonSplat, AttenuatesFromTheStartOfEveryRay) {
+TEST(PointSplat, AttenuatesFromTheStartOfEveryRay) {
     const Scene scene = foggyScene({"", {16, 16}, 3.0f, true, false, false, 1});
     SensorRecord record = randomRecord(scene, 1);
     useOneMedium(record, 3, false);
@@ -272,11 +272,11 @@ TEST(PhotonSplat, AttenuatesFromTheStartOfEveryRay) {
         fog.end[i] = Infinity;
     }
     const Vec3f offset = scene.camera.toWorld.rotation().n * 1.5f;
-    PhotonStore store;
-    store.photons.push_back({0.0, record.origin + offset, Vec3f(1.0f, 0.0f, 0.0f), Rgb(1.0f), 2, 3});
+    Store<Photon> store;
+    store.records.push_back({0.0, record.origin + offset, Vec3f(1.0f, 0.0f, 0.0f), Rgb(1.0f), 2, 3});
     Film film(16, 16, 1);
     film.beginPass();
-    EXPECT_EQ(splatPhotons(scene, TimeGate{}, record, store, {0.15f}, 1.0, film), 256u);
+    EXPECT_EQ(splatPhotons(scene, TimeGate{}, record, store.records, 0.15f, 1.0, film), 256u);
     for (size_t i = 0; i < fog.start.size(); ++i) {
         const Vec3f direction(record.x[i], record.y[i], record.z[i]);
         const float t = offset.dot(direction);

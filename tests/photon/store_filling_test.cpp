@@ -31,14 +31,14 @@ TEST_P(StoreFilling, LeavesEveryPathsShare) {
             ends.push_back(uint32_t(deposits.size()));
             expected += double(count) * (1.0 + double(count)) / (double(Fillings) * Paths);
         }
-        PhotonStore store;
+        Store<Photon> store;
         Sampler thinning(1, RandomStream::Test, uint32_t(filling), 1);
-        appendPaths(store, store.photons, deposits, ends, c.capacity, thinning);
+        appendPaths(store, {deposits, ends}, c.capacity, thinning);
         double power = 0.0;
-        for (const Photon& photon : store.photons) power += double(photon.power.x) * double(store.scale());
+        for (const Photon& photon : store.records) power += double(photon.power.x) * double(store.scale());
         sum += power / Fillings;
         squares += power * power / Fillings;
-        largest = std::max<uint64_t>(largest, store.photons.size());
+        largest = std::max<uint64_t>(largest, store.records.size());
         full += store.full ? 1 : 0;
     }
     EXPECT_LE(largest, c.capacity);

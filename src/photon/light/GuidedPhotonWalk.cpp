@@ -137,7 +137,7 @@ bool GuidedPhotonWalk::look(const darts::Guide& guide, const transport::Start& s
 }
 
 darts::ConnectionSample GuidedPhotonWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
-    if (guidance_.meetsDeltaGate() && context_.storeVolume) return guidance_.onDeltaGate(residual);
+    if (guidance_.meetsDeltaGate() && storesVertices()) return guidance_.onDeltaGate(residual);
     return guide.sampleConnection(residual, sampler_.next1D(), guidance_.response(time_));
 }
 
@@ -180,8 +180,8 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     const float surface = hit ? hit->t : Infinity;
     if (hit && residual_.way == darts::Way::Out && residual_.exit.connects)
         residual_.exit.leaveOdds = guidance_.leaveOdds(region_, ray_.direction, *hit);
-    if (context_.storeVolume) placeControlVertex(medium, guide, h, surface);
-    if (context_.storeBeams) depositSeenBeam(medium, surface);
+    const Flight flight{medium, guide, h, surface};
+    if (context_.storeVolume) std::visit([&](auto& list) { leaveOn(flight, list); }, deposits_.volume);
 
     const auto random = [this] { return sampler_.next1D(); };
     const darts::DistanceSample step = guide.sampleDistance(residual_, heading, surface, darts::vec3(power_), random);
@@ -190,8 +190,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     if (isBlack(power_)) return false;
     if (step.surface) return meetSurface(*hit);
     power_ = power_ * medium.sigmaS;
-    if (context_.storeVolume && (storesPhotons() || !guide.settings().elliptical))
-        depositPhoton(medium, guide, step.distance, h);
+    if (context_.storeVolume) std::visit([&](auto& list) { leaveAt(step.distance, flight, list); }, deposits_.volume);
     return scatter(medium, guide, step.distance);
 }
 
@@ -228,7 +227,8 @@ void GuidedPhotonWalk::split(const darts::Guide& guide, const Medium& medium, co
     }
 }
 
-void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface) {
+void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points) {
+    const auto& [medium, guide, h, surface] = flight;
     if (!guide.settings().elliptical) return;
     if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
     reachable_ = residual_;
@@ -245,41 +245,45 @@ void GuidedPhotonWalk::placeControlVertex(const Medium& medium, const darts::Gui
     if (storesPhotons())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
-    store(context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed), power,
-          bounce_ + 1);
+    store(points, context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
+          power, bounce_ + 1);
 }
 
-void GuidedPhotonWalk::depositSeenBeam(const Medium& medium, float surface) {
-    if (!guidance_.directView()) return depositBeam(medium, surface);
+void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<PhotonBeam>& beams) {
+    const Medium& medium = flight.medium;
+    if (!guidance_.directView()) return depositFlight(beams, medium, flight.surface);
     if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
     const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeReach());
-    const float end = std::min(surface, float(seen.end));
+    const float end = std::min(flight.surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
-    storeBeam(deposits_.beams, *arrival_, medium,
+    storeBeam(beams, *arrival_, medium,
               {time_, ray_.origin, ray_.direction, power_, float(seen.start), end, uint16_t(bounce_),
                int16_t(region_.medium)});
 }
 
-void GuidedPhotonWalk::depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h) {
+void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList<Photon>& points) {
+    const auto& [medium, guide, h, surface] = flight;
+    if (!storesPhotons() && guide.settings().elliptical) return;
     if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
     float share = 0.0f;
     if (guide.settings().elliptical)
         share = controlVertexShare(guide.pdfControlVertex(reachable_, h, distance), meanComponent(medium.sigmaT()),
                                    distance);
     const Vec3f position = ray_.at(distance);
-    store(*arrival_, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
+    store(points, *arrival_, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
           power_ * (1.0f - share), bounce_ + 1);
 }
 
-void GuidedPhotonWalk::store(const ArrivalCulling& arrival, const Vec3f& position, double time, const Rgb& power,
-                             int bounce) {
+void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {}
+
+void GuidedPhotonWalk::store(DepositList<Photon>& points, const ArrivalCulling& arrival, const Vec3f& position,
+                             double time, const Rgb& power, int bounce) {
     if (!bears(power) || bounce > MostPhotonBounces) return;
     if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeReach())) return;
     ++counters_.volumeDeposits;
     if (!arrival.mayCount(position, time)) return;
     ++counters_.countingDeposits;
-    deposits_.volume.photons.push_back(
-        {time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
+    points.records.push_back({time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
 }
 
 } // namespace tungsten::photon

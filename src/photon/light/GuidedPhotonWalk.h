@@ -32,17 +32,29 @@ class GuidedPhotonWalk : private PhotonWalk {
     bool leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before);
     /// See darts::Splits; the copies share the power.
     void split(const darts::Guide& guide, const Medium& medium, const Vec3f& before);
-    void placeControlVertex(const Medium& medium, const darts::Guide& guide, float h, float surface);
-    /// In direct view only what the camera's image shows: the store's room is for what can count.
-    void depositSeenBeam(const Medium& medium, float surface);
-    /// Ordinary photons share with control vertices where sensor paths can fold.
-    void depositPhoton(const Medium& medium, const darts::Guide& guide, float distance, float h);
+    /// A flight, for a primitive and what comes at its end.
+    struct Flight {
+        const Medium& medium;
+        const darts::Guide& guide;
+        float h, surface;
+    };
+    /// Points: the control vertex.
+    void leaveOn(const Flight& flight, DepositList<Photon>& points);
+    /// Beams: in direct view only what the camera's image shows; the store's room is for what can count.
+    void leaveOn(const Flight& flight, DepositList<PhotonBeam>& beams);
+    /// Points: ordinary photons share with control vertices where sensor paths can fold.
+    void leaveAt(float distance, const Flight& flight, DepositList<Photon>& points);
+    void leaveAt(float distance, const Flight& flight, DepositList<PhotonBeam>& beams);
     /// Ordinary photons share with the control vertices of this flight, by the balance heuristic: where these alone are
     /// not complete, and in bodies that light must leave, whose directions do not follow the connections so closely.
     [[nodiscard]] bool storesPhotons() const {
         return !guidance_.directView() || (residual_.way != darts::Way::Through && !guidance_.meetsDeltaGate());
     }
-    void store(const ArrivalCulling& arrival, const Vec3f& position, double time, const Rgb& power, int bounce);
+    void store(DepositList<Photon>& points, const ArrivalCulling& arrival, const Vec3f& position, double time,
+               const Rgb& power, int bounce);
+    [[nodiscard]] bool storesVertices() const {
+        return context_.storeVolume && std::holds_alternative<DepositList<Photon>>(deposits_.volume);
+    }
     bool survives(const darts::Guide& guide);
     /// Residual at the ray's origin, and the length of the next connection.
     bool look(const darts::Guide& guide, const transport::Start& start);

@@ -20,9 +20,25 @@ constexpr double ConnectionsPerPass = 1 << 17, LeastPerPath = 4.0, MostPerPath =
 constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
 
 struct Batch {
+    explicit Batch(const VolumePrimitive& primitive) : deposits(primitive) {}
     Deposits deposits;
     WalkCounters counters;
 };
+
+/// use(store, list of deposits) of the volume primitive in use: both are variants of one kind.
+template <typename Use>
+void withVolume(VolumeStore& store, const VolumeDeposits& deposits, Use&& use) {
+    std::visit(
+        [&](auto& s) {
+            using Record = typename std::decay_t<decltype(s)>::Record;
+            use(s, std::get<DepositList<Record>>(deposits));
+        },
+        store);
+}
+
+size_t countOf(const VolumeDeposits& deposits) {
+    return std::visit([](const auto& list) { return list.records.size(); }, deposits);
+}
 
 Distribution1D powerDistribution(const Scene& scene) {
     std::vector<float> powers;
@@ -45,28 +61,25 @@ bool needsPhotonsBesideConnections(const Scene& scene, const EffectPlan& plan) {
 }
 
 void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings, Sampler& sampler) {
-    appendPaths(maps.surface, maps.surface.photons, d.surface.photons, d.surface.pathEnds, settings.photonCount,
-                sampler);
-    appendPaths(maps.volume, maps.volume.photons, d.volume.photons, d.volume.pathEnds, settings.volumePhotonCount,
-                sampler);
-    appendPaths(maps.beams, maps.beams.beams, d.beams.beams, d.beams.pathEnds, settings.volumePhotonCount, sampler);
+    appendPaths(maps.surface, d.surface, settings.photonCount, sampler);
+    withVolume(maps.volume, d.volume,
+               [&](auto& store, const auto& list) { appendPaths(store, list, settings.volumePhotonCount, sampler); });
     maps.arrivals.insert(maps.arrivals.end(), d.arrivals.begin(), d.arrivals.end());
 }
 
 /// Room for what the first wave lets expect, so that growing does not hold the photons twice.
 void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const PhotonSettings& settings) {
-    uint64_t surface = 0, volume = 0, beams = 0, paths = 0;
+    uint64_t surface = 0, volume = 0, paths = 0;
     for (const Batch& batch : wave) {
-        surface += batch.deposits.surface.photons.size();
-        volume += batch.deposits.volume.photons.size();
-        beams += batch.deposits.beams.beams.size();
+        surface += batch.deposits.surface.records.size();
+        volume += countOf(batch.deposits.volume);
         paths += batch.deposits.surface.pathEnds.size();
     }
     constexpr double Margin = 1.02;
     const double scale = Margin * double(settings.photonCount) / double(std::max<uint64_t>(paths, 1));
-    maps.surface.photons.reserve(std::min(settings.photonCount, uint64_t(double(surface) * scale)));
-    maps.volume.photons.reserve(std::min(settings.volumePhotonCount, uint64_t(double(volume) * scale)));
-    maps.beams.beams.reserve(std::min(settings.volumePhotonCount, uint64_t(double(beams) * scale)));
+    maps.surface.records.reserve(std::min(settings.photonCount, uint64_t(double(surface) * scale)));
+    const auto room = std::min(settings.volumePhotonCount, uint64_t(double(volume) * scale));
+    std::visit([&](auto& store) { store.records.reserve(room); }, maps.volume);
 }
 
 } // namespace
@@ -74,10 +87,8 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
     : scene_(scene), settings_(settings), arrival_(scene, plan),
       guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
-      storeVolume_(plan.mediumScattering && settings.primitive == VolumePrimitive::Points),
-      storeBeams_(plan.mediumScattering && settings.primitive == VolumePrimitive::Beams),
-      storeSurface_(settings.includeSurfaces && plan.surfaceScattering), glossySensorPaths_(plan.glossySensorPaths),
-      densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
+      storeVolume_(plan.mediumScattering), storeSurface_(settings.includeSurfaces && plan.surfaceScattering),
+      glossySensorPaths_(plan.glossySensorPaths), densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameArrivals_.push_back(arrival_.ofFrame(frame));
 }
@@ -90,10 +101,9 @@ void PhotonPass::setGate(const TimeGate& gate) {
 void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
     // Paths of their own: the target must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, PilotPaths);
-    const WalkContext context{scene_,    settings_, arrival_,     frameArrivals_, 0.0f,
-                              emitters_, false,     storeVolume_, storeBeams_};
+    const WalkContext context{scene_, settings_, arrival_, frameArrivals_, 0.0f, emitters_, false, storeVolume_};
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
-    std::vector<Batch> pilots(paths);
+    std::vector<Batch> pilots(paths, Batch(settings_.primitive));
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         Batch& pilot = pilots[path];
@@ -104,7 +114,7 @@ void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections
     uint64_t deposits = 0;
     for (const Batch& pilot : pilots) {
         worths.insert(worths.end(), pilot.deposits.worths.begin(), pilot.deposits.worths.end());
-        deposits += pilot.deposits.volume.photons.size() + pilot.deposits.beams.beams.size();
+        deposits += countOf(pilot.deposits.volume);
         statistics.add("rays", pilot.counters.rays);
     }
     // Paths until the store of photons or beams is full.
@@ -118,23 +128,29 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     if (connections) setTarget(pass, *connections, statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
-    maps.volume.full = !storeVolume_;
-    maps.beams.full = !storeBeams_;
+    maps.volume = storeOf(settings_.primitive);
+    std::visit([&](auto& store) { store.full = !storeVolume_; }, maps.volume);
+    const auto volumeFull = [&] { return std::visit([](const auto& store) { return store.full; }, maps.volume); };
     uint64_t traced = 0;
     const uint64_t least =
         connections ? std::min(ConnectionsPerPoint * connections->points(), MostLeast) / uint64_t(MostPerPath) : 0;
     Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
     const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
-    const auto finished = [&] {
-        return maps.volume.full && maps.beams.full && (connections ? traced >= least : maps.surface.full);
-    };
+    const auto finished = [&] { return volumeFull() && (connections ? traced >= least : maps.surface.full); };
     while (traced < settings_.photonCount && !finished()) {
         const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
-        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
-        const WalkContext context{
-            scene_,          settings_,          arrival_,          frameArrivals_,   frameShift,
-            emitters_,       !maps.surface.full, !maps.volume.full, !maps.beams.full, connections != nullptr,
-            densityPhotons_, glossySensorPaths_};
+        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch, Batch(settings_.primitive));
+        const WalkContext context{scene_,
+                                  settings_,
+                                  arrival_,
+                                  frameArrivals_,
+                                  frameShift,
+                                  emitters_,
+                                  !maps.surface.full,
+                                  !volumeFull(),
+                                  connections != nullptr,
+                                  densityPhotons_,
+                                  glossySensorPaths_};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
@@ -162,9 +178,12 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     maps.paths = traced;
     statistics.add("surface connections", maps.arrivals.size());
     statistics.add("photons", traced);
-    statistics.add("stored surface photons", maps.surface.photons.size());
-    statistics.add("stored volume photons", maps.volume.photons.size());
-    statistics.add("photon beams", maps.beams.beams.size());
+    statistics.add("stored surface photons", maps.surface.records.size());
+    forEachPrimitive(settings_.primitive, [&](const auto& p) {
+        using Record = typename std::decay_t<decltype(p)>::Record;
+        const auto* store = std::get_if<Store<Record>>(&maps.volume);
+        statistics.add(p.Stored, store ? store->records.size() : 0);
+    });
     return maps;
 }
 

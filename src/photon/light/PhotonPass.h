@@ -3,7 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/PhotonGuidance.h"
-#include "photon/primitives/beams/PhotonBeam.h"
+#include "photon/primitives/VolumePrimitive.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
 
@@ -13,8 +13,8 @@ namespace tungsten::photon {
 
 /// The stores of one pass.
 struct PhotonMaps {
-    PhotonStore surface, volume;
-    BeamStore beams;
+    Store<Photon> surface;
+    VolumeStore volume;
     /// What vertices sent to sensor points, by all paths of the pass.
     std::vector<SurfaceArrival> arrivals;
     uint64_t paths = 0;
@@ -35,7 +35,6 @@ class PhotonPass {
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
     [[nodiscard]] bool storesVolume() const { return storeVolume_; }
-    [[nodiscard]] bool storesBeams() const { return storeBeams_; }
     [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 
   private:
@@ -48,7 +47,7 @@ class PhotonPass {
     std::unique_ptr<PhotonGuidance> guidance_;
     std::vector<ArrivalCulling> frameArrivals_; ///< when light paths aim at single frames
     Distribution1D emitters_;                   ///< proportional to power
-    bool storeVolume_, storeBeams_, storeSurface_, glossySensorPaths_, densityPhotons_;
+    bool storeVolume_, storeSurface_, glossySensorPaths_, densityPhotons_;
 };
 
 } // namespace tungsten::photon

@@ -14,7 +14,8 @@ void PhotonWalk::run() {
         if (const Medium* medium = scene_.medium(region_)) {
             const float reach = hit ? hit->t : Infinity;
             if (medium->scatters() && ++flights_ > medium->maxBounces) return;
-            if (context_.storeBeams && medium->scatters()) depositBeam(*medium, reach);
+            if (context_.storeVolume && medium->scatters())
+                std::visit([&](auto& list) { depositFlight(list, *medium, reach); }, deposits_.volume);
             const FlightSample flight = sampleFlight(*medium, reach, sampler_);
             power_ = power_ * flight.weight;
             if (!flight.exited) {
@@ -47,17 +48,28 @@ bool PhotonWalk::bears(const Rgb& power) {
     return false;
 }
 
-bool PhotonWalk::deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium) {
+bool PhotonWalk::deposit(DepositList<Photon>& list, const Vec3f& position, const Rgb& power, int medium) {
     if (!arrival_->mayCount(position, time_)) return false;
-    list.photons.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
+    list.records.push_back({time_, position, ray_.direction, power, uint16_t(bounce_), int16_t(medium)});
     return true;
 }
 
-void PhotonWalk::depositBeam(const Medium& medium, float reach) {
+void PhotonWalk::depositFlight(DepositList<Photon>&, const Medium&, float) {}
+
+void PhotonWalk::depositFlight(DepositList<PhotonBeam>& beams, const Medium& medium, float reach) {
     if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
-    storeBeam(deposits_.beams, *arrival_, medium,
+    storeBeam(beams, *arrival_, medium,
               {time_, ray_.origin, ray_.direction, power_, 0.0f, reach, uint16_t(bounce_), int16_t(region_.medium)});
 }
+
+void PhotonWalk::depositVertex(DepositList<Photon>& points, const Vec3f& position) {
+    const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
+    if (!orderCounts || !bears(power_)) return;
+    ++counters_.volumeDeposits;
+    if (deposit(points, position, power_, region_.medium)) ++counters_.countingDeposits;
+}
+
+void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
 
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     const Vec3f position = ray_.at(distance);
@@ -65,11 +77,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     ++bounce_;
     ++consecutiveMedium_;
     if (!arrival_->mayContinue(position, time_)) return false;
-    const bool orderCounts = context_.settings.lowOrderScattering || consecutiveMedium_ > 1;
-    if (context_.storeVolume && orderCounts && bears(power_)) {
-        ++counters_.volumeDeposits;
-        if (deposit(deposits_.volume, position, power_, region_.medium)) ++counters_.countingDeposits;
-    }
+    if (context_.storeVolume) std::visit([&](auto& list) { depositVertex(list, position); }, deposits_.volume);
     connectable_ = true;
     fromLight_ = false;
     ray_ = Ray{position, medium.phase.sample(ray_.direction, sampler_.next2D())};

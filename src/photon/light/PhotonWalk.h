@@ -2,8 +2,8 @@
 // One light path and what it deposits.
 
 #include "photon/PhotonSettings.h"
+#include "photon/light/Deposits.h"
 #include "photon/store/ArrivalCulling.h"
-#include "photon/store/Deposits.h"
 
 #include "tungsten/scene/Interaction.h"
 
@@ -26,7 +26,7 @@ struct WalkContext {
     std::span<const ArrivalCulling> frameArrivals; ///< for paths that aim at single frames
     float frameShift; ///< of the order of frames: over passes, each is aimed at equally often
     const Distribution1D& emitters;
-    bool storeSurface, storeVolume, storeBeams;
+    bool storeSurface, storeVolume;
     bool connects = false; ///< to surfaces: SurfaceConnections
     /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
     /// photons are, not from how dense those few are that bring what connections cannot.
@@ -49,8 +49,11 @@ class PhotonWalk {
     /// False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
     bool scatterOnSurface(const SurfaceHit& hit) { return arriveOnSurface(hit) && leaveSurface(); }
-    /// The flight ahead, up to `reach`.
-    void depositBeam(const Medium& medium, float reach);
+    /// What a flight through a medium, up to `reach`, leaves for a primitive, and what the vertex at its end does.
+    void depositFlight(DepositList<Photon>& points, const Medium& medium, float reach);
+    void depositFlight(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
+    void depositVertex(DepositList<Photon>& points, const Vec3f& position);
+    void depositVertex(DepositList<PhotonBeam>& beams, const Vec3f& position);
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
@@ -59,7 +62,7 @@ class PhotonWalk {
     /// False, and counted if it is not finite, for a power that leaves nothing.
     bool bears(const Rgb& power);
     /// False if it cannot be gathered.
-    bool deposit(DepositList& list, const Vec3f& position, const Rgb& power, int medium);
+    bool deposit(DepositList<Photon>& list, const Vec3f& position, const Rgb& power, int medium);
 
     const WalkContext& context_;
     const Scene& scene_;

@@ -2,7 +2,7 @@
 // The nearest photons about a point, by Embree point queries over the photons' own structure.
 
 #include "photon/primitives/points/EmbreePoints.h"
-#include "photon/store/PhotonStore.h"
+#include "photon/store/Store.h"
 
 #include <memory>
 

@@ -2,26 +2,25 @@
 // Whole light paths into a store of limited room.
 
 #include "photon/store/FoldedSelection.h"
-#include "photon/store/PhotonStore.h"
+#include "photon/store/Store.h"
 
 #include "tungsten/core/Random.h"
 
 namespace tungsten::photon {
 
-/// Appends the deposits of consecutive paths until one does not fit, which is neither kept nor counted; pathEnds[i] is
-/// where path i's end.
+/// Appends the deposits of consecutive paths until one does not fit, which is neither kept nor counted.
 ///
 /// The path that does not fit is larger than others, but what is kept is not smaller for it: of all orders in which the
 /// paths up to it might have come, those that stop with it end with each path without which the rest fits equally
 /// often, so that every path brings on average what it does in a store without limits. That needs a path to be kept:
 /// one that alone is too much for the room is thinned to it, by `sampler`.
 template <typename Record>
-void appendPaths(StoreState& store, std::vector<Record>& records, const std::vector<Record>& deposits,
-                 const std::vector<uint32_t>& pathEnds, uint64_t capacity, Sampler& sampler) {
-    auto start = deposits.begin();
-    for (const uint32_t pathEnd : pathEnds) {
+void appendPaths(Store<Record>& store, const DepositList<Record>& deposits, uint64_t capacity, Sampler& sampler) {
+    std::vector<Record>& records = store.records;
+    auto start = deposits.records.begin();
+    for (const uint32_t pathEnd : deposits.pathEnds) {
         if (store.full) return;
-        const auto end = deposits.begin() + ptrdiff_t(pathEnd);
+        const auto end = deposits.records.begin() + ptrdiff_t(pathEnd);
         const auto count = uint64_t(end - start);
         if (records.size() + std::min(count, capacity) > capacity) {
             store.full = true;

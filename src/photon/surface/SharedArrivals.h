@@ -2,7 +2,7 @@
 // Light that connections brought to sensor points, shared among neighbouring ones: a density estimate on what the
 // camera sees, as gathering photons is, but of connections that arrive in time.
 
-#include "photon/store/Deposits.h"
+#include "photon/surface/SurfaceArrival.h"
 #include "photon/view/Sensor.h"
 #include "photon/view/SensorRecord.h"
 

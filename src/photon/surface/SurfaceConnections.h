@@ -2,9 +2,9 @@
 // Light that reaches visible surfaces from the vertices of light paths: instead of waiting for photons to hit a surface
 // just in time, vertices look for surface points that the camera sees at the right time.
 
-#include "photon/store/Deposits.h"
 #include "photon/surface/SensorClusters.h"
 #include "photon/surface/SpreadArrival.h"
+#include "photon/surface/SurfaceArrival.h"
 #include "photon/view/Sensor.h"
 #include "photon/view/SensorRecord.h"
 

@@ -57,9 +57,9 @@ void filter(const RTCFilterFunctionNArguments* arguments) {
 
 } // namespace
 
-BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius,
-                       bool fewRays)
-    : scene_(scene), sensor_(sensor), beams_(beams), radius_(radius), structure_(beams, radius, fewRays) {}
+BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams,
+                       const Radii& radius, bool fewRays)
+    : scene_(scene), sensor_(sensor), beams_(beams), radius_(radius[0]), structure_(beams, radius_, fewRays) {}
 
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;

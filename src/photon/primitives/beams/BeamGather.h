@@ -1,8 +1,9 @@
 #pragma once
 // Gathering photon beams along a camera segment with the one-dimensional kernel.
 
+#include "photon/primitives/Radii.h"
 #include "photon/primitives/beams/EmbreeBeams.h"
-#include "photon/primitives/points/PointGather.h"
+#include "photon/view/CameraSegment.h"
 
 #include <optional>
 
@@ -31,7 +32,7 @@ class BeamGather {
   public:
     /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
     /// `fewRays`: few segments will be asked for.
-    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, float radius,
+    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, const Radii& radius,
                bool fewRays = false);
 
     /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the

@@ -15,13 +15,13 @@ float visibleReach(const Medium& medium) {
 
 } // namespace
 
-void storeBeam(BeamList& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight) {
+void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight) {
     flight.tEnd = std::min(flight.tEnd, visibleReach(medium));
     const FlightPart part =
         arrival.countingPart(flight.base, flight.direction, flight.time, double(medium.speedOfLight));
     flight.tStart = std::max(flight.tStart, float(part.start));
     flight.tEnd = std::min(flight.tEnd, float(part.end));
-    if (flight.tStart < flight.tEnd) list.beams.push_back(flight);
+    if (flight.tStart < flight.tEnd) list.records.push_back(flight);
 }
 
 std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& arrival,

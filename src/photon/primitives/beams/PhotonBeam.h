@@ -2,7 +2,7 @@
 // Photon beams: flights of light paths through a scattering medium.
 
 #include "photon/store/ArrivalCulling.h"
-#include "photon/store/PhotonStore.h"
+#include "photon/store/Store.h"
 
 namespace tungsten::photon {
 
@@ -20,21 +20,9 @@ struct PhotonBeam {
 };
 static_assert(sizeof(PhotonBeam) == 56, "millions are stored: no padding");
 
-/// Beams of consecutive paths; pathEnds[i] is where path i's end.
-struct BeamList {
-    std::vector<PhotonBeam> beams;
-    std::vector<uint32_t> pathEnds;
-    void endPath() { pathEnds.push_back(uint32_t(beams.size())); }
-};
-
-/// Beams in path order.
-struct BeamStore : StoreState {
-    std::vector<PhotonBeam> beams;
-};
-
 /// Appends the part of a flight that sensor paths can see inside the gate; nothing if there is none. `flight` runs from
 /// tStart 0 to tEnd, the next surface (Infinity if there is none).
-void storeBeam(BeamList& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight);
+void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight);
 
 /// The parts of the beams that sensor paths without mirror or refraction can see inside the gate; needs
 /// arrival.straightTimesKnown().

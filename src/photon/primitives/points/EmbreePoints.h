@@ -1,7 +1,7 @@
 #pragma once
 // An Embree structure over points with radii, owned.
 
-#include "photon/store/PhotonStore.h"
+#include "photon/store/Store.h"
 
 #include <embree3/rtcore.h>
 

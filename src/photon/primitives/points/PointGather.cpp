@@ -61,20 +61,19 @@ void filter(const RTCFilterFunctionNArguments* arguments) {
 
 } // namespace
 
-PointGather::PointGather(const Scene& scene, const Sensor& sensor, const PhotonStore& store,
-                         const std::vector<float>& radii)
-    : scene_(scene), sensor_(sensor), store_(store) {
+PointGather::PointGather(const Scene& scene, const Sensor& sensor, const std::vector<Photon>& photons,
+                         const Radii& radii, bool)
+    : scene_(scene), sensor_(sensor), photons_(photons) {
     std::vector<PointWithRadius> points;
-    points.reserve(store.photons.size());
-    for (size_t i = 0; i < store.photons.size(); ++i)
-        points.push_back({store.photons[i].position, radii[radii.size() == 1 ? 0 : i]});
-    for (const float radius : radii) squaredRadii_.push_back(radius * radius);
+    points.reserve(photons.size());
+    for (size_t i = 0; i < photons.size(); ++i) points.push_back({photons[i].position, radii[i]});
+    for (const float radius : radii.values()) squaredRadii_.push_back(radius * radius);
     points_ = std::make_unique<EmbreePoints>(points);
 }
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
-    if (store_.photons.empty()) return 0;
-    Query query{{}, &scene_, &sensor_, &store_.photons, &squaredRadii_, &segment, &sums, 0};
+    if (photons_.empty()) return 0;
+    Query query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &segment, &sums, 0};
     rtcInitIntersectContext(&query.context);
     query.context.filter = filter;
     // Embree skips discs that hold or nearly touch the ray's origin: start two radii behind it and test exactly in

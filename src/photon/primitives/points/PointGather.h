@@ -1,8 +1,10 @@
 #pragma once
 // Gathering volume photons along a camera segment with the two-dimensional kernel.
 
+#include "photon/primitives/Radii.h"
 #include "photon/primitives/points/EmbreePoints.h"
-#include "photon/store/PhotonStore.h"
+#include "photon/store/Store.h"
+#include "photon/view/CameraSegment.h"
 #include "photon/view/Sensor.h"
 
 #include "tungsten/scene/Scene.h"
@@ -18,24 +20,12 @@ inline float biweight(float squaredDistance, float squaredRadius) {
     return x > 0.0f ? 3.0f * InvPi / squaredRadius * x * x : 0.0f;
 }
 
-/// A camera segment in one medium.
-struct CameraSegment {
-    Vec3f origin, direction;
-    float length; ///< may be infinite
-    double time;  ///< of the camera path up to the origin
-    double inverseSpeed;
-    int interactions; ///< of the camera path up to the origin
-    int medium;
-};
-
-/// Sums of contributions per frame; doubles, so that the order of the sum shows only beyond the seventh digit.
-using FrameSums = std::vector<Vec3d>;
-
 class PointGather {
   public:
-    /// `radii` holds one radius per photon, or one for all. `sensor` has the pass's gate: a delta gate's temporal
-    /// kernel is a narrow box.
-    PointGather(const Scene& scene, const Sensor& sensor, const PhotonStore& store, const std::vector<float>& radii);
+    /// `photons` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box. Few
+    /// rays or many need the same structure.
+    PointGather(const Scene& scene, const Sensor& sensor, const std::vector<Photon>& photons, const Radii& radii,
+                bool fewRays = false);
 
     /// Adds sum of power K f_p T, weighed by the sensor, over the photons near the segment to the frames they fall in.
     /// Returns how many were gathered.
@@ -44,7 +34,7 @@ class PointGather {
   private:
     const Scene& scene_;
     Sensor sensor_;
-    const PhotonStore& store_;
+    const std::vector<Photon>& photons_;
     std::vector<float> squaredRadii_;
     std::unique_ptr<EmbreePoints> points_;
 };

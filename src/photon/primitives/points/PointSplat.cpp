@@ -214,12 +214,11 @@ std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, c
 
 } // namespace
 
-uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
-                      const std::vector<float>& radii, double scale, Film& film) {
+uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                      const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, scale);
-    std::vector<Spot> spots(store.photons.size());
-    tbb::parallel_for(size_t(0), spots.size(),
-                      [&](size_t i) { spots[i] = splatter.spot(store.photons[i], radii[radii.size() == 1 ? 0 : i]); });
+    std::vector<Spot> spots(photons.size());
+    tbb::parallel_for(size_t(0), spots.size(), [&](size_t i) { spots[i] = splatter.spot(photons[i], radii[i]); });
     const auto byBand = spotsByBand(spots, record);
     std::atomic<uint64_t> total = 0;
     tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {

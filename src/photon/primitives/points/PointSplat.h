@@ -1,7 +1,8 @@
 #pragma once
 // Volume photons brought to the pixels instead of pixels to the photons: for straight rays from one point.
 
-#include "photon/store/PhotonStore.h"
+#include "photon/primitives/Radii.h"
+#include "photon/store/Store.h"
 #include "photon/view/Sensor.h"
 #include "photon/view/SensorRecord.h"
 
@@ -11,9 +12,9 @@ namespace tungsten::photon {
 
 /// Adds what PointGather would gather along the recorded straight rays to the pass image, times `scale`. Each photon
 /// visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons and a
-/// traversal per ray (benchmarks/micro, gather). `radii`: one per photon, or one for all. Returns the number of photons
+/// traversal per ray (benchmarks/micro, gather). Returns the number of photons
 /// gathered, one per pixel and photon. `sensor` has the pass's gate.
-uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PhotonStore& store,
-                      const std::vector<float>& radii, double scale, Film& film);
+uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                      const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film);
 
 } // namespace tungsten::photon

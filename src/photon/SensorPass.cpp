@@ -1,4 +1,4 @@
-#include "photon/view/SensorPass.h"
+#include "photon/SensorPass.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
@@ -10,7 +10,7 @@ namespace {
 constexpr size_t TileSide = 8;
 
 struct SensorCounters {
-    uint64_t rays = 0, gathered = 0, gatheredBeams = 0, nonFinite = 0;
+    uint64_t rays = 0, gathered = 0, gatheredInVolumes = 0, nonFinite = 0;
 };
 
 /// Buffers that a worker reuses from pixel to pixel.
@@ -30,9 +30,9 @@ class SensorGather {
 
     void segment(const SensorState& state, float length) {
         if (structures_.splatted && (!state.folded || oversampled_)) return;
-        const GatherStructures& s = structures_;
-        gatherVolume(state, length, s.straightPoints && !state.folded ? s.straightPoints.get() : s.points.get(),
-                     s.straightBeams && !state.folded ? s.straightBeams.get() : s.beams.get());
+        gatherVolume(state, length, [&](const auto& gather, const CameraSegment& segment) {
+            return gather.gather(segment, state.folded, workspace_.volume);
+        });
     }
 
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
@@ -53,8 +53,9 @@ class SensorGather {
     /// Highlight path `part`: a part of what folded rays meet in media.
     void segmentPart(const SensorState& state, float length, uint32_t part) {
         if (!structures_.splatted || !state.folded) return;
-        gatherVolume(state, length, structures_.pointParts.empty() ? nullptr : structures_.pointParts[part].get(),
-                     structures_.beamParts.empty() ? nullptr : structures_.beamParts[part].get());
+        gatherVolume(state, length, [&](const auto& gather, const CameraSegment& segment) {
+            return gather.gatherPart(segment, part, workspace_.volume);
+        });
     }
 
     /// Light from the lights by way of glossy surfaces; `share`: of the path in its pixel.
@@ -67,22 +68,24 @@ class SensorGather {
     }
 
   private:
-    void gatherVolume(const SensorState& state, float length, const PointGather* points, const BeamGather* beams) {
-        if (!scene_.medium(state.region) || (!points && !beams)) return;
+    /// look(gather, segment) fills workspace_.volume and returns how many records it met.
+    template <typename Look>
+    void gatherVolume(const SensorState& state, float length, const Look& look) {
+        if (!scene_.medium(state.region)) return;
         const CameraSegment segment{
             state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
             state.interactions, state.region.medium};
-        if (points) addVolume(segment, *points, state.throughput * structures_.maps.volume.scale(), counters_.gathered);
-        if (beams)
-            addVolume(segment, *beams, state.throughput * structures_.maps.beams.scale(), counters_.gatheredBeams);
+        std::visit(Overloaded{[](std::monostate) {},
+                              [&](const auto& gather) {
+                                  std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
+                                  const uint64_t gathered = look(gather, segment);
+                                  if (gathered > 0) addVolume(state.throughput * gather.scale(), gathered);
+                              }},
+                   structures_.volume);
     }
 
-    template <typename Gather>
-    void addVolume(const CameraSegment& segment, const Gather& gather, const Rgb& scale, uint64_t& counter) {
-        std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
-        const uint64_t gathered = gather.gather(segment, workspace_.volume);
-        if (gathered == 0) return;
-        counter += gathered;
+    void addVolume(const Rgb& scale, uint64_t gathered) {
+        counters_.gatheredInVolumes += gathered;
         const Vec3d weight(double(scale.x), double(scale.y), double(scale.z));
         for (size_t frame = 0; frame < workspace_.sums.size(); ++frame)
             workspace_.sums[frame] += workspace_.volume[frame] * weight;
@@ -112,12 +115,12 @@ class SensorGather {
 
     /// Density estimate with a constant kernel over the k nearest photons (scene format, section 10.4).
     void gatherSurface(const SensorState& state, const SurfaceInteraction& surface) {
-        const auto& photons = structures_.maps.surface.photons;
+        const auto& photons = structures_.surfacePhotons.records;
         const float squaredRadius = structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,
                                                                structures_.gatherCount, workspace_.neighbours);
         if (!(squaredRadius > 0.0f)) return;
         counters_.gathered += workspace_.neighbours.size();
-        const float scale = structures_.maps.surface.scale() * InvPi / squaredRadius;
+        const float scale = structures_.surfacePhotons.scale() * InvPi / squaredRadius;
         const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
         for (const auto& neighbour : workspace_.neighbours) {
             const Photon& photon = photons[neighbour.index];
@@ -194,7 +197,10 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                 renderPixel(int(x), int(y), workspace, counters);
         statistics.add("rays", counters.rays);
         statistics.add("gathered photons", counters.gathered);
-        statistics.add("gathered beams", counters.gatheredBeams);
+        std::visit(
+            Overloaded{[](std::monostate) {},
+                       [&](const auto& gather) { statistics.add(gather.GatheredCounter, counters.gatheredInVolumes); }},
+            structures.volume);
         statistics.add("non-finite samples", counters.nonFinite);
     });
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Photons of one pass, and how many light paths they stand for.
+// What light paths leave, and how many of them it stands for.
 
 #include "tungsten/core/Types.h"
 
@@ -21,17 +21,25 @@ static_assert(sizeof(Photon) == 48, "millions are stored: no padding");
 /// Longest light path that a photon's bounce can tell.
 inline constexpr int MostPhotonBounces = 65535;
 
-/// A store takes whole paths: it is full when the next path no longer fits (StoreFilling.h).
-struct StoreState {
+/// Records of consecutive paths; pathEnds[i] is where path i's end.
+template <typename R>
+struct DepositList {
+    using Record = R;
+    std::vector<R> records;
+    std::vector<uint32_t> pathEnds;
+    void endPath() { pathEnds.push_back(uint32_t(records.size())); }
+};
+
+/// Records of one pass in path order, so the content does not depend on the number of threads. A store takes whole
+/// paths: it is full when the next path no longer fits (StoreFilling.h).
+template <typename R>
+struct Store {
+    using Record = R;
+    std::vector<R> records;
     uint64_t paths = 0; ///< light paths that the content stands for
     bool full = false;
 
     [[nodiscard]] float scale() const { return paths > 0 ? float(1.0 / double(paths)) : 0.0f; }
-};
-
-/// Photons in path order, so the content does not depend on the number of threads.
-struct PhotonStore : StoreState {
-    std::vector<Photon> photons;
 };
 
 } // namespace tungsten::photon

@@ -1,0 +1,92 @@
+#pragma once
+// One pass's records of a volume primitive, splatted where sensor rays are straight, gathered where they fold.
+
+#include "photon/primitives/VolumePrimitive.h"
+#include "photon/primitives/beams/BeamGather.h"
+#include "photon/primitives/points/PointGather.h"
+#include "photon/view/SensorRecord.h"
+
+#include "tungsten/film/Film.h"
+
+#include <optional>
+
+namespace tungsten::photon {
+
+/// Which sensor rays there are.
+struct SensorRays {
+    bool splatted = false; ///< straight ones have their records brought to them
+    bool folded = true;    ///< there are others
+    size_t parts = 0;      ///< highlight paths of a pixel, each of which gathers its own part on folded rays
+    float uFolded = 0.0f;  ///< in [0, 1): chooses what folded rays gather beside splats
+};
+
+template <typename Primitive>
+class VolumeGather {
+  public:
+    using Record = typename Primitive::Record;
+    static constexpr const char* GatheredCounter = Primitive::Gathered;
+
+    /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
+    VolumeGather(const Scene& scene, const Sensor& sensor, const ArrivalCulling& culling, Store<Record> store,
+                 Radii radii, const SensorRays& rays)
+        : scene_(scene), sensor_(sensor), scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
+        if (!culling.directView() && culling.straightTimesKnown())
+            straight_ = Primitive::straight(scene, culling, all_.records, all_.radii);
+        if (!rays.splatted) {
+            gather_ = gatherOf(all_, false);
+            if (straight_) straightGather_ = gatherOf(*straight_, false);
+        } else if (rays.folded) {
+            selectFolded(rays);
+        }
+    }
+
+    VolumeGather(const VolumeGather&) = delete;
+    VolumeGather& operator=(const VolumeGather&) = delete;
+
+    /// On the records' power: 1 / number of paths.
+    [[nodiscard]] float scale() const { return scale_; }
+    /// Adds what straight rays see to the pass image; returns the records that it met.
+    uint64_t splat(const SensorRecord& record, double scale, Film& film) const {
+        return Primitive::splat(scene_, sensor_, record, straight_ ? *straight_ : all_, scale, film);
+    }
+    /// Adds what a segment meets to the sums; returns how many records that were.
+    uint64_t gather(const CameraSegment& segment, bool folded, FrameSums& sums) const {
+        const auto& structure = straightGather_ && !folded ? straightGather_ : gather_;
+        return structure ? structure->gather(segment, sums) : 0;
+    }
+    /// The same for a highlight path's part.
+    uint64_t gatherPart(const CameraSegment& segment, size_t part, FrameSums& sums) const {
+        return parts_.empty() ? 0 : parts_[part]->gather(segment, sums);
+    }
+
+  private:
+    using Gather = typename Primitive::Gather;
+
+    [[nodiscard]] std::unique_ptr<Gather> gatherOf(const Selection<Record>& selection, bool fewRays) const {
+        return std::make_unique<Gather>(scene_, sensor_, selection.records, selection.radii, fewRays);
+    }
+    void selectFolded(const SensorRays& rays) {
+        const double share = Primitive::foldedShare(all_.records, all_.radii);
+        folded_ = {chosenEvenly(all_.records, share, rays.uFolded), all_.radii.chosen(share, rays.uFolded)};
+        gather_ = gatherOf(folded_, true);
+        auto hands = dealt(folded_.records, rays.parts);
+        const auto radii = folded_.radii.dealt(rays.parts);
+        dealt_.resize(rays.parts);
+        for (size_t k = 0; k < rays.parts; ++k) {
+            dealt_[k] = {std::move(hands[k]), radii[k]};
+            parts_.push_back(gatherOf(dealt_[k], true));
+        }
+    }
+
+    const Scene& scene_;
+    Sensor sensor_;
+    float scale_;
+    Selection<Record> all_;
+    std::optional<Selection<Record>> straight_; ///< none: all
+    Selection<Record> folded_;
+    std::vector<Selection<Record>> dealt_;
+    std::unique_ptr<Gather> gather_, straightGather_;
+    std::vector<std::unique_ptr<Gather>> parts_;
+};
+
+} // namespace tungsten::photon

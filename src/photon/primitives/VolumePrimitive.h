@@ -1,0 +1,47 @@
+#pragma once
+// What volumes store, splat and gather: a closed set, chosen once. Adding a primitive is a folder with a type like
+// Points and Beams, its name in the set, and what each walk leaves for it on a flight and at a vertex.
+
+#include "photon/primitives/beams/Beams.h"
+#include "photon/primitives/points/Points.h"
+
+#include "tungsten/core/Overloaded.h"
+
+#include <variant>
+
+namespace tungsten::photon {
+
+using VolumePrimitive = std::variant<Points, Beams>;
+
+namespace detail {
+
+template <template <typename> class Container, typename... Primitives>
+std::variant<Container<typename Primitives::Record>...> containerOf(const std::variant<Primitives...>& primitive) {
+    return std::visit(
+        [](const auto& p) {
+            using Record = typename std::decay_t<decltype(p)>::Record;
+            return std::variant<Container<typename Primitives::Record>...>(Container<Record>{});
+        },
+        primitive);
+}
+
+} // namespace detail
+
+/// Deposits of consecutive paths, and a pass's store of them.
+using VolumeDeposits = decltype(detail::containerOf<DepositList>(VolumePrimitive{}));
+using VolumeStore = decltype(detail::containerOf<Store>(VolumePrimitive{}));
+
+inline VolumeDeposits depositsOf(const VolumePrimitive& primitive) {
+    return detail::containerOf<DepositList>(primitive);
+}
+inline VolumeStore storeOf(const VolumePrimitive& primitive) {
+    return detail::containerOf<Store>(primitive);
+}
+
+/// Calls use(p) for a value of every primitive.
+template <typename Use, typename... Primitives>
+void forEachPrimitive(const std::variant<Primitives...>&, Use&& use) {
+    (use(Primitives{}), ...);
+}
+
+} // namespace tungsten::photon

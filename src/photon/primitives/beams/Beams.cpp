@@ -1,0 +1,40 @@
+#include "photon/primitives/beams/Beams.h"
+
+#include "photon/PhotonSettings.h"
+#include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/beams/BeamSplat.h"
+
+namespace tungsten::photon {
+
+float Beams::reach(const PhotonSettings& settings) {
+    return settings.volumeRadius;
+}
+
+Radii Beams::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step) {
+    return settings.volumeRadius * (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha))
+                                              : beamRadiusFactor(step, settings.alpha));
+}
+
+Selection<PhotonBeam> Beams::straight(const Scene& scene, const ArrivalCulling& culling,
+                                      const std::vector<PhotonBeam>& beams, const Radii& radii) {
+    return {straightParts(scene, culling, beams), radii};
+}
+
+double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii) {
+    constexpr double MeanSine = 0.25 * double(Pi);
+    const float radius = radii[0];
+    FoldedMeeting meeting;
+    for (const PhotonBeam& beam : beams) {
+        meeting.include(beam.base + beam.direction * beam.tStart, radius);
+        meeting.include(beam.base + beam.direction * beam.tEnd, radius);
+        meeting.addArea(MeanSine * 2.0 * double(radius) * double(beam.tEnd - beam.tStart));
+    }
+    return meeting.share();
+}
+
+uint64_t Beams::splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                      const Selection<PhotonBeam>& beams, double scale, Film& film) {
+    return splatBeams(scene, sensor, record, beams.records, beams.radii[0], scale, film);
+}
+
+} // namespace tungsten::photon

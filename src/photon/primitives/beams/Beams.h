@@ -1,0 +1,38 @@
+#pragma once
+// Photon beams: every flight through a medium, gathered with a one-dimensional kernel about camera rays.
+
+#include "photon/primitives/Radii.h"
+#include "photon/primitives/beams/PhotonBeam.h"
+
+namespace tungsten {
+class Film;
+}
+
+namespace tungsten::photon {
+
+struct PhotonSettings;
+struct SensorRecord;
+class BeamGather;
+
+/// As Points; one radius for all.
+struct Beams {
+    using Record = PhotonBeam;
+    using Gather = BeamGather;
+    static constexpr const char* Type = "beams";
+    static constexpr bool AtVertices = false;
+    static constexpr const char* Effect = "photon beams";
+    static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
+    static constexpr const char* Stored = "photon beams";
+    static constexpr const char* Gathered = "gathered beams";
+
+    static float reach(const PhotonSettings& settings);
+    static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
+                       uint32_t step);
+    static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
+                                          const std::vector<PhotonBeam>& beams, const Radii& radii);
+    static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
+    static uint64_t splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                          const Selection<PhotonBeam>& beams, double scale, Film& film);
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,50 @@
+#include "photon/primitives/points/Points.h"
+
+#include "photon/PhotonSettings.h"
+#include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/points/PointGather.h"
+#include "photon/primitives/points/PointSplat.h"
+
+namespace tungsten::photon {
+
+float Points::reach(const PhotonSettings& settings) {
+    return settings.fixedVolumeRadius ? settings.volumeRadius : Infinity;
+}
+
+Radii Points::radii(const PhotonSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step) {
+    const float factor = pointRadiusFactor(step, settings.volumeAlpha);
+    if (settings.fixedVolumeRadius) return settings.volumeRadius * factor;
+    std::vector<float> radii = adaptiveRadii(photons);
+    // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
+    for (float& radius : radii) radius *= std::sqrt(factor);
+    return radii;
+}
+
+Selection<Photon> Points::straight(const Scene&, const ArrivalCulling& culling, const std::vector<Photon>& photons,
+                                   const Radii& radii) {
+    Selection<Photon> seen;
+    std::vector<float> own;
+    for (size_t i = 0; i < photons.size(); ++i) {
+        if (!culling.seenStraight(photons[i].position, photons[i].time)) continue;
+        seen.records.push_back(photons[i]);
+        if (!radii.single()) own.push_back(radii[i]);
+    }
+    seen.radii = radii.single() ? radii : Radii(std::move(own));
+    return seen;
+}
+
+double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radii) {
+    FoldedMeeting meeting;
+    for (size_t i = 0; i < photons.size(); ++i) {
+        meeting.include(photons[i].position, radii[i]);
+        meeting.addArea(double(Pi * radii[i] * radii[i]));
+    }
+    return meeting.share();
+}
+
+uint64_t Points::splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                       const Selection<Photon>& photons, double scale, Film& film) {
+    return splatPhotons(scene, sensor, record, photons.records, photons.radii, scale, film);
+}
+
+} // namespace tungsten::photon

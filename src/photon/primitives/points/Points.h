@@ -1,0 +1,42 @@
+#pragma once
+// Photon points: a deposit where a light path scatters, gathered with a two-dimensional kernel about camera rays.
+
+#include "photon/primitives/Radii.h"
+#include "photon/store/ArrivalCulling.h"
+#include "photon/store/Store.h"
+
+namespace tungsten {
+class Film;
+}
+
+namespace tungsten::photon {
+
+struct PhotonSettings;
+struct SensorRecord;
+class PointGather;
+
+struct Points {
+    using Record = Photon;
+    using Gather = PointGather;
+    static constexpr const char* Type = "points"; ///< volume_photon_type
+    static constexpr bool AtVertices = true;      ///< records are vertices, so that control vertices can be
+    static constexpr const char* Effect = "volume photon points";
+    static constexpr const char* Reason = "a medium scatters";
+    static constexpr const char* Stored = "stored volume photons"; ///< counters
+    static constexpr const char* Gathered = "gathered photons";
+
+    /// From sensor rays that a record can show on. Any, where radii follow the density: they are known when the store
+    /// is full, and what is stored makes the density.
+    static float reach(const PhotonSettings& settings);
+    static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
+                       uint32_t step);
+    /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
+    static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
+                                      const std::vector<Photon>& photons, const Radii& radii);
+    /// The part that folded rays need where straight ones have theirs splatted (FoldedMeeting).
+    static double foldedShare(const std::vector<Photon>& photons, const Radii& radii);
+    static uint64_t splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                          const Selection<Photon>& photons, double scale, Film& film);
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,18 @@
+#pragma once
+// What connections bring to sensor points.
+
+#include "tungsten/core/Types.h"
+
+#include <cstdint>
+
+namespace tungsten::photon {
+
+/// Light that a connection brought to a sensor point.
+struct SurfaceArrival {
+    uint32_t point; ///< index in the SensorRecord
+    int32_t frame;
+    Vec3f from; ///< unit direction it came from
+    Rgb light;  ///< of one path: times BSDF and cosine, radiance times the frame's width
+};
+
+} // namespace tungsten::photon
