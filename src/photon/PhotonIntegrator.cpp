@@ -20,102 +20,15 @@ uint32_t surfaceSamples(const Vec2i& resolution) {
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
-void PhotonIntegrator::planVolume(EffectPlan& plan) const {
-    std::visit(
-        [&](const auto& p) {
-            plan.describe(p.Effect, plan.mediumScattering,
-                          plan.mediumScattering ? p.Reason
-                                                : "no medium scatters: no volume photon is stored or gathered");
-        },
-        settings_.primitive);
-    const bool delta = scene_->transport.gate.delta;
-    const bool beams = std::holds_alternative<Beams>(settings_.primitive);
-    const auto guidance = beams ? nullptr : PhotonGuidance::make(*scene_, settings_.scheme, plan);
-    plan.describe(
-        "temporal kernel", delta,
-        !delta ? "the gate has a width, or none"
-        : guidance && guidance->meetsDeltaGate()
-            ? "delta gate: a box about it that narrows with the radius; control vertices lie on the gate itself"
-            : "delta gate: a box about it that narrows with the radius");
-}
-
 void PhotonIntegrator::plan(EffectPlan& plan) const {
-    const bool surfaces = settings_.includeSurfaces && plan.surfaceScattering;
-    planVolume(plan);
-    planGlossyPaths(plan);
-    const bool connects =
-        PhotonGuidance::obstacle(*scene_, settings_.scheme, plan).empty() && connectionObstacle(plan).empty();
-    plan.describe("surface photons", surfaces,
-                  !settings_.includeSurfaces ? "include_surfaces is false"
-                  : !surfaces                ? "no surface has a smooth lobe"
-                  : connects
-                      ? "for what connections cannot bring: light by way of mirrors or refraction or of a single "
-                        "direction, and to glossy surfaces"
-                      : "smooth surfaces are gathered");
-    describeGuidance(plan);
-    const bool direct = ArrivalCulling(*scene_, plan).directView();
-    plan.describe(
-        "exact arrival culling", direct && plan.timeResolved,
-        !plan.timeResolved ? "steady state: every photon counts"
-        : direct           ? "direct view: photons that arrive outside the gate are not stored"
-                 : "sensor paths can fold, change speed or start at many points: photons are tested when gathered");
-}
-
-void PhotonIntegrator::planGlossyPaths(EffectPlan& plan) const {
-    if (!PhotonGuidance::obstacle(*scene_, settings_.scheme, plan).empty()) return;
-    const auto glossy = [](const BsdfPtr& bsdf) { return isGlossyOnly(*bsdf); };
-    const bool any = std::any_of(scene_->primitives.begin(), scene_->primitives.end(), [&](const Primitive& primitive) {
-        return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), glossy);
-    });
-    // Time without camera segments ends at the first surface that is no mirror.
-    const bool unwarped = scene_->transport.cameraUnwarped;
-    plan.glossySensorPaths = any && settings_.includeSurfaces && !unwarped && settings_.scheme.followsGlossy();
-    plan.specularSensorPaths = plan.specularSensorPaths || plan.glossySensorPaths;
-    plan.describe("glossy sensor paths", plan.glossySensorPaths,
-                  !any                         ? "no surface is glossy without being diffuse"
-                  : plan.glossySensorPaths     ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
-                  : !settings_.includeSurfaces ? "include_surfaces is false"
-                  : unwarped ? "camera_unwarped: time stops at glossy surfaces, which are left to photons"
-                             : "the preset or glossy_sensor_paths leaves glossy surfaces to photons");
-}
-
-void PhotonIntegrator::describeGuidance(EffectPlan& plan) const {
-    const std::string obstacle = PhotonGuidance::obstacle(*scene_, settings_.scheme, plan);
-    const auto guidance = PhotonGuidance::make(*scene_, settings_.scheme, plan);
-    plan.describe("guided light paths", guidance != nullptr, guidance ? "the scene asks for DARTS" : obstacle);
-    if (!guidance) return;
-    if (!scene_->transport.cameraUnwarped) transport::WaysOut::plan(*scene_, settings_.scheme, false, plan);
-    const size_t bodies = guidance->bodies().size();
-    plan.describe("light towards bodies", bodies > 0,
-                  bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
-                                   (bodies > 1 ? " bodies" : " body") + " of it"
-                             : "no body of fog in what does not scatter, or left alone");
-    if (scene_->transport.gate.frames > 1)
-        plan.describe("frames one by one", guidance->choosesFrames(),
-                      guidance->choosesFrames() ? "each light path aims at one frame"
-                                                : "light paths aim at the whole sequence as one gate");
-    plan.describe("photons beside control vertices", !guidance->directView(),
-                  guidance->directView() ? "direct view: control vertices alone are complete"
-                                         : "mirrors, refraction or different speeds: both, by the balance heuristic");
-    const std::string notConnected = connectionObstacle(plan);
-    plan.describe("surface connections", notConnected.empty(),
-                  notConnected.empty() ? "light paths connect to the surface points that the camera sees in time"
-                                       : notConnected);
-}
-
-std::string PhotonIntegrator::connectionObstacle(const EffectPlan& plan) const {
-    if (!settings_.includeSurfaces || !plan.surfaceScattering) return "no surface is gathered";
-    if (!scene_->camera.hasSinglePosition() || plan.speedsDiffer) return "a thin lens, or different speeds of light";
-    return settings_.scheme.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
+    PhotonPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
 }
 
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
-    photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan);
-    straightRays_ = scene_->camera.hasSinglePosition() && !plan.speedsDiffer;
-    rules_ = {settings_.includeSurfaces, plan.glossySensorPaths};
+    plan_ = PhotonPlan::of(*scene_, settings_, plan);
+    photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_);
+    rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
-    foldedRays_ = plan.specularSensorPaths && settings_.includeSurfaces;
-    connects_ = photonPass_->guidance() && connectionObstacle(plan).empty();
 }
 
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
@@ -165,8 +78,8 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, co
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
-    const bool splat = straightRays_ && photonPass_->storesVolume();
-    const bool connect = straightRays_ && connects_;
+    const bool splat = plan_.splats();
+    const bool connect = plan_.connections.on;
     SensorRecord record;
     std::unique_ptr<SurfaceConnections> connections;
     if (splat || connect) {
@@ -187,7 +100,8 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     GatherStructures structures{maps.surface,         sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(),
                                 settings_.gatherCount};
     const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
-    const SensorRays rays{splat, foldedRays_, glossy_ ? GlossyLight::HighlightPaths : 0, uFolded};
+    const SensorRays rays{splat, plan_.folds && settings_.includeSurfaces, glossy_ ? GlossyLight::HighlightPaths : 0,
+                          uFolded};
     gatherVolume(std::move(maps.volume), pass, record, rays, structures, film, statistics);
     {
         const StageTimer timer(statistics, "build");

@@ -1,7 +1,7 @@
 #pragma once
 // The photon-map integrators: a photon pass, structures over its photons, a sensor pass.
 
-#include "photon/PhotonSettings.h"
+#include "photon/PhotonPlan.h"
 #include "photon/SensorPass.h"
 #include "photon/light/PhotonPass.h"
 
@@ -24,11 +24,6 @@ class PhotonIntegrator : public Integrator {
     [[nodiscard]] uint32_t step(const PassInfo& pass) const;
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
     [[nodiscard]] TimeGate gate(uint32_t step) const;
-    void planVolume(EffectPlan& plan) const;
-    void planGlossyPaths(EffectPlan& plan) const;
-    void describeGuidance(EffectPlan& plan) const;
-    /// Why guided light paths do not connect to surfaces; empty if they do.
-    [[nodiscard]] std::string connectionObstacle(const EffectPlan& plan) const;
     /// Calls use(record) with the straight rays of every sample of the pass; `first` holds the first sample's.
     template <typename Use>
     void forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics, const Use& use) const;
@@ -38,12 +33,10 @@ class PhotonIntegrator : public Integrator {
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
+    PhotonPlan plan_;
     std::unique_ptr<PhotonPass> photonPass_;
     SensorPathRules rules_;
     std::unique_ptr<GlossyLight> glossy_; ///< with rules_.glossy
-    bool connects_ = false;               ///< light paths to visible surface points
-    bool straightRays_ = false; ///< of one origin and speed: photons and beams can be splatted, surfaces connected
-    bool foldedRays_ = false;   ///< mirrors, refraction or followed glossy surfaces can be seen
 };
 
 } // namespace tungsten::photon

@@ -18,7 +18,7 @@ TEST(ArrivalCulling, AScaledLensLosesNothing) {
         scene.camera.toWorld.x *= scale;
         scene.camera.toWorld.y *= scale;
         scene.transport.gate = {false, false, 0.0, 2.0, 1};
-        const ArrivalCulling arrival(scene, EffectPlan{});
+        const ArrivalCulling arrival(scene, {});
         int inside = 0;
         for (uint64_t i = 0; i < 2000; ++i) {
             Sampler s(2, RandomStream::Test, 0, i);

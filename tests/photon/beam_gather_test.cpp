@@ -159,12 +159,7 @@ TEST_P(FlightParts, AreWhereDepositsCount) {
     scene.transport.cameraUnwarped = c.unwarped;
     scene.camera.model = Pinhole{};
     scene.camera.toWorld.translation = Vec3f(0.5f, 0.2f, -1.0f);
-    EffectPlan plan;
-    plan.timeResolved = true;
-    plan.specularSensorPaths = c.folds;
-    plan.speedsDiffer = c.flightSpeed != 1.0f;
-    plan.highestSpeed = std::max(c.flightSpeed, 1.0f);
-    const ArrivalCulling arrival(scene, plan);
+    const ArrivalCulling arrival(scene, {c.folds, c.flightSpeed == 1.0f, std::max(c.flightSpeed, 1.0f)});
     Sampler sampler(5, RandomStream::Test, 0, 0);
     int inside = 0, outside = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -205,9 +200,7 @@ TEST(ArrivalCulling, SharesTheSequenceOutAmongItsFrames) {
     const TimeGate gate{false, false, 6.0, 3e-5, 8};
     scene.transport.gate = gate;
     scene.camera.model = Pinhole{};
-    EffectPlan plan;
-    plan.timeResolved = true;
-    const ArrivalCulling whole(scene, plan);
+    const ArrivalCulling whole(scene, {});
     std::vector<ArrivalCulling> frames;
     for (int frame = 0; frame < gate.frames; ++frame) frames.push_back(whole.ofFrame(frame));
     Sampler sampler(6, RandomStream::Test, 0, 0);

@@ -85,7 +85,8 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
         const LoadedScene loaded = loadScene(
             file.path(), {{}, {setting("photon_count", paths), R"(integrator.darts={"single_frames": true})"}});
         const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
-        const PhotonPass photonPass(*loaded.scene, settings, analyseScene(*loaded.scene));
+        const PhotonPass photonPass(*loaded.scene, settings,
+                                    PhotonPlan::of(*loaded.scene, settings, analyseScene(*loaded.scene)));
         std::array<double, 7> counts{};
         Statistics statistics;
         for (uint32_t index = 0; index < passes; ++index) {

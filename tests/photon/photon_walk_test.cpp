@@ -18,7 +18,8 @@ PhotonMaps traceOverflow(const std::string& setting, Statistics& statistics) {
                                 {R"(primitives.2.emission=[2e38, 1, 1])", R"(primitives.3.emission=[2e38, 1, 1])",
                                  "integrator.photon_count=2000", "integrator." + setting}});
     const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
-    return PhotonPass(*loaded.scene, settings, analyseScene(*loaded.scene)).trace({0, 0, 1, 1}, nullptr, statistics);
+    return PhotonPass(*loaded.scene, settings, PhotonPlan::of(*loaded.scene, settings, analyseScene(*loaded.scene)))
+        .trace({0, 0, 1, 1}, nullptr, statistics);
 }
 
 TEST(PhotonWalk, CountsPowersThatAreNotFiniteAndStoresNone) {

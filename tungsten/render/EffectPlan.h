@@ -22,7 +22,6 @@ struct EffectPlan {
     bool mediumScattering = false;    ///< some medium a path can reach scatters
     bool surfaceScattering = false;   ///< some surface has a smooth lobe
     bool specularSensorPaths = false; ///< mirrors or refraction exist: sensor paths can fold
-    bool glossySensorPaths = false;   ///< they go on at glossy surfaces too: an integrator's choice
     bool speedsDiffer = false;        ///< light travels at different speeds in different regions
     float highestSpeed = 1.0f;        ///< of light, in any region that a path can reach
     bool greyMedia = true;            ///< all media have equal coefficients in all channels

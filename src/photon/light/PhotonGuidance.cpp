@@ -11,36 +11,16 @@ constexpr double WideGate = 2.0;
 
 } // namespace
 
-std::string PhotonGuidance::obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan) {
-    if (!scheme.on) return "the scene does not ask for it";
-    if (!plan.timeResolved) return "steady state: there is no gate to aim at";
-    if (!plan.mediumScattering) return "no medium scatters";
-    if (std::holds_alternative<Orthographic>(scene.camera.model))
-        return "an orthographic camera has no position to aim at";
-    return {};
-}
-
-std::unique_ptr<PhotonGuidance> PhotonGuidance::make(const Scene& scene, const darts::Scheme& scheme,
-                                                     const EffectPlan& plan) {
-    if (!obstacle(scene, scheme, plan).empty()) return nullptr;
-    return std::unique_ptr<PhotonGuidance>(new PhotonGuidance(scene, scheme, plan));
-}
-
-PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan)
+PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const PhotonPlan& plan)
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
       camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
-      unwarped_(scene.transport.cameraUnwarped), sensor_(Sensor::of(scene, scene.transport.gate)) {
-    const bool straight = !plan.specularSensorPaths && !plan.speedsDiffer;
-    directView_ = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
+      unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), choosesFrames_(plan.framesOneByOne.on),
+      drawsByResponse_(plan.drawsByResponse), meetsDeltaGate_(plan.meetsDeltaGate),
+      sensor_(Sensor::of(scene, scene.transport.gate)) {
     if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, scheme);
     if (scheme.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
-    const TimeGate& gate = scene.transport.gate;
-    setGate(gate);
-    const bool exact = directView_ && straight && slack_ == 0.0;
-    choosesFrames_ = exact && gate.frames > 1 && scheme.aimsAtSingleFrames();
-    drawsByResponse_ = exact && sensor_.response;
-    meetsDeltaGate_ = exact && gate.delta && scheme.elliptical;
+    setGate(scene.transport.gate);
     for (const Medium& medium : scene.media) {
         guides_.emplace_back();
         if (!medium.scatters()) continue;

@@ -1,6 +1,7 @@
 #pragma once
 // What guides the photon pass: the camera as the target of every light path.
 
+#include "photon/PhotonPlan.h"
 #include "photon/light/CameraView.h"
 #include "photon/view/Sensor.h"
 
@@ -9,7 +10,6 @@
 
 #include "transport/WaysOut.h"
 
-#include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/Scene.h"
 
 #include <memory>
@@ -18,11 +18,8 @@ namespace tungsten::photon {
 
 class PhotonGuidance {
   public:
-    /// Null when the scheme, the scene or the camera leaves nothing to guide.
-    static std::unique_ptr<PhotonGuidance> make(const Scene& scene, const darts::Scheme& scheme,
-                                                const EffectPlan& plan);
-    /// Why make() returns null; empty if it does not.
-    static std::string obstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
+    /// Where plan.guidance is on.
+    PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const PhotonPlan& plan);
 
     /// Null in regions where nothing scatters.
     [[nodiscard]] const darts::Guide* guide(const Region& region) const {
@@ -70,7 +67,6 @@ class PhotonGuidance {
     [[nodiscard]] const CameraView& view() const { return view_; }
 
   private:
-    PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan);
     /// Of connections by time of arrival: without camera segments residual() has twice the length.
     [[nodiscard]] double lengthPerTime() const { return unwarped_ ? 2.0 * speed_ : speed_; }
 

@@ -48,10 +48,10 @@ Distribution1D powerDistribution(const Scene& scene) {
 
 /// Whether surface photons may have to bring what connections cannot: light by way of mirrors or refraction, of a
 /// single direction, or to surfaces that are glossy only.
-bool needsPhotonsBesideConnections(const Scene& scene, const EffectPlan& plan) {
+bool needsPhotonsBesideConnections(const Scene& scene, bool glossyPaths) {
     constexpr LobeMask Unconnected = lobe::Specular | lobe::GlossyTransmission;
     const auto unconnected = [&](const BsdfPtr& bsdf) {
-        return (bsdf->lobes() & Unconnected) != 0 || (!plan.glossySensorPaths && isGlossyOnly(*bsdf));
+        return (bsdf->lobes() & Unconnected) != 0 || (!glossyPaths && isGlossyOnly(*bsdf));
     };
     return std::any_of(scene.emitters.begin(), scene.emitters.end(),
                        [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); }) ||
@@ -84,11 +84,12 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 
 } // namespace
 
-PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan)
-    : scene_(scene), settings_(settings), arrival_(scene, plan),
-      guidance_(PhotonGuidance::make(scene, settings.scheme, plan)), emitters_(powerDistribution(scene)),
-      storeVolume_(plan.mediumScattering), storeSurface_(settings.includeSurfaces && plan.surfaceScattering),
-      glossySensorPaths_(plan.glossySensorPaths), densityPhotons_(needsPhotonsBesideConnections(scene, plan)) {
+PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan)
+    : scene_(scene), settings_(settings), arrival_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
+      guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.scheme, plan) : nullptr),
+      emitters_(powerDistribution(scene)), storeVolume_(plan.volume.on), storeSurface_(plan.surfacePhotons.on),
+      glossySensorPaths_(plan.glossyPaths.on),
+      densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameArrivals_.push_back(arrival_.ofFrame(frame));
 }

@@ -22,7 +22,7 @@ struct PhotonMaps {
 
 class PhotonPass {
   public:
-    PhotonPass(const Scene& scene, const PhotonSettings& settings, const EffectPlan& plan);
+    PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan);
 
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
@@ -34,8 +34,6 @@ class PhotonPass {
     [[nodiscard]] const ArrivalCulling& arrival() const { return arrival_; }
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
-    [[nodiscard]] bool storesVolume() const { return storeVolume_; }
-    [[nodiscard]] bool storesSurface() const { return storeSurface_; }
 
   private:
     /// Tells connections what each of them is to bring, from what a few paths find.

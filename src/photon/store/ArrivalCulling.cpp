@@ -21,14 +21,14 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
 
 } // namespace
 
-ArrivalCulling::ArrivalCulling(const Scene& scene, const EffectPlan& plan)
+ArrivalCulling::ArrivalCulling(const Scene& scene, const SensorPaths& paths)
     : sensor_(Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
-      highestSpeed_(double(plan.highestSpeed)) {
+      highestSpeed_(double(paths.highestSpeed)) {
     setGate(scene.transport.gate);
     const Vec3f position = scene.camera.position();
     camera_ = Vec3d(position.x, position.y, position.z);
-    straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && !plan.speedsDiffer;
-    directView_ = straightTimesKnown_ && !plan.specularSensorPaths;
+    straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && paths.oneSpeed;
+    directView_ = straightTimesKnown_ && !paths.fold;
     slack_ = double(scene.camera.aperture());
     if (std::holds_alternative<Orthographic>(scene.camera.model)) slack_ = std::numeric_limits<double>::infinity();
 }

@@ -3,7 +3,6 @@
 
 #include "photon/view/Sensor.h"
 
-#include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/Scene.h"
 
 namespace tungsten::photon {
@@ -16,7 +15,12 @@ struct FlightPart {
 /// Exact tests by time of flight: what they reject can contribute to no pixel of any frame.
 class ArrivalCulling {
   public:
-    ArrivalCulling(const Scene& scene, const EffectPlan& plan);
+    /// What sensor paths can do between scattering and the camera.
+    struct SensorPaths {
+        bool fold = false, oneSpeed = true;
+        float highestSpeed = 1.0f;
+    };
+    ArrivalCulling(const Scene& scene, const SensorPaths& paths);
 
     /// A deposit at `position` and `time` may be gathered, with a weight above 0. In direct view (one straight segment
     /// chain at one speed from one point) its arrival is known exactly; otherwise only what arrives too late can be

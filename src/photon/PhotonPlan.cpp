@@ -1,0 +1,134 @@
+#include "photon/PhotonPlan.h"
+
+#include "photon/view/SensorPath.h"
+
+#include "transport/Body.h"
+#include "transport/WaysOut.h"
+
+namespace tungsten::photon {
+
+namespace {
+
+bool anyGlossyOnly(const Scene& scene) {
+    const auto glossy = [](const BsdfPtr& bsdf) { return isGlossyOnly(*bsdf); };
+    return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+        return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), glossy);
+    });
+}
+
+std::string guidanceObstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& facts) {
+    if (!scheme.on) return "the scene does not ask for it";
+    if (!facts.timeResolved) return "steady state: there is no gate to aim at";
+    if (!facts.mediumScattering) return "no medium scatters";
+    if (std::holds_alternative<Orthographic>(scene.camera.model))
+        return "an orthographic camera has no position to aim at";
+    return {};
+}
+
+std::string connectionObstacle(const PhotonPlan& plan, const PhotonSettings& settings, const EffectPlan& facts) {
+    if (!plan.guidance.on) return plan.guidance.reason;
+    if (!settings.includeSurfaces || !facts.surfaceScattering) return "no surface is gathered";
+    if (!plan.straightRays) return "a thin lens, or different speeds of light";
+    return settings.scheme.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
+}
+
+} // namespace
+
+PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+    PhotonPlan plan;
+    plan.highestSpeed = facts.highestSpeed;
+    plan.oneSpeed = !facts.speedsDiffer;
+    plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
+    const std::string obstacle = guidanceObstacle(scene, settings.scheme, facts);
+    plan.guidance = {obstacle.empty(), obstacle.empty() ? "the scene asks for DARTS" : obstacle};
+    plan.chooseSensorPaths(scene, settings, facts);
+    plan.chooseGuidance(scene, settings, facts);
+    plan.chooseStores(scene, settings, facts);
+    return plan;
+}
+
+void PhotonPlan::chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+    const bool any = anyGlossyOnly(scene);
+    // Time without camera segments ends at the first surface that is no mirror.
+    const bool unwarped = scene.transport.cameraUnwarped;
+    glossyPaths.on = guidance.on && any && settings.includeSurfaces && !unwarped && settings.scheme.followsGlossy();
+    glossyPaths.reason = !any             ? "no surface is glossy without being diffuse"
+                         : glossyPaths.on ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
+                         : !settings.includeSurfaces ? "include_surfaces is false"
+                         : unwarped ? "camera_unwarped: time stops at glossy surfaces, which are left to photons"
+                                    : "the preset or glossy_sensor_paths leaves glossy surfaces to photons";
+    folds = facts.specularSensorPaths || glossyPaths.on;
+}
+
+void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+    const TimeGate& gate = scene.transport.gate;
+    const darts::Scheme& scheme = settings.scheme;
+    const bool straight = !folds && oneSpeed;
+    directView = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
+    const bool pointLike = scene.transport.cameraUnwarped || scene.camera.aperture() == 0.0f;
+    const bool exact = guidance.on && directView && straight && pointLike;
+    framesOneByOne.on = exact && gate.frames > 1 && scheme.aimsAtSingleFrames();
+    framesOneByOne.reason =
+        framesOneByOne.on ? "each light path aims at one frame" : "light paths aim at the whole sequence as one gate";
+    drawsByResponse = exact && !scene.transport.response.empty();
+    meetsDeltaGate = exact && gate.delta && scheme.elliptical;
+    ordinaryPhotons = {!directView, directView ? "direct view: control vertices alone are complete"
+                                               : "mirrors, refraction or different speeds: both, by the balance "
+                                                 "heuristic"};
+    const std::string obstacle = connectionObstacle(*this, settings, facts);
+    connections = {obstacle.empty(), obstacle.empty()
+                                         ? "light paths connect to the surface points that the camera sees in time"
+                                         : obstacle};
+}
+
+void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+    volume.on = facts.mediumScattering;
+    volume.reason = std::visit(
+        [&](const auto& p) {
+            return std::string(volume.on ? p.Reason : "no medium scatters: no volume photon is stored or gathered");
+        },
+        settings.primitive);
+    const bool delta = scene.transport.gate.delta;
+    const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
+    const std::string kernel = "delta gate: a box about it that narrows with the radius";
+    temporalKernel = {delta, !delta                         ? "the gate has a width, or none"
+                             : meetsDeltaGate && atVertices ? kernel + "; control vertices lie on the gate itself"
+                                                            : kernel};
+    surfacePhotons.on = settings.includeSurfaces && facts.surfaceScattering;
+    surfacePhotons.reason = !settings.includeSurfaces ? "include_surfaces is false"
+                            : !surfacePhotons.on      ? "no surface has a smooth lobe"
+                            : connections.on          ? "for what connections cannot bring: light by way of mirrors or "
+                                                        "refraction or of a single direction, and to glossy surfaces"
+                                                      : "smooth surfaces are gathered";
+    exactCulling.on = facts.timeResolved && straightRays && !folds;
+    exactCulling.reason = !facts.timeResolved ? "steady state: every photon counts"
+                          : exactCulling.on
+                              ? "direct view: photons that arrive outside the gate are not stored"
+                              : "sensor paths can fold, change speed or start at many points: photons are tested when "
+                                "gathered";
+}
+
+void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+    const auto add = [&](const std::string& name, const Choice& choice) {
+        plan.describe(name, choice.on, choice.reason);
+    };
+    add(std::visit([](const auto& p) { return p.Effect; }, settings.primitive), volume);
+    add("temporal kernel", temporalKernel);
+    if (guidance.on) add("glossy sensor paths", glossyPaths);
+    add("surface photons", surfacePhotons);
+    add("guided light paths", guidance);
+    if (guidance.on) {
+        if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.scheme, false, plan);
+        const size_t bodies = settings.scheme.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
+        plan.describe("light towards bodies", bodies > 0,
+                      bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
+                                       (bodies > 1 ? " bodies" : " body") + " of it"
+                                 : "no body of fog in what does not scatter, or left alone");
+        if (scene.transport.gate.frames > 1) add("frames one by one", framesOneByOne);
+        add("photons beside control vertices", ordinaryPhotons);
+        add("surface connections", connections);
+    }
+    add("exact arrival culling", exactCulling);
+}
+
+} // namespace tungsten::photon

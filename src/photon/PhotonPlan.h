@@ -1,0 +1,50 @@
+#pragma once
+// What a photon-map integrator does for a scene, and why: decided once, read by --explain, preparation and passes.
+
+#include "photon/PhotonSettings.h"
+
+#include "tungsten/render/EffectPlan.h"
+
+#include <string>
+
+namespace tungsten::photon {
+
+struct Choice {
+    bool on = false;
+    std::string reason;
+};
+
+struct PhotonPlan {
+    /// `facts`: what the scene calls for (analyseScene). Builds nothing.
+    static PhotonPlan of(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
+    /// Adds every choice to the plan's effects.
+    void describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
+
+    Choice volume;          ///< records of the volume primitive are stored
+    Choice temporalKernel;  ///< about a delta gate
+    Choice glossyPaths;     ///< sensor paths go on at surfaces that are glossy only, as at mirrors
+    Choice surfacePhotons;  ///< stored and gathered
+    Choice guidance;        ///< light paths aim at the camera
+    Choice framesOneByOne;  ///< each at a single frame
+    Choice ordinaryPhotons; ///< beside control vertices, by the balance heuristic: these alone are not complete
+    Choice connections;     ///< guided light paths connect to visible surface points
+    Choice exactCulling;    ///< what arrives outside the gate is known and not stored
+
+    float highestSpeed = 1.0f; ///< of light, wherever a path can get
+    bool oneSpeed = true;
+    bool straightRays = false; ///< from one point at one speed: records can be splatted, surfaces connected
+    bool folds = false;        ///< mirrors, refraction or followed glossy surfaces can be seen
+    /// Every sensor path is one straight chain at one speed, or shall be taken for one: control vertices alone do.
+    bool directView = false;
+    bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
+    bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
+
+    [[nodiscard]] bool splats() const { return straightRays && volume.on; }
+
+  private:
+    void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
+    void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
+    void chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
+};
+
+} // namespace tungsten::photon
