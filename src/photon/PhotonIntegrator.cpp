@@ -163,7 +163,7 @@ std::vector<float> PhotonIntegrator::volumeRadii(const PhotonStore& store, uint3
     const float factor = pointRadiusFactor(step, settings_.volumeAlpha);
     if (settings_.fixedVolumeRadius) return {settings_.volumeRadius * factor};
     std::vector<float> radii = adaptiveRadii(store.photons);
-    // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
+    // The schedule's cube root acts on the squared radius here (docs/scene-format.md, section 10.5).
     for (float& radius : radii) radius *= std::sqrt(factor);
     return radii;
 }
