@@ -155,9 +155,11 @@ def main():
     project = Path(sys.argv[1]).resolve()
     listed = subprocess.run(["git", "-C", project, "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True)
     names = listed.stdout.splitlines() if listed.returncode == 0 else [
-        str(path.relative_to(project)) for path in project.rglob("*") if path.is_file() and "build" not in str(path)]
+        str(path) for file in project.rglob("*") if not (path := file.relative_to(project)).parts[0].startswith("build")]
     files = sorted(name for name in names if (project / name).is_file())
     check = Check(project, files)
+    if not check.documents:
+        sys.exit(f"no documents in {project}")
     for file in files:
         if file.endswith(".md"):
             check.page(file)
