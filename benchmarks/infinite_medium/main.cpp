@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
     if (!csv.empty()) csvFile.open(csv);
     std::ostream& tables = markdown.empty() ? std::cout : markdownFile;
     tables << "# Sampling in an infinite medium\n\nWhat the figures say: "
-              "[benchmarks/README.md](../README.md#infinite-medium).\n\n`infinite_medium";
+              "[notebook](../../docs/notebook.md#infinite-medium).\n\n`infinite_medium";
     for (int i = 1; i < argc; ++i) tables << ' ' << argv[i];
     tables << "`, " << today() << ", " << machineKind() << ", " << std::lround(seconds / 60) << " min.\n\n";
     int disagreements = 0;

@@ -1,9 +1,9 @@
 // verified_values FILE.md [SECONDS [ROWS]]
 //
-// Renders every verified value (photon-primitives, section 6) by points, beams and paths, plain, published and best,
-// for about SECONDS (5) each: a pilot finds how many passes that is. With ROWS only what has it in its name, such as
-// "A2" or "best beams". Writes the deviations to FILE.md; exits with 1 if one exceeds what is allowed, except where the
-// estimator is known to have no finite variance.
+// Renders every verified value (docs/photon-primitives.md, section 6) by points, beams and paths, plain, published and
+// best, for about SECONDS (5) each: a pilot finds how many passes that is. With ROWS only what has it in its name, such
+// as "A2" or "best beams". Writes the deviations to FILE.md; exits with 1 if one exceeds what is allowed, except where
+// the estimator is known to have no finite variance.
 
 #include "photon/render_photons.h"
 
@@ -54,7 +54,8 @@ bool applies(const Method& method, const VerifiedValue& value) {
 /// Plain paths connect to the light (with a laser: to a vertex on it) from wherever they are, weight 1 / distance^2,
 /// and published directions ignore the weight 2 / |S w - r|^2 of the control vertex that they lead to: both have tails
 /// x^(-3/2) once a vertex is free to come near, hence means that are usually low and errors that shrink like N^(-1/3)
-/// (sections 2.5, 6.2). Published photons have the like where forward scattering has to turn back (section 6.8).
+/// (docs/photon-primitives.md, sections 2.5 and 6.5). Published photons have the like where forward scattering has to
+/// turn back.
 bool infiniteVariance(const Method& method, const VerifiedValue& value) {
     if (method.primitive == Primitive::Paths)
         return method.preset != Preset::Best && value.order > (value.configuration == 'C' ? 2 : 1);
@@ -148,7 +149,8 @@ Row prove(const VerifiedValue& value, const Method& method, double seconds) {
 void writeHeader(std::ostream& file, double seconds) {
     file
         << "# Verified values\n\n"
-           "Deviations from the verified values (photon-primitives, section 6) in % ± standard error of the render in "
+           "Deviations from the verified values (docs/photon-primitives.md, section 6) in % ± standard error "
+           "of the render in "
            "%; "
            "in brackets\nthe deviation beyond what is allowed, in standard errors of render and value together. Names: "
            "configuration, order of\nscattering, time (with or without the camera's leg), gate (a delta; a box of "

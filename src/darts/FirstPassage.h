@@ -60,8 +60,8 @@ struct Departure {
 };
 
 /// First passage of diffusing light through a plane boundary, index-matched or not, of a half-space or slab (Patterson,
-/// Chance and Wilson 1989, extrapolated boundary: method, section 10), over all of the boundary. The density per length
-/// of leaving after the length s from depth z is
+/// Chance and Wilson 1989, extrapolated boundary: docs/method.md, section 10.1), over all of the boundary. The density
+/// per length of leaving after the length s from depth z is
 ///   y / sqrt(4 pi D s^3) exp(-y^2 / (4 D s) - sigmaA s),  y = z + z_b,  z_b = 2 A D,  D = 1 / (3 (sigmaA + sigmaS'));
 /// its integral over the gate, but for absorption, erfc(p) - erfc(q) with p, q = y / sqrt(4 D s) at the gate's end and
 /// start. In a slab times 1 - exp(-L (L - y) / (D s)), L = thickness + 2 z_b: the first image source, and later on the

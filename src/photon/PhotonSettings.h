@@ -1,5 +1,5 @@
 #pragma once
-// Settings of the photon-map integrators' block (scene format, section 10.2).
+// Settings of the photon-map integrators' block (docs/scene-format.md, section 10.2).
 
 #include "photon/primitives/VolumePrimitive.h"
 

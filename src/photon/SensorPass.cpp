@@ -113,7 +113,7 @@ class SensorGather {
             emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
     }
 
-    /// Density estimate with a constant kernel over the k nearest photons (scene format, section 10.4).
+    /// Density estimate with a constant kernel over the k nearest photons (docs/scene-format.md, section 10.4).
     void gatherSurface(const SensorState& state, const SurfaceInteraction& surface) {
         const auto& photons = structures_.surfacePhotons.records;
         const float squaredRadius = structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,

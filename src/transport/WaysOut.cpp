@@ -23,7 +23,7 @@ constexpr float FarthestFace = 4.0f;
 /// 0.78 at 0.01. Lower ones would starve what is lit from the bodies.
 constexpr float LeaveOdds = 0.1f;
 /// Of what leaves a body by other ways, the part that may be sent to the aim from surfaces and media outside: without
-/// it deep places would be rare, and bright. (Hunt 02, study bodies.)
+/// it deep places would be rare, and bright. (Bench: study bodies.)
 constexpr float Elsewhere = 0.02f;
 
 Region regionBehind(const Scene& scene, const SurfaceHit& hit, const Vec3f& direction, const Region& region) {

@@ -1,5 +1,5 @@
 #pragma once
-// How light gets out of bodies of scattering media on its way to what a walk aims at (method, section 10).
+// How light gets out of bodies of scattering media on its way to what a walk aims at (docs/method.md, section 10.4).
 
 #include "transport/Body.h"
 

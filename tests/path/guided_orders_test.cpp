@@ -1,4 +1,4 @@
-// Guided paths, order by order, against verified values (photon-primitives.md, section 6): presets in full, every
+// Guided paths, order by order, against verified values (docs/photon-primitives.md, section 6): presets in full, every
 // switch alone.
 
 #include "path/render_paths.h"

@@ -48,8 +48,8 @@ inline std::string foggedBox() {
                     "min_bounces": 1, "max_bounces": 2, "transient_time_width": 1, "transient_time_center": 3.7}})";
 }
 
-/// Its closed form: sigma_s / (4 pi) e^{-sigma_t S} I / r^2 along the ray (method, section 8.1), over the part of the
-/// ray whose time lies in the gate, by quadrature; averaged over the gate.
+/// Its closed form: sigma_s / (4 pi) e^{-sigma_t S} I / r^2 along the ray (docs/method.md, section 8.1), over the part
+/// of the ray whose time lies in the gate, by quadrature; averaged over the gate.
 inline double foggedBoxSingleScattering() {
     const auto distance = [](double t) { return std::sqrt(0.7 * 0.7 + 0.6 * 0.6 + (t - 1.8) * (t - 1.8)); };
     const auto length = [&](double t) { return t + distance(t); };

@@ -68,7 +68,7 @@ inline std::string sceneJson(const PulsesInFog& c) {
 
 /// Radiance along the unit direction `ray` from the origin, averaged over the gate: with t to the scattering point, e
 /// to the fog and r to the pulse, the integral over t > e of sigma_s f_p e^{-sigma_t (t - e + r)} I / r^2 where e + (t
-/// - e + r) / v plus the emission time lies in the gate (method, section 8.1).
+/// - e + r) / v plus the emission time lies in the gate (docs/method.md, section 8.1).
 inline Vec3d singleScattering(const PulsesInFog& c, const Vec3d& ray) {
     Vec3d sum(0.0);
     const double entry = FogDepth / ray.z;

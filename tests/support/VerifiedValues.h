@@ -1,6 +1,6 @@
 #pragma once
-// The verified values of photon-primitives, section 6, with the scenes and gates that they belong to: single orders of
-// scattering seen by one camera ray.
+// The verified values of docs/photon-primitives.md, section 6, with the scenes and gates that they belong to: single
+// orders of scattering seen by one camera ray.
 
 #include "support/GroundTruthScenes.h"
 
@@ -26,7 +26,7 @@ struct VerifiedValue {
     double gateWidth = 1.0;   ///< of box gates
 };
 
-/// Exact where a closed form exists, otherwise the estimate with the smallest standard error that section 6 trusts.
+/// Exact where a closed form exists, otherwise the estimate with the smallest standard error that is trusted.
 inline constexpr std::array VerifiedValues{
     VerifiedValue{'A', 1, false, true, 2.1055e-4},
     VerifiedValue{'A', 1, false, false, 2.22436e-4},

@@ -55,7 +55,7 @@ struct BsdfRandom {
 class Bsdf;
 using BsdfPtr = std::shared_ptr<const Bsdf>;
 
-/// Isotropic microfacet distributions (scene format, section 8.2). The roughness is alpha.
+/// Isotropic microfacet distributions (docs/scene-format.md, section 8.2). The roughness is alpha.
 enum class MicrofacetModel { Beckmann, Ggx, Phong, PbrtGgx };
 
 struct Lambert {};

@@ -28,7 +28,7 @@ inline float fresnelDielectric(float eta, float cosTheta) {
     return fresnelDielectric(eta, cosTheta, ignored);
 }
 
-/// Conductor with complex index eta + i k seen from vacuum; exact (scene format, section 8.1).
+/// Conductor with complex index eta + i k seen from vacuum; exact (docs/scene-format.md, section 8.1).
 Rgb fresnelConductor(const Rgb& eta, const Rgb& k, float cosTheta);
 
 /// Hemispherical average 2 ∫ F(eta, c) c dc.

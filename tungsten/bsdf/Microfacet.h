@@ -1,5 +1,5 @@
 #pragma once
-// Isotropic microfacet distributions (scene format, section 8.2) and their sampling, in the local frame.
+// Isotropic microfacet distributions (docs/scene-format.md, section 8.2) and their sampling, in the local frame.
 
 #include "tungsten/bsdf/Bsdf.h"
 

@@ -26,8 +26,8 @@ struct Orthographic {
     float size = 1.0f; ///< half the image height
 };
 
-/// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated (scene
-/// format, section 3).
+/// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated
+/// (docs/scene-format.md, section 3).
 class Camera {
   public:
     std::variant<Pinhole, ThinLens, Orthographic> model;

@@ -1,5 +1,6 @@
 #pragma once
-// Pixel filters, sampled: offsets are drawn from |filter| and every sample has weight 1 (scene format, section 3.1).
+// Pixel filters, sampled: offsets are drawn from |filter| and every sample has weight 1 (docs/scene-format.md,
+// section 3.1).
 
 #include "tungsten/core/Distribution.h"
 

@@ -18,7 +18,7 @@ struct Transform {
     [[nodiscard]] float determinant() const { return x.cross(y).dot(z); }
 };
 
-/// The object form of a transform (scene format, section 2): basis by priority of the explicitly given axes,
+/// The object form of a transform (docs/scene-format.md, section 2): basis by priority of the explicitly given axes,
 /// then scale, then rotation about y (negated), x, z, then translation.
 struct TransformRecipe {
     Vec3f position{0, 0, 0};

@@ -1,5 +1,5 @@
 #pragma once
-// Light sources: a closed set of plain structs. Radiometry and power follow the scene format (section 7.2).
+// Light sources: a closed set of plain structs. Radiometry and power: docs/scene-format.md, section 7.2.
 
 #include "tungsten/core/Distribution.h"
 #include "tungsten/geometry/Shape.h"

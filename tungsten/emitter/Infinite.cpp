@@ -8,7 +8,8 @@ namespace tungsten {
 
 namespace {
 
-/// u = atan2(z, x) / 2pi + 1/2, v = acos(-y) / pi in the local frame: +y is the top row (format, section 7.3).
+/// u = atan2(z, x) / 2pi + 1/2, v = acos(-y) / pi in the local frame: +y is the top row (docs/scene-format.md,
+/// section 7.3).
 Vec2f uvOf(const InfiniteSphereEmitter& sky, const Vec3f& direction) {
     const Vec3f local = sky.frame.toLocal(direction);
     return {std::atan2(local.z, local.x) * 0.5f * InvPi + 0.5f, std::acos(std::clamp(-local.y, -1.0f, 1.0f)) * InvPi};

@@ -1,5 +1,5 @@
 #pragma once
-// What `emission` and `power` of the scene format mean for each kind of emitter (format, section 7.2).
+// What `emission` and `power` of the scene format mean for each kind of emitter (docs/scene-format.md, section 7.2).
 
 #include "tungsten/emitter/Emitter.h"
 

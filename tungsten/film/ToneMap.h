@@ -1,5 +1,5 @@
 #pragma once
-// Tone curves for LDR output (scene format, section 3.2).
+// Tone curves for LDR output (docs/scene-format.md, section 3.2).
 
 #include "tungsten/core/Types.h"
 

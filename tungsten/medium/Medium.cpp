@@ -9,8 +9,8 @@ bool Medium::isGrey() const {
 Rgb Medium::transmittance(float distance) const {
     const auto channel = [distance](float sigma) { return sigma > 0.0f ? std::exp(-sigma * distance) : 1.0f; };
     const Rgb sigma = sigmaT();
-    // Nothing comes from infinitely far through a medium, not even in a channel that it leaves alone (scene format,
-    // section 9).
+    // Nothing comes from infinitely far through a medium, not even in a channel that it leaves alone
+    // (docs/scene-format.md, section 9).
     if (std::isinf(distance)) return Rgb(isVacuum() ? 1.0f : 0.0f);
     if (sigma.x == sigma.y && sigma.y == sigma.z) return Rgb(channel(sigma.x));
     return {channel(sigma.x), channel(sigma.y), channel(sigma.z)};

@@ -1,6 +1,6 @@
 #pragma once
-// One path from the camera, guided towards one target (method, sections 3 to 6): elliptical control vertices in media,
-// resampled distances and directions, ordinary connections from surfaces.
+// One path from the camera, guided towards one target (docs/method.md, sections 3 to 6): elliptical control vertices in
+// media, resampled distances and directions, ordinary connections from surfaces.
 //
 // Every path is found in one way or by weighted ways, told apart by the last vertex before the emitter: in a medium
 // with a straight connection at one speed: a control vertex; in a medium otherwise: an ordinary connection; on a

@@ -1,7 +1,7 @@
 #pragma once
 // The nearest photons about a point, by Embree point queries over the photons' own structure.
 
-#include "photon/primitives/points/EmbreePoints.h"
+#include "photon/store/EmbreePoints.h"
 #include "photon/store/Store.h"
 
 #include <memory>

@@ -14,11 +14,6 @@
 
 namespace tungsten::photon {
 
-/// Surfaces that connections end on. Through a glossy lobe alone they find its peak too rarely: photons are left to it.
-inline bool receivesConnections(const Bsdf& bsdf) {
-    return (bsdf.lobes() & lobe::DiffuseReflection) != 0;
-}
-
 /// A vertex of a light path that can be connected to.
 struct LightVertex {
     Vec3f position;

@@ -11,6 +11,11 @@ inline bool isGlossyOnly(const Bsdf& bsdf) {
     return (bsdf.lobes() & lobe::Smooth) != 0 && (bsdf.lobes() & lobe::DiffuseReflection) == 0;
 }
 
+/// Surfaces that connections end on. Through a glossy lobe alone they find its peak too rarely: photons are left to it.
+inline bool receivesConnections(const Bsdf& bsdf) {
+    return (bsdf.lobes() & lobe::DiffuseReflection) != 0;
+}
+
 /// What a camera path follows besides going straight on.
 struct SensorPathRules {
     bool specular = true; ///< mirrors and refraction

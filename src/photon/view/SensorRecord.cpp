@@ -1,6 +1,6 @@
 #include "photon/view/SensorRecord.h"
 
-#include "photon/surface/SurfaceConnections.h"
+#include "photon/view/SensorPath.h"
 
 #include <tbb/parallel_for.h>
 

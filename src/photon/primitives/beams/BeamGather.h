@@ -16,7 +16,7 @@ struct Approach {
     float distance;
     float sine; ///< of the angle between the lines
 };
-/// None for lines that are parallel to 1e-4 (photon-primitives sections 2.2 and 5). Directions have unit length.
+/// None for lines that are parallel to 1e-4 (docs/photon-primitives.md, sections 2.2 and 5). Unit directions.
 inline std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& direction, const Vec3f& origin,
                                                const Vec3f& cameraDirection) {
     constexpr float LeastSine = 1e-4f;
@@ -36,7 +36,7 @@ class BeamGather {
                bool fewRays = false);
 
     /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the
-    /// sensor, to the frames they fall in (photon-primitives, eq. 4). Returns how many were gathered.
+    /// sensor, to the frames they fall in (docs/photon-primitives.md, eq. 4). Returns how many were gathered.
     uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
 
   private:

@@ -8,7 +8,7 @@ namespace tungsten::photon {
 
 /// A flight from a light, a medium vertex or a surface. It stands for every collision along its stored part: the power
 /// that collides per unit of length at s is power sigma_s T(s), with s and T measured from the base (long beams,
-/// photon-primitives section 2.2).
+/// docs/photon-primitives.md, section 2.2).
 struct PhotonBeam {
     double time; ///< at the base, since the clock's zero
     Vec3f base;

@@ -2,7 +2,7 @@
 // Gathering volume photons along a camera segment with the two-dimensional kernel.
 
 #include "photon/primitives/Radii.h"
-#include "photon/primitives/points/EmbreePoints.h"
+#include "photon/store/EmbreePoints.h"
 #include "photon/store/Store.h"
 #include "photon/view/CameraSegment.h"
 #include "photon/view/Sensor.h"
@@ -40,7 +40,7 @@ class PointGather {
 };
 
 /// Radii that follow the density: r^2 = d_m^2 0.05 sqrt(N) / m, d_m the distance to the m-th nearest photon, m =
-/// min(30, N) (scene format, section 10.4).
+/// min(30, N) (docs/scene-format.md, section 10.4).
 std::vector<float> adaptiveRadii(const std::vector<Photon>& photons);
 
 } // namespace tungsten::photon

@@ -15,7 +15,7 @@ Radii Points::radii(const PhotonSettings& settings, bool, const std::vector<Phot
     const float factor = pointRadiusFactor(step, settings.volumeAlpha);
     if (settings.fixedVolumeRadius) return settings.volumeRadius * factor;
     std::vector<float> radii = adaptiveRadii(photons);
-    // The schedule's cube root acts on the squared radius here (scene format, section 10.5).
+    // The schedule's cube root acts on the squared radius here (docs/scene-format.md, section 10.5).
     for (float& radius : radii) radius *= std::sqrt(factor);
     return radii;
 }

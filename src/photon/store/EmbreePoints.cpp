@@ -1,4 +1,4 @@
-#include "photon/primitives/points/EmbreePoints.h"
+#include "photon/store/EmbreePoints.h"
 
 #include <cstring>
 #include <new>
