@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes a fresh Debian 12 ready: installs missing packages, configures and builds into build/. Safe to run again.
+# Makes a fresh Debian 12 or 13 ready: installs missing packages, configures and builds into build/. Safe to run again.
 # Arguments go to the build (such as --target tungsten-app).
 #   TUNGSTEN_WERROR=ON    warnings are errors (continuous integration)
 set -euo pipefail
