@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Makes a fresh Debian 12 ready: installs missing packages, configures and builds into build/. Safe to run again.
+# Makes a fresh Debian 12 or 13 ready: installs missing packages, configures and builds into build/. Safe to run again.
 # Arguments go to the build (such as --target tungsten-app).
-#   DARTS_WERROR=ON    warnings are errors (continuous integration)
+#   TUNGSTEN_WERROR=ON    warnings are errors (continuous integration)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -39,5 +39,5 @@ install_missing() {
 install_missing
 launcher=()
 if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-cmake -S . -B build -G Ninja "-DDARTS_WERROR=${DARTS_WERROR:-OFF}" "${launcher[@]}"
-cmake --build build "$@"
+cmake --preset default "-DTUNGSTEN_WERROR=${TUNGSTEN_WERROR:-OFF}" "${launcher[@]}"
+cmake --build --preset default "$@"

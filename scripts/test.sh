@@ -4,4 +4,4 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 scripts/setup.sh
-ctest --test-dir build --output-on-failure -j2 "$@"
+ctest --preset default "$@"

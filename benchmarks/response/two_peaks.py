@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The two-peak experiment of He et al. 2024, figure 7: a sensor that is open at two short times, plain against guided.
 
 Renders data/scenes/two-peaks with both for the same time, writes FOLDER/two-peaks.png with the images side by side, and

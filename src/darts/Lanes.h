@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <type_traits>
 
@@ -25,7 +26,10 @@ inline float most(float a) {
 }
 template <typename Batch>
 float sum(const Batch& a) {
-    return xsimd::hadd(a);
+    if constexpr (requires { reduce_add(a); }) // as newer versions of xsimd call it
+        return reduce_add(a);
+    else
+        return hadd(a);
 }
 template <typename Batch>
 inline float most(const Batch& a) {
@@ -78,8 +82,8 @@ Batch exp(const Batch& exponent) {
         const Batch high =
             xsimd::fma(r2, Batch(1.3888889e-3f), xsimd::fma(r, Batch(8.3333333e-3f), Batch(4.16666667e-2f)));
         const Batch p = xsimd::fma(r2, xsimd::fma(r2, high, low), r + Batch(1.0f));
-        const Integers power = (xsimd::bitwise_cast<Integers>(shifted) << 23) + Integers(0x3f800000);
-        return p * xsimd::bitwise_cast<Batch>(power);
+        const Integers power = (std::bit_cast<Integers>(shifted) << 23) + Integers(0x3f800000);
+        return p * std::bit_cast<Batch>(power);
     }
 }
 /// Natural logarithm of normal x > 0, to 3e-7 of its value.
@@ -90,8 +94,8 @@ Batch log(const Batch& x) {
     } else {
         using Integers = xsimd::as_integer_t<Batch>;
         // x = 2^n m with m in [1/sqrt 2, sqrt 2).
-        const Integers bits = xsimd::bitwise_cast<Integers>(x), n = (bits - Integers(0x3f3504f3)) >> 23;
-        const Batch m = xsimd::bitwise_cast<Batch>(bits - (n << 23)), exponent = xsimd::to_float(n);
+        const Integers bits = std::bit_cast<Integers>(x), n = (bits - Integers(0x3f3504f3)) >> 23;
+        const Batch m = std::bit_cast<Batch>(bits - (n << 23)), exponent = xsimd::to_float(n);
         // log(1 + f) = f - f^2 / 2 + f^3 p(f), p interpolated at Chebyshev's points.
         const Batch f = m - Batch(1.0f), f2 = f * f, f4 = f2 * f2;
         const Batch p01 = xsimd::fma(f, Batch(-0.24999997f), Batch(0.333333312f)),

@@ -32,4 +32,7 @@ run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/alone)
 run_example(${WORK}/alone)
 run(${CMAKE_COMMAND} --install ${HOST_BUILD} --component darts --prefix ${WORK}/component)
 run_example(${WORK}/component)
+# One version, whichever way it is built.
+set(version_file lib/cmake/darts/dartsConfigVersion.cmake)
+run(${CMAKE_COMMAND} -E compare_files ${WORK}/alone/${version_file} ${WORK}/component/${version_file})
 file(REMOVE_RECURSE ${WORK})

@@ -5,6 +5,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/../support/run.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${HOST_BUILD} --prefix ${WORK}/host)
+expect_no_options(${WORK}/host/lib/cmake/tungsten)
+expect_no_options(${WORK}/host/lib/cmake/darts)
 run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${WORK}/plugin -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
   -DCMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS=-Wall -Wextra" -DCMAKE_PREFIX_PATH=${WORK}/host)
 run(${CMAKE_COMMAND} --build ${WORK}/plugin)

@@ -207,9 +207,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
     RTCRayHit query{};
     query.ray = embreeRay(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &query);
+    embree::intersect(scene_, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     SurfaceHit hit;
     hit.t = query.ray.tfar;
@@ -228,10 +226,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
 bool SceneGeometry::occluded(const Ray& ray) const {
     if (!(ray.tMin < ray.tMax)) return false; // below 0 the end would pass for Embree's answer
     RTCRay query = embreeRay(ray);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_, &context, &query);
-    return query.tfar < 0.0f;
+    return embree::occluded(scene_, query);
 }
 
 } // namespace tungsten

@@ -1,9 +1,8 @@
 #pragma once
 // All surfaces of a scene in one Embree structure.
 
+#include "tungsten/geometry/Embree.h"
 #include "tungsten/geometry/Shape.h"
-
-#include <embree3/rtcore.h>
 
 #include <cstdint>
 #include <memory>

@@ -1,9 +1,9 @@
 #pragma once
 // Registers of floats.
 
-#include "tungsten/core/Types.h"
+#include "darts/Lanes.h"
 
-#include <xsimd/xsimd.hpp>
+#include "tungsten/core/Types.h"
 
 namespace tungsten::photon {
 

@@ -26,7 +26,7 @@ EmbreePoints::EmbreePoints(const std::vector<PointWithRadius>& discs)
                                            sizeof(PointWithRadius), discs.size());
     if (!buffer) throw std::bad_alloc();
     std::memcpy(buffer, discs.data(), discs.size() * sizeof(PointWithRadius));
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneFlags(scene_, embree::QueryFilterFlag);
     commit(geometry);
 }
 

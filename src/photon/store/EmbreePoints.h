@@ -3,7 +3,7 @@
 
 #include "photon/store/Store.h"
 
-#include <embree3/rtcore.h>
+#include "tungsten/geometry/Embree.h"
 
 #include <vector>
 

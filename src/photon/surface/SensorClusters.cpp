@@ -31,7 +31,7 @@ struct SensorClusters::Weights {
         if (!xsimd::any(weight > 0.0f)) return;
         weight.store_aligned(weights.data() + count * size_t(Lanes));
         first[count] = uint16_t(member);
-        sums[count + 1] = sums[count] + xsimd::hadd(weight);
+        sums[count + 1] = sums[count] + darts::lanes::sum(weight);
         ++count;
     }
     [[nodiscard]] float total() const { return sums[count]; }

@@ -6,7 +6,7 @@ namespace {
 
 /// What the filter sees of a query; the context is its first member, so that its address is the query's.
 struct Query {
-    RTCIntersectContext context;
+    embree::Context context;
     const Scene* scene;
     const Sensor* sensor;
     const PhotonBeam* beams;
@@ -64,8 +64,6 @@ BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vect
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;
     Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, 0};
-    rtcInitIntersectContext(&query.context);
-    query.context.filter = filter;
     // Embree skips ribbons that hold or nearly touch the ray's origin: start two radii behind it and test exactly in
     // evaluate().
     const float margin = 2.0001f * radius_;
@@ -80,7 +78,7 @@ uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const
     ray.ray.tfar = segment.length + 2.0f * margin;
     ray.ray.mask = ~0u;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(structure_.scene(), &query.context, &ray);
+    embree::queryAll(structure_.scene(), ray, query.context, filter);
     return query.gathered;
 }
 

@@ -125,7 +125,7 @@ class Splatter {
         }
         weight = xsimd::select(inside, weight, Batch(0.0f));
         for (int k = 0; k < 3; ++k) piece.add(first, weight, k, ribbon.power[k]);
-        return uint64_t(xsimd::hadd(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
+        return uint64_t(darts::lanes::sum(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
     }
 
     /// False if no ray meets the ribbon.

@@ -38,7 +38,7 @@ EmbreeBeams::EmbreeBeams(const std::vector<PhotonBeam>& beams, float radius, boo
         vertices[2 * i + 1] = {beam.base + beam.direction * piece.end, radius};
         firstVertices[i] = uint32_t(2 * i);
     }
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+    rtcSetSceneFlags(scene_, embree::QueryFilterFlag);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);

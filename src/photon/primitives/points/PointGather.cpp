@@ -10,7 +10,7 @@ namespace {
 
 /// What the filter sees of a query; the context is its first member, so that its address is the query's.
 struct Query {
-    RTCIntersectContext context;
+    embree::Context context;
     const Scene* scene;
     const Sensor* sensor;
     const std::vector<Photon>* photons;
@@ -74,8 +74,6 @@ PointGather::PointGather(const Scene& scene, const Sensor& sensor, const std::ve
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (photons_.empty()) return 0;
     Query query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &segment, &sums, 0};
-    rtcInitIntersectContext(&query.context);
-    query.context.filter = filter;
     // Embree skips discs that hold or nearly touch the ray's origin: start two radii behind it and test exactly in
     // evaluate().
     const float margin = 2.0001f * points_->largestRadius();
@@ -90,7 +88,7 @@ uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) cons
     ray.ray.tfar = segment.length + 2.0f * margin;
     ray.ray.mask = ~0u;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(points_->scene(), &query.context, &ray);
+    embree::queryAll(points_->scene(), ray, query.context, filter);
     return query.gathered;
 }
 

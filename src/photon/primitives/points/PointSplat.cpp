@@ -28,8 +28,8 @@ struct MediumTerms {
 struct alignas(64) Spot {
     int frame; ///< -1: not to be seen
     int medium, bounce;
-    Vec3f offset, direction;
-    Rgb power; ///< with the kernel's constant and the sensor's weight
+    Vec3f offset{0.0f}, direction{0.0f};
+    Rgb power{0.0f}; ///< with the kernel's constant and the sensor's weight
     float inverseSquaredRadius;
     ImageDisc disc;
 };
@@ -102,7 +102,7 @@ class Splatter {
                                  : drawRow(spot, piece, band, first, end, least, most);
             }
         }
-        return uint64_t(xsimd::hadd(gathered));
+        return uint64_t(darts::lanes::sum(gathered));
     }
 
   private:
