@@ -58,11 +58,16 @@ void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene) {
 PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     PathSettings settings;
     const EffectPlan plan = analyseScene(scene);
-    settings.lightSampling = block.flag("enable_light_sampling", true);
-    settings.volumeLightSampling = block.flag("enable_volume_light_sampling", true);
-    settings.lowOrderScattering = block.flag("low_order_scattering", true);
-    settings.includeSurfaces = block.flag("include_surfaces", true);
-    settings.russianRoulette = block.flag("enable_rr", !plan.timeResolved);
+    settings.lightSampling =
+        block.flag("enable_light_sampling", true, {"none", "surface vertices connect to emitters"});
+    settings.volumeLightSampling =
+        block.flag("enable_volume_light_sampling", true, {"none", "medium vertices connect to emitters"});
+    settings.lowOrderScattering = block.flag(
+        "low_order_scattering", true, {"none", "false: leaves out paths with exactly one scattering in a medium"});
+    settings.includeSurfaces = block.flag(
+        "include_surfaces", true, {"none", "false: leaves out what reaches surfaces without a scattering in a medium"});
+    settings.russianRoulette =
+        block.flag("enable_rr", !plan.timeResolved, {"none", "Russian roulette", "true in steady state, else false"});
     readGuidance(block, scene, plan, settings);
     warnAboutSingleDirections(block, scene);
     if (scene.transport.gate.delta) {

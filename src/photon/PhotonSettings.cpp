@@ -10,7 +10,9 @@ constexpr float Unbounded = 1e30f;
 VolumePrimitive readPrimitive(const ObjectReader& block) {
     const std::vector<std::string> later{"planes", "planes_1d",     "volumes",          "hypervolumes",
                                          "balls",  "volumes_balls", "mis_volumes_balls"};
-    const std::string type = block.text("volume_photon_type", "points");
+    constexpr Meaning meaning{"none", "what the light that scatters in media is stored as"};
+    block.declare("volume_photon_type", "points or beams", "points", meaning);
+    const std::string type = block.text("volume_photon_type", "points", meaning);
     VolumePrimitive primitive;
     bool supported = false;
     forEachPrimitive(primitive, [&](const auto& p) {
@@ -28,15 +30,21 @@ VolumePrimitive readPrimitive(const ObjectReader& block) {
 /// Radius and temporal kernel of the volume store.
 void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
     const bool beams = std::holds_alternative<Beams>(settings.primitive);
-    settings.volumeRadius = float(block.number("volume_gather_radius", settings.gatherRadius, Range::positive()));
-    settings.fixedVolumeRadius = block.flag("fixed_volume_radius", false);
+    settings.volumeRadius = float(
+        block.number("volume_gather_radius", settings.gatherRadius,
+                     {"length", "radius in media: of beams, and of points with fixed_volume_radius", "gather_radius"},
+                     Range::positive()));
+    settings.fixedVolumeRadius = block.flag(
+        "fixed_volume_radius", false, {"none", "points: one radius, instead of one that follows the photons' density"});
     if (beams && settings.volumeRadius >= Unbounded)
         block.problem("volume_gather_radius", "beams need a volume_gather_radius or gather_radius");
     if (!beams && settings.fixedVolumeRadius && settings.volumeRadius >= Unbounded)
         block.problem("volume_gather_radius",
                       "a fixed radius (fixed_volume_radius) needs a volume_gather_radius or gather_radius");
     if (!scene.transport.gate.delta) return;
-    settings.temporalRadius = 0.5 * block.number("transient_time_width", 0.1, Range::nonNegative());
+    settings.temporalRadius =
+        0.5 * block.number("transient_time_width", 0.1, {"time", "width of the temporal kernel in the first pass"},
+                           Range::nonNegative());
     if (settings.temporalRadius <= 0.0)
         block.problem("transient_time_width", "photons see a delta gate through a temporal kernel, which starts with "
                                               "this width: it must be above 0");
@@ -48,15 +56,26 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
     PhotonSettings settings;
     settings.primitive = readPrimitive(block);
     settings.progressive = progressive;
-    settings.photonCount = uint64_t(block.integer("photon_count", 1000000, {1, MostPhotons}));
-    settings.volumePhotonCount = uint64_t(block.integer("volume_photon_count", 1000000, {1, MostPhotons}));
-    settings.gatherCount = uint32_t(block.integer("gather_photon_count", 20, {1, 1e9}));
-    settings.gatherRadius = float(block.number("gather_radius", Unbounded, Range::positive()));
+    settings.photonCount = uint64_t(
+        block.integer("photon_count", 1000000,
+                      {"none", "light paths in each pass, and the most photons kept on surfaces"}, {1, MostPhotons}));
+    settings.volumePhotonCount = uint64_t(block.integer(
+        "volume_photon_count", 1000000, {"none", "the most photons or beams kept in media"}, {1, MostPhotons}));
+    settings.gatherCount = uint32_t(block.integer(
+        "gather_photon_count", 20, {"none", "nearest photons that a point on a surface gathers"}, {1, 1e9}));
+    settings.gatherRadius = float(
+        block.number("gather_radius", Unbounded,
+                     {"length", "largest distance of photons gathered on a surface", "unbounded"}, Range::positive()));
     readKernels(block, scene, settings);
-    settings.lowOrderScattering = block.flag("low_order_scattering", true);
-    settings.includeSurfaces = block.flag("include_surfaces", true);
-    settings.alpha = float(block.number("alpha", 0.3, Range::unit()));
-    settings.volumeAlpha = float(block.number("volume_alpha", double(settings.alpha), Range::unit()));
+    settings.lowOrderScattering =
+        block.flag("low_order_scattering", true,
+                   {"none", "false: no photons where light scatters first after a light or surface"});
+    settings.includeSurfaces =
+        block.flag("include_surfaces", true, {"none", "false: no photons on surfaces and no visible emission"});
+    settings.alpha = float(block.number(
+        "alpha", 0.3, {"none", "progressive maps: how fast radii on surfaces shrink; 1: not at all"}, Range::unit()));
+    settings.volumeAlpha = float(
+        block.number("volume_alpha", double(settings.alpha), {"none", "the same in media", "alpha"}, Range::unit()));
     settings.scheme = darts::readScheme(block);
     // Ways of building the published structures; the gathers here need no such choice.
     block.accept({"use_grid", "grid_memory", "use_frustum_grid", "exclude_non_mis", "strict_time_width",

@@ -13,25 +13,30 @@ namespace {
 
 class Block {
   public:
+    struct Meaning {
+        const char *unit, *text, *fallback = nullptr;
+    };
     using Value = std::variant<double, bool, std::string, std::shared_ptr<Block>>;
 
     Block(std::map<std::string, Value> fields, std::vector<std::string>* problems)
         : fields_(std::move(fields)), problems_(problems) {}
 
+    bool describes() const { return false; }
+    void declare(const std::string&, const std::string&, const std::string&, const Meaning&) const {}
     bool has(const std::string& field) const { return fields_.count(field) > 0; }
     bool isObject(const std::string& field) const {
         return has(field) && std::holds_alternative<std::shared_ptr<Block>>(fields_.at(field));
     }
-    std::shared_ptr<Block> object(const std::string& field) const {
+    std::shared_ptr<Block> block(const std::string& field, const Meaning&) const {
         return std::get<std::shared_ptr<Block>>(fields_.at(field));
     }
-    bool flag(const std::string& field, bool otherwise) const { return value(field, otherwise); }
-    double number(const std::string& field, double otherwise) const { return value(field, otherwise); }
-    int64_t integer(const std::string& field, int64_t otherwise) const {
+    bool flag(const std::string& field, bool otherwise, const Meaning&) const { return value(field, otherwise); }
+    double number(const std::string& field, double otherwise, const Meaning&) const { return value(field, otherwise); }
+    int64_t integer(const std::string& field, int64_t otherwise, const Meaning&) const {
         return int64_t(value(field, double(otherwise)));
     }
-    std::string choice(const std::string& field, const std::string& otherwise,
-                       const std::vector<std::string>& accepted) const {
+    std::string choice(const std::string& field, const std::string& otherwise, const std::vector<std::string>& accepted,
+                       const Meaning&) const {
         const std::string word = value(field, otherwise);
         if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return word;
         problem(field, "unknown " + word);

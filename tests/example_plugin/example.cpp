@@ -14,7 +14,9 @@ using namespace tungsten;
 class AmbientOcclusion : public Integrator {
   public:
     AmbientOcclusion(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
-        : scene_(std::move(scene)), distance_(float(settings.number("distance", 1.0, Range::positive()))) {}
+        : scene_(std::move(scene)),
+          distance_(float(
+              settings.number("distance", 1.0, {"length", "how far rays must travel freely"}, Range::positive()))) {}
 
     void plan(EffectPlan& plan) const override {
         plan.describe("ambient occlusion", true, "the hemisphere above the first surface is tested");

@@ -105,6 +105,8 @@ TEST(Command, HelpAndVersionAnswerAndStop) {
                                "--target-error",
                                "--explain",
                                "--list",
+                               "--describe",
+                               "--markdown",
                                "--quiet"})
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     EXPECT_EQ(test::tungsten({"-h"}).out, help.out);

@@ -20,6 +20,10 @@ endif()
 if(NOT output MATCHES "path_tracer")
   message(FATAL_ERROR "--list lost the installed integrators:\n${output}")
 endif()
+run(${tungsten} --describe ambient_occlusion)
+if(NOT output MATCHES "distance \\[length\\], default 1\n *how far rays must travel freely")
+  message(FATAL_ERROR "--describe does not show the plugin's field:\n${output}")
+endif()
 
 run(${tungsten} ${SCENE} --set integrator.type=ambient_occlusion --set integrator.distance=0.5 --resolution 32x32
   --spp 4 -d ${WORK}/out -o ao.png -e ao.pfm --stats ${WORK}/out/ao.json)

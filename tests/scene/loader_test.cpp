@@ -153,6 +153,13 @@ TEST(SceneLoader, EveryProblemIsListedWithItsPath) {
         EXPECT_NE(text.find(expected), std::string::npos) << "missing: " << expected << "\nin:\n" << text;
 }
 
+TEST(SceneLoader, BlocksThatAreNoObjectsAreProblems) {
+    for (const char* block : {"camera", "integrator", "renderer"})
+        EXPECT_NE(problemsOf(std::string("{\"") + block + "\": 5}").find(std::string(block) + ": expected an object"),
+                  std::string::npos)
+            << block;
+}
+
 TEST(SceneLoader, LightThatNeverArrivesIsAnError) {
     const std::string gated = R"("integrator": {"transient_time_center": 1, "transient_time_width": 1})";
     EXPECT_NE(problemsOf("{" + gated + "}").find("nothing emits light"), std::string::npos);

@@ -28,6 +28,8 @@ class JsonFile {
     std::filesystem::path path_;
 };
 
+constexpr Meaning Any{"none", "any field"};
+
 ObjectReader readerOf(const std::string& text, const std::shared_ptr<Diagnostics>& diagnostics) {
     const JsonFile file(text);
     const auto document = parseJsonFile(file.path());
@@ -50,10 +52,10 @@ TEST(Json, AcceptsCommentsTrailingCommasNanAndByteOrderMark) {
     auto diagnostics = std::make_shared<Diagnostics>();
     const auto reader =
         readerOf("\xEF\xBB\xBF{ /* a */ \"x\": 1e4, // b\n \"y\": [1, 2, 3,], \"n\": NaN, }", diagnostics);
-    EXPECT_EQ(reader.integer("x", 0), 10000);
-    EXPECT_EQ(reader.vec3("y", Vec3f(0.0f)), Vec3f(1, 2, 3));
+    EXPECT_EQ(reader.integer("x", 0, Any), 10000);
+    EXPECT_EQ(reader.vec3("y", Vec3f(0.0f), Any), Vec3f(1, 2, 3));
     EXPECT_TRUE(diagnostics->problems.empty());
-    EXPECT_EQ(reader.number("n", 7.0), 7.0); // parsed, but not a usable number
+    EXPECT_EQ(reader.number("n", 7.0, Any), 7.0); // parsed, but not a usable number
     ASSERT_EQ(diagnostics->problems.size(), 1u);
     EXPECT_EQ(diagnostics->problems[0].path, "n");
 }
@@ -77,12 +79,12 @@ TEST(Json, DeepNestingIsNoCrash) {
 TEST(ObjectReader, BadValuesBecomeProblemsWithPathFoundAndAccepted) {
     auto diagnostics = std::make_shared<Diagnostics>();
     const auto reader = readerOf(R"({"a": "text", "b": -1, "c": [1, 2], "d": "tnet", "e": 1, "f": 3})", diagnostics);
-    EXPECT_EQ(reader.number("a", 5.0), 5.0);
-    EXPECT_EQ(reader.number("b", 5.0, Range::nonNegative()), 5.0);
-    EXPECT_EQ(reader.rgb("c", Rgb(0.25f)), Rgb(0.25f));
-    EXPECT_EQ(reader.choice("d", "box", {"box", "tent"}), "box");
-    EXPECT_TRUE(reader.flag("e", true));
-    EXPECT_EQ(reader.durationSeconds("f", 9.0), 9.0);
+    EXPECT_EQ(reader.number("a", 5.0, Any), 5.0);
+    EXPECT_EQ(reader.number("b", 5.0, Any, Range::nonNegative()), 5.0);
+    EXPECT_EQ(reader.rgb("c", Rgb(0.25f), Any), Rgb(0.25f));
+    EXPECT_EQ(reader.choice("d", "box", {"box", "tent"}, Any), "box");
+    EXPECT_TRUE(reader.flag("e", true, Any));
+    EXPECT_EQ(reader.durationSeconds("f", 9.0, Any), 9.0);
     ASSERT_EQ(diagnostics->problems.size(), 6u);
     EXPECT_EQ(diagnostics->problems[1].text(), "test.json: b: expected a number of at least 0, found the number -1");
     EXPECT_NE(diagnostics->problems[3].message.find("did you mean 'tent'"), std::string::npos);
@@ -91,7 +93,7 @@ TEST(ObjectReader, BadValuesBecomeProblemsWithPathFoundAndAccepted) {
 TEST(ObjectReader, WarnsAboutUnknownFieldsOnceWithTheNearestName) {
     auto diagnostics = std::make_shared<Diagnostics>();
     const auto reader = readerOf(R"({"gather_radius": 1, "gather_radios": 2, "zzz": 3})", diagnostics);
-    EXPECT_EQ(reader.number("gather_radius", 0.0), 1.0);
+    EXPECT_EQ(reader.number("gather_radius", 0.0, Any), 1.0);
     reader.warnAboutUnknown();
     reader.warnAboutUnknown();
     ASSERT_EQ(diagnostics->warnings.size(), 2u);
@@ -102,8 +104,8 @@ TEST(ObjectReader, WarnsAboutUnknownFieldsOnceWithTheNearestName) {
 TEST(ObjectReader, WarnsAboutFieldsGivenTwice) {
     auto diagnostics = std::make_shared<Diagnostics>();
     const auto reader = readerOf(R"({"alpha": 0.3, "beta": 1, "alpha": 0.5, "alpha": 0.7})", diagnostics);
-    EXPECT_EQ(reader.number("alpha", 0.0), 0.3);
-    EXPECT_EQ(reader.number("beta", 0.0), 1.0);
+    EXPECT_EQ(reader.number("alpha", 0.0, Any), 0.3);
+    EXPECT_EQ(reader.number("beta", 0.0, Any), 1.0);
     reader.warnAboutUnknown();
     reader.warnAboutUnknown();
     ASSERT_EQ(diagnostics->warnings.size(), 1u);
@@ -115,10 +117,10 @@ TEST(ObjectReader, TransformsInBothForms) {
     const auto reader = readerOf(
         R"({"a": [1,0,0,5, 0,2,0,6, 0,0,3,7, 0,0,0,1], "b": {"position": [1,2,3], "look_at": [1,2,4]}, "c": {"position": [1,1,1], "look_at": [1,1,1]}})",
         diagnostics);
-    EXPECT_EQ(reader.transform("a").point(Vec3f(1, 1, 1)), Vec3f(6, 8, 10));
-    EXPECT_EQ(reader.transform("b").point(Vec3f(0, 0, 2)), Vec3f(1, 2, 5));
+    EXPECT_EQ(reader.transform("a", Any).point(Vec3f(1, 1, 1)), Vec3f(6, 8, 10));
+    EXPECT_EQ(reader.transform("b", Any).point(Vec3f(0, 0, 2)), Vec3f(1, 2, 5));
     EXPECT_TRUE(diagnostics->problems.empty());
-    (void)reader.transform("c");
+    (void)reader.transform("c", Any);
     EXPECT_EQ(diagnostics->problems.size(), 1u);
 }
 

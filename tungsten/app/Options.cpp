@@ -79,7 +79,7 @@ std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
 
 std::optional<Options> parseOptions(int argc, const char* const* argv) {
     Options options;
-    std::string checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre;
+    std::string checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre, describe;
     int64_t spp = 0;
 
     CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
@@ -109,6 +109,13 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
         ->check(CLI::PositiveNumber);
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
+    const CLI::Option* description =
+        app.add_option("--describe", describe,
+                       "print the fields of a type or block of the scene (--list; also scene, renderer, darts, ...): "
+                       "unit, default, meaning and accepted values; of all without TYPE")
+            ->expected(0, 1)
+            ->option_text("[TYPE]");
+    app.add_flag("--markdown", options.markdown, "--describe prints a page of tables");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
 
     try {
@@ -132,7 +139,10 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     if (!ldr.empty()) options.outputs.ldr = ldr;
     if (!hdr.empty()) options.outputs.hdr = hdr;
     if (!statistics.empty()) options.outputs.statistics = statistics;
-    if (options.scenes.empty() && !options.list) throw UsageError("no scene file given (--help lists the options)");
+    if (description->count() > 0) options.describe = describe;
+    if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
+    if (options.scenes.empty() && !options.list && !options.describe)
+        throw UsageError("no scene file given (--help lists the options)");
     return options;
 }
 

@@ -22,6 +22,8 @@ struct Options {
     int threads = 0; ///< 0: all
     bool restart = false, quiet = false;
     bool explain = false, list = false;
+    std::optional<std::string> describe; ///< a type or kind; empty: all
+    bool markdown = false;
 };
 
 /// Parses the command line. Throws UsageError for what it cannot accept. Returns none when the answer was printed

@@ -1,8 +1,10 @@
 // `tungsten`: scenes in, time-resolved images out.
 
+#include "tungsten/app/Describe.h"
 #include "tungsten/app/List.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
+#include "tungsten/render/Describe.h"
 #include "tungsten/render/Plugin.h"
 #include "tungsten/render/RenderSession.h"
 
@@ -134,8 +136,18 @@ int tryScene(const std::filesystem::path& file, const Options& options, const Pl
     return ExitBadInput;
 }
 
+void printFields(const Options& options, const Plugins& plugins) {
+    const auto selected = selectDescriptions(describeAll(plugins.registry), *options.describe);
+    options.markdown ? printMarkdown(selected, std::cout) : printDescriptions(selected, std::cout);
+}
+
 int run(const Options& options) {
     const Plugins plugins;
+    if (options.describe) {
+        printFields(options, plugins);
+        printWarnings(plugins.problems);
+        return 0;
+    }
     if (options.list) {
         printTypes(plugins.registry, std::cout);
         printWarnings(plugins.problems);

@@ -9,7 +9,8 @@ namespace {
 constexpr double LargestIor = 100.0;
 
 float readIor(const ObjectReader& reader) {
-    return float(reader.number("ior", 1.5, {1e-2, LargestIor}));
+    return float(
+        reader.number("ior", 1.5, {"none", "index of refraction inside, relative to outside"}, {1e-2, LargestIor}));
 }
 
 MicrofacetModel readDistribution(const ObjectReader& reader, const std::string& fallback) {
@@ -19,29 +20,37 @@ MicrofacetModel readDistribution(const ObjectReader& reader, const std::string& 
                                                                {"pbrt-ggx", MicrofacetModel::PbrtGgx}};
     std::vector<std::string> names;
     for (const auto& [name, model] : models) names.push_back(name);
-    return models.at(reader.choice("distribution", fallback, names));
+    return models.at(
+        reader.choice("distribution", fallback, names, {"none", "how the facets' normals are distributed"}));
 }
 
 Texture readRoughness(LoadContext& context, const ObjectReader& reader, float fallback) {
-    return readTexture(context, reader, "roughness", Texture(fallback), {0.0, 10.0});
+    return readTexture(context, reader, "roughness", Texture(fallback),
+                       {"none", "width of the facets' distribution, not squared"}, {0.0, 10.0});
 }
 
 /// A material name wins over eta and k, which replace the default only together.
 std::pair<Rgb, Rgb> readConductor(const ObjectReader& reader) {
     std::pair<Rgb, Rgb> optics = *conductorByName("Cu");
-    const Rgb eta = reader.rgb("eta", optics.first, {1e-6, 1e6}), k = reader.rgb("k", optics.second, {0.0, 1e6});
+    const Rgb eta = reader.rgb("eta", optics.first, {"none", "index of refraction, with `k`", "copper's"}, {1e-6, 1e6});
+    const Rgb k = reader.rgb("k", optics.second, {"none", "extinction index, with `eta`", "copper's"}, {0.0, 1e6});
+    const std::string material =
+        reader.choice("material", "Cu", conductorNames(), {"none", "metal whose `eta` and `k` are used instead"});
     if (reader.has("eta") != reader.has("k"))
         reader.warn(reader.has("eta") ? "eta" : "k", "eta and k take effect only together; copper is used");
     else
         optics = {eta, k};
     if (reader.has("material"))
-        if (const auto named = conductorByName(reader.choice("material", "Cu", conductorNames()))) optics = *named;
+        if (const auto named = conductorByName(material)) optics = *named;
     return optics;
 }
 
 BsdfModel readOrenNayar(LoadContext& context, const ObjectReader& reader) {
-    const float sigma = float(reader.number("sigma", 0.0, Range::nonNegative()));
-    return OrenNayar{readRoughness(context, reader, std::sqrt(2.0f) * sigma)};
+    const float sigma = float(reader.number(
+        "sigma", 0.0, {"radians", "standard deviation of the facets' slope, where `roughness` is not given"},
+        Range::nonNegative()));
+    return OrenNayar{readTexture(context, reader, "roughness", Texture(std::sqrt(2.0f) * sigma),
+                                 {"none", "of the facets", "sigma times the square root of 2"}, {0.0, 10.0})};
 }
 
 BsdfModel readRoughConductor(LoadContext& context, const ObjectReader& reader) {
@@ -54,13 +63,29 @@ BsdfModel readConductorModel(LoadContext&, const ObjectReader& reader) {
     return Conductor{eta, k};
 }
 
+bool readRefraction(const ObjectReader& reader) {
+    return reader.flag("enable_refraction", true, {"none", "false: light is only reflected"});
+}
+
+float readThickness(const ObjectReader& reader) {
+    return float(reader.number("thickness", 1.0, {"length", "of the coat, for absorption"}, Range::nonNegative()));
+}
+
+Rgb readCoatAbsorption(const ObjectReader& reader) {
+    return reader.rgb("sigma_a", Rgb(0.0f), {"1/length", "absorption in the coat"}, Range::nonNegative());
+}
+
+Rgb readSpecularFactor(const ObjectReader& reader, float fallback) {
+    return reader.rgb("Ks", Rgb(fallback), {"none", "factor on what the coat reflects"}, Range::nonNegative());
+}
+
 BsdfModel readDielectric(LoadContext&, const ObjectReader& reader) {
-    return Dielectric{readIor(reader), reader.flag("enable_refraction", true)};
+    return Dielectric{readIor(reader), readRefraction(reader)};
 }
 
 BsdfModel readRoughDielectric(LoadContext& context, const ObjectReader& reader) {
     RoughDielectric rough{readIor(reader), readDistribution(reader, "ggx"), readRoughness(context, reader, 0.1f),
-                          reader.flag("enable_refraction", true)};
+                          readRefraction(reader)};
     // Where hardly anything is refracted, directions no longer tell the facet they passed.
     constexpr float LeastContrast = 1e-4f;
     if (std::abs(rough.ior - 1.0f) < LeastContrast) return Dielectric{1.0f, rough.enableRefraction};
@@ -68,19 +93,18 @@ BsdfModel readRoughDielectric(LoadContext& context, const ObjectReader& reader) 
 }
 
 BsdfModel readPlastic(LoadContext&, const ObjectReader& reader) {
-    return makePlastic(readIor(reader), float(reader.number("thickness", 1.0, Range::nonNegative())),
-                       reader.rgb("sigma_a", Rgb(0.0f), Range::nonNegative()));
+    return makePlastic(readIor(reader), readThickness(reader), readCoatAbsorption(reader));
 }
 
 BsdfModel readRoughPlastic(LoadContext& context, const ObjectReader& reader) {
-    return makeRoughPlastic(readIor(reader), float(reader.number("thickness", 1.0, Range::nonNegative())),
-                            reader.rgb("sigma_a", Rgb(0.0f), Range::nonNegative()), readDistribution(reader, "ggx"),
-                            readRoughness(context, reader, 0.02f), reader.rgb("Ks", Rgb(1.0f), Range::nonNegative()));
+    return makeRoughPlastic(readIor(reader), readThickness(reader), readCoatAbsorption(reader),
+                            readDistribution(reader, "ggx"), readRoughness(context, reader, 0.02f),
+                            readSpecularFactor(reader, 1.0f));
 }
 
 BsdfModel readPbrtPlastic(LoadContext& context, const ObjectReader& reader) {
     return PbrtPlastic{readIor(reader), readDistribution(reader, "pbrt-ggx"), readRoughness(context, reader, 0.1f),
-                       reader.rgb("Ks", Rgb(0.25f), Range::nonNegative())};
+                       readSpecularFactor(reader, 0.25f)};
 }
 
 BsdfPtr defaultBsdf() {
@@ -88,15 +112,18 @@ BsdfPtr defaultBsdf() {
 }
 
 BsdfModel readTransparency(LoadContext& context, const ObjectReader& reader) {
-    const BsdfPtr base = reader.has("base") ? readBsdfReference(context, reader, "base") : defaultBsdf();
-    return Transparency{base, readTexture(context, reader, "alpha", Texture(1.0f), Range::unit())};
+    const BsdfPtr base =
+        readBsdfReference(context, reader, "base", {"none", "what is seen where alpha is 1", "white Lambert"});
+    return Transparency{base, readTexture(context, reader, "alpha", Texture(1.0f),
+                                          {"none", "opacity: 0 lets everything straight through"}, Range::unit())};
 }
 
 BsdfModel readMixed(LoadContext& context, const ObjectReader& reader) {
     for (const char* field : {"bsdf0", "bsdf1"})
         if (!reader.has(field)) reader.problem(field, "a mixed BSDF needs bsdf0 and bsdf1");
-    return Mixed{readBsdfReference(context, reader, "bsdf0"), readBsdfReference(context, reader, "bsdf1"),
-                 readTexture(context, reader, "ratio", Texture(0.5f), Range::unit())};
+    return Mixed{readBsdfReference(context, reader, "bsdf0", {"none", "mixed with the share `ratio`", "required"}),
+                 readBsdfReference(context, reader, "bsdf1", {"none", "the rest of the mixture", "required"}),
+                 readTexture(context, reader, "ratio", Texture(0.5f), {"none", "share of bsdf0"}, Range::unit())};
 }
 
 using ModelReader = std::function<BsdfModel(LoadContext&, const ObjectReader&)>;
@@ -128,15 +155,15 @@ BsdfPtr readBsdf(LoadContext& context, const ObjectReader& reader) {
     std::vector<std::string> types;
     for (const auto& [type, modelReader] : modelReaders()) types.push_back(type);
     if (!reader.has("type")) reader.problem("type", "a BSDF needs a type: " + listOf(types));
-    const std::string type = reader.choice("type", "lambert", types);
-    const std::string name = reader.text("name", "");
-    Texture albedo = readTexture(context, reader, "albedo", Texture(1.0f), Range::nonNegative());
+    const std::string type = reader.choice("type", "lambert", types, {"none", "which BSDF", "required"});
+    const std::string name = reader.text("name", "", NameMeaning);
+    Texture albedo = readTexture(context, reader, "albedo", Texture(1.0f),
+                                 {"none", "factor on the model's reflectance"}, Range::nonNegative());
     BsdfModel model = modelReaders().at(type)(context, reader);
     auto bsdf = std::make_shared<Bsdf>(name, std::move(model), std::move(albedo));
-    if (reader.has("bump")) {
-        Texture bump = readTexture(context, reader, "bump", Texture(0.0f));
-        if (!bump.isConstant()) bsdf->bump = std::move(bump);
-    }
+    Texture bump =
+        readTexture(context, reader, "bump", Texture(0.0f), {"length", "height that tilts the shading normal"});
+    if (!bump.isConstant()) bsdf->bump = std::move(bump);
     reader.warnAboutUnknown();
     if (!name.empty()) context.bsdfs.emplace(name, bsdf);
     return bsdf;
@@ -162,18 +189,28 @@ std::vector<std::string> bsdfTypes() {
 }
 
 void readBsdfs(LoadContext& context, const ObjectReader& root) {
-    for (const ObjectReader& bsdf : root.objects("bsdfs")) readBsdf(context, bsdf);
+    for (const ObjectReader& bsdf : root.objects("bsdfs", {"none", "how surfaces scatter"})) readBsdf(context, bsdf);
 }
 
-BsdfPtr readBsdfReference(LoadContext& context, const ObjectReader& owner, const std::string& field) {
+void describeBsdf(const std::shared_ptr<Description>& description) {
+    ScratchContext scratch;
+    readBsdf(scratch.context, ObjectReader::describing(description, description->name));
+}
+
+BsdfPtr readBsdfReference(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                          const Meaning& meaning) {
+    owner.declare(field, "the name of a BSDF, or a BSDF", "none", meaning);
     if (!owner.has(field)) return defaultBsdf();
-    if (owner.isText(field)) return bsdfByName(context, owner, field, owner.text(field, ""));
-    if (const auto inlined = owner.object(field)) return readBsdf(context, *inlined);
+    if (owner.isText(field)) return bsdfByName(context, owner, field, owner.text(field, "", meaning));
+    if (const auto inlined = owner.object(field, meaning)) return readBsdf(context, *inlined);
     return defaultBsdf();
 }
 
-std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owner, const std::string& field) {
-    if (!owner.isArray(field)) return {readBsdfReference(context, owner, field)};
+std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                                  const Meaning& meaning) {
+    owner.declare(field, "the name of a BSDF, a BSDF, or an array of both", "none", meaning);
+    if (owner.describes()) return {defaultBsdf()};
+    if (!owner.isArray(field)) return {readBsdfReference(context, owner, field, meaning)};
     std::vector<BsdfPtr> list;
     for (size_t i = 0; i < owner.arraySize(field); ++i) {
         const std::string item = field + "[" + std::to_string(i) + "]";

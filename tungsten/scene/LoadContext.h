@@ -25,31 +25,55 @@ struct LoadContext {
     std::filesystem::path resource(const std::string& name);
 };
 
+/// A context to describe types in: nothing is read from files, nothing is kept.
+struct ScratchContext {
+    Scene scene;
+    LoadContext context{scene, {}, {}, {}, {}, {}, {}};
+};
+
+inline constexpr Meaning NameMeaning{"none", "what the rest of the scene, and --set, call it"};
+inline constexpr Meaning PlacementMeaning{"none", "from its own coordinates to the world's", "identity"};
+
 /// A texture field: number or RGB (constant), path string (bitmap), or object. Constant values must lie in `range`.
 Texture readTexture(LoadContext& context, const ObjectReader& owner, const std::string& field, const Texture& fallback,
-                    Range range = {});
+                    const Meaning& meaning, Range range = {});
+/// Describes the fields of one type, as the functions of this name for other kinds do.
+void describeTexture(const std::shared_ptr<Description>& description);
 std::vector<std::string> textureTypes();
 /// One colour out of a texture field that may not vary (point emitters).
-Rgb readConstantTexture(LoadContext& context, const ObjectReader& owner, const std::string& field);
+Rgb readConstantTexture(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                        const Meaning& meaning);
 
 /// A medium by name or as an inline object; -1 and a problem if there is none of that name.
-int readMediumReference(LoadContext& context, const ObjectReader& owner, const std::string& field);
+int readMediumReference(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                        const Meaning& meaning);
 void readMedia(LoadContext& context, const ObjectReader& root);
+void describeMedium(const std::shared_ptr<Description>& description);
+void describePhaseFunction(const std::shared_ptr<Description>& description);
 std::vector<std::string> mediumTypes();
 std::vector<std::string> phaseFunctionTypes();
 
 /// A BSDF by name or as an inline object.
-BsdfPtr readBsdfReference(LoadContext& context, const ObjectReader& owner, const std::string& field);
+BsdfPtr readBsdfReference(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                          const Meaning& meaning);
 /// One BSDF, or an array indexed by the mesh's materials.
-std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owner, const std::string& field);
+std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                                  const Meaning& meaning);
 void readBsdfs(LoadContext& context, const ObjectReader& root);
+void describeBsdf(const std::shared_ptr<Description>& description);
 std::vector<std::string> bsdfTypes();
 
 void readPrimitives(LoadContext& context, const ObjectReader& root);
+void describePrimitive(const std::shared_ptr<Description>& description);
 std::vector<std::string> primitiveTypes();
-void readCamera(LoadContext& context, const ObjectReader& root);
+/// `reader` is the camera block.
+void readCamera(LoadContext& context, const ObjectReader& root, const ObjectReader& reader);
+void describeCamera(const std::shared_ptr<Description>& description);
 std::vector<std::string> cameraTypes();
-RendererSettings readRenderer(const ObjectReader& root);
+/// `reader` is the renderer block.
+RendererSettings readRenderer(const ObjectReader& reader);
+/// Which integrator the block asks for.
+std::string readIntegratorType(const ObjectReader& integrator);
 /// The fields that every integrator's block shares (bounces, gate, speeds); `type` decides the defaults of the gate.
 TransportSettings readTransport(const ObjectReader& integrator, const std::string& type);
 

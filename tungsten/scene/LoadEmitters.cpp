@@ -7,29 +7,40 @@ namespace tungsten {
 
 namespace {
 
+constexpr Meaning PowerMeaning{"power", "all that is emitted, instead of `emission`", "none"};
+constexpr Meaning SurroundingsMeaning{"none", "medium in which its light starts", "vacuum"};
+constexpr Meaning SurroundingSpeedMeaning{"length/time", "speed of light around it, where there is no medium",
+                                          "vaccum_speed_of_light"};
+
 /// `power` wins over `emission`; the flag says which was given.
 struct Strength {
     Rgb value{0.0f};
     bool isPower = false;
 };
 
-Strength readStrength(LoadContext& context, const ObjectReader& reader) {
-    const Rgb emission = readConstantTexture(context, reader, "emission");
-    if (!reader.has("power")) return {emission, false};
-    return {readConstantTexture(context, reader, "power"), true};
+/// `emission` means what the emitter's own function says.
+Strength readStrength(LoadContext& context, const ObjectReader& reader, const Meaning& emissionMeaning,
+                      const Meaning& powerMeaning = PowerMeaning) {
+    const Rgb emission = readConstantTexture(context, reader, "emission", emissionMeaning);
+    const Rgb power = readConstantTexture(context, reader, "power", powerMeaning);
+    return reader.has("power") ? Strength{power, true} : Strength{emission, false};
 }
 
 void addEmitter(LoadContext& context, const ObjectReader& reader, EmitterModel model) {
     Emitter emitter;
-    emitter.name = reader.text("name", "");
+    emitter.name = reader.text("name", "", NameMeaning);
     emitter.model = std::move(model);
     emitter.emissionTime = readEmissionTime(reader);
-    if (reader.has("ext_medium")) emitter.medium = readMediumReference(context, reader, "ext_medium");
-    emitter.vacuumSpeed = float(reader.number("ext_speed_of_light", -1.0));
-    // A light source without a surface has no inside and no material; scenes name them all the same.
-    reader.accept({"int_medium", "int_speed_of_light", "bsdf"});
+    emitter.medium = readMediumReference(context, reader, "ext_medium", SurroundingsMeaning);
+    emitter.vacuumSpeed = float(reader.number("ext_speed_of_light", -1.0, SurroundingSpeedMeaning));
+    if (reader.describes()) return;
     context.scene.emitters.push_back(std::move(emitter));
     context.emitters.push_back(reader);
+}
+
+/// Dark emitters are left out.
+bool shines(const ObjectReader& reader, const Rgb& strength) {
+    return maxComponent(strength) > 0.0f || reader.describes();
 }
 
 /// The medium around an emitter, as a path from the camera straight to it would know it; -1 also where points on the
@@ -51,49 +62,57 @@ int mediumAround(const Scene& scene, const Emitter& emitter) {
 }
 
 void readPoint(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    const Strength strength = readStrength(context, reader);
+    const Strength strength = readStrength(context, reader, {"power/steradian", "intensity in every direction"});
     const Rgb intensity = strength.isPower ? pointIntensityFromPower(strength.value) : strength.value;
-    if (maxComponent(intensity) > 0.0f) addEmitter(context, reader, PointEmitter{transform.translation, intensity});
+    if (shines(reader, intensity)) addEmitter(context, reader, PointEmitter{transform.translation, intensity});
 }
 
 void readSpot(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    const float halfAngle = float(reader.number("cone_angle", 30.0, {0.1, 180.0}));
-    const float edge = float(reader.number("edge_angle", 0.1 * halfAngle, {0.0, halfAngle}));
+    const float halfAngle =
+        float(reader.number("cone_angle", 30.0, {"degrees", "half angle of the cone of light along +z"}, {0.1, 180.0}));
+    constexpr Meaning edgeMeaning{"degrees", "width of the cone's edge, across which light fades",
+                                  "a tenth of cone_angle"};
+    reader.declare("edge_angle", "a number from 0 to cone_angle", "", edgeMeaning);
+    const float edge = float(reader.number("edge_angle", 0.1 * halfAngle, edgeMeaning, {0.0, halfAngle}));
     const float radians = Pi / 180.0f;
     SpotEmitter spot;
     spot.position = transform.translation;
     spot.direction = transform.rotation().n;
     spot.cosOuter = std::cos(halfAngle * radians);
     spot.cosInner = std::cos((halfAngle - edge) * radians);
-    const Strength strength = readStrength(context, reader);
+    const Strength strength = readStrength(context, reader, {"power/steradian", "intensity on the axis"});
     spot.intensity =
         strength.isPower ? spotIntensityFromPower(strength.value, spot.cosInner, spot.cosOuter) : strength.value;
-    if (maxComponent(spot.intensity) > 0.0f) addEmitter(context, reader, spot);
+    if (shines(reader, spot.intensity)) addEmitter(context, reader, spot);
 }
 
 void readDirectionalPoint(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    const Strength strength = readStrength(context, reader);
+    const Strength strength =
+        readStrength(context, reader, {"power/steradian", "as if in every direction: all that is emitted, by 4 pi"});
     const Rgb power = strength.isPower ? strength.value : directionalPointPower(strength.value);
-    if (maxComponent(power) > 0.0f)
+    if (shines(reader, power))
         addEmitter(context, reader, DirectionalPointEmitter{transform.translation, transform.rotation().n, power});
 }
 
 void readCollimated(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    const float radius = float(reader.number("radius", 0.0, Range::nonNegative()));
-    const Strength strength = readStrength(context, reader);
+    const float radius = float(reader.number(
+        "radius", 0.0, {"length", "of the beam of parallel light along +z; 0: a single ray"}, Range::nonNegative()));
+    const Strength strength =
+        readStrength(context, reader, {"power/length^2", "irradiance of the beam; of a single ray its power"},
+                     {"power", "instead of `emission`, which is it divided by 4 pi", "none"});
     const Rgb power = strength.isPower ? collimatedPowerFromPower(strength.value, radius)
                                        : collimatedPowerFromEmission(strength.value, radius);
-    if (maxComponent(power) > 0.0f)
+    if (shines(reader, power))
         addEmitter(context, reader, CollimatedEmitter{transform.translation, transform.rotation(), radius, power});
 }
 
 void readInfiniteSphere(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f), Range::nonNegative());
-    if (reader.has("power"))
-        radiance =
-            infiniteRadianceFromPower(readTexture(context, reader, "power", Texture(0.0f), Range::nonNegative()));
-    const bool samplable = reader.flag("sample", true);
-    if (maxComponent(radiance.maximum()) <= 0.0f) return;
+    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f),
+                                   {"radiance", "by direction, from infinitely far away"}, Range::nonNegative());
+    const Texture power = readTexture(context, reader, "power", Texture(0.0f), PowerMeaning, Range::nonNegative());
+    if (reader.has("power")) radiance = infiniteRadianceFromPower(power);
+    const bool samplable = reader.flag("sample", true, {"none", "vertices may connect to it"});
+    if (!shines(reader, radiance.maximum())) return;
     if (!context.scene.transport.gate.steadyState)
         reader.problem("type",
                        "light of an infinite_sphere never arrives in a time-resolved render; remove it, or render "
@@ -123,8 +142,9 @@ std::vector<std::string> emitterTypes() {
 bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader, const std::string& type) {
     const auto found = emitterReaders().find(type);
     if (found == emitterReaders().end()) return false;
-    const Transform transform = reader.transform("transform");
-    // Read (and so checked) even where the emitter turns out dark.
+    const Transform transform = reader.transform("transform", PlacementMeaning);
+    // Known even where the emitter turns out dark. A light source without a surface has no inside and no material;
+    // scenes name them all the same.
     reader.accept(
         {"name", "ext_medium", "int_medium", "ext_speed_of_light", "int_speed_of_light", "bsdf", "emission_time"});
     found->second(context, reader, transform);
@@ -132,16 +152,16 @@ bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader
 }
 
 std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader& reader, const Shape& shape) {
-    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f), Range::nonNegative());
-    if (reader.has("power"))
-        radiance = areaRadianceFromPower(readTexture(context, reader, "power", Texture(0.0f), Range::nonNegative()),
-                                         surfaceArea(shape));
+    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f),
+                                   {"radiance", "emitted to the side of the normal"}, Range::nonNegative());
+    const Texture power = readTexture(context, reader, "power", Texture(0.0f), PowerMeaning, Range::nonNegative());
+    if (reader.has("power")) radiance = areaRadianceFromPower(power, surfaceArea(shape));
     if (maxComponent(radiance.maximum()) <= 0.0f) return std::nullopt;
     return radiance;
 }
 
 double readEmissionTime(const ObjectReader& reader) {
-    return reader.number("emission_time", 0.0);
+    return reader.number("emission_time", 0.0, {"time", "when its pulse starts"});
 }
 
 void warnAboutMediaOfEmitters(const LoadContext& context) {

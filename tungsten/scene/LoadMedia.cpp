@@ -5,12 +5,13 @@ namespace tungsten {
 namespace {
 
 PhaseFunction readPhaseFunction(const ObjectReader& phase, Medium& medium) {
-    const std::string type = phase.choice("type", "isotropic", phaseFunctionTypes());
+    const std::string type = phase.choice("type", "isotropic", phaseFunctionTypes(), {"none", "which phase function"});
     PhaseFunction result{Isotropic{}};
     if (type == "rayleigh") result.model = Rayleigh{};
     const bool guided = type == "ida" || type == "integrated_da";
     if (type == "henyey_greenstein" || guided)
-        result.model = HenyeyGreenstein{float(phase.number("g", 0.0, {-0.999, 0.999}))};
+        result.model = HenyeyGreenstein{
+            float(phase.number("g", 0.0, {"none", "mean cosine; above 0 light goes on forward"}, {-0.999, 0.999}))};
     if (guided) {
         medium.guidedPhase = true;
         phase.accept({"table_path", "alpha", "dT_start", "dT_end", "max_T"});
@@ -23,31 +24,39 @@ PhaseFunction readPhaseFunction(const ObjectReader& phase, Medium& medium) {
 }
 
 void requireExponentialTransmittance(const ObjectReader& medium) {
+    constexpr Meaning meaning{"none", "law by which light dies away with length", "exponential"};
+    medium.declare("transmittance", "exponential, or an object of that type", "exponential", meaning);
     if (!medium.has("transmittance")) return;
     std::string type;
     if (medium.isText("transmittance"))
-        type = medium.text("transmittance", "");
-    else if (const auto object = medium.object("transmittance"))
-        type = object->text("type", "");
+        type = medium.text("transmittance", "", meaning);
+    else if (const auto object = medium.object("transmittance", meaning))
+        type = object->text("type", "", {"none", "which law"});
     if (type != "exponential")
         medium.problem("transmittance", "only exponential transmittance is supported, found '" + type + "'");
 }
 
 Medium readMedium(const ObjectReader& reader) {
     Medium medium;
-    medium.name = reader.text("name", "");
-    const std::string type = reader.choice("type", "homogeneous", mediumTypes());
+    const std::string type = reader.choice("type", "homogeneous", mediumTypes(), {"none", "which medium", "required"});
+    medium.name = reader.text("name", "", NameMeaning);
     if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(mediumTypes()));
-    const float density = float(reader.number("density", 1.0, Range::nonNegative()));
-    medium.sigmaA = reader.rgb("sigma_a", Rgb(0.0f), Range::nonNegative()) * density;
-    medium.sigmaS = reader.rgb("sigma_s", Rgb(0.0f), Range::nonNegative()) * density;
-    medium.speedOfLight = float(reader.number("speed_of_light", 1.0, Range::positive()));
-    medium.maxBounces = int(reader.integer("max_bounces", 1024, {0, 2e9}));
+    const float density =
+        float(reader.number("density", 1.0, {"none", "factor on both coefficients"}, Range::nonNegative()));
+    medium.sigmaA =
+        reader.rgb("sigma_a", Rgb(0.0f), {"1/length", "absorption coefficient"}, Range::nonNegative()) * density;
+    medium.sigmaS =
+        reader.rgb("sigma_s", Rgb(0.0f), {"1/length", "scattering coefficient"}, Range::nonNegative()) * density;
+    medium.speedOfLight = float(
+        reader.number("speed_of_light", 1.0, {"length/time", "speed at which light travels in it"}, Range::positive()));
+    medium.maxBounces =
+        int(reader.integer("max_bounces", 1024, {"none", "scatterings after a surface at which paths end"}, {0, 2e9}));
     medium.guided = type == "guided_homo";
     medium.phase = PhaseFunction{Isotropic{}};
+    constexpr Meaning phaseMeaning{"none", "how directions change; {\"type\": ...}", "isotropic"};
     if (reader.isText("phase_function"))
         reader.problem("phase_function", "expected an object with a type, found a string");
-    else if (const auto phase = reader.object("phase_function"))
+    else if (const auto phase = reader.object("phase_function", phaseMeaning))
         medium.phase = readPhaseFunction(*phase, medium);
     requireExponentialTransmittance(reader);
     if (medium.guided && !medium.scatters())
@@ -76,12 +85,25 @@ std::vector<std::string> phaseFunctionTypes() {
 }
 
 void readMedia(LoadContext& context, const ObjectReader& root) {
-    for (const ObjectReader& medium : root.objects("media")) addMedium(context, medium);
+    for (const ObjectReader& medium : root.objects("media", {"none", "what fills the space between surfaces"}))
+        addMedium(context, medium);
 }
 
-int readMediumReference(LoadContext& context, const ObjectReader& owner, const std::string& field) {
-    if (owner.isObject(field)) return addMedium(context, *owner.object(field));
-    const std::string name = owner.text(field, "");
+void describeMedium(const std::shared_ptr<Description>& description) {
+    readMedium(ObjectReader::describing(description, description->name));
+}
+
+void describePhaseFunction(const std::shared_ptr<Description>& description) {
+    Medium scratch;
+    readPhaseFunction(ObjectReader::describing(description, description->name), scratch);
+}
+
+int readMediumReference(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                        const Meaning& meaning) {
+    owner.declare(field, "the name of a medium, or a medium", "vacuum", meaning);
+    if (!owner.has(field)) return -1;
+    if (owner.isObject(field)) return addMedium(context, *owner.object(field, meaning));
+    const std::string name = owner.text(field, "", meaning);
     const auto found = context.media.find(name);
     if (found != context.media.end()) return found->second;
     std::vector<std::string> names;

@@ -12,10 +12,12 @@ using SurfaceReader = Shape (*)(LoadContext&, const ObjectReader&, const Transfo
 
 Shape readMesh(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
     TriangleMesh mesh;
-    mesh.smooth = reader.flag("smooth", false);
-    const bool smooth = mesh.smooth, recompute = reader.flag("recompute_normals", false);
+    mesh.smooth = reader.flag("smooth", false, {"none", "shading normals are interpolated"});
+    const bool smooth = mesh.smooth;
+    const bool recompute =
+        reader.flag("recompute_normals", false, {"none", "of smooth meshes: from the triangles instead of the file"});
     reader.accept({"backface_culling"});
-    const std::string file = reader.text("file", "");
+    const std::string file = reader.text("file", "", {"none", ".wo3, .obj, .ply, .gltf or .glb", "required"});
     if (file.empty()) {
         reader.problem("file", "a mesh needs a file (.wo3, .obj, .ply, .gltf or .glb)");
         return mesh;
@@ -43,7 +45,9 @@ Shape readSphere(LoadContext&, const ObjectReader&, const Transform& transform) 
     return makeSphere(transform);
 }
 Shape readDisk(LoadContext&, const ObjectReader& reader, const Transform& transform) {
-    return makeDisk(transform, float(reader.number("cone_angle", 90.0, {0.0, 180.0})));
+    return makeDisk(transform,
+                    float(reader.number("cone_angle", 90.0, {"degrees", "it emits within that angle of its normal"},
+                                        {0.0, 180.0})));
 }
 
 const std::map<std::string, SurfaceReader>& surfaceReaders() {
@@ -66,12 +70,15 @@ Region regionOn(const LoadContext& context, int medium, double speed) {
 /// What lies on the two sides: a surface that names any medium or speed bounds the region; what it leaves out is
 /// vacuum.
 void readRegions(LoadContext& context, const ObjectReader& reader, Primitive& primitive) {
-    const bool hasInside = reader.has("int_medium"), hasOutside = reader.has("ext_medium");
-    const double insideSpeed = reader.number("int_speed_of_light", -1.0),
-                 outsideSpeed = reader.number("ext_speed_of_light", -1.0);
-    const int inside = hasInside ? readMediumReference(context, reader, "int_medium") : -1;
-    const int outside = hasOutside ? readMediumReference(context, reader, "ext_medium") : -1;
-    primitive.boundsMedium = hasInside || hasOutside;
+    const int inside = readMediumReference(context, reader, "int_medium", {"none", "behind its normal"});
+    const int outside = readMediumReference(context, reader, "ext_medium", {"none", "before its normal"});
+    const double insideSpeed = reader.number(
+        "int_speed_of_light", -1.0,
+        {"length/time", "speed of light behind its normal, where there is no medium", "vaccum_speed_of_light"});
+    const double outsideSpeed = reader.number(
+        "ext_speed_of_light", -1.0,
+        {"length/time", "speed of light before its normal, where there is no medium", "vaccum_speed_of_light"});
+    primitive.boundsMedium = reader.has("int_medium") || reader.has("ext_medium");
     primitive.boundsRegion = primitive.boundsMedium || insideSpeed > 0.0 || outsideSpeed > 0.0;
     primitive.inside = regionOn(context, inside, insideSpeed);
     primitive.outside = regionOn(context, outside, outsideSpeed);
@@ -83,11 +90,13 @@ bool isUsable(const Shape& shape) {
 }
 
 void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader readShape) {
-    const Transform transform = reader.transform("transform");
+    const Transform transform = reader.transform("transform", PlacementMeaning);
     Primitive primitive;
-    primitive.name = reader.text("name", "");
+    primitive.name = reader.text("name", "", NameMeaning);
     primitive.shape = readShape(context, reader, transform);
-    primitive.bsdfs = readBsdfList(context, reader, "bsdf");
+    primitive.bsdfs =
+        readBsdfList(context, reader, "bsdf",
+                     {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});
     readRegions(context, reader, primitive);
     const std::optional<Texture> radiance = readAreaRadiance(context, reader, primitive.shape);
     const double emissionTime = readEmissionTime(reader);
@@ -110,8 +119,11 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     context.emitters.push_back(reader);
 }
 
+constexpr Meaning TypeMeaning{"none", "which shape or light source", "required"};
+
 void readPrimitive(LoadContext& context, const ObjectReader& reader) {
-    const std::string type = reader.text("type", "");
+    if (reader.describes()) reader.declare("type", listOf(primitiveTypes()), "none", TypeMeaning);
+    const std::string type = reader.text("type", "", TypeMeaning);
     const auto surface = surfaceReaders().find(type);
     if (surface != surfaceReaders().end()) {
         readSurface(context, reader, surface->second);
@@ -137,8 +149,14 @@ std::vector<std::string> primitiveTypes() {
     return types;
 }
 
+void describePrimitive(const std::shared_ptr<Description>& description) {
+    ScratchContext scratch;
+    readPrimitive(scratch.context, ObjectReader::describing(description, description->name));
+}
+
 void readPrimitives(LoadContext& context, const ObjectReader& root) {
-    for (const ObjectReader& primitive : root.objects("primitives")) readPrimitive(context, primitive);
+    for (const ObjectReader& primitive : root.objects("primitives", {"none", "surfaces and light sources"}))
+        readPrimitive(context, primitive);
     finishEmitters(context, root);
 }
 

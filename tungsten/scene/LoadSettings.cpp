@@ -13,11 +13,15 @@ constexpr double MostFrames = 1e6;
 
 void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
     static const std::vector<std::string> types{"color", "depth", "normal", "albedo", "visibility", "transients"};
-    const std::string type = buffer.choice("type", "color", types);
+    const std::string type = buffer.choice(
+        "type", "color", types,
+        {"none", "color: further files of the image; transients: a series of frames; others are not written",
+         "required"});
     if (!buffer.has("type")) buffer.problem("type", "an output buffer needs a type: " + listOf(types));
-    const OutputBuffer files{buffer.text("ldr_output_file", ""), buffer.text("hdr_output_file", "")};
+    const OutputBuffer files{buffer.text("ldr_output_file", "", {"none", "8-bit image (.png)"}),
+                             buffer.text("hdr_output_file", "", {"none", "linear image (.exr, .pfm or .npy)"})};
     for (const char* variance : {"two_buffer_variance", "sample_variance"})
-        if (buffer.flag(variance, false))
+        if (buffer.flag(variance, false, {"none", "not produced: the EXR has a stderr layer"}))
             buffer.warn(variance, "not produced; the stderr layer of an EXR holds each pixel's standard error");
     if (type == "transients")
         renderer.transients.push_back(files);
@@ -37,23 +41,35 @@ bool isSteadyPhotonMap(const std::string& type) {
 }
 
 TimeGate readGate(const ObjectReader& reader, const std::string& type) {
-    const double defaultWidth = isTransientType(type) ? 0.1 : 0.0;
-    const double width = reader.number("transient_time_width", defaultWidth, Range::nonNegative());
-    const double centre = reader.number("transient_time_center", isTransientType(type) ? 0.0 : -1.0);
-    const double start = reader.number("start_time", 0.0);
-    const int frames = int(reader.integer("frame_num", 0, {0, MostFrames}));
-    const bool delta = reader.flag("delta_time_gate", false);
+    if (isSteadyPhotonMap(type)) {
+        reader.accept({"transient_time_width", "transient_time_center", "start_time", "frame_num", "delta_time_gate"});
+        return {};
+    }
+    const bool transient = isTransientType(type);
+    const double width = reader.number("transient_time_width", transient ? 0.1 : 0.0,
+                                       {"time",
+                                        "width of the gate, or of each frame; for photons at a delta gate of their "
+                                        "temporal kernel in the first pass",
+                                        transient ? nullptr : "none"},
+                                       Range::nonNegative());
+    const double centre =
+        reader.number("transient_time_center", transient ? 0.0 : -1.0,
+                      {"time", transient ? "centre of the gate" : "centre of the gate; below 0: steady state",
+                       transient ? nullptr : "none"});
+    const double start = reader.number("start_time", 0.0, {"time", "when the first frame starts"});
+    const int frames =
+        int(reader.integer("frame_num", 0, {"none", "frames of a sequence; 0: one gate"}, {0, MostFrames}));
+    const bool delta = reader.flag("delta_time_gate", false, {"none", "the gate is a single moment, its centre"});
     TimeGate gate;
-    if (isSteadyPhotonMap(type)) return gate;
     if (delta) {
         gate = {false, true, centre, 0.0, 1};
     } else if (frames > 0) {
         if (width <= 0.0)
             reader.problem("transient_time_width", "a sequence (frame_num > 0) needs a frame width above 0");
         gate = {false, false, start, width, frames};
-    } else if (width > 0.0 && (centre >= 0.0 || isTransientType(type))) {
+    } else if (width > 0.0 && (centre >= 0.0 || transient)) {
         gate = {false, false, centre - 0.5 * width, width, 1};
-    } else if (isTransientType(type)) {
+    } else if (transient) {
         reader.problem("transient_time_width", "a time gate needs a width above 0 (or delta_time_gate)");
     } else if (width > 0.0 && !reader.has("temporal_response")) {
         reader.warn("transient_time_width",
@@ -87,17 +103,28 @@ std::string responseProblem(const TemporalResponse& response) {
 }
 
 TemporalResponse readResponse(const ObjectReader& reader) {
-    const auto block = reader.has("temporal_response") ? reader.object("temporal_response") : std::nullopt;
+    const auto block =
+        reader.block("temporal_response",
+                     {"none", "how the sensor weighs times of arrival, instead of a gate; scaled to an integral of 1"});
     if (!block) return {};
     TemporalResponse response;
-    const std::string type = block->choice("type", "tabulated", {"box", "gaussian", "tabulated"});
-    if (type == "box") {
-        response = {{block->number("start", 0.0), block->number("end", 1.0)}, {1.0, 1.0}};
-    } else if (type == "gaussian") {
-        const double centre = block->number("center", 0.0);
-        response = gaussianResponse(centre, block->number("sigma", 1.0, Range::positive()));
-    } else {
-        response = {block->numbers("times"), block->numbers("values")};
+    const std::string type =
+        block->choice("type", "tabulated", {"box", "gaussian", "tabulated"}, {"none", "shape of the response"});
+    if (type == "tabulated" || block->describes()) {
+        response.times =
+            block->numbers("times", {"time", "tabulated: increasing; the response is linear between them"});
+        response.values = block->numbers("values", {"none", "tabulated: the response at each of the times"});
+    }
+    if (type == "gaussian" || block->describes()) {
+        const double centre = block->number("center", 0.0, {"time", "gaussian: where it is largest"});
+        const double sigma =
+            block->number("sigma", 1.0, {"time", "gaussian: standard deviation, cut at four"}, Range::positive());
+        response = gaussianResponse(centre, sigma);
+    }
+    if (type == "box" || block->describes()) {
+        response.times = {block->number("start", 0.0, {"time", "box: when it opens"}),
+                          block->number("end", 1.0, {"time", "box: when it closes"})};
+        response.values = {1.0, 1.0};
     }
     const std::string problem = responseProblem(response);
     if (!problem.empty()) block->problem(type == "box" ? "end" : "times", problem);
@@ -119,36 +146,54 @@ void useResponse(const ObjectReader& reader, TransportSettings& transport) {
 
 } // namespace
 
+std::string readIntegratorType(const ObjectReader& integrator) {
+    return integrator.text("type", "path_tracer", {"none", "which integrator (--list)"});
+}
+
 TransportSettings readTransport(const ObjectReader& reader, const std::string& type) {
     TransportSettings transport;
-    transport.minBounces = int(reader.integer("min_bounces", 0, {0, 2e9}));
-    transport.maxBounces = int(reader.integer("max_bounces", 64, {0, 2e9}));
-    transport.twoSidedShading = reader.flag("enable_two_sided_shading", true);
-    transport.consistencyChecks = reader.flag("enable_consistency_checks", false);
+    transport.minBounces =
+        int(reader.integer("min_bounces", 0, {"none", "interactions that light must have had"}, {0, 2e9}));
+    transport.maxBounces =
+        int(reader.integer("max_bounces", 64, {"none", "interactions that light must have had fewer of"}, {0, 2e9}));
+    transport.twoSidedShading =
+        reader.flag("enable_two_sided_shading", true, {"none", "opaque surfaces scatter on both sides"});
+    transport.consistencyChecks =
+        reader.flag("enable_consistency_checks", false,
+                    {"none", "no light where shading and geometric normal disagree on the side"});
     transport.gate = readGate(reader, type);
-    transport.cameraUnwarped = reader.flag("camera_unwarped", false);
-    transport.integrateOverGate = reader.choice("time_normalization", "average", {"average", "integral"}) == "integral";
+    transport.cameraUnwarped = reader.flag(
+        "camera_unwarped", false, {"none", "time stops at the first thing seen: camera segments do not count"});
+    transport.integrateOverGate =
+        reader.choice("time_normalization", "average", {"average", "integral"},
+                      {"none", "a pixel is the mean of radiance over its frame, or its integral"}) == "integral";
     if (!isSteadyPhotonMap(type)) useResponse(reader, transport);
-    transport.vacuumSpeed = float(reader.number("vaccum_speed_of_light", 1.0, Range::positive()));
+    transport.vacuumSpeed = float(reader.number("vaccum_speed_of_light", 1.0,
+                                                {"length/time", "speed of light outside media"}, Range::positive()));
     return transport;
 }
 
-RendererSettings readRenderer(const ObjectReader& root) {
+RendererSettings readRenderer(const ObjectReader& reader) {
     RendererSettings renderer;
-    const ObjectReader reader = root.has("renderer") && root.isObject("renderer")
-                                    ? *root.object("renderer")
-                                    : ObjectReader::empty("renderer", root.diagnostics());
-    renderer.outputDirectory = reader.text("output_directory", "");
-    renderer.outputFile = reader.text("output_file", renderer.outputFile);
-    renderer.hdrOutputFile = reader.text("hdr_output_file", "");
-    renderer.resumeFile = reader.text("resume_render_file", renderer.resumeFile);
-    renderer.overwriteOutputFiles = reader.flag("overwrite_output_files", true);
-    renderer.enableResume = reader.flag("enable_resume_render", false);
-    renderer.spp = reader.integer("spp", renderer.spp, {1, 1e12});
-    renderer.sppStep = reader.integer("spp_step", renderer.sppStep, {1, 1e6});
-    renderer.checkpointSeconds = reader.durationSeconds("checkpoint_interval", 0.0);
-    renderer.timeoutSeconds = reader.durationSeconds("timeout", 0.0);
-    for (const ObjectReader& buffer : reader.objects("output_buffers")) readOutputBuffer(buffer, renderer);
+    renderer.outputDirectory =
+        reader.text("output_directory", "", {"none", "base of the files below", "the scene's folder"});
+    renderer.outputFile = reader.text("output_file", renderer.outputFile, {"none", "tone-mapped image (.png)"});
+    renderer.hdrOutputFile =
+        reader.text("hdr_output_file", "", {"none", "linear image (.exr with standard error, .pfm or .npy)"});
+    renderer.resumeFile =
+        reader.text("resume_render_file", renderer.resumeFile, {"none", "where a render's state goes"});
+    renderer.overwriteOutputFiles =
+        reader.flag("overwrite_output_files", true, {"none", "false: where the file exists a free name is taken"});
+    renderer.enableResume =
+        reader.flag("enable_resume_render", false, {"none", "the state is saved, and read when there is one"});
+    renderer.spp = reader.integer("spp", renderer.spp, {"samples/pixel", "in total"}, {1, 1e12});
+    renderer.sppStep = reader.integer("spp_step", renderer.sppStep, {"samples/pixel", "in each pass"}, {1, 1e6});
+    renderer.checkpointSeconds = reader.durationSeconds(
+        "checkpoint_interval", 0.0, {"duration", "how often images and state are saved; no unit: minutes"});
+    renderer.timeoutSeconds =
+        reader.durationSeconds("timeout", 0.0, {"duration", "after which passes stop; no unit: minutes"});
+    for (const ObjectReader& buffer : reader.blocks("output_buffers", {"none", "further files"}))
+        readOutputBuffer(buffer, renderer);
     // Choices of the format that make no difference here.
     reader.accept({"variance_output_file", "adaptive_sampling", "stratified_sampler", "scene_bvh"});
     reader.warnAboutUnknown();

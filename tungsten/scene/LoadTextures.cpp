@@ -38,23 +38,26 @@ Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const st
 
 Texture readTextureObject(LoadContext& context, const ObjectReader& texture, const Texture& fallback, Range range) {
     const std::vector<std::string> types = textureTypes();
-    const std::string type = texture.choice("type", "", types);
+    const std::string type = texture.choice("type", "", types, {"none", "which texture", "required"});
     texture.accept({"name"});
     Texture result = fallback;
     if (type == "constant") {
-        result = Texture(texture.rgb("value", Rgb(0.0f), range));
+        result = Texture(texture.rgb("value", Rgb(0.0f), {"none", "the same everywhere"}, range));
     } else if (type == "checker") {
         CheckerTexture checker;
-        checker.onColor = texture.rgb("on_color", checker.onColor, range);
-        checker.offColor = texture.rgb("off_color", checker.offColor, range);
-        checker.resU = int(texture.integer("res_u", checker.resU, {1, 1e9}));
-        checker.resV = int(texture.integer("res_v", checker.resV, {1, 1e9}));
+        checker.onColor = texture.rgb("on_color", checker.onColor, {"none", "squares of one colour"}, range);
+        checker.offColor = texture.rgb("off_color", checker.offColor, {"none", "squares of the other"}, range);
+        checker.resU = int(texture.integer("res_u", checker.resU, {"none", "squares along u"}, {1, 1e9}));
+        checker.resV = int(texture.integer("res_v", checker.resV, {"none", "squares along v"}, {1, 1e9}));
         result = Texture(checker);
     } else if (type == "bitmap") {
-        const std::string file = texture.text("file", "");
-        const bool gammaCorrect = texture.flag("gamma_correct", true), interpolate = texture.flag("interpolate", true),
-                   clamp = texture.flag("clamp", false);
-        const float scale = float(texture.number("scale", 1.0));
+        const std::string file = texture.text("file", "", {"none", "the image", "required"});
+        const bool gammaCorrect =
+            texture.flag("gamma_correct", true, {"none", "colours of 8-bit images are linearised"});
+        const bool interpolate = texture.flag("interpolate", true, {"none", "bilinear between texels"});
+        const bool clamp =
+            texture.flag("clamp", false, {"none", "the edge goes on outside [0, 1], not the image again"});
+        const float scale = float(texture.number("scale", 1.0, {"none", "factor on every value"}));
         if (file.empty())
             texture.problem("file", "a bitmap needs the name of an image file");
         else
@@ -64,6 +67,12 @@ Texture readTextureObject(LoadContext& context, const ObjectReader& texture, con
     }
     texture.warnAboutUnknown();
     return result;
+}
+
+std::string toText(const Texture& texture) {
+    if (!texture.isConstant()) return "a texture";
+    const Rgb value = texture.rgb({0.0f, 0.0f});
+    return brief(double(value.x), double(value.y), double(value.z));
 }
 
 } // namespace
@@ -79,16 +88,26 @@ std::filesystem::path LoadContext::resource(const std::string& name) {
 }
 
 Texture readTexture(LoadContext& context, const ObjectReader& owner, const std::string& field, const Texture& fallback,
-                    Range range) {
+                    const Meaning& meaning, Range range) {
+    if (owner.describes())
+        owner.declare(field, describe(range) + ", an array of 3, an image file, or a texture", toText(fallback),
+                      meaning);
     if (!owner.has(field)) return fallback;
     if (owner.isText(field))
-        return readBitmapFile(context, owner, field, owner.text(field, ""), true, true, false, 1.0f);
-    if (owner.isObject(field)) return readTextureObject(context, *owner.object(field), fallback, range);
-    return Texture(owner.rgb(field, Rgb(0.0f), range));
+        return readBitmapFile(context, owner, field, owner.text(field, "", meaning), true, true, false, 1.0f);
+    if (owner.isObject(field)) return readTextureObject(context, *owner.object(field, meaning), fallback, range);
+    return Texture(owner.rgb(field, Rgb(0.0f), meaning, range));
 }
 
-Rgb readConstantTexture(LoadContext& context, const ObjectReader& owner, const std::string& field) {
-    const Texture texture = readTexture(context, owner, field, Texture(0.0f), Range::nonNegative());
+void describeTexture(const std::shared_ptr<Description>& description) {
+    ScratchContext scratch;
+    readTextureObject(scratch.context, ObjectReader::describing(description, description->name), Texture(0.0f), {});
+}
+
+Rgb readConstantTexture(LoadContext& context, const ObjectReader& owner, const std::string& field,
+                        const Meaning& meaning) {
+    owner.declare(field, describe(Range::nonNegative()) + ", or an array of 3", brief(0.0), meaning);
+    const Texture texture = readTexture(context, owner, field, Texture(0.0f), meaning, Range::nonNegative());
     if (!texture.isConstant()) owner.problem(field, "this emitter takes a constant: a number or an array of 3");
     return texture.isConstant() ? texture.rgb({0.0f, 0.0f}) : Rgb(0.0f);
 }

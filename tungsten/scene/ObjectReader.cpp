@@ -21,21 +21,6 @@ std::string found(const rapidjson::Value& value) {
            (number == std::floor(number) && std::abs(number) < 1e15 ? text.substr(0, text.find('.')) : text);
 }
 
-std::string brief(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", number);
-    return text;
-}
-
-std::string describe(const Range& range) {
-    const bool low = range.low > -1e300, high = range.high < 1e300;
-    if (range.low == 1e-300) return high ? "a positive number up to " + brief(range.high) : "a positive number";
-    if (low && high) return "a number from " + brief(range.low) + " to " + brief(range.high);
-    if (low) return "a number of at least " + brief(range.low);
-    if (high) return "a number of at most " + brief(range.high);
-    return "a finite number";
-}
-
 bool inside(const Range& range, double number) {
     return std::isfinite(number) && number >= range.low && number <= range.high;
 }
@@ -66,6 +51,7 @@ ObjectReader ObjectReader::empty(std::string path, std::shared_ptr<Diagnostics> 
 
 const ObjectReader::Node* ObjectReader::find(const std::string& name) const {
     known_->insert(name);
+    if (description_) description_->asked.insert(name);
     const auto member = valueOf(node_).FindMember(name.c_str());
     return member == valueOf(node_).MemberEnd() ? nullptr : nodeOf(member->value);
 }
@@ -84,6 +70,7 @@ void ObjectReader::warn(const std::string& field, const std::string& message) co
 
 void ObjectReader::accept(const std::vector<std::string>& names) const {
     known_->insert(names.begin(), names.end());
+    if (description_) description_->taken.insert(names.begin(), names.end());
 }
 
 void ObjectReader::warnAboutUnknown() const {
@@ -122,7 +109,7 @@ bool ObjectReader::isNumber(const std::string& name) const {
     return node && valueOf(node).IsNumber();
 }
 
-double ObjectReader::number(const std::string& name, double fallback, Range range) const {
+double ObjectReader::readNumber(const std::string& name, double fallback, Range range) const {
     const Node* node = find(name);
     if (!node) return fallback;
     if (valueOf(node).IsNumber() && inside(range, valueOf(node).GetDouble())) return valueOf(node).GetDouble();
@@ -130,13 +117,20 @@ double ObjectReader::number(const std::string& name, double fallback, Range rang
     return fallback;
 }
 
-int64_t ObjectReader::integer(const std::string& name, int64_t fallback, Range range) const {
-    constexpr double Largest = 9e15; // exact in a double
-    const Range bounded{std::max(range.low, -Largest), std::min(range.high, Largest)};
-    return int64_t(number(name, double(fallback), bounded));
+double ObjectReader::number(const std::string& name, double fallback, const Meaning& meaning, Range range) const {
+    if (describes()) declare(name, describe(range), brief(fallback), meaning);
+    return readNumber(name, fallback, range);
 }
 
-bool ObjectReader::flag(const std::string& name, bool fallback) const {
+int64_t ObjectReader::integer(const std::string& name, int64_t fallback, const Meaning& meaning, Range range) const {
+    if (describes()) declare(name, describe(range, true), std::to_string(fallback), meaning);
+    constexpr double Largest = 9e15; // exact in a double
+    const Range bounded{std::max(range.low, -Largest), std::min(range.high, Largest)};
+    return int64_t(readNumber(name, double(fallback), bounded));
+}
+
+bool ObjectReader::flag(const std::string& name, bool fallback, const Meaning& meaning) const {
+    if (describes()) declare(name, "true or false", fallback ? "true" : "false", meaning);
     const Node* node = find(name);
     if (!node) return fallback;
     if (valueOf(node).IsBool()) return valueOf(node).GetBool();
@@ -144,7 +138,8 @@ bool ObjectReader::flag(const std::string& name, bool fallback) const {
     return fallback;
 }
 
-std::string ObjectReader::text(const std::string& name, const std::string& fallback) const {
+std::string ObjectReader::text(const std::string& name, const std::string& fallback, const Meaning& meaning) const {
+    if (describes()) declare(name, "a string", fallback.empty() ? "none" : fallback, meaning);
     const Node* node = find(name);
     if (!node) return fallback;
     if (valueOf(node).IsString()) return valueOf(node).GetString();
@@ -153,7 +148,8 @@ std::string ObjectReader::text(const std::string& name, const std::string& fallb
 }
 
 std::string ObjectReader::choice(const std::string& name, const std::string& fallback,
-                                 const std::vector<std::string>& accepted) const {
+                                 const std::vector<std::string>& accepted, const Meaning& meaning) const {
+    if (describes()) declare(name, listOf(accepted), fallback.empty() ? "none" : fallback, meaning);
     const Node* node = find(name);
     if (!node) return fallback;
     const std::string value = valueOf(node).IsString() ? valueOf(node).GetString() : "";
@@ -164,7 +160,12 @@ std::string ObjectReader::choice(const std::string& name, const std::string& fal
     return fallback;
 }
 
-std::vector<double> ObjectReader::numbers(const std::string& name) const {
+std::vector<double> ObjectReader::numbers(const std::string& name, const Meaning& meaning) const {
+    if (describes()) declare(name, "an array of numbers", "none", meaning);
+    return readNumbers(name);
+}
+
+std::vector<double> ObjectReader::readNumbers(const std::string& name) const {
     std::vector<double> values;
     const Node* node = find(name);
     if (!node) return values;
@@ -179,7 +180,14 @@ std::vector<double> ObjectReader::numbers(const std::string& name) const {
     return values;
 }
 
-Vec3f ObjectReader::vec3(const std::string& name, const Vec3f& fallback, Range range) const {
+Vec3f ObjectReader::vec3(const std::string& name, const Vec3f& fallback, const Meaning& meaning, Range range) const {
+    if (describes())
+        declare(name, describe(range) + ", or an array of 3",
+                brief(double(fallback.x), double(fallback.y), double(fallback.z)), meaning);
+    return readVec3(name, fallback, range);
+}
+
+Vec3f ObjectReader::readVec3(const std::string& name, const Vec3f& fallback, Range range) const {
     const Node* node = find(name);
     if (!node) return fallback;
     const std::vector<double> values = oneOrSeveral(valueOf(node), 3);
@@ -191,12 +199,15 @@ Vec3f ObjectReader::vec3(const std::string& name, const Vec3f& fallback, Range r
     return fallback;
 }
 
-Rgb ObjectReader::rgb(const std::string& name, const Rgb& fallback, Range range) const {
-    const Vec3f value = vec3(name, {fallback.x, fallback.y, fallback.z}, range);
+Rgb ObjectReader::rgb(const std::string& name, const Rgb& fallback, const Meaning& meaning, Range range) const {
+    const Vec3f value = vec3(name, {fallback.x, fallback.y, fallback.z}, meaning, range);
     return {value.x, value.y, value.z};
 }
 
-Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, Range range) const {
+Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, const Meaning& meaning, Range range) const {
+    if (describes())
+        declare(name, describe(range, true) + ", or an array of 2",
+                "[" + std::to_string(fallback.x) + ", " + std::to_string(fallback.y) + "]", meaning);
     const Node* node = find(name);
     if (!node) return fallback;
     const std::vector<double> values = oneOrSeveral(valueOf(node), 2);
@@ -207,44 +218,10 @@ Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, Range r
     return fallback;
 }
 
-Transform ObjectReader::transform(const std::string& name) const {
-    const Node* node = find(name);
-    if (!node) return {};
-    if (valueOf(node).IsArray()) {
-        const std::vector<double> m = numbers(name);
-        if (m.size() == 16) {
-            const auto column = [&](size_t c) { return Vec3f(float(m[c]), float(m[c + 4]), float(m[c + 8])); };
-            return {column(0), column(1), column(2), column(3)};
-        }
-        problem(name, "expected 16 numbers (row-major) or an object, found " + found(valueOf(node)));
-        return {};
-    }
-    const auto fields = object(name);
-    if (!fields) return {};
-    TransformRecipe recipe;
-    recipe.position = fields->vec3("position", recipe.position);
-    recipe.scale = fields->vec3("scale", recipe.scale);
-    recipe.rotationDegrees = fields->vec3("rotation", recipe.rotationDegrees);
-    if ((recipe.hasZ = fields->has("look_at"))) recipe.zAxis = fields->vec3("look_at", Vec3f(0.0f)) - recipe.position;
-    if ((recipe.hasY = fields->has("up"))) recipe.yAxis = fields->vec3("up", recipe.yAxis);
-    const auto axis = [&](const char* field, Vec3f& value, bool& explicitly) {
-        if (!fields->has(field)) return;
-        value = fields->vec3(field, value);
-        explicitly = true;
-    };
-    axis("x_axis", recipe.xAxis, recipe.hasX);
-    axis("y_axis", recipe.yAxis, recipe.hasY);
-    axis("z_axis", recipe.zAxis, recipe.hasZ);
-    const bool degenerate = recipe.xAxis.length() == 0 || recipe.yAxis.length() == 0 || recipe.zAxis.length() == 0;
-    if (degenerate) {
-        problem(name, "an axis has length zero (is look_at the same as position?)");
-        return {};
-    }
-    fields->warnAboutUnknown();
-    return composeTransform(recipe);
-}
-
-double ObjectReader::durationSeconds(const std::string& name, double fallback) const {
+double ObjectReader::durationSeconds(const std::string& name, double fallback, const Meaning& meaning) const {
+    if (describes())
+        declare(name, "a duration in quotes such as \"1h 30m\"", fallback > 0.0 ? brief(fallback) + "s" : "none",
+                meaning);
     const Node* node = find(name);
     if (!node) return fallback;
     if (valueOf(node).IsString())
@@ -254,7 +231,7 @@ double ObjectReader::durationSeconds(const std::string& name, double fallback) c
     return fallback;
 }
 
-std::optional<ObjectReader> ObjectReader::object(const std::string& name) const {
+std::optional<ObjectReader> ObjectReader::readObject(const std::string& name) const {
     const Node* node = find(name);
     if (!node) return std::nullopt;
     if (valueOf(node).IsObject()) return ObjectReader(document_, node, pathOf(name), diagnostics_);
@@ -262,7 +239,7 @@ std::optional<ObjectReader> ObjectReader::object(const std::string& name) const 
     return std::nullopt;
 }
 
-std::vector<ObjectReader> ObjectReader::objects(const std::string& name) const {
+std::vector<ObjectReader> ObjectReader::readObjects(const std::string& name) const {
     std::vector<ObjectReader> readers;
     const Node* node = find(name);
     if (!node) return readers;

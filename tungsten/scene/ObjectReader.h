@@ -4,6 +4,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Transform.h"
+#include "tungsten/scene/Field.h"
 
 #include <cstdint>
 #include <memory>
@@ -21,18 +22,12 @@ struct Diagnostics {
     std::vector<Problem> warnings;
 };
 
-/// Inclusive bounds of a number; the default accepts every finite value.
-struct Range {
-    double low = -1e300;
-    double high = 1e300;
-    static Range positive() { return {1e-300, 1e300}; }
-    static Range nonNegative() { return {0.0, 1e300}; }
-    static Range unit() { return {0.0, 1.0}; }
-};
-
 /// A view of a JSON object at a known path. Reading a field marks it as known; warnAboutUnknown() then names the others
 /// with the nearest known name. A missing field yields the default; a bad value records a problem and yields the
 /// default. Cheap to copy: copies share what is known. Keeps the document alive.
+///
+/// Every reading call declares its field. A describing reader collects the declarations over an object that holds
+/// nothing but its type: loaders run as always, every field takes its default and problems go nowhere.
 class ObjectReader {
   public:
     struct Node; ///< stands for the JSON value behind the view (see Json.h)
@@ -42,28 +37,43 @@ class ObjectReader {
     /// An empty object: every field takes its default.
     static ObjectReader empty(std::string path, std::shared_ptr<Diagnostics> diagnostics);
 
+    /// An object of that type (none if empty) whose readers fill in the description.
+    static ObjectReader describing(std::shared_ptr<Description> description, const std::string& type);
+    [[nodiscard]] bool describes() const { return description_ != nullptr; }
+    /// For fields of several forms: the first declaration counts. Does nothing unless the reader describes.
+    void declare(const std::string& name, const std::string& accepted, const std::string& fallback,
+                 const Meaning& meaning) const;
+
     [[nodiscard]] bool has(const std::string& name) const;
-    [[nodiscard]] double number(const std::string& name, double fallback, Range range = {}) const;
-    [[nodiscard]] int64_t integer(const std::string& name, int64_t fallback, Range range = {}) const;
-    [[nodiscard]] bool flag(const std::string& name, bool fallback) const;
-    [[nodiscard]] std::string text(const std::string& name, const std::string& fallback) const;
+    [[nodiscard]] double number(const std::string& name, double fallback, const Meaning& meaning,
+                                Range range = {}) const;
+    [[nodiscard]] int64_t integer(const std::string& name, int64_t fallback, const Meaning& meaning,
+                                  Range range = {}) const;
+    [[nodiscard]] bool flag(const std::string& name, bool fallback, const Meaning& meaning) const;
+    [[nodiscard]] std::string text(const std::string& name, const std::string& fallback, const Meaning& meaning) const;
     /// One of `accepted` (case-sensitive).
     [[nodiscard]] std::string choice(const std::string& name, const std::string& fallback,
-                                     const std::vector<std::string>& accepted) const;
+                                     const std::vector<std::string>& accepted, const Meaning& meaning) const;
     /// Three numbers, or one for all components. Every component must lie in `range`.
-    [[nodiscard]] Vec3f vec3(const std::string& name, const Vec3f& fallback, Range range = {}) const;
-    [[nodiscard]] Rgb rgb(const std::string& name, const Rgb& fallback, Range range = {}) const;
+    [[nodiscard]] Vec3f vec3(const std::string& name, const Vec3f& fallback, const Meaning& meaning,
+                             Range range = {}) const;
+    [[nodiscard]] Rgb rgb(const std::string& name, const Rgb& fallback, const Meaning& meaning, Range range = {}) const;
     /// Two integers, or one for both.
-    [[nodiscard]] Vec2i pair(const std::string& name, const Vec2i& fallback, Range range = {}) const;
-    [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
+    [[nodiscard]] Vec2i pair(const std::string& name, const Vec2i& fallback, const Meaning& meaning,
+                             Range range = {}) const;
+    [[nodiscard]] std::vector<double> numbers(const std::string& name, const Meaning& meaning) const;
     /// Array form (16 numbers, row-major) or object form (position, look_at, up, axes, scale, rotation).
-    [[nodiscard]] Transform transform(const std::string& name) const;
+    [[nodiscard]] Transform transform(const std::string& name, const Meaning& meaning) const;
     /// Seconds from a duration string such as "1h 30m"; no unit means minutes; 0 or less means none.
-    [[nodiscard]] double durationSeconds(const std::string& name, double fallback) const;
+    [[nodiscard]] double durationSeconds(const std::string& name, double fallback, const Meaning& meaning) const;
 
-    [[nodiscard]] std::optional<ObjectReader> object(const std::string& name) const;
+    /// An object of a type that is described on its own: none when describing.
+    [[nodiscard]] std::optional<ObjectReader> object(const std::string& name, const Meaning& meaning) const;
     /// Objects of an array; non-objects are problems.
-    [[nodiscard]] std::vector<ObjectReader> objects(const std::string& name) const;
+    [[nodiscard]] std::vector<ObjectReader> objects(const std::string& name, const Meaning& meaning) const;
+    /// The same for objects whose fields are described along with this one's.
+    [[nodiscard]] std::optional<ObjectReader> block(const std::string& name, const Meaning& meaning) const;
+    [[nodiscard]] std::vector<ObjectReader> blocks(const std::string& name, const Meaning& meaning) const;
 
     [[nodiscard]] bool isText(const std::string& name) const;
     [[nodiscard]] bool isObject(const std::string& name) const;
@@ -87,12 +97,21 @@ class ObjectReader {
 
   private:
     [[nodiscard]] const Node* find(const std::string& name) const;
+    [[nodiscard]] double readNumber(const std::string& name, double fallback, Range range) const;
+    [[nodiscard]] std::vector<double> readNumbers(const std::string& name) const;
+    [[nodiscard]] Vec3f readVec3(const std::string& name, const Vec3f& fallback, Range range) const;
+    [[nodiscard]] std::optional<ObjectReader> readObject(const std::string& name) const;
+    [[nodiscard]] std::vector<ObjectReader> readObjects(const std::string& name) const;
+    [[nodiscard]] Transform readTransform(const ObjectReader& fields, const std::string& name) const;
+    /// The reader of a block of that name while describing.
+    [[nodiscard]] ObjectReader describedBlock(const std::string& name) const;
 
     std::shared_ptr<const void> document_;
     const Node* node_;
     std::string path_;
     std::shared_ptr<Diagnostics> diagnostics_;
     std::shared_ptr<std::set<std::string>> known_;
+    std::shared_ptr<Description> description_; ///< none unless describing
 };
 
 } // namespace tungsten

@@ -43,8 +43,8 @@ uint64_t hashScene(const rapidjson::Document& document, const std::vector<std::f
     return hash.value();
 }
 
-ObjectReader blockOf(const ObjectReader& root, const std::string& name) {
-    const auto block = root.has(name) ? root.object(name) : std::nullopt;
+ObjectReader blockOf(const ObjectReader& root, const std::string& name, const Meaning& meaning) {
+    const auto block = root.object(name, meaning);
     return block ? *block : ObjectReader::empty(name, root.diagnostics());
 }
 
@@ -62,17 +62,32 @@ void finishGeometry(Scene& scene) {
     }
 }
 
+/// What loading leaves beside the scene itself.
+struct Blocks {
+    RendererSettings renderer;
+    std::string integratorType;
+    ObjectReader integrator;
+};
+
+/// Reads all blocks in the order in which they need one another.
+Blocks readScene(LoadContext& context, const ObjectReader& root) {
+    const ObjectReader integrator = blockOf(root, "integrator", {"none", "how light is simulated, and when"});
+    const std::string type = readIntegratorType(integrator);
+    context.scene.transport = readTransport(integrator, type);
+    readMedia(context, root);
+    readBsdfs(context, root);
+    readPrimitives(context, root);
+    readCamera(context, root, blockOf(root, "camera", {"none", "where it is seen from"}));
+    const RendererSettings renderer =
+        readRenderer(blockOf(root, "renderer", {"none", "how long, and what is written"}));
+    root.warnAboutUnknown();
+    return {renderer, type, integrator};
+}
+
 } // namespace
 
 void throwIfProblems(const Diagnostics& diagnostics) {
     if (!diagnostics.problems.empty()) throw InputError(diagnostics.problems);
-}
-
-std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes() {
-    return {{"media", mediumTypes()},         {"phase functions", phaseFunctionTypes()},
-            {"bsdfs", bsdfTypes()},           {"textures", textureTypes()},
-            {"primitives", primitiveTypes()}, {"cameras", cameraTypes()},
-            {"filters", filterNames()},       {"tone maps", toneMapNames()}};
 }
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
@@ -82,25 +97,95 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     auto diagnostics = std::make_shared<Diagnostics>();
     diagnostics->file = file.string();
     const ObjectReader root(document, nodeOf(*document), "", diagnostics);
-    const ObjectReader integrator = blockOf(root, "integrator");
-    const std::string type = integrator.text("type", "path_tracer");
-
     auto scene = std::make_shared<Scene>();
     scene->file = file;
     LoadContext context{
         *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}, {}};
-    scene->transport = readTransport(integrator, type);
-    readMedia(context, root);
-    readBsdfs(context, root);
-    readPrimitives(context, root);
-    readCamera(context, root);
-    const RendererSettings renderer = readRenderer(root);
-    root.warnAboutUnknown();
+    const Blocks blocks = readScene(context, root);
     throwIfProblems(*diagnostics);
 
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
-    return {scene, renderer, type, integrator, diagnostics, hashScene(*document, context.resources)};
+    return {scene,
+            blocks.renderer,
+            blocks.integratorType,
+            blocks.integrator,
+            diagnostics,
+            hashScene(*document, context.resources)};
+}
+
+std::shared_ptr<const Scene> emptyScene() {
+    auto scene = std::make_shared<Scene>();
+    LoadContext context{*scene, {}, {}, {}, {}, {}, {}};
+    readScene(context, ObjectReader::empty("", std::make_shared<Diagnostics>()));
+    finishGeometry(*scene);
+    return scene;
+}
+
+namespace {
+
+using Describe = void (*)(const std::shared_ptr<Description>&);
+
+void describeFilter(const std::shared_ptr<Description>& description) {
+    description->note = "A value of the camera's `reconstruction_filter`, without fields of its own.";
+}
+
+void describeToneMap(const std::shared_ptr<Description>& description) {
+    description->note = "A value of the camera's `tonemap`, without fields of its own.";
+}
+
+/// The closed sets: everything a scene names but integrators.
+struct Kind {
+    const char* name;
+    std::vector<std::string> (*types)();
+    Describe describe;
+};
+constexpr Kind Kinds[] = {{"media", mediumTypes, describeMedium},
+                          {"phase functions", phaseFunctionTypes, describePhaseFunction},
+                          {"bsdfs", bsdfTypes, describeBsdf},
+                          {"textures", textureTypes, describeTexture},
+                          {"primitives", primitiveTypes, describePrimitive},
+                          {"cameras", cameraTypes, describeCamera},
+                          {"filters", filterNames, describeFilter},
+                          {"tone maps", toneMapNames, describeToneMap}};
+
+void describeRoot(const std::shared_ptr<Description>& description) {
+    ScratchContext scratch;
+    readScene(scratch.context, ObjectReader::describing(description, ""));
+}
+
+void describeRenderer(const std::shared_ptr<Description>& description) {
+    readRenderer(ObjectReader::describing(description, ""));
+}
+
+std::shared_ptr<Description> described(const std::string& name, Describe describe) {
+    auto description = std::make_shared<Description>();
+    description->name = name;
+    describe(description);
+    return description;
+}
+
+} // namespace
+
+std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes() {
+    std::vector<std::pair<std::string, std::vector<std::string>>> types;
+    for (const Kind& kind : Kinds) types.emplace_back(kind.name, kind.types());
+    return types;
+}
+
+std::vector<DescribedKind> describeScene() {
+    std::vector<DescribedKind> kinds{
+        {"blocks", {described("scene", describeRoot), described("renderer", describeRenderer)}}};
+    for (const Kind& kind : Kinds) {
+        kinds.push_back({kind.name, {}});
+        for (const std::string& type : kind.types()) kinds.back().types.push_back(described(type, kind.describe));
+    }
+    return kinds;
+}
+
+void describeTransport(const ObjectReader& describing, const std::string& type) {
+    (void)readIntegratorType(describing);
+    (void)readTransport(describing, type);
 }
 
 } // namespace tungsten

@@ -54,6 +54,18 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
 /// Every type name a scene can use, by kind ("media", "bsdfs", ...).
 std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes();
 
+/// The fields of every type of a kind, or of every block.
+struct DescribedKind {
+    std::string kind;
+    std::vector<std::shared_ptr<Description>> types;
+};
+/// The blocks "scene" and "renderer", then the kinds of sceneTypes(); blocks within others hang on those.
+std::vector<DescribedKind> describeScene();
+/// The fields that every integrator's block shares, with the defaults they have for its type.
+void describeTransport(const ObjectReader& describing, const std::string& type);
+/// A scene without surfaces, lit by the default light: enough for an integrator to say what it reads.
+std::shared_ptr<const Scene> emptyScene();
+
 /// Throws InputError if any problem has been recorded.
 void throwIfProblems(const Diagnostics& diagnostics);
 

@@ -11,8 +11,8 @@ float Beams::reach(const PhotonSettings& settings) {
 }
 
 Radii Beams::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step) {
-    return settings.volumeRadius * (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha))
-                                              : beamRadiusFactor(step, settings.alpha));
+    return settings.volumeRadius *
+           (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
 }
 
 Selection<PhotonBeam> Beams::straight(const Scene& scene, const ArrivalCulling& culling,
