@@ -20,8 +20,6 @@ enum class Way {
 template <typename T, size_t N>
 class Few {
   public:
-    static constexpr size_t Most = N;
-
     Few() = default;
     Few(const Few& other) : size_(other.size_) { std::copy_n(other.items_, size_, items_); }
     Few& operator=(const Few& other) {

@@ -11,9 +11,11 @@ VolumePrimitive readPrimitive(const ObjectReader& block) {
     const std::vector<std::string> later{"planes", "planes_1d",     "volumes",          "hypervolumes",
                                          "balls",  "volumes_balls", "mis_volumes_balls"};
     constexpr Meaning meaning{"none", "what the light that scatters in media is stored as"};
-    block.declare("volume_photon_type", "points or beams", "points", meaning);
-    const std::string type = block.text("volume_photon_type", "points", meaning);
     VolumePrimitive primitive;
+    std::string all;
+    forEachPrimitive(primitive, [&](const auto& p) { all += (all.empty() ? "" : " or ") + std::string(p.Type); });
+    block.declare("volume_photon_type", all, Points::Type, meaning);
+    const std::string type = block.text("volume_photon_type", Points::Type, meaning);
     bool supported = false;
     forEachPrimitive(primitive, [&](const auto& p) {
         if (type != p.Type) return;
@@ -22,8 +24,8 @@ VolumePrimitive readPrimitive(const ObjectReader& block) {
     });
     if (supported) return primitive;
     const bool known = std::find(later.begin(), later.end(), type) != later.end();
-    block.problem("volume_photon_type", known ? "'" + type + "' is not supported; supported: points, beams"
-                                              : "expected points or beams, found '" + type + "'");
+    block.problem("volume_photon_type", known ? "'" + type + "' is not supported; supported: " + all
+                                              : "expected " + all + ", found '" + type + "'");
     return primitive;
 }
 

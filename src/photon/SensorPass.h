@@ -8,9 +8,6 @@
 
 namespace tungsten::photon {
 
-/// Null where no medium scatters or nothing was stored.
-using VolumeGathers = std::variant<std::monostate, VolumeGather<Points>, VolumeGather<Beams>>;
-
 /// Structures over one pass's photons, and the pass's radii.
 struct GatherStructures {
     const Store<Photon>& surfacePhotons;

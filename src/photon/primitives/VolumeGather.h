@@ -89,4 +89,14 @@ class VolumeGather {
     std::vector<std::unique_ptr<Gather>> parts_;
 };
 
+namespace detail {
+
+template <typename... Primitives>
+std::variant<std::monostate, VolumeGather<Primitives>...> gathersOf(const std::variant<Primitives...>&);
+
+} // namespace detail
+
+/// Of the primitive in use; empty where no medium scatters or nothing was stored.
+using VolumeGathers = decltype(detail::gathersOf(VolumePrimitive{}));
+
 } // namespace tungsten::photon

@@ -1,10 +1,12 @@
 #include "photon/primitives/beams/BeamGather.h"
 
+#include "photon/primitives/SegmentQuery.h"
+
 namespace tungsten::photon {
 
 namespace {
 
-/// What the filter sees of a query; the context is its first member, so that its address is the query's.
+/// What evaluate() sees (SegmentQuery.h).
 struct Query {
     embree::Context context;
     const Scene* scene;
@@ -48,13 +50,6 @@ void evaluate(Query& query, uint32_t index) {
     ++query.gathered;
 }
 
-/// Evaluates every ribbon on the ray and rejects it, so that traversal goes on.
-void filter(const RTCFilterFunctionNArguments* arguments) {
-    auto& query = *reinterpret_cast<Query*>(arguments->context);
-    evaluate(query, RTCHitN_primID(arguments->hit, 1, 0));
-    arguments->valid[0] = 0;
-}
-
 } // namespace
 
 BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams,
@@ -64,21 +59,7 @@ BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vect
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;
     Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, 0};
-    // Embree skips ribbons that hold or nearly touch the ray's origin: start two radii behind it and test exactly in
-    // evaluate().
-    const float margin = 2.0001f * radius_;
-    RTCRayHit ray{};
-    ray.ray.org_x = segment.origin.x - segment.direction.x * margin;
-    ray.ray.org_y = segment.origin.y - segment.direction.y * margin;
-    ray.ray.org_z = segment.origin.z - segment.direction.z * margin;
-    ray.ray.dir_x = segment.direction.x;
-    ray.ray.dir_y = segment.direction.y;
-    ray.ray.dir_z = segment.direction.z;
-    ray.ray.tnear = 0.0f;
-    ray.ray.tfar = segment.length + 2.0f * margin;
-    ray.ray.mask = ~0u;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    embree::queryAll(structure_.scene(), ray, query.context, filter);
+    queryAbout<evaluate>(structure_.scene(), segment, radius_, query);
     return query.gathered;
 }
 

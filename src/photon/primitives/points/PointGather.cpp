@@ -1,5 +1,6 @@
 #include "photon/primitives/points/PointGather.h"
 
+#include "photon/primitives/SegmentQuery.h"
 #include "photon/store/NearestPhotons.h"
 
 #include <tbb/parallel_for.h>
@@ -8,7 +9,7 @@ namespace tungsten::photon {
 
 namespace {
 
-/// What the filter sees of a query; the context is its first member, so that its address is the query's.
+/// What evaluate() sees (SegmentQuery.h).
 struct Query {
     embree::Context context;
     const Scene* scene;
@@ -52,13 +53,6 @@ void evaluate(Query& query, uint32_t index) {
     ++query.gathered;
 }
 
-/// Evaluates every disc on the ray and rejects it, so that traversal goes on.
-void filter(const RTCFilterFunctionNArguments* arguments) {
-    auto& query = *reinterpret_cast<Query*>(arguments->context);
-    evaluate(query, RTCHitN_primID(arguments->hit, 1, 0));
-    arguments->valid[0] = 0;
-}
-
 } // namespace
 
 PointGather::PointGather(const Scene& scene, const Sensor& sensor, const std::vector<Photon>& photons,
@@ -74,21 +68,7 @@ PointGather::PointGather(const Scene& scene, const Sensor& sensor, const std::ve
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (photons_.empty()) return 0;
     Query query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &segment, &sums, 0};
-    // Embree skips discs that hold or nearly touch the ray's origin: start two radii behind it and test exactly in
-    // evaluate().
-    const float margin = 2.0001f * points_->largestRadius();
-    RTCRayHit ray{};
-    ray.ray.org_x = segment.origin.x - segment.direction.x * margin;
-    ray.ray.org_y = segment.origin.y - segment.direction.y * margin;
-    ray.ray.org_z = segment.origin.z - segment.direction.z * margin;
-    ray.ray.dir_x = segment.direction.x;
-    ray.ray.dir_y = segment.direction.y;
-    ray.ray.dir_z = segment.direction.z;
-    ray.ray.tnear = 0.0f;
-    ray.ray.tfar = segment.length + 2.0f * margin;
-    ray.ray.mask = ~0u;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    embree::queryAll(points_->scene(), ray, query.context, filter);
+    queryAbout<evaluate>(points_->scene(), segment, points_->largestRadius(), query);
     return query.gathered;
 }
 
