@@ -1,8 +1,6 @@
 #include "path/PathSettings.h"
 
-#include "transport/Body.h"
-
-#include "tungsten/render/EffectPlan.h"
+#include "path/PathPlan.h"
 
 #include <algorithm>
 
@@ -11,32 +9,25 @@ namespace tungsten::path {
 namespace {
 
 /// Why a delta gate cannot be rendered; empty if it can. Only control vertices arrive at one moment.
-std::string deltaGateProblem(const PathSettings& settings, const EffectPlan& plan) {
-    if (!settings.scheme.on || !settings.scheme.elliptical)
+std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    if (!PathPlan::of(scene, settings, facts).guidance.on || !settings.policy.sampling.elliptical)
         return "plain paths meet a delta gate with probability zero; give the gate a width, or set \"darts\": \"best\"";
-    if (plan.surfaceScattering || plan.surfaceEmission)
+    if (facts.surfaceScattering || facts.surfaceEmission)
         return "light from diffuse, glossy or emitting surfaces meets a delta gate with probability zero; give the "
                "gate a width";
-    if (plan.speedsDiffer)
+    if (facts.speedsDiffer)
         return "connections through regions of different speeds meet a delta gate with probability zero; give the "
                "gate a width";
     return {};
 }
 
-void readGuidance(const ObjectReader& block, const Scene& scene, const EffectPlan& plan, PathSettings& settings) {
-    settings.scheme = darts::readScheme(block);
-    if (!settings.scheme.on) return;
-    if (!plan.timeResolved) {
-        settings.scheme.on = false;
+void warnAboutUnguided(const ObjectReader& block, const EffectPlan& facts, const PathSettings& settings) {
+    if (!settings.policy.guides()) return;
+    if (!facts.timeResolved) {
         if (block.has("darts")) block.warn("darts", "guides time-resolved renders only");
     } else if (!settings.lightSampling || !settings.volumeLightSampling) {
-        settings.scheme.on = false;
         block.warn(settings.lightSampling ? "enable_volume_light_sampling" : "enable_light_sampling",
                    "guided paths connect to emitters; without it paths are sampled plainly");
-    } else if (!plan.mediumScattering) {
-        settings.scheme.on = false;
-    } else if (settings.scheme.followsBodies() && !plan.surfaceScattering && !scene.transport.gate.delta) {
-        settings.scheme.on = !transport::isSealed(scene);
     }
 }
 
@@ -57,7 +48,7 @@ void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene) {
 
 PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     PathSettings settings;
-    const EffectPlan plan = analyseScene(scene);
+    const EffectPlan facts = analyseScene(scene);
     settings.lightSampling =
         block.flag("enable_light_sampling", true, {"none", "surface vertices connect to emitters"});
     settings.volumeLightSampling =
@@ -67,11 +58,12 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     settings.includeSurfaces = block.flag(
         "include_surfaces", true, {"none", "false: leaves out what reaches surfaces without a scattering in a medium"});
     settings.russianRoulette =
-        block.flag("enable_rr", !plan.timeResolved, {"none", "Russian roulette", "true in steady state, else false"});
-    readGuidance(block, scene, plan, settings);
+        block.flag("enable_rr", !facts.timeResolved, {"none", "Russian roulette", "true in steady state, else false"});
+    settings.policy = transport::readPolicy(block);
+    warnAboutUnguided(block, facts, settings);
     warnAboutSingleDirections(block, scene);
     if (scene.transport.gate.delta) {
-        const std::string problem = deltaGateProblem(settings, plan);
+        const std::string problem = deltaGateProblem(scene, settings, facts);
         if (!problem.empty()) block.problem("delta_time_gate", problem);
     }
     // Settings of the photon integrators: a scene may switch between them and this one by its type alone.

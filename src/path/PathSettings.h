@@ -1,7 +1,7 @@
 #pragma once
 // Settings of the path tracer's integrator block.
 
-#include "darts/Scheme.h"
+#include "transport/Policy.h"
 
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
@@ -14,7 +14,7 @@ struct PathSettings {
     bool lowOrderScattering = true;  ///< false: nothing from paths with exactly one medium scatter
     bool includeSurfaces = true;     ///< false: nothing that reaches surfaces without a medium scatter
     bool russianRoulette = true;
-    darts::Scheme scheme; ///< on: walks are guided (time-resolved renders of scattering media)
+    transport::Policy policy; ///< what is asked for; PathPlan says what is done
 };
 
 /// Reads the block; problems and warnings go to the reader's diagnostics.

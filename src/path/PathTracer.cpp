@@ -83,81 +83,49 @@ PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& s
     : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)),
       response_(makeResponse(scene_->transport.response)), sensor_{scene_->transport.gate,
                                                                    response_ ? &*response_ : nullptr},
-      lights_(*scene_),
-      targets_(*scene_, settings_.scheme.on ? TargetChoice::Emitters::All : TargetChoice::Emitters::SingleDirections) {}
-
-std::string PathTracer::lightVertexObstacle(const EffectPlan& plan) const {
-    if (!settings_.scheme.on) return "paths are not guided";
-    if (!settings_.scheme.connectsSurfaces()) return "not in the published method, or surface_connections is false";
-    if (!plan.surfaceScattering) return "no surface has a smooth lobe";
-    if (plan.speedsDiffer) return "light does not travel at one speed";
-    if (!LightPaths::helpWith(*scene_)) return "too many emitters, or none that shines in more than one direction";
-    return {};
-}
+      lights_(*scene_) {}
 
 void PathTracer::plan(EffectPlan& plan) const {
-    const bool beams = std::any_of(scene_->emitters.begin(), scene_->emitters.end(),
-                                   [](const Emitter& emitter) { return emitter.isDelta(); });
-    if (beams)
-        plan.describe("light of a single direction in view", false,
-                      "camera paths meet it with probability zero where it is scattered for the first time");
-    plan.describe("Russian roulette", settings_.russianRoulette,
-                  settings_.russianRoulette ? "enable_rr, or its default in steady state"
-                                            : "off by default in time-resolved renders");
-    const std::string sampling = settings_.scheme.published ? "published DARTS sampling" : "DARTS sampling";
-    plan.describe("guided paths", settings_.scheme.on,
-                  settings_.scheme.on ? sampling + " of scattering media"
-                                      : "no time gate, no scattering medium but behind refraction, or not asked for");
-    if (settings_.scheme.on) transport::WaysOut::plan(*scene_, settings_.scheme, true, plan);
-    const std::string obstacle = lightVertexObstacle(plan);
-    plan.describe("light vertices", obstacle.empty(),
-                  obstacle.empty() ? "paths connect to surface points that light reaches first" : obstacle);
-    const bool glossy = LightPaths::reflectedIn(*scene_);
-    plan.describe("reflected light", obstacle.empty() && glossy,
-                  !obstacle.empty() ? obstacle
-                  : glossy          ? "paths connect to where glossy surfaces throw light"
-                                    : "no glossy surface");
+    PathPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
 }
 
 void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
-    timeResolved_ = plan.timeResolved;
-    forwardBoundaries_ = plan.forwardBoundaries;
+    plan_ = PathPlan::of(*scene_, settings_, plan);
     arrival_.emplace(*scene_, plan);
-    // Absorption alone needs free flights too: they carry the transmittance.
-    media_ = !scene_->media.empty();
-    tracesLightPaths_ = lightVertexObstacle(plan).empty();
-    if (!settings_.scheme.on) return;
+    using Emitters = TargetChoice::Emitters;
+    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections);
+    if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
-    guides_ = makeGuides(*scene_, settings_.scheme);
-    waysOut_ = transport::WaysOut::make(*scene_, settings_.scheme);
-    if (tracesLightPaths_) lightPaths_.prepare(*scene_, targets_, statistics);
+    guides_ = makeGuides(*scene_, settings_.policy.sampling);
+    waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
+    if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, statistics);
 }
 
 void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    if (tracesLightPaths_) {
+    if (plan_.lightVertices.on) {
         const StageTimer timer(statistics, "light paths");
-        lightPaths_.trace(*scene_, targets_, pass, statistics);
+        lightPaths_.trace(*scene_, *targets_, pass, statistics);
     }
     const StageTimer timer(statistics, "camera pass");
-    if (settings_.scheme.on)
+    if (plan_.guidance.on)
         renderGuided(pass, film, statistics);
-    else if (timeResolved_)
-        media_ ? renderPlainly<true, true>(pass, film, statistics) : renderPlainly<true, false>(pass, film, statistics);
+    else if (plan_.timeResolved)
+        plan_.media ? renderPlainly<true, true>(pass, film, statistics)
+                    : renderPlainly<true, false>(pass, film, statistics);
     else
-        media_ ? renderPlainly<false, true>(pass, film, statistics)
-               : renderPlainly<false, false>(pass, film, statistics);
+        plan_.media ? renderPlainly<false, true>(pass, film, statistics)
+                    : renderPlainly<false, false>(pass, film, statistics);
 }
 
 template <typename Trace>
-void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const TargetChoice& targets,
-                             const Trace& trace) const {
+void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const {
     const Camera& camera = scene_->camera;
     const auto width = size_t(camera.resolution.x), height = size_t(camera.resolution.y);
     const auto renderPixel = [&](int x, int y, PathCounters& counters) {
         PixelSink sink(film, sensor_, x, y, pass.samples, counters);
         const uint64_t pixel = size_t(y) * width + size_t(x);
         // Consecutive samples of a pixel take the targets in turn.
-        const float rotation = targets.several() ? Sampler(pass.seed, RandomStream::Target, 0, pixel).next1D() : 0.0f;
+        const float rotation = targets_->several() ? Sampler(pass.seed, RandomStream::Target, 0, pixel).next1D() : 0.0f;
         for (uint32_t s = 0; s < pass.samples; ++s) {
             // Keyed by the absolute sample: but for light vertices, each pass's own, the image does not depend on how
             // samples are cut into passes.
@@ -165,7 +133,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             Sampler sampler(pass.seed, RandomStream::Camera, sample, pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = camera.generateRay({x, y}, uFilter, uLens);
-            float u = targets.several() ? radicalInverse(sample) + rotation : 0.0f;
+            float u = targets_->several() ? radicalInverse(sample) + rotation : 0.0f;
             u -= u >= 1.0f ? 1.0f : 0.0f;
             trace(ray, sink, counters, sampler, u);
         }
@@ -180,23 +148,23 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{*scene_, settings_, lights_, *arrival_, forwardBoundaries_};
-    const bool beams = targets_.any();
+    const WalkContext context{*scene_, settings_, lights_, *arrival_, plan_.forwardBoundaries};
+    const bool beams = targets_->any();
     renderTiles(
-        pass, film, statistics, targets_,
+        pass, film, statistics,
         [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
             std::optional<PathTarget> source;
-            if (beams) source = targets_.sample(u, sampler, counters);
+            if (beams) source = targets_->sample(u, sampler, counters);
             PathWalk<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr).run(ray);
         });
 }
 
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
     const GuidedContext context{*scene_,     settings_, sensor_,        guides_,
-                                lightPaths_, *arrival_, waysOut_.get(), forwardBoundaries_};
-    renderTiles(pass, film, statistics, targets_,
+                                lightPaths_, *arrival_, waysOut_.get(), plan_.forwardBoundaries};
+    renderTiles(pass, film, statistics,
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
-                    const std::optional<PathTarget> target = targets_.sample(u, sampler, counters);
+                    const std::optional<PathTarget> target = targets_->sample(u, sampler, counters);
                     if (target) GuidedPathWalk(context, sink, counters, sampler).run(ray, *target);
                 });
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The integrators `path_tracer` and `transient_path_tracer`: unbiased, steady state or time-resolved.
 
+#include "path/PathPlan.h"
 #include "path/guided/GuidedPathWalk.h"
 #include "tungsten/scene/LightChoice.h"
 
@@ -20,25 +21,23 @@ class PathTracer : public Integrator {
   private:
     template <bool TimeResolved, bool Media>
     void renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const;
-    /// Why guided paths connect to no light vertices; empty if they do.
-    [[nodiscard]] std::string lightVertexObstacle(const EffectPlan& plan) const;
     void renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const;
     /// `trace(ray, sink, counters, sampler, u)` for every sample of every pixel; u chooses among targets.
     template <typename Trace>
-    void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const TargetChoice& targets,
-                     const Trace& trace) const;
+    void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const;
 
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
     std::optional<darts::TemporalResponse> response_;
     Sensor sensor_;
     LightChoice lights_;
-    TargetChoice targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
+    PathPlan plan_;
+    std::optional<TargetChoice>
+        targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> arrival_;
     PathGuides guides_;
     std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
     LightPaths lightPaths_;                             ///< of the pass
-    bool timeResolved_ = false, media_ = false, forwardBoundaries_ = true, tracesLightPaths_ = false;
 };
 
 } // namespace tungsten::path

@@ -42,54 +42,60 @@ TimeGate PhotonIntegrator::gate(uint32_t step) const {
     return {false, false, gate.start - tau, 2.0 * tau, 1};
 }
 
-template <typename Use>
-void PhotonIntegrator::forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics,
-                                     const Use& use) const {
-    use(first);
-    for (uint32_t s = 1; s < pass.samples; ++s)
-        use(recordSensorPaths(*scene_, false, rules_, {pass.index, pass.firstSample + s, 1, pass.seed}, 1, statistics));
-}
-
-void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, const SensorRecord& record,
-                                    const SensorRays& rays, GatherStructures& structures, Film& film,
+void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, GatherStructures& structures,
                                     Statistics& statistics) const {
+    const StageTimer timer(statistics, "build");
+    const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
+    const SensorRays rays{structures.splatted, plan_.folds && settings_.includeSurfaces,
+                          glossy_ ? GlossyLight::HighlightPaths : 0, uFolded};
     const auto build = [&]<typename Primitive>(const Primitive& primitive) {
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;
-        const VolumeGather<Primitive>* gather = nullptr;
-        {
-            const StageTimer timer(statistics, "build");
-            Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass));
-            gather = &structures.volume.template emplace<VolumeGather<Primitive>>(
-                *scene_, structures.sensor, photonPass_->arrival(), std::move(store), std::move(radii), rays);
-        }
-        if (!rays.splatted) return;
-        const StageTimer timer(statistics, "splat");
-        const TimeGate& gate = structures.sensor.gate;
-        const double scale =
-            double(gather->scale()) / ((gate.steadyState ? 1.0 : gate.frameWidth) * double(pass.samples));
-        forEachSample(record, pass, statistics, [&](const SensorRecord& sample) {
-            statistics.add(primitive.Gathered, gather->splat(sample, scale, film));
-        });
+        Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass));
+        structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->arrival(),
+                                                                    std::move(store), std::move(radii), rays);
     };
     std::visit(build, settings_.primitive);
+}
+
+void PhotonIntegrator::splat(const GatherStructures& structures, const SensorRecord& record, const PassInfo& pass,
+                             Film& film, Statistics& statistics) const {
+    const StageTimer timer(statistics, "splat");
+    const TimeGate& gate = structures.sensor.gate;
+    const double perSample = (gate.steadyState ? 1.0 : gate.frameWidth) * double(pass.samples);
+    std::visit(Overloaded{[](std::monostate) {},
+                          [&](const auto& gather) {
+                              statistics.add(gather.GatheredCounter,
+                                             gather.splat(record, double(gather.scale()) / perSample, film));
+                          }},
+               structures.volume);
+}
+
+SensorRecord PhotonIntegrator::record(const PassInfo& pass, uint32_t sample, Statistics& statistics) const {
+    const StageTimer timer(statistics, "sensor record");
+    const bool points = plan_.connections.on && sample == 0;
+    return recordSensorPaths(*scene_, rules_, pass.seed, uint32_t(pass.firstSample + sample),
+                             {points, points ? surfaceSamples(scene_->camera.resolution) : 1, plan_.looksAgain},
+                             statistics);
+}
+
+void PhotonIntegrator::look(const GatherStructures& structures, const SensorRecord* record, const PassInfo& pass,
+                            Film& film, Statistics& statistics) const {
+    if (structures.splatted) splat(structures, *record, pass, film, statistics);
+    if (record && !plan_.looksAgain) return;
+    const StageTimer timer(statistics, "sensor pass");
+    renderSensorPass(*scene_, structures, record, pass, film, statistics);
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
-    const bool splat = plan_.splats();
-    const bool connect = plan_.connections.on;
-    SensorRecord record;
+    std::optional<SensorRecord> first;
+    if (plan_.records()) first = record(pass, 0, statistics);
     std::unique_ptr<SurfaceConnections> connections;
-    if (splat || connect) {
-        const StageTimer timer(statistics, "sensor record");
-        record = recordSensorPaths(*scene_, connect, rules_, pass,
-                                   connect ? surfaceSamples(scene_->camera.resolution) : 1, statistics);
-        if (connect) {
-            const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
-            connections = std::make_unique<SurfaceConnections>(*scene_, sensor, record, pass, spread);
-        }
+    if (plan_.connections.on) {
+        const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
+        connections = std::make_unique<SurfaceConnections>(*scene_, sensor, *first, pass, spread);
     }
     PhotonMaps maps;
     {
@@ -97,25 +103,25 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         photonPass_->setGate(sensor.gate);
         maps = photonPass_->trace(pass, connections.get(), statistics);
     }
-    GatherStructures structures{maps.surface,         sensor, splat, settings_.includeSurfaces, rules_, glossy_.get(),
-                                settings_.gatherCount};
-    const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
-    const SensorRays rays{splat, plan_.folds && settings_.includeSurfaces, glossy_ ? GlossyLight::HighlightPaths : 0,
-                          uFolded};
-    gatherVolume(std::move(maps.volume), pass, record, rays, structures, film, statistics);
-    {
+    GatherStructures structures{
+        maps.surface, sensor,        plan_.splats(),        settings_.includeSurfaces,
+        rules_,       glossy_.get(), settings_.gatherCount, settings_.gatherRadius * surfaceFactor};
+    gatherVolume(std::move(maps.volume), pass, structures, statistics);
+    if (!maps.surface.records.empty()) {
         const StageTimer timer(statistics, "build");
-        if (!maps.surface.records.empty()) structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
-        structures.surfaceRadius = settings_.gatherRadius * surfaceFactor;
+        structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
     }
-    if (connect) {
+    if (plan_.connections.on) {
         const StageTimer timer(statistics, "share arrivals");
-        const auto kernel = SharingKernel::of(record.points.size() / record.samples, maps.arrivals.size(),
+        const auto kernel = SharingKernel::of(first->points.size() / first->samples, maps.arrivals.size(),
                                               settings_.gatherRadius, surfaceFactor);
-        shareArrivals(*scene_, sensor, record, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
+        shareArrivals(*scene_, sensor, *first, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
     }
-    const StageTimer timer(statistics, "sensor pass");
-    renderSensorPass(*scene_, structures, pass, film, statistics);
+    look(structures, first ? &*first : nullptr, pass, film, statistics);
+    for (uint32_t s = 1; first && s < pass.samples; ++s) {
+        const SensorRecord further = record(pass, s, statistics);
+        look(structures, &further, pass, film, statistics);
+    }
 }
 
 } // namespace tungsten::photon

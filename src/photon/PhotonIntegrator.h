@@ -24,12 +24,16 @@ class PhotonIntegrator : public Integrator {
     [[nodiscard]] uint32_t step(const PassInfo& pass) const;
     /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
     [[nodiscard]] TimeGate gate(uint32_t step) const;
-    /// Calls use(record) with the straight rays of every sample of the pass; `first` holds the first sample's.
-    template <typename Use>
-    void forEachSample(const SensorRecord& first, const PassInfo& pass, Statistics& statistics, const Use& use) const;
-    /// Records to pixels, or structures over them.
-    void gatherVolume(VolumeStore&& maps, const PassInfo& pass, const SensorRecord& record, const SensorRays& rays,
-                      GatherStructures& structures, Film& film, Statistics& statistics) const;
+    /// Of this sample of the pass; the first one's holds the surface points, too.
+    [[nodiscard]] SensorRecord record(const PassInfo& pass, uint32_t sample, Statistics& statistics) const;
+    /// Structures over the pass's volume records.
+    void gatherVolume(VolumeStore&& maps, const PassInfo& pass, GatherStructures& structures,
+                      Statistics& statistics) const;
+    /// Adds what one recorded sample sees; without a record, what all the pass's samples see.
+    void look(const GatherStructures& structures, const SensorRecord* record, const PassInfo& pass, Film& film,
+              Statistics& statistics) const;
+    void splat(const GatherStructures& structures, const SensorRecord& record, const PassInfo& pass, Film& film,
+               Statistics& statistics) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;

@@ -16,8 +16,8 @@ bool anyGlossyOnly(const Scene& scene) {
     });
 }
 
-std::string guidanceObstacle(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& facts) {
-    if (!scheme.on) return "the scene does not ask for it";
+std::string guidanceObstacle(const Scene& scene, const transport::Policy& policy, const EffectPlan& facts) {
+    if (!policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!facts.mediumScattering) return "no medium scatters";
     if (std::holds_alternative<Orthographic>(scene.camera.model))
@@ -29,7 +29,7 @@ std::string connectionObstacle(const PhotonPlan& plan, const PhotonSettings& set
     if (!plan.guidance.on) return plan.guidance.reason;
     if (!settings.includeSurfaces || !facts.surfaceScattering) return "no surface is gathered";
     if (!plan.straightRays) return "a thin lens, or different speeds of light";
-    return settings.scheme.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
+    return settings.policy.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
 }
 
 } // namespace
@@ -39,7 +39,7 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     plan.highestSpeed = facts.highestSpeed;
     plan.oneSpeed = !facts.speedsDiffer;
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
-    const std::string obstacle = guidanceObstacle(scene, settings.scheme, facts);
+    const std::string obstacle = guidanceObstacle(scene, settings.policy, facts);
     plan.guidance = {obstacle.empty(), obstacle.empty() ? "the scene asks for DARTS" : obstacle};
     plan.chooseSensorPaths(scene, settings, facts);
     plan.chooseGuidance(scene, settings, facts);
@@ -51,27 +51,29 @@ void PhotonPlan::chooseSensorPaths(const Scene& scene, const PhotonSettings& set
     const bool any = anyGlossyOnly(scene);
     // Time without camera segments ends at the first surface that is no mirror.
     const bool unwarped = scene.transport.cameraUnwarped;
-    glossyPaths.on = guidance.on && any && settings.includeSurfaces && !unwarped && settings.scheme.followsGlossy();
+    glossyPaths.on = guidance.on && any && settings.includeSurfaces && !unwarped && settings.policy.followsGlossy();
     glossyPaths.reason = !any             ? "no surface is glossy without being diffuse"
                          : glossyPaths.on ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
                          : !settings.includeSurfaces ? "include_surfaces is false"
                          : unwarped ? "camera_unwarped: time stops at glossy surfaces, which are left to photons"
                                     : "the preset or glossy_sensor_paths leaves glossy surfaces to photons";
     folds = facts.specularSensorPaths || glossyPaths.on;
+    looksAgain = settings.includeSurfaces;
 }
 
 void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
     const TimeGate& gate = scene.transport.gate;
-    const darts::Scheme& scheme = settings.scheme;
+    const transport::Policy& policy = settings.policy;
     const bool straight = !folds && oneSpeed;
-    directView = scheme.directView == darts::DirectView::Auto ? straight : scheme.directView == darts::DirectView::On;
+    directView =
+        policy.directView == transport::DirectView::Auto ? straight : policy.directView == transport::DirectView::On;
     const bool pointLike = scene.transport.cameraUnwarped || scene.camera.aperture() == 0.0f;
     const bool exact = guidance.on && directView && straight && pointLike;
-    framesOneByOne.on = exact && gate.frames > 1 && scheme.aimsAtSingleFrames();
+    framesOneByOne.on = exact && gate.frames > 1 && policy.aimsAtSingleFrames();
     framesOneByOne.reason =
         framesOneByOne.on ? "each light path aims at one frame" : "light paths aim at the whole sequence as one gate";
     drawsByResponse = exact && !scene.transport.response.empty();
-    meetsDeltaGate = exact && gate.delta && scheme.elliptical;
+    meetsDeltaGate = exact && gate.delta && policy.sampling.elliptical;
     ordinaryPhotons = {!directView, directView ? "direct view: control vertices alone are complete"
                                                : "mirrors, refraction or different speeds: both, by the balance "
                                                  "heuristic"};
@@ -118,8 +120,8 @@ void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, Ef
     add("surface photons", surfacePhotons);
     add("guided light paths", guidance);
     if (guidance.on) {
-        if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.scheme, false, plan);
-        const size_t bodies = settings.scheme.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
+        if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
+        const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
         plan.describe("light towards bodies", bodies > 0,
                       bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
                                        (bodies > 1 ? " bodies" : " body") + " of it"

@@ -9,10 +9,7 @@
 
 namespace tungsten::photon {
 
-struct Choice {
-    bool on = false;
-    std::string reason;
-};
+using transport::Choice;
 
 struct PhotonPlan {
     /// `facts`: what the scene calls for (analyseScene). Builds nothing.
@@ -39,7 +36,10 @@ struct PhotonPlan {
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
+    bool looksAgain = false; ///< at what sensor paths meet, when the photons are there: splats are not all
     [[nodiscard]] bool splats() const { return straightRays && volume.on; }
+    /// Sensor paths are traced before the photons; else after them.
+    [[nodiscard]] bool records() const { return splats() || connections.on; }
 
   private:
     void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

@@ -78,7 +78,7 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
         "alpha", 0.3, {"none", "progressive maps: how fast radii on surfaces shrink; 1: not at all"}, Range::unit()));
     settings.volumeAlpha = float(
         block.number("volume_alpha", double(settings.alpha), {"none", "the same in media", "alpha"}, Range::unit()));
-    settings.scheme = darts::readScheme(block);
+    settings.policy = transport::readPolicy(block);
     // Ways of building the published structures; the gathers here need no such choice.
     block.accept({"use_grid", "grid_memory", "use_frustum_grid", "exclude_non_mis", "strict_time_width",
                   "frustum_culling", "reuse_path_dir"});

@@ -3,7 +3,7 @@
 
 #include "photon/primitives/VolumePrimitive.h"
 
-#include "darts/Scheme.h"
+#include "transport/Policy.h"
 
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
@@ -25,7 +25,7 @@ struct PhotonSettings {
     bool progressive = true;
     float alpha = 0.3f;       ///< surface radius reduction
     float volumeAlpha = 0.3f; ///< volume radius reduction
-    darts::Scheme scheme;     ///< how light paths are guided
+    transport::Policy policy; ///< how light paths are guided
 
     /// From sensor rays that a record of the volume primitive can show on.
     [[nodiscard]] float volumeReach() const {

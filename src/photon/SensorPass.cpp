@@ -28,9 +28,9 @@ class SensorGather {
         : scene_(scene), structures_(structures), lights_(lights), oversampled_(oversampled), workspace_(workspace),
           counters_(counters) {}
 
-    void segment(const SensorState& state, float length) {
+    void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
         if (structures_.splatted && (!state.folded || oversampled_)) return;
-        gatherVolume(state, length, [&](const auto& gather, const CameraSegment& segment) {
+        gatherVolume(state, hit, [&](const auto& gather, const CameraSegment& segment) {
             return gather.gather(segment, state.folded, workspace_.volume);
         });
     }
@@ -51,9 +51,9 @@ class SensorGather {
     }
 
     /// Highlight path `part`: a part of what folded rays meet in media.
-    void segmentPart(const SensorState& state, float length, uint32_t part) {
+    void segmentPart(const SensorState& state, const std::optional<SurfaceHit>& hit, uint32_t part) {
         if (!structures_.splatted || !state.folded) return;
-        gatherVolume(state, length, [&](const auto& gather, const CameraSegment& segment) {
+        gatherVolume(state, hit, [&](const auto& gather, const CameraSegment& segment) {
             return gather.gatherPart(segment, part, workspace_.volume);
         });
     }
@@ -70,11 +70,15 @@ class SensorGather {
   private:
     /// look(gather, segment) fills workspace_.volume and returns how many records it met.
     template <typename Look>
-    void gatherVolume(const SensorState& state, float length, const Look& look) {
+    void gatherVolume(const SensorState& state, const std::optional<SurfaceHit>& hit, const Look& look) {
         if (!scene_.medium(state.region)) return;
-        const CameraSegment segment{
-            state.ray.origin,   state.ray.direction, length, state.time, 1.0 / double(state.region.speed),
-            state.interactions, state.region.medium};
+        const CameraSegment segment{state.ray.origin,
+                                    state.ray.direction,
+                                    hit ? hit->t : Infinity,
+                                    state.time,
+                                    1.0 / double(state.region.speed),
+                                    state.interactions,
+                                    state.region.medium};
         std::visit(Overloaded{[](std::monostate) {},
                               [&](const auto& gather) {
                                   std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
@@ -148,7 +152,9 @@ struct HighlightVisitor {
     SensorGather& gather;
     uint32_t part;
 
-    void segment(const SensorState& state, float length) { gather.segmentPart(state, length, part); }
+    void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
+        gather.segmentPart(state, hit, part);
+    }
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
         gather.highlight(state, surface, 1.0f / float(GlossyLight::HighlightPaths));
     }
@@ -157,29 +163,35 @@ struct HighlightVisitor {
 
 } // namespace
 
-void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
-                      Statistics& statistics) {
+void renderSensorPass(const Scene& scene, const GatherStructures& structures, const SensorRecord* record,
+                      const PassInfo& pass, Film& film, Statistics& statistics) {
     const auto width = size_t(scene.camera.resolution.x), height = size_t(scene.camera.resolution.y);
     const TimeGate& gate = structures.sensor.gate;
     const double scale = 1.0 / (double(pass.samples) * (gate.steadyState ? 1.0 : gate.frameWidth));
+    const auto addSample = [&](int x, int y, uint32_t sample, Workspace& workspace, SensorCounters& counters) {
+        const size_t pixel = size_t(y) * width + size_t(x);
+        const auto follow = [&](Sampler& sampler, auto&& visitor) {
+            const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+            const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
+            counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
+        };
+        const Sampler lights(pass.seed, RandomStream::Target, sample, pixel);
+        const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
+        SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
+        if (record) {
+            record->replay(scene, pixel, gather);
+        } else {
+            Sampler sampler(pass.seed, RandomStream::Camera, sample, pixel);
+            follow(sampler, gather);
+        }
+        if (!oversampled) return;
+        Sampler sampler(pass.seed, RandomStream::Highlight, sample, pixel);
+        for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(sampler, HighlightVisitor{gather, k});
+    };
+    const uint32_t first = record ? record->sample : uint32_t(pass.firstSample), samples = record ? 1 : pass.samples;
     const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {
         std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));
-        for (uint32_t s = 0; s < pass.samples; ++s) {
-            Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample + s),
-                            size_t(y) * width + size_t(x));
-            const size_t pixel = size_t(y) * width + size_t(x);
-            const auto follow = [&](auto&& visitor) {
-                const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
-                const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
-                counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
-            };
-            const Sampler lights(pass.seed, RandomStream::Target, uint32_t(pass.firstSample + s), pixel);
-            const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
-            SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
-            follow(gather);
-            if (!oversampled) continue;
-            for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(HighlightVisitor{gather, k});
-        }
+        for (uint32_t s = 0; s < samples; ++s) addSample(x, y, first + s, workspace, counters);
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;
             const Rgb pixel{float(value.x), float(value.y), float(value.z)};

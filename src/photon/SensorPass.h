@@ -22,8 +22,9 @@ struct GatherStructures {
     std::unique_ptr<NearestPhotons> surfaces{}; ///< null when there is no surface photon
 };
 
-/// Adds the image of every frame to the film's pass image.
-void renderSensorPass(const Scene& scene, const GatherStructures& structures, const PassInfo& pass, Film& film,
-                      Statistics& statistics);
+/// Adds the image of every frame to the film's pass image: of one sample per pixel, whose paths have been recorded, or
+/// of all the pass's.
+void renderSensorPass(const Scene& scene, const GatherStructures& structures, const SensorRecord* record,
+                      const PassInfo& pass, Film& film, Statistics& statistics);
 
 } // namespace tungsten::photon

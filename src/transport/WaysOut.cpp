@@ -54,14 +54,14 @@ WaysOut::WaysOut(const Scene& scene) : scene_(scene), bodies_(bodiesOf(scene)) {
     });
 }
 
-std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const darts::Scheme& scheme) {
-    if (!scheme.followsBodies()) return nullptr;
+std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const Policy& policy) {
+    if (!policy.followsBodies()) return nullptr;
     auto waysOut = std::make_unique<const WaysOut>(scene);
     return waysOut->any() ? std::move(waysOut) : nullptr;
 }
 
-void WaysOut::plan(const Scene& scene, const darts::Scheme& scheme, bool straightOnly, EffectPlan& plan) {
-    const auto waysOut = make(scene, scheme);
+void WaysOut::plan(const Scene& scene, const Policy& policy, bool straightOnly, EffectPlan& plan) {
+    const auto waysOut = make(scene, policy);
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
         if (!medium.scatters()) continue;
@@ -69,7 +69,7 @@ void WaysOut::plan(const Scene& scene, const darts::Scheme& scheme, bool straigh
             "model of " + (medium.name.empty() ? "#" + std::to_string(i) : "'" + medium.name + "'");
         plan.describe(name, true,
                       waysOut                  ? waysOut->describe(int(i), straightOnly)
-                      : scheme.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
+                      : policy.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
                                                : "infinite medium: the preset or bodies leaves boundaries alone");
     }
 }

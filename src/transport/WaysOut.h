@@ -2,9 +2,9 @@
 // How light gets out of bodies of scattering media on its way to what a walk aims at (docs/method.md, section 10.4).
 
 #include "transport/Body.h"
+#include "transport/Policy.h"
 
 #include "darts/ResidualRange.h"
-#include "darts/Scheme.h"
 
 #include "tungsten/render/EffectPlan.h"
 
@@ -40,9 +40,9 @@ class WaysOut {
     explicit WaysOut(const Scene& scene);
     /// Null where all media may be taken for infinite: not asked for, or no scattering medium ends at a boundary that
     /// light passes.
-    static std::unique_ptr<const WaysOut> make(const Scene& scene, const darts::Scheme& scheme);
+    static std::unique_ptr<const WaysOut> make(const Scene& scene, const Policy& policy);
     /// Says in the plan which models the media get; `straightOnly` as in Aim.
-    static void plan(const Scene& scene, const darts::Scheme& scheme, bool straightOnly, EffectPlan& plan);
+    static void plan(const Scene& scene, const Policy& policy, bool straightOnly, EffectPlan& plan);
 
     /// Chooses the model for what lies between the start of a flight through `region` and the aim: residual.way, and
     /// residual.exit but for its surplus. Adds the rays traced to `rays`.

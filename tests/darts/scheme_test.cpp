@@ -110,14 +110,17 @@ TEST(Scheme, EverySwitchWorksAlone) {
     const Settings plain = settings({{"distance", "plain"}});
     EXPECT_EQ(plain.greens, Greens::None);
     EXPECT_EQ(plain.candidates, 1);
-    EXPECT_EQ(SwitchReading(Fields{{"direct_view", "off"}}).scheme.directView, DirectView::Off);
-    EXPECT_FALSE(SwitchReading(Fields{{"surface_connections", false}}).scheme.connectsSurfaces());
-    EXPECT_FALSE(SwitchReading(Fields{}).scheme.aimsAtSingleFrames());
-    EXPECT_TRUE(SwitchReading(Fields{{"single_frames", true}}).scheme.aimsAtSingleFrames());
-    EXPECT_TRUE(SwitchReading(Fields{}).scheme.followsBodies());
-    EXPECT_FALSE(SwitchReading(Fields{{"bodies", false}}).scheme.followsBodies());
-    EXPECT_TRUE(SwitchReading(Fields{}).scheme.followsGlossy());
-    EXPECT_FALSE(SwitchReading(Fields{{"glossy_sensor_paths", false}}).scheme.followsGlossy());
+}
+
+TEST(Scheme, TheRendererReadsSwitchesOfItsOwnFromTheObject) {
+    std::vector<std::string> problems;
+    const auto object = std::make_shared<Block>(Fields{{"alpha", 0.7}, {"own", true}}, &problems);
+    std::optional<bool> own;
+    const Scheme scheme = readScheme(Block({{"darts", object}}, &problems),
+                                     [&](const Block& block) { own = switches::flag(block, "own", "the renderer's"); });
+    EXPECT_EQ(own, true);
+    EXPECT_EQ(scheme.alpha, 0.7f);
+    EXPECT_TRUE(problems.empty());
 }
 
 TEST(Scheme, WrongValuesNameWhatIsAccepted) {

@@ -24,7 +24,7 @@ class SharedArrivals : public testing::Test {
     test::SceneFile file_{Table};
     LoadedScene loaded_ = loadScene(file_.path(), {});
     Statistics statistics_;
-    SensorRecord record_ = recordSensorPaths(*loaded_.scene, true, {true, false}, {0, 0, 1, 1}, 1, statistics_);
+    SensorRecord record_ = recordSensorPaths(*loaded_.scene, {true, false}, 1, 0, {.points = true}, statistics_);
 
     [[nodiscard]] Image share(const std::vector<SurfaceArrival>& arrivals, float radius, float distance = 100.0f) {
         Film film(24, 20, 1);

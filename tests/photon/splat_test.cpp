@@ -305,7 +305,7 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
     const test::SceneFile file(Bench);
     const LoadedScene loaded = loadScene(file.path(), {});
     Statistics statistics;
-    const SensorRecord record = recordSensorPaths(*loaded.scene, true, {true, false}, {0, 0, 1, 1}, 1, statistics);
+    const SensorRecord record = recordSensorPaths(*loaded.scene, {true, false}, 1, 0, {.points = true}, statistics);
     ASSERT_EQ(record.x.size(), 12u);
     ASSERT_EQ(record.pieces.size(), 2u) << "nothing scatters in the ink, and behind the mirror the ray is not straight";
     ASSERT_EQ(record.points.size(), 12u);
@@ -330,7 +330,7 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
         EXPECT_LT(point.direction.z, 0.0f);
         EXPECT_NEAR(point.throughput.x, 0.9f * std::exp(-2.0f * (0.3f * 2.0f + 0.5f * 0.5f + 0.5f) * slant), 1e-3f);
     }
-    const SensorRecord three = recordSensorPaths(*loaded.scene, true, {true, false}, {0, 0, 1, 1}, 3, statistics);
+    const SensorRecord three = recordSensorPaths(*loaded.scene, {true, false}, 1, 0, {true, 3}, statistics);
     ASSERT_EQ(three.points.size(), 36u);
     EXPECT_EQ(three.x, record.x);
     EXPECT_EQ(three.pieces[0].end, record.pieces[0].end);
@@ -339,13 +339,42 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
         EXPECT_NEAR(three.points[i].throughput.x, record.points[i / 3].throughput.x / 3.0f, 1e-3f);
         EXPECT_EQ(three.points[i].hit.position == record.points[i / 3].hit.position, i % 3 == 0);
     }
-    const SensorRecord volumeOnly =
-        recordSensorPaths(*loaded.scene, false, {false, false}, {0, 0, 1, 1}, 1, statistics);
+    const SensorRecord volumeOnly = recordSensorPaths(*loaded.scene, {false, false}, 1, 0, {}, statistics);
     EXPECT_TRUE(volumeOnly.points.empty());
     EXPECT_EQ(volumeOnly.pieces.size(), 2u);
     EXPECT_EQ(volumeOnly.x, record.x) << "the same rays";
-    EXPECT_NE(recordSensorPaths(*loaded.scene, false, {false, false}, {1, 1, 1, 1}, 1, statistics).x, record.x)
-        << "another pass";
+    EXPECT_NE(recordSensorPaths(*loaded.scene, {false, false}, 1, 1, {}, statistics).x, record.x) << "another sample";
+}
+
+/// What a visitor is shown, in words.
+struct Listing {
+    std::vector<std::string> seen;
+    void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
+        seen.push_back("segment " + std::to_string(state.interactions) + (state.folded ? " folded " : " ") +
+                       std::to_string(hit ? hit->t : 0.0f) + " " + std::to_string(state.throughput.x));
+    }
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        seen.push_back("surface " + std::to_string(surface.hit.position.z) + " " + std::to_string(state.throughput.x));
+    }
+    void escaped(const SensorState&) { seen.emplace_back("escaped"); }
+};
+
+TEST(SensorRecord, ReplaysWhatTheCameraPathsMet) {
+    const test::SceneFile file(Bench);
+    const LoadedScene loaded = loadScene(file.path(), {});
+    const Scene& scene = *loaded.scene;
+    Statistics statistics;
+    const SensorRecord record = recordSensorPaths(scene, {true, false}, 1, 0, {.legs = true}, statistics);
+    for (size_t pixel = 0; pixel < 12; ++pixel) {
+        Sampler sampler(1, RandomStream::Camera, 0, pixel);
+        const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+        const Ray ray = scene.camera.generateRay({int(pixel % 4), int(pixel / 4)}, uFilter, uLens);
+        Listing traced, replayed;
+        followSensorPath(scene, {ray, scene.cameraRegion}, {true, false}, sampler, traced);
+        record.replay(scene, pixel, replayed);
+        EXPECT_EQ(traced.seen, replayed.seen);
+        EXPECT_GT(traced.seen.size(), 20u) << "through fog, ink and haze to the mirror and back";
+    }
 }
 
 } // namespace

@@ -127,24 +127,24 @@ TEST(WaysOut, FlightsThatEnterABodyHaveALookFromInside) {
     EXPECT_NEAR(residual.exit.slant, 5.0f / 3.0f, 1e-4f);
 }
 
-TEST(WaysOut, NoneWhereNothingEndsOrTheSchemeLeavesThemOut) {
-    darts::Scheme scheme;
-    scheme.on = true;
+TEST(WaysOut, NoneWhereNothingEndsOrThePolicyLeavesThemOut) {
+    Policy policy;
+    policy.sampling.on = true;
     const View view(sceneWith(Forward));
-    EXPECT_NE(WaysOut::make(*view.loaded.scene, scheme), nullptr);
-    EXPECT_EQ(WaysOut::make(*View(sceneWith(R"({"type": "lambert"})")).loaded.scene, scheme), nullptr);
-    scheme.bodies = false;
-    EXPECT_EQ(WaysOut::make(*view.loaded.scene, scheme), nullptr);
+    EXPECT_NE(WaysOut::make(*view.loaded.scene, policy), nullptr);
+    EXPECT_EQ(WaysOut::make(*View(sceneWith(R"({"type": "lambert"})")).loaded.scene, policy), nullptr);
+    policy.bodies = false;
+    EXPECT_EQ(WaysOut::make(*view.loaded.scene, policy), nullptr);
     EffectPlan plan;
-    scheme.bodies = true;
-    WaysOut::plan(*view.loaded.scene, scheme, true, plan);
+    policy.bodies = true;
+    WaysOut::plan(*view.loaded.scene, policy, true, plan);
     ASSERT_EQ(plan.effects.size(), 3u);
     EXPECT_NE(plan.effects[0].reason.find("half-space where light must get out"), std::string::npos);
     // What paths do behind refraction, photons do not.
     const View sealed(sceneWith(Glass));
     for (const bool straightOnly : {false, true}) {
         EffectPlan models;
-        WaysOut::plan(*sealed.loaded.scene, scheme, straightOnly, models);
+        WaysOut::plan(*sealed.loaded.scene, policy, straightOnly, models);
         EXPECT_EQ(models.effects[0].reason.find("bounds in time alone") != std::string::npos, straightOnly);
     }
 }

@@ -35,7 +35,8 @@ enum class RandomStream : uint32_t {
     Pilot = 8,
     Frame = 9,
     Folded = 10,
-    ReflectedLight = 11
+    ReflectedLight = 11,
+    Highlight = 12
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.

@@ -11,23 +11,23 @@ constexpr double WideGate = 2.0;
 
 } // namespace
 
-PhotonGuidance::PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const PhotonPlan& plan)
+PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan)
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
       camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
       unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), choosesFrames_(plan.framesOneByOne.on),
       drawsByResponse_(plan.drawsByResponse), meetsDeltaGate_(plan.meetsDeltaGate),
       sensor_(Sensor::of(scene, scene.transport.gate)) {
-    if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, scheme);
-    if (scheme.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
+    if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
+    if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);
     for (const Medium& medium : scene.media) {
         guides_.emplace_back();
         if (!medium.scatters()) continue;
         darts::Settings settings =
-            scheme.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
+            policy.sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
         const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
-        if (width > WideGate && !choosesFrames_ && !scheme.lengthFirst) settings.lengthFirst = false;
+        if (width > WideGate && !choosesFrames_ && !policy.sampling.lengthFirst) settings.lengthFirst = false;
         if (unwarped_) {
             // Any place seen will do: nothing to aim at, only the bound in time.
             settings.direction = darts::Direction::Phase;

@@ -6,7 +6,6 @@
 #include "photon/view/Sensor.h"
 
 #include "darts/Guide.h"
-#include "darts/Scheme.h"
 
 #include "transport/WaysOut.h"
 
@@ -19,7 +18,7 @@ namespace tungsten::photon {
 class PhotonGuidance {
   public:
     /// Where plan.guidance is on.
-    PhotonGuidance(const Scene& scene, const darts::Scheme& scheme, const PhotonPlan& plan);
+    PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan);
 
     /// Null in regions where nothing scatters.
     [[nodiscard]] const darts::Guide* guide(const Region& region) const {

@@ -86,7 +86,7 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan)
     : scene_(scene), settings_(settings), arrival_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
-      guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.scheme, plan) : nullptr),
+      guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan) : nullptr),
       emitters_(powerDistribution(scene)), storeVolume_(plan.volume.on), storeSurface_(plan.surfacePhotons.on),
       glossySensorPaths_(plan.glossyPaths.on),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {

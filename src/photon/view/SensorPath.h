@@ -42,11 +42,25 @@ struct SensorState {
     Vec3f glossyVertex{0.0f};
 };
 
-/// Follows the path from `state`. The visitor has
-///   segment(state, length): the ray ahead up to `length`, possibly infinite, in state.region
+/// Shows a visitor what lies ahead of `state`, up to `hit` if there is one. The visitor has
+///   segment(state, hit): the ray ahead, up to the surface if there is one, in state.region
 ///   surface(state, interaction): the end of the segment; the throughput includes the way there, the time does not
 ///   escaped(state)
-/// Returns the number of rays.
+/// Returns the surface, if light gets through from there.
+template <typename Visitor>
+std::optional<SurfaceInteraction> visitLeg(const Scene& scene, SensorState& state, const std::optional<SurfaceHit>& hit,
+                                           Visitor&& visitor) {
+    visitor.segment(state, hit);
+    if (const Medium* medium = scene.medium(state.region))
+        state.throughput = state.throughput * medium->transmittance(hit ? hit->t : Infinity);
+    if (!hit) visitor.escaped(state);
+    if (!hit || isBlack(state.throughput)) return std::nullopt;
+    const SurfaceInteraction surface = makeInteraction(scene, *hit, state.ray.direction);
+    visitor.surface(state, surface);
+    return surface;
+}
+
+/// Follows the path from `state`, leg by leg. Returns the number of rays.
 template <typename Visitor>
 uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPathRules& rules, Sampler& sampler,
                           Visitor&& visitor) {
@@ -54,18 +68,10 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPat
     while (state.interactions < scene.transport.maxBounces) {
         ++rays;
         const auto hit = scene.geometry->intersect(state.ray);
-        const float length = hit ? hit->t : Infinity;
-        visitor.segment(state, length);
-        if (const Medium* medium = scene.medium(state.region))
-            state.throughput = state.throughput * medium->transmittance(length);
-        if (!hit) {
-            visitor.escaped(state);
-            return rays;
-        }
-        if (isBlack(state.throughput)) return rays;
-        const SurfaceInteraction surface = makeInteraction(scene, *hit, state.ray.direction);
-        visitor.surface(state, surface);
-        state.time += double(length) / double(state.region.speed);
+        const auto found = visitLeg(scene, state, hit, visitor);
+        if (!found) return rays;
+        const SurfaceInteraction& surface = *found;
+        state.time += double(hit->t) / double(state.region.speed);
         ++state.interactions;
         const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, rules.followed(*surface.bsdf)),
                                      scene.transport.consistencyChecks, sampler);
@@ -89,7 +95,7 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPat
 template <typename Look>
 struct SurfaceVisitor {
     Look look;
-    void segment(const SensorState&, float) const {}
+    void segment(const SensorState&, const std::optional<SurfaceHit>&) const {}
     void surface(const SensorState& state, const SurfaceInteraction& surface) const { look(state, surface); }
     void escaped(const SensorState&) const {}
 };

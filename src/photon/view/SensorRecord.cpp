@@ -27,10 +27,11 @@ struct Piece {
 /// Visits the camera paths of one row.
 struct Recorder {
     const Scene& scene;
-    bool includeSurfaces;
-    float share;                            ///< of a path in its pixel
+    SensorWishes wishes;
     std::vector<std::vector<Piece>> pieces; ///< by number along the ray
     std::vector<SensorPoint> points;
+    std::vector<SensorLeg> legs;
+    std::vector<uint32_t> legEnds;
     uint32_t pixel = 0;
     size_t next = 0;
     float behind = 0.0f; ///< length of the straight ray so far
@@ -40,8 +41,11 @@ struct Recorder {
         next = 0;
         behind = 0.0f;
     }
-    void segment(const SensorState& state, float length) {
+    void end() { legEnds.push_back(uint32_t(legs.size())); }
+    void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
+        if (wishes.legs) legs.push_back({state, hit});
         if (state.folded) return;
+        const float length = hit ? hit->t : Infinity;
         const Medium* medium = scene.medium(state.region);
         if (medium && medium->scatters()) {
             if (pieces.size() <= next) pieces.emplace_back();
@@ -51,31 +55,54 @@ struct Recorder {
         behind += length;
     }
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
-        if (!includeSurfaces || !receivesConnections(*surface.bsdf)) return;
-        points.push_back({surface.hit, state.ray.direction, state.throughput * share,
+        if (!wishes.points || !receivesConnections(*surface.bsdf)) return;
+        points.push_back({surface.hit, state.ray.direction, state.throughput * (1.0f / float(wishes.samples)),
                           state.time + double(surface.hit.t) / double(state.region.speed), pixel, state.interactions,
                           state.region});
     }
     void escaped(const SensorState&) {}
 };
 
+/// Frees what it appends.
+void append(Recorder& row, size_t pixels, SensorRecord& record) {
+    record.points.insert(record.points.end(), row.points.begin(), row.points.end());
+    std::vector<SensorPoint>().swap(row.points);
+    const auto before = uint32_t(record.legs.size());
+    record.legs.insert(record.legs.end(), row.legs.begin(), row.legs.end());
+    std::vector<SensorLeg>().swap(row.legs);
+    if (row.wishes.legs)
+        for (const uint32_t end : row.legEnds) record.legEnds.push_back(before + end);
+    for (size_t k = 0; k < row.pieces.size(); ++k) {
+        if (record.pieces.size() <= k) resize(record.pieces.emplace_back(), pixels);
+        StraightPiece& piece = record.pieces[k];
+        for (const Piece& p : row.pieces[k]) {
+            piece.start[p.pixel] = p.start;
+            piece.end[p.pixel] = p.end;
+            piece.medium[p.pixel] = p.medium;
+            piece.interactions[p.pixel] = p.interactions;
+            piece.throughput[p.pixel] = p.throughput;
+        }
+    }
+}
+
 } // namespace
 
-SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
-                               const PassInfo& pass, uint32_t samples, Statistics& statistics) {
+SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
+                               const SensorWishes& wishes, Statistics& statistics) {
     SensorRecord record;
-    record.samples = samples;
+    record.sample = sample;
+    record.samples = wishes.samples;
     record.width = scene.camera.resolution.x;
     record.height = scene.camera.resolution.y;
     record.origin = scene.camera.position();
     const size_t pixels = size_t(record.width) * size_t(record.height);
     for (auto* component : {&record.x, &record.y, &record.z}) component->resize(pixels);
-    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, includeSurfaces, 1.0f / float(samples), {}, {}});
+    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, wishes, {}, {}, {}, {}});
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
         uint64_t rays = 0;
         for (int x = 0; x < record.width; ++x) {
             const size_t pixel = y * size_t(record.width) + size_t(x);
-            Sampler sampler(pass.seed, RandomStream::Camera, uint32_t(pass.firstSample), pixel);
+            Sampler sampler(seed, RandomStream::Camera, sample, pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = scene.camera.generateRay({x, int(y)}, uFilter, uLens);
             record.x[pixel] = ray.direction.x;
@@ -83,10 +110,11 @@ SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const S
             record.z[pixel] = ray.direction.z;
             rows[y].begin(uint32_t(pixel));
             rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
+            rows[y].end();
             const SurfaceVisitor recordPoint{
                 [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
-            Sampler further(pass.seed, RandomStream::SensorPoint, uint32_t(pass.firstSample), pixel);
-            for (uint32_t s = 1; s < samples; ++s) {
+            Sampler further(seed, RandomStream::SensorPoint, sample, pixel);
+            for (uint32_t s = 1; s < wishes.samples; ++s) {
                 const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
                 const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
                 rays += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint);
@@ -94,24 +122,7 @@ SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const S
         }
         statistics.add("rays", rays);
     });
-    size_t points = 0;
-    for (const Recorder& row : rows) points += row.points.size();
-    record.points.reserve(points);
-    for (Recorder& row : rows) {
-        record.points.insert(record.points.end(), row.points.begin(), row.points.end());
-        std::vector<SensorPoint>().swap(row.points);
-        for (size_t k = 0; k < row.pieces.size(); ++k) {
-            if (record.pieces.size() <= k) resize(record.pieces.emplace_back(), pixels);
-            StraightPiece& piece = record.pieces[k];
-            for (const Piece& p : row.pieces[k]) {
-                piece.start[p.pixel] = p.start;
-                piece.end[p.pixel] = p.end;
-                piece.medium[p.pixel] = p.medium;
-                piece.interactions[p.pixel] = p.interactions;
-                piece.throughput[p.pixel] = p.throughput;
-            }
-        }
-    }
+    for (Recorder& row : rows) append(row, pixels, record);
     return record;
 }
 

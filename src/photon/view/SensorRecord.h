@@ -29,19 +29,44 @@ struct StraightPiece {
     std::vector<Rgb> throughput; ///< at `start`
 };
 
+/// A leg of a camera path: a segment and the surface at its end.
+struct SensorLeg {
+    SensorState state;
+    std::optional<SurfaceHit> hit;
+};
+
+/// What to record besides straight pieces.
+struct SensorWishes {
+    bool points = false; ///< surface points
+    uint32_t samples =
+        1;             ///< camera paths of a pixel that look for them: what a narrow gate lights is finer than pixels
+    bool legs = false; ///< the first path's, to be looked at once photons are there
+};
+
 struct SensorRecord {
     int width = 0, height = 0;
+    uint32_t sample = 0;               ///< of the pixels
     uint32_t samples = 1;              ///< camera paths of a pixel that have left points
     Vec3f origin;                      ///< of every ray
     std::vector<float> x, y, z;        ///< unit direction of every pixel's ray
     std::vector<StraightPiece> pieces; ///< first, second, ... piece of every ray
     std::vector<SensorPoint> points;   ///< in pixel order
+    std::vector<SensorLeg> legs;       ///< in pixel order
+    std::vector<uint32_t> legEnds;     ///< by pixel
+
+    /// Shows a visitor the legs of a pixel's path.
+    template <typename Visitor>
+    void replay(const Scene& scene, size_t pixel, Visitor&& visitor) const {
+        if (legEnds.empty()) return;
+        for (size_t i = pixel > 0 ? legEnds[pixel - 1] : 0; i < legEnds[pixel]; ++i) {
+            SensorState state = legs[i].state;
+            visitLeg(scene, state, legs[i].hit, visitor);
+        }
+    }
 };
 
-/// Traces the camera rays of the pass's first sample; they are those of the sensor pass that follows. For a camera with
-/// a single position; with `samples` above 1 further paths look for surface points alone: what a narrow gate
-/// lights is finer than pixels.
-SensorRecord recordSensorPaths(const Scene& scene, bool includeSurfaces, const SensorPathRules& rules,
-                               const PassInfo& pass, uint32_t samples, Statistics& statistics);
+/// Traces one camera path per pixel, the sample with this index, for a camera with a single position.
+SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
+                               const SensorWishes& wishes, Statistics& statistics);
 
 } // namespace tungsten::photon

@@ -1,0 +1,76 @@
+#include "path/PathPlan.h"
+
+#include "path/techniques/LightPaths.h"
+
+#include "transport/WaysOut.h"
+
+namespace tungsten::path {
+
+namespace {
+
+std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    if (!settings.policy.guides()) return "the scene does not ask for it";
+    if (!facts.timeResolved) return "steady state: there is no gate to aim at";
+    if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
+    if (!facts.mediumScattering) return "no medium scatters";
+    const bool sealed = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
+                        transport::isSealed(scene);
+    return sealed ? "all that scatters lies behind walls that refract: no connection is complete" : "";
+}
+
+std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
+                                const EffectPlan& facts) {
+    if (!plan.guidance.on) return "paths are not guided";
+    if (!settings.policy.connectsSurfaces()) return "not in the published method, or surface_connections is false";
+    if (!facts.surfaceScattering) return "no surface has a smooth lobe";
+    if (facts.speedsDiffer) return "light does not travel at one speed";
+    if (!LightPaths::helpWith(scene)) return "too many emitters, or none that shines in more than one direction";
+    return {};
+}
+
+} // namespace
+
+PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    PathPlan plan;
+    plan.timeResolved = facts.timeResolved;
+    plan.media = !scene.media.empty();
+    plan.forwardBoundaries = facts.forwardBoundaries;
+    const bool single = std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                                    [](const Emitter& emitter) { return emitter.isDelta(); });
+    plan.firstScatteringInView = {
+        !single, single ? "camera paths meet it with probability zero where it is scattered for the first time"
+                        : "every light shines in more than one direction"};
+    const std::string obstacle = guidanceObstacle(scene, settings, facts);
+    const bool published = settings.policy.sampling.published;
+    plan.guidance = {obstacle.empty(), !obstacle.empty() ? obstacle
+                                                         : std::string(published ? "published " : "") +
+                                                               "DARTS sampling of scattering media"};
+    plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
+                                                                        : "off by default in time-resolved renders"};
+    plan.chooseLightPaths(scene, settings, facts);
+    return plan;
+}
+
+void PathPlan::chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    const std::string obstacle = lightVertexObstacle(*this, scene, settings, facts);
+    lightVertices = {obstacle.empty(),
+                     obstacle.empty() ? "paths connect to surface points that light reaches first" : obstacle};
+    reflectedLight.on = lightVertices.on && LightPaths::reflectedIn(scene);
+    reflectedLight.reason = !lightVertices.on   ? obstacle
+                            : reflectedLight.on ? "paths connect to where glossy surfaces throw light"
+                                                : "no glossy surface";
+}
+
+void PathPlan::describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const {
+    const auto add = [&](const std::string& name, const Choice& choice) {
+        plan.describe(name, choice.on, choice.reason);
+    };
+    if (!firstScatteringInView.on) add("light of a single direction in view", firstScatteringInView);
+    if (!guidance.on) add("Russian roulette", roulette);
+    add("guided paths", guidance);
+    if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);
+    add("light vertices", lightVertices);
+    add("reflected light", reflectedLight);
+}
+
+} // namespace tungsten::path

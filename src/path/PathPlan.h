@@ -1,0 +1,32 @@
+#pragma once
+// What a path tracer does for a scene, and why: decided once, read by --explain, preparation and passes.
+
+#include "path/PathSettings.h"
+
+#include "tungsten/render/EffectPlan.h"
+
+namespace tungsten::path {
+
+using transport::Choice;
+
+struct PathPlan {
+    /// `facts`: what the scene calls for (analyseScene). Builds nothing.
+    static PathPlan of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
+    /// Adds every choice to the plan's effects.
+    void describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const;
+
+    Choice firstScatteringInView; ///< of light of a single direction, which no camera path finds
+    Choice roulette;              ///< of plain paths, by throughput
+    Choice guidance;              ///< walks aim at emitters inside the gate
+    Choice lightVertices;         ///< walks connect to surface points that light reaches first
+    Choice reflectedLight;        ///< and to where glossy surfaces throw light
+
+    bool timeResolved = false;
+    bool media = false;             ///< any: absorption alone needs free flights too, they carry the transmittance
+    bool forwardBoundaries = false; ///< connections must look through index-matched surfaces
+
+  private:
+    void chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
+};
+
+} // namespace tungsten::path
