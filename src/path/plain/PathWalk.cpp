@@ -2,6 +2,8 @@
 
 #include "path/techniques/Connection.h"
 
+#include "transport/Balance.h"
+
 namespace tungsten::path {
 
 namespace {
@@ -141,7 +143,7 @@ void PathWalk<TimeResolved, Media>::addEmission(const SurfaceHit& hit) {
     float weight = 1.0f;
     if (weighted_) {
         const float lightPdf = pdfDirect(emitter, vertex_, hit.position, hit.ng) * lights_.probability(index);
-        weight = powerHeuristic(directionPdf_, lightPdf);
+        weight = transport::powerHeuristic(directionPdf_, lightPdf);
     }
     path_.sink.add(path_.throughput * radiance * weight, path_.time + emitter.emissionTime);
 }
@@ -155,8 +157,8 @@ void PathWalk<TimeResolved, Media>::addEnvironment() {
     const Emitter& emitter = scene_.emitters[size_t(index)];
     float weight = 1.0f;
     if (weighted_)
-        weight =
-            powerHeuristic(directionPdf_, pdfDirectInfinite(emitter, path_.ray.direction) * lights_.probability(index));
+        weight = transport::powerHeuristic(directionPdf_, pdfDirectInfinite(emitter, path_.ray.direction) *
+                                                              lights_.probability(index));
     path_.sink.add(path_.throughput * environmentRadiance(emitter, path_.ray.direction) * weight, Infinity);
 }
 
@@ -201,7 +203,7 @@ void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, cons
     if (isBlack(visibility.transmittance) || !rendered(path_.interactions + visibility.crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
     const float pdf = light.direct.pdf;
-    const float weight = pdf > 0.0f ? powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
+    const float weight = pdf > 0.0f ? transport::powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
     const Rgb radiance =
         path_.throughput * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
     path_.sink.add(radiance, path_.time + visibility.time + light.emitter.emissionTime);
