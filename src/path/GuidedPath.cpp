@@ -1,25 +1,8 @@
 #include "path/GuidedPath.h"
 
-#include "path/techniques/Connection.h"
 #include "path/techniques/ReflectedLight.h"
 
 namespace tungsten::path {
-
-Straight GuidedPath::straightFrom(const Vec3f& position) const {
-    const Vec3f offset = target->point.position - position;
-    const float distance = offset.length();
-    return {distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f), distance};
-}
-
-Ray GuidedPath::toTarget(Ray ray, const Straight& way) const {
-    ray.tMax = target->point.margin().before(way.direction, way.distance);
-    return ray;
-}
-
-Visibility GuidedPath::traceToTarget(const Ray& ray, const Straight& way, const Region& region) {
-    return traceConnection(scene(), context.forwardBoundaries, toTarget(ray, way), way.distance, region,
-                           state.counters.shadowRays);
-}
 
 Ray GuidedPath::leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const {
     Ray ray = surface ? surface->hit.leave(direction) : Ray{state.ray.origin, direction};
@@ -42,14 +25,6 @@ LengthsInGate GuidedPath::lengthsInGate() const {
     const TimeGate& gate = context.sensor.gate;
     const double speed = double(state.region.speed), elapsed = state.time + target->start;
     return {float(speed * (gate.start - elapsed)), float(speed * (gate.end() - elapsed))};
-}
-
-bool GuidedPath::counts(int interactions, int mediumScatters) const {
-    const int total = state.interactions + interactions + target->interactions;
-    if (total < scene().transport.minBounces || total >= scene().transport.maxBounces) return false;
-    const int inMedia = state.mediumScatters + mediumScatters + target->mediumScatters;
-    if (inMedia == 0) return context.settings.includeSurfaces;
-    return context.settings.lowOrderScattering || inMedia > 1;
 }
 
 const darts::Guide* GuidedPath::guideFor(const SurfaceInteraction& surface, const Vec3f& back) const {

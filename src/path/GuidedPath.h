@@ -5,6 +5,7 @@
 #include "path/ArrivalBound.h"
 #include "path/CameraPath.h"
 #include "path/PathTarget.h"
+#include "path/techniques/Connection.h"
 
 #include "transport/GuidedStep.h"
 
@@ -77,11 +78,17 @@ struct GuidedPath {
     [[nodiscard]] const Scene& scene() const { return context.scene; }
     [[nodiscard]] float next() { return state.sampler.next1D(); }
 
-    [[nodiscard]] Straight straightFrom(const Vec3f& position) const;
-    /// The part of a ray to the target on which something may be in the way.
-    [[nodiscard]] Ray toTarget(Ray ray, const Straight& way) const;
-    /// Along it, from `region`.
-    [[nodiscard]] Visibility traceToTarget(const Ray& ray, const Straight& way, const Region& region);
+    [[nodiscard]] Straight straightFrom(const Vec3f& position) const {
+        const Vec3f offset = target->point.position - position;
+        const float distance = offset.length();
+        return {distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f), distance};
+    }
+    /// Along a ray from `region`, on the part on which something may be in the way.
+    [[nodiscard]] Visibility traceToTarget(Ray ray, const Straight& way, const Region& region) {
+        ray.tMax = target->point.margin().before(way.direction, way.distance);
+        return traceConnection(context.scene, context.forwardBoundaries, ray, way.distance, region,
+                               state.counters.shadowRays);
+    }
     /// From the ray's origin, on `surface` if there is one, up to `reach`.
     [[nodiscard]] Ray leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const;
     /// At the ray's origin: on `surface`, or in the medium if there is none.
@@ -93,7 +100,14 @@ struct GuidedPath {
     /// Of what arrives at the ray's origin inside the gate, from the target.
     [[nodiscard]] LengthsInGate lengthsInGate() const;
     /// Whether a path with this many further interactions and medium scatters counts.
-    [[nodiscard]] bool counts(int interactions, int mediumScatters) const;
+    [[nodiscard]] bool counts(int interactions, int mediumScatters) const {
+        const TransportSettings& transport = context.scene.transport;
+        const int total = state.interactions + interactions + target->interactions;
+        if (total < transport.minBounces || total >= transport.maxBounces) return false;
+        const int inMedia = state.mediumScatters + mediumScatters + target->mediumScatters;
+        if (inMedia == 0) return context.settings.includeSurfaces;
+        return context.settings.lowOrderScattering || inMedia > 1;
+    }
     [[nodiscard]] bool mayFly(const Medium* medium) const { return !medium || state.flights < medium->maxBounces; }
 
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {

@@ -1,24 +1,6 @@
 #include "transport/GuidedStep.h"
 
-#include "tungsten/core/Types.h"
-
 namespace tungsten::transport {
-
-void GuidedStep::look(const darts::Residual& residual) {
-    looked_ = Looked::Out;
-    residual_ = residual;
-    reachable_ = residual;
-    surplus_ = 0.0f;
-}
-
-void GuidedStep::lookAhead(const darts::Residual& residual, float surplus) {
-    looked_ = Looked::Ahead;
-    residual_ = residual;
-    reachable_ = residual;
-    reachable_.excess += surplus;
-    reachable_.width += surplus;
-    surplus_ = surplus;
-}
 
 void GuidedStep::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
                          uint64_t& rays) {
@@ -43,32 +25,6 @@ float GuidedStep::survival(const darts::Guide& guide, int medium, float throughp
         return guide.survival(useful, first_->usefulness);
     first_ = First{useful, medium, reachable_.way};
     return 1.0f;
-}
-
-std::optional<GuidedStep::OnWay> GuidedStep::onWay(const Way& way, const darts::ConnectionSample& connection,
-                                                   float surface) const {
-    const auto vertex = way.guide.controlVertex(residual_, connection, way.h, surface);
-    if (!vertex) return std::nullopt;
-    return OnWay{*vertex, residual_.shortest + double(connection.excess - residual_.low), way.elapsed};
-}
-
-void GuidedStep::place(const Way& way) {
-    if (!std::holds_alternative<darts::ConnectionSample>(connection_)) return;
-    const auto placed = onWay(way, std::get<darts::ConnectionSample>(connection_), Infinity);
-    if (way.shares) shared_ = Shared{&way.guide, residual_, way.h, 0.0f};
-    if (placed)
-        connection_ = *placed;
-    else
-        connection_ = Over{};
-}
-
-std::optional<GuidedStep::OnWay> GuidedStep::takeControlVertex(float surface) {
-    if (!std::holds_alternative<OnWay>(connection_)) return std::nullopt;
-    const OnWay ahead = std::get<OnWay>(connection_);
-    if (!(ahead.vertex.distance < surface)) return std::nullopt;
-    connection_ = Over{};
-    if (!(ahead.vertex.distance >= 0.0f)) return std::nullopt;
-    return ahead;
 }
 
 void GuidedStep::passBoundary(float distance) {

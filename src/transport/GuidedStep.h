@@ -29,11 +29,22 @@ class GuidedStep {
     };
 
     // Look. Whatever the walk may find besides its target may arrive later by `surplus`, a length.
-    void lookAhead(const darts::Residual& residual, float surplus);
+    void lookAhead(const darts::Residual& residual, float surplus) {
+        look(residual);
+        looked_ = Looked::Ahead;
+        reachable_.excess += surplus;
+        reachable_.width += surplus;
+        surplus_ = surplus;
+    }
     /// How light gets to the target, too. Adds the rays traced to `rays`.
     void lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim, uint64_t& rays);
     /// Both at once, when the walk knows.
-    void look(const darts::Residual& residual);
+    void look(const darts::Residual& residual) {
+        looked_ = Looked::Out;
+        residual_ = residual;
+        reachable_ = residual;
+        surplus_ = 0.0f;
+    }
     /// The vertex is left behind.
     void leave() {
         looked_ = Looked::Nowhere;
@@ -82,7 +93,15 @@ class GuidedStep {
         bool shares;    ///< ordinary vertices share with control vertices: controlVertexPdf() will be asked for
     };
     /// Of a connection drawn before: its control vertex now lies on the way.
-    void place(const Way& way);
+    void place(const Way& way) {
+        if (!std::holds_alternative<darts::ConnectionSample>(connection_)) return;
+        const auto placed = onWay(way, std::get<darts::ConnectionSample>(connection_), Infinity);
+        if (way.shares) shared_ = Shared{&way.guide, residual_, way.h, 0.0f};
+        if (placed)
+            connection_ = *placed;
+        else
+            connection_ = Over{};
+    }
     /// Beyond a boundary that light passes straight at its speed, at this distance.
     void passBoundary(float distance);
 
@@ -147,9 +166,20 @@ class GuidedStep {
         if (way.shares) shared_ = Shared{&way.guide, before, way.h, 0.0f};
         return onWay(way, connection, surface);
     }
-    std::optional<OnWay> takeControlVertex(float surface);
+    std::optional<OnWay> takeControlVertex(float surface) {
+        if (!std::holds_alternative<OnWay>(connection_)) return std::nullopt;
+        const OnWay ahead = std::get<OnWay>(connection_);
+        if (!(ahead.vertex.distance < surface)) return std::nullopt;
+        connection_ = Over{};
+        if (!(ahead.vertex.distance >= 0.0f)) return std::nullopt;
+        return ahead;
+    }
     [[nodiscard]] std::optional<OnWay> onWay(const Way& way, const darts::ConnectionSample& connection,
-                                             float surface) const;
+                                             float surface) const {
+        const auto vertex = way.guide.controlVertex(residual_, connection, way.h, surface);
+        if (!vertex) return std::nullopt;
+        return OnWay{*vertex, residual_.shortest + double(connection.excess - residual_.low), way.elapsed};
+    }
 
     Looked looked_ = Looked::Nowhere;
     darts::Residual residual_, reachable_; ///< at the vertex looked from
