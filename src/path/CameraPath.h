@@ -8,27 +8,30 @@
 
 namespace tungsten::path {
 
-class CameraPath {
-  protected:
-    CameraPath(const Scene& scene, PixelSink& sink, PathCounters& counters, Sampler sampler)
-        : scene_(scene), sink_(sink), counters_(counters), sampler_(sampler) {}
+struct CameraPath {
+    CameraPath(const Scene& wholeScene, PixelSink& ownSink, PathCounters& ownCounters, const Sampler& ownSampler)
+        : scene(wholeScene), sink(ownSink), counters(ownCounters), sampler(ownSampler) {}
 
     /// Camera segments count, or are over.
-    [[nodiscard]] bool timed() const { return scattered_ || !scene_.transport.cameraUnwarped; }
+    [[nodiscard]] bool timed() const { return scattered || !scene.transport.cameraUnwarped; }
+    /// The time at the end of a straight way of this length.
+    [[nodiscard]] double timeAfter(float length) const {
+        return timed() ? time + double(length) / double(region.speed) : time;
+    }
 
-    const Scene& scene_;
-    PixelSink& sink_;
-    PathCounters& counters_;
-    Sampler sampler_;
+    const Scene& scene;
+    PixelSink& sink;
+    PathCounters& counters;
+    Sampler sampler;
 
-    Ray ray_;
-    Region region_;
-    Rgb throughput_{1.0f};
-    double time_ = 0.0; ///< from the sensor so far
-    int interactions_ = 0;
-    int flights_ = 0; ///< distances sampled in media since the last surface
-    int mediumScatters_ = 0;
-    bool scattered_ = false; ///< a smooth vertex exists: the camera side of the path is over
+    Ray ray;
+    Region region;
+    Rgb throughput{1.0f};
+    double time = 0.0; ///< from the sensor so far
+    int interactions = 0;
+    int flights = 0; ///< distances sampled in media since the last surface
+    int mediumScatters = 0;
+    bool scattered = false; ///< a smooth vertex exists: the camera side of the path is over
 };
 
 } // namespace tungsten::path

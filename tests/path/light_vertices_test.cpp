@@ -1,6 +1,6 @@
 // Light vertices and shell chords: what they sample, against quadrature and their own densities.
 
-#include "path/guided/ShellChord.h"
+#include "path/techniques/ShellChord.h"
 #include "path/techniques/LightVertices.h"
 
 #include "support/ChiSquare.h"

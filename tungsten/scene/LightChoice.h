@@ -1,17 +1,11 @@
 #pragma once
-// Which emitter a vertex connects to, and how to weigh that against finding the emitter by chance.
+// Which emitter a vertex connects to.
 
 #include "tungsten/scene/Scene.h"
 
 #include <optional>
 
 namespace tungsten {
-
-/// Power heuristic with exponent 2 (Veach 1997).
-inline float powerHeuristic(float a, float b) {
-    const float aa = a * a, bb = b * b;
-    return aa + bb > 0.0f ? aa / (aa + bb) : 0.0f;
-}
 
 /// Emitters that can be connected to, chosen half by power and half uniformly.
 class LightChoice {

@@ -1,6 +1,10 @@
 // The walk's vertices: directions drawn for the connections that follow.
 
 #include "path/guided/GuidedPathWalk.h"
+#include "path/techniques/ControlVertices.h"
+#include "path/techniques/EmitterConnections.h"
+#include "path/techniques/LightVertexConnections.h"
+#include "path/techniques/ReflectedConnections.h"
 
 namespace tungsten::path {
 
@@ -24,62 +28,71 @@ struct SurfaceScatterer {
 
 } // namespace
 
-darts::ConnectionSample GuidedPathWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
-    return guide.sampleConnection(residual, next(),
-                                  {context_.sensor.response, time_ + target_->start, double(region_.speed)});
-}
-
-double GuidedPathWalk::arrivalOf(const darts::ConnectionSample& connection) const {
-    const double length = residual_.shortest + double(connection.excess - residual_.low);
-    return time_ + length / double(region_.speed) + target_->start;
-}
-
 template <typename Scatterer>
 darts::DirectionSample GuidedPathWalk::sampleDirection(const darts::Guide& guide, const Scatterer& scatterer) {
-    const bool lengthFirst = guide.settings().lengthFirst;
-    const darts::ConnectionSample connection =
-        lengthFirst ? drawConnection(guide, residual_) : darts::ConnectionSample{};
+    transport::GuidedStep& step = path_.step;
+    const bool lengthFirst = guide.settings().lengthFirst, elliptical = guide.settings().elliptical;
+    if (lengthFirst) step.connect(path_.drawConnection(guide, step.residual()));
     const darts::DirectionSample sample =
-        guide.sampleDirection(residual_, connection, scatterer, darts::NoView{}, [this] { return next(); });
-    if (lengthFirst && elliptical(guide)) {
-        connectionDrawn_ = true;
-        if (sharesConnections()) drawn_ = {&guide, residual_, sample.h, 0.0f};
-        const auto vertex = guide.controlVertex(residual_, connection, sample.h, Infinity);
-        if (vertex) pending_ = Pending{*vertex, arrivalOf(connection)};
-    }
+        step.sampleDirection(guide, scatterer, darts::NoView{}, [this] { return path_.next(); });
+    if (lengthFirst && elliptical)
+        step.place({guide, sample.h, path_.state.time, path_.sharesConnections()});
+    else
+        step.startWay();
     return sample;
 }
 
 template <typename GoOn>
 void GuidedPathWalk::split(const darts::Guide& guide, GoOn&& goOn) {
-    const int copies = splits_.copies(guide.splits(reachable_));
-    throughput_ = throughput_ / float(copies);
+    const int copies = path_.step.copies(guide);
+    path_.state.throughput = path_.state.throughput / float(copies);
     for (int i = 1; i < copies; ++i) {
         GuidedPathWalk copy(*this);
         goOn(copy);
-        sampler_ = copy.sampler_;
+        path_.state.sampler = copy.path_.state.sampler;
     }
 }
 
+void GuidedPathWalk::arrive(float pdf, const Vec3f& normal) {
+    path_.arrival.reset();
+    if (path_.last.triedReflectedLight() && pdf > 0.0f) path_.arrival = Arrival{pdf, normal};
+    path_.last.tried = LastVertex::Tried::Nothing;
+}
+
+void GuidedPathWalk::connectToLightPaths(const SurfaceInteraction* surface) {
+    const Medium* medium = scene_.medium(path_.state.region);
+    const LightPaths& lightPaths = context_.lightPaths;
+    const LightVertexCache* vertices = lightPaths.vertices(path_.target->index);
+    if (!vertices || !path_.mayFly(medium)) return;
+    path_.last.tried = LastVertex::Tried::LightVertices;
+    LightVertexConnections::connect(path_, surface, *vertices);
+    // Wherever reflected light ends, light vertices would be tried.
+    const ReflectedLightCache* reflected = lightPaths.reflected(path_.target->index);
+    if (!reflected || !medium || path_.state.flights + 1 >= medium->maxBounces) return;
+    path_.last.tried = LastVertex::Tried::ReflectedLightToo;
+    ReflectedConnections::connect(path_, surface, *reflected);
+}
+
 bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
-    ++counters_.mediumEvents;
-    time_ = timeAfter(distance);
-    ++interactions_;
-    ++mediumScatters_;
-    scattered_ = true;
-    last_ = Last::Medium;
-    const Vec3f before = ray_.direction;
-    const float controlShare = elliptical(guideOf(region_)) ? shareOfControlVertex(medium, distance) : 0.0f;
-    ray_ = Ray{ray_.at(distance), before};
-    arrivalPdf_ = reflectedTried_ ? scatteringPdf_ * context_.lightPaths.flights().pdf(distance) / sqr(distance) : 0.0f;
-    arrivalNormal_ = Vec3f(0.0f);
-    reflectedTried_ = false;
-    lookAhead(ray_.origin);
-    if (!reachable_.alive()) return false;
-    lookOut({ray_.origin});
-    connectFromMedium(medium, controlShare);
-    const darts::Guide& guide = guideOf(region_);
-    if (interactions_ + 1 >= scene_.transport.maxBounces || !roulette(guide)) return false;
+    CameraPath& state = path_.state;
+    ++state.counters.mediumEvents;
+    state.time = state.timeAfter(distance);
+    ++state.interactions;
+    ++state.mediumScatters;
+    state.scattered = true;
+    path_.last.kind = LastVertex::Kind::Medium;
+    const Vec3f before = state.ray.direction;
+    const bool elliptical = path_.guideOf(state.region).settings().elliptical;
+    const float controlShare = elliptical ? ControlVertices::share(path_, medium, distance) : 0.0f;
+    state.ray = Ray{state.ray.at(distance), before};
+    const float flight = path_.last.triedReflectedLight() ? context_.lightPaths.flights().pdf(distance) : 0.0f;
+    arrive(path_.last.pdf * flight / sqr(distance), Vec3f(0.0f));
+    lookAhead(state.ray.origin);
+    if (!path_.step.reachable().alive()) return false;
+    lookOut({state.ray.origin});
+    MediumConnections::connect(path_, medium, controlShare);
+    const darts::Guide& guide = path_.guideOf(state.region);
+    if (state.interactions + 1 >= scene_.transport.maxBounces || !survives(guide)) return false;
     split(guide, [&](GuidedPathWalk& copy) {
         if (copy.leaveInMedium(medium, before)) copy.goOn();
     });
@@ -87,106 +100,93 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
 }
 
 bool GuidedPathWalk::leaveInMedium(const Medium& medium, const Vec3f& before) {
-    const darts::Guide& guide = guideOf(region_);
-    forgetConnection();
+    CameraPath& state = path_.state;
+    const darts::Guide& guide = path_.guideOf(state.region);
+    path_.step.startWay();
     connectToLightPaths(nullptr);
-    if (!residual_.alive() || guide.settings().direction == darts::Direction::Phase) {
-        ray_.direction = medium.phase.sample(before, sampler_.next2D());
-        scatteringPdf_ = medium.phase.pdf(before, ray_.direction);
+    if (!path_.step.residual().alive() || guide.settings().direction == darts::Direction::Phase) {
+        state.ray.direction = medium.phase.sample(before, state.sampler.next2D());
+        path_.last.pdf = medium.phase.pdf(before, state.ray.direction);
         return true;
     }
     const darts::DirectionSample sample = sampleDirection(guide, darts::PhaseScatterer{medium.phase, before});
-    ray_.direction = darts::to<Vec3f>(sample.direction);
-    scatteringPdf_ = medium.phase.eval(before, ray_.direction);
-    throughput_ = throughput_ * (scatteringPdf_ * sample.inversePdf);
-    return !isBlack(throughput_);
+    state.ray.direction = darts::to<Vec3f>(sample.direction);
+    path_.last.pdf = medium.phase.eval(before, state.ray.direction);
+    state.throughput = state.throughput * (path_.last.pdf * sample.inversePdf);
+    return !isBlack(state.throughput);
 }
 
 bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
-    ++counters_.surfaceEvents;
-    time_ = timeAfter(hit.t);
-    flights_ = 0;
-    if (timed()) {
+    CameraPath& state = path_.state;
+    ++state.counters.surfaceEvents;
+    state.time = state.timeAfter(hit.t);
+    state.flights = 0;
+    if (state.timed()) {
         lookAhead(hit.position);
-        if (!reachable_.alive()) return false;
+        if (!path_.step.reachable().alive()) return false;
     }
-    if (++interactions_ >= scene_.transport.maxBounces) return false;
+    if (++state.interactions >= scene_.transport.maxBounces) return false;
     // The format ends such a path at any surface, index-matched ones included.
-    if (mediumScatters_ == 1 && !context_.settings.lowOrderScattering) return false;
-    lightVertexTried_ = false;
-    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
-    const darts::Guide* guide = guideFor(surface, -ray_.direction);
-    const float cosine = ray_.direction.dot(hit.ng);
-    arrivalPdf_ = reflectedTried_ && guide ? scatteringPdf_ * std::abs(cosine) / sqr(hit.t) : 0.0f;
-    arrivalNormal_ = cosine < 0.0f ? hit.ng : -hit.ng;
-    reflectedTried_ = false;
+    if (state.mediumScatters == 1 && !context_.settings.lowOrderScattering) return false;
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, state.ray.direction);
+    const darts::Guide* guide = path_.guideFor(surface, -state.ray.direction);
+    arrive(guide ? SurfaceConnections::density(path_, hit) : 0.0f,
+           state.ray.direction.dot(hit.ng) < 0.0f ? hit.ng : -hit.ng);
     return guide ? leaveGuided(surface, *guide) : leavePlainly(surface);
 }
 
-/// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere. `back` is the
-/// way there, turned round.
-const darts::Guide* GuidedPathWalk::guideFor(const SurfaceInteraction& surface, const Vec3f& back) const {
-    if (!endsReflectedLight(*surface.bsdf)) return nullptr;
-    const Region region = regionBeyond(surface, back, region_);
-    const Medium* medium = scene_.medium(region);
-    if (!medium || !medium->scatters()) return nullptr;
-    const bool diffuse = (surface.bsdf->lobes() & lobe::DiffuseReflection) != 0;
-    const auto& guides = diffuse ? context_.guides.surfaces : context_.guides.glossy;
-    const darts::Guide& guide = guides[size_t(region.medium)];
-    return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
-}
-
 bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide) {
-    scattered_ = true;
-    region_ = regionBeyond(surface, -ray_.direction, region_);
+    CameraPath& state = path_.state;
+    state.scattered = true;
+    state.region = regionBeyond(surface, -state.ray.direction, state.region);
     lookAhead(surface.hit.position);
-    last_ = Last::Surface;
-    vertex_ = surface.hit.position;
-    ray_ = Ray{vertex_, ray_.direction};
-    if (residual_.alive()) {
-        lookOut({vertex_, surface.hit.margin()});
-        if (!roulette(guide)) return false;
+    path_.last.kind = LastVertex::Kind::Surface;
+    path_.last.position = surface.hit.position;
+    state.ray = Ray{surface.hit.position, state.ray.direction};
+    if (path_.step.residual().alive()) {
+        lookOut({surface.hit.position, surface.hit.margin()});
+        if (!survives(guide)) return false;
     }
     connectToLightPaths(&surface);
-    if (!residual_.alive()) return leavePlainly(surface);
-    forgetConnection();
-    const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, sampler_});
-    ray_ = surface.hit.leave(darts::to<Vec3f>(sample.direction));
-    const Scattering scattering = scatteringTowards(ray_.direction, &surface);
-    throughput_ = throughput_ * scattering.value * sample.inversePdf;
-    scatteringPdf_ = scattering.pdf;
-    return !isBlack(throughput_);
+    if (!path_.step.residual().alive()) return leavePlainly(surface);
+    path_.step.startWay();
+    const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, state.sampler});
+    state.ray = surface.hit.leave(darts::to<Vec3f>(sample.direction));
+    const Scattering scattering = path_.scatteringTowards(state.ray.direction, &surface);
+    state.throughput = state.throughput * scattering.value * sample.inversePdf;
+    path_.last.pdf = scattering.pdf;
+    return !isBlack(state.throughput);
 }
 
 bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
+    CameraPath& state = path_.state;
     const auto exit =
-        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, sampler_);
+        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, state.sampler);
     if (!exit) return false;
-    throughput_ = throughput_ * exit->weight;
-    if (isBlack(throughput_)) return false;
+    state.throughput = state.throughput * exit->weight;
+    if (isBlack(state.throughput)) return false;
     if ((exit->lobe & lobe::Smooth) != 0) {
-        scattered_ = true;
-        last_ = Last::Surface;
-        scatteringPdf_ = exit->pdf;
-        vertex_ = surface.hit.position;
+        state.scattered = true;
+        path_.last.kind = LastVertex::Kind::Surface;
+        path_.last.pdf = exit->pdf;
+        path_.last.position = surface.hit.position;
     } else if (!exit->straight()) {
-        last_ = Last::Specular;
+        path_.last.kind = LastVertex::Kind::Specular;
     }
     passBoundary(surface, exit->direction, exit->straight());
-    ray_ = surface.hit.leave(exit->direction);
-    if (timed()) lookAhead(ray_.origin);
+    state.ray = surface.hit.leave(exit->direction);
+    if (state.timed()) lookAhead(state.ray.origin);
     return true;
 }
 
 /// Into the region ahead. A connection drawn before goes on through a boundary that light passes straight at its speed.
 void GuidedPathWalk::passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight) {
-    const float speed = region_.speed;
-    region_ = regionBeyond(surface, direction, region_);
-    if (!straight || region_.speed != speed)
-        forgetConnection();
-    else if (pending_)
-        pending_->vertex.distance -= surface.hit.t;
-    drawn_.behind += surface.hit.t;
+    const float speed = path_.state.region.speed;
+    path_.state.region = regionBeyond(surface, direction, path_.state.region);
+    if (straight && path_.state.region.speed == speed)
+        path_.step.passBoundary(surface.hit.t);
+    else
+        path_.step.startWay();
 }
 
 } // namespace tungsten::path

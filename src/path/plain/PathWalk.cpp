@@ -2,6 +2,8 @@
 
 #include "path/techniques/Connection.h"
 
+#include "transport/Balance.h"
+
 namespace tungsten::path {
 
 namespace {
@@ -13,41 +15,41 @@ constexpr int RouletteFirstVertex = 3;
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::run(Ray ray) {
-    ray_ = ray;
-    region_ = scene_.cameraRegion;
-    ++counters_.paths;
-    while (interactions_ < scene_.transport.maxBounces) {
+    path_.ray = ray;
+    path_.region = scene_.cameraRegion;
+    ++path_.counters.paths;
+    while (path_.interactions < scene_.transport.maxBounces) {
         if constexpr (Media) {
-            if (const Medium* medium = scene_.medium(region_)) {
+            if (const Medium* medium = scene_.medium(path_.region)) {
                 if (!crossMedium(*medium)) return;
                 continue;
             }
         }
-        ++counters_.rays;
-        if (!arriveAt(scene_.geometry->intersect(ray_))) return;
+        ++path_.counters.rays;
+        if (!arriveAt(scene_.geometry->intersect(path_.ray))) return;
     }
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::crossMedium(const Medium& medium) {
-    if (medium.scatters() && ++flights_ > medium.maxBounces) return false;
+    if (medium.scatters() && ++path_.flights > medium.maxBounces) return false;
     // The free flight comes first: the ray need not look beyond its collision.
-    const FlightSample flight = sampleFlight(medium, Infinity, sampler_);
-    ray_.tMax = flight.distance;
-    ++counters_.rays;
-    const auto hit = scene_.geometry->intersect(ray_);
+    const FlightSample flight = sampleFlight(medium, Infinity, path_.sampler);
+    path_.ray.tMax = flight.distance;
+    ++path_.counters.rays;
+    const auto hit = scene_.geometry->intersect(path_.ray);
     if (!hit && !flight.exited) {
-        throughput_ = throughput_ * flight.weight;
+        path_.throughput = path_.throughput * flight.weight;
         return scatterInMedium(medium, flight.distance);
     }
     const float reach = hit ? hit->t : Infinity;
-    throughput_ = throughput_ * (medium.transmittance(reach) / probabilityFlightExits(medium, reach));
+    path_.throughput = path_.throughput * (medium.transmittance(reach) / probabilityFlightExits(medium, reach));
     return arriveAt(hit);
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::arriveAt(const std::optional<SurfaceHit>& hit) {
-    if (hit) return !isBlack(throughput_) && scatterOnSurface(*hit);
+    if (hit) return !isBlack(path_.throughput) && scatterOnSurface(*hit);
     addEnvironment();
     return false;
 }
@@ -55,80 +57,80 @@ bool PathWalk<TimeResolved, Media>::arriveAt(const std::optional<SurfaceHit>& hi
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::advanceClock(float length) {
     if constexpr (TimeResolved)
-        if (timed()) time_ += double(length) / double(region_.speed);
+        if (path_.timed()) path_.time += double(length) / double(path_.region.speed);
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
     // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
     if constexpr (TimeResolved)
-        if (timed()) {
-            if (arrival_.mayArrive(position, time_)) return false;
+        if (path_.timed()) {
+            if (arrival_.mayArrive(position, path_.time)) return false;
             return !source_ ||
-                   !arrival_.beforeEnd(time_, (source_->point.position - position).length(), source_->start);
+                   !arrival_.beforeEnd(path_.time, (source_->point.position - position).length(), source_->start);
         }
     return false;
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::continueRoulette() {
-    if (!settings_.russianRoulette || interactions_ < RouletteFirstVertex) return true;
-    const float survival = maxComponent(throughput_);
+    if (!settings_.russianRoulette || path_.interactions < RouletteFirstVertex) return true;
+    const float survival = maxComponent(path_.throughput);
     if (survival >= RouletteThreshold) return true;
-    if (sampler_.next1D() >= survival) return false;
-    throughput_ = throughput_ / survival;
+    if (path_.sampler.next1D() >= survival) return false;
+    path_.throughput = path_.throughput / survival;
     return true;
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float distance) {
-    ++counters_.mediumEvents;
+    ++path_.counters.mediumEvents;
     advanceClock(distance);
-    ++interactions_;
-    ++mediumScatters_;
-    scattered_ = true;
-    vertex_ = ray_.at(distance);
-    if (tooLate(vertex_) || interactions_ >= scene_.transport.maxBounces) return false;
-    const Vec3f before = ray_.direction;
+    ++path_.interactions;
+    ++path_.mediumScatters;
+    path_.scattered = true;
+    vertex_ = path_.ray.at(distance);
+    if (tooLate(vertex_) || path_.interactions >= scene_.transport.maxBounces) return false;
+    const Vec3f before = path_.ray.direction;
     if (settings_.volumeLightSampling && orderCounts()) connectFromMedium(medium);
     if (settings_.volumeLightSampling && source_) connectMediumToSource(medium);
-    ray_ = Ray{vertex_, medium.phase.sample(before, sampler_.next2D())};
-    directionPdf_ = medium.phase.pdf(before, ray_.direction);
+    path_.ray = Ray{vertex_, medium.phase.sample(before, path_.sampler.next2D())};
+    directionPdf_ = medium.phase.pdf(before, path_.ray.direction);
     weighted_ = settings_.volumeLightSampling;
     return continueRoulette();
 }
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
-    ++counters_.surfaceEvents;
+    ++path_.counters.surfaceEvents;
     advanceClock(hit.t);
-    flights_ = 0;
+    path_.flights = 0;
     if (tooLate(hit.position)) return false;
     if (hit.shape < scene_.primitives.size() && scene_.primitives[hit.shape].emitter >= 0) addEmission(hit);
-    if (++interactions_ >= scene_.transport.maxBounces) return false;
+    if (++path_.interactions >= scene_.transport.maxBounces) return false;
     // The format ends such a path at any surface, index-matched ones included.
-    if (mediumScatters_ == 1 && !settings_.lowOrderScattering) return false;
+    if (path_.mediumScatters == 1 && !settings_.lowOrderScattering) return false;
 
-    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, path_.ray.direction);
     const LobeMask lobes = surface.bsdf->lobes();
     const bool smooth = (lobes & lobe::Smooth) != 0;
     if (smooth && settings_.lightSampling && orderCounts()) connectFromSurface(surface);
     if (smooth && settings_.lightSampling && source_) connectSurfaceToSource(surface);
     const auto exit =
-        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, sampler_);
+        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, path_.sampler);
     if (!exit) return false;
-    throughput_ = throughput_ * exit->weight;
-    if (isBlack(throughput_)) return false;
+    path_.throughput = path_.throughput * exit->weight;
+    if (isBlack(path_.throughput)) return false;
     if ((exit->lobe & lobe::Smooth) != 0) {
-        scattered_ = true;
+        path_.scattered = true;
         weighted_ = settings_.lightSampling;
         directionPdf_ = exit->pdf;
         vertex_ = hit.position;
     } else if (!exit->straight()) {
         weighted_ = false; // emitters seen in a mirror cannot be connected to
     }
-    region_ = regionBeyond(surface, exit->direction, region_);
-    ray_ = hit.leave(exit->direction);
+    path_.region = regionBeyond(surface, exit->direction, path_.region);
+    path_.ray = hit.leave(exit->direction);
     return continueRoulette();
 }
 
@@ -136,36 +138,39 @@ template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::addEmission(const SurfaceHit& hit) {
     const int index = scene_.primitives[hit.shape].emitter;
     const Emitter& emitter = scene_.emitters[size_t(index)];
-    const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -ray_.direction);
-    if (isBlack(radiance) || !rendered(interactions_) || !orderCounts()) return;
+    const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -path_.ray.direction);
+    if (isBlack(radiance) || !rendered(path_.interactions) || !orderCounts()) return;
     float weight = 1.0f;
     if (weighted_) {
         const float lightPdf = pdfDirect(emitter, vertex_, hit.position, hit.ng) * lights_.probability(index);
-        weight = powerHeuristic(directionPdf_, lightPdf);
+        weight = transport::powerHeuristic(directionPdf_, lightPdf);
     }
-    sink_.add(throughput_ * radiance * weight, time_ + emitter.emissionTime);
+    path_.sink.add(path_.throughput * radiance * weight, path_.time + emitter.emissionTime);
 }
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::addEnvironment() {
-    if (scene_.infiniteEmitters.empty() || scene_.medium(region_) || !rendered(interactions_) || !orderCounts()) return;
+    if (scene_.infiniteEmitters.empty() || scene_.medium(path_.region) || !rendered(path_.interactions) ||
+        !orderCounts())
+        return;
     const int index = scene_.infiniteEmitters.back();
     const Emitter& emitter = scene_.emitters[size_t(index)];
     float weight = 1.0f;
     if (weighted_)
-        weight = powerHeuristic(directionPdf_, pdfDirectInfinite(emitter, ray_.direction) * lights_.probability(index));
-    sink_.add(throughput_ * environmentRadiance(emitter, ray_.direction) * weight, Infinity);
+        weight = transport::powerHeuristic(directionPdf_, pdfDirectInfinite(emitter, path_.ray.direction) *
+                                                              lights_.probability(index));
+    path_.sink.add(path_.throughput * environmentRadiance(emitter, path_.ray.direction) * weight, Infinity);
 }
 
 template <bool TimeResolved, bool Media>
 auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::optional<LightSample> {
-    const auto choice = lights_.sample(sampler_.next1D());
+    const auto choice = lights_.sample(path_.sampler.next1D());
     if (!choice) return std::nullopt;
-    const auto direct = sampleDirect(*choice->emitter, position, sampler_.next2D());
+    const auto direct = sampleDirect(*choice->emitter, position, path_.sampler.next2D());
     if (!direct) return std::nullopt;
-    ++counters_.connections;
+    ++path_.counters.connections;
     if constexpr (TimeResolved)
-        if (!arrival_.mayConnect(time_, direct->distance, choice->emitter->emissionTime)) return std::nullopt;
+        if (!arrival_.mayConnect(path_.time, direct->distance, choice->emitter->emissionTime)) return std::nullopt;
     return LightSample{*choice->emitter, *direct, choice->probability};
 }
 
@@ -173,8 +178,8 @@ template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::connectFromMedium(const Medium& medium) {
     const auto light = sampleLight(vertex_);
     if (!light) return;
-    const float phase = medium.phase.eval(ray_.direction, light->direct.direction);
-    addConnection(*light, Rgb(phase), phase, {vertex_, light->direct.direction}, region_);
+    const float phase = medium.phase.eval(path_.ray.direction, light->direct.direction);
+    addConnection(*light, Rgb(phase), phase, {vertex_, light->direct.direction}, path_.region);
 }
 
 template <bool TimeResolved, bool Media>
@@ -185,7 +190,7 @@ void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction&
     const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi, wo);
     if (isBlack(scattering)) return;
     const float pdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
-    const Region region = regionBeyond(surface, light->direct.direction, region_);
+    const Region region = regionBeyond(surface, light->direct.direction, path_.region);
     addConnection(*light, scattering, pdf, surface.hit.leave(light->direct.direction), region);
 }
 
@@ -194,14 +199,14 @@ void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, cons
                                                   Ray ray, const Region& region) {
     ray.tMax = light.direct.reach();
     const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, light.direct.distance, region, counters_.shadowRays);
-    if (isBlack(visibility.transmittance) || !rendered(interactions_ + visibility.crossings)) return;
+        traceConnection(scene_, forwardBoundaries_, ray, light.direct.distance, region, path_.counters.shadowRays);
+    if (isBlack(visibility.transmittance) || !rendered(path_.interactions + visibility.crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
     const float pdf = light.direct.pdf;
-    const float weight = pdf > 0.0f ? powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
+    const float weight = pdf > 0.0f ? transport::powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
     const Rgb radiance =
-        throughput_ * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
-    sink_.add(radiance, time_ + visibility.time + light.emitter.emissionTime);
+        path_.throughput * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
+    path_.sink.add(radiance, path_.time + visibility.time + light.emitter.emissionTime);
 }
 
 template <bool TimeResolved, bool Media>
@@ -210,7 +215,7 @@ void PathWalk<TimeResolved, Media>::connectMediumToSource(const Medium& medium) 
     const float distance = offset.length();
     if (!(distance > 0.0f)) return;
     const Vec3f direction = offset / distance;
-    addSource(Rgb(medium.phase.eval(ray_.direction, direction)), {vertex_, direction}, distance, region_);
+    addSource(Rgb(medium.phase.eval(path_.ray.direction, direction)), {vertex_, direction}, distance, path_.region);
 }
 
 template <bool TimeResolved, bool Media>
@@ -221,24 +226,24 @@ void PathWalk<TimeResolved, Media>::connectSurfaceToSource(const SurfaceInteract
     if (!(distance > 0.0f) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
     const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
                                               surface.frame.toLocal(direction));
-    const Region region = regionBeyond(surface, direction, region_);
+    const Region region = regionBeyond(surface, direction, path_.region);
     addSource(scattering, surface.hit.leave(direction), distance, region);
 }
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::addSource(const Rgb& scattering, Ray ray, float distance, const Region& region) {
     if (!orderCounts(source_->mediumScatters)) return;
-    ++counters_.connections;
+    ++path_.counters.connections;
     if constexpr (TimeResolved)
-        if (!arrival_.mayConnect(time_, distance, source_->start)) return;
+        if (!arrival_.mayConnect(path_.time, distance, source_->start)) return;
     const Rgb light = scattering * source_->intensity(-ray.direction) / sqr(distance);
     if (isBlack(light)) return;
     ray.tMax = source_->point.margin().before(ray.direction, distance);
     const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, distance, region, counters_.shadowRays);
+        traceConnection(scene_, forwardBoundaries_, ray, distance, region, path_.counters.shadowRays);
     if (isBlack(visibility.transmittance)) return;
-    if (!rendered(interactions_ + visibility.crossings + source_->interactions)) return;
-    sink_.add(throughput_ * light * visibility.transmittance, time_ + visibility.time + source_->start);
+    if (!rendered(path_.interactions + visibility.crossings + source_->interactions)) return;
+    path_.sink.add(path_.throughput * light * visibility.transmittance, path_.time + visibility.time + source_->start);
 }
 
 template class PathWalk<false, false>;

@@ -22,12 +22,13 @@ struct WalkContext {
 /// the virtual point source `source`, if there is one. The two flags choose a specialised loop: `TimeResolved`
 /// off leaves out every clock, `Media` off every free flight.
 template <bool TimeResolved, bool Media>
-class PathWalk : private CameraPath {
+class PathWalk {
   public:
-    PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, Sampler sampler,
+    PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
              const PathTarget* source)
-        : CameraPath(context.scene, sink, counters, sampler), settings_(context.settings), lights_(context.lights),
-          arrival_(context.arrival), forwardBoundaries_(context.forwardBoundaries), source_(source) {}
+        : path_(context.scene, sink, counters, sampler), scene_(context.scene), settings_(context.settings),
+          lights_(context.lights), arrival_(context.arrival), forwardBoundaries_(context.forwardBoundaries),
+          source_(source) {}
 
     void run(Ray ray);
 
@@ -67,10 +68,12 @@ class PathWalk : private CameraPath {
     }
     /// Whether light found at the end of the current segment counts (low_order_scattering, include_surfaces).
     [[nodiscard]] bool orderCounts(int further = 0) const {
-        if (mediumScatters_ + further == 0) return settings_.includeSurfaces;
-        return settings_.lowOrderScattering || mediumScatters_ + further > 1;
+        if (path_.mediumScatters + further == 0) return settings_.includeSurfaces;
+        return settings_.lowOrderScattering || path_.mediumScatters + further > 1;
     }
 
+    CameraPath path_;
+    const Scene& scene_;
     const PathSettings& settings_;
     const LightChoice& lights_;
     const ArrivalBound& arrival_;

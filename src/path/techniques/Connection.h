@@ -2,7 +2,6 @@
 // Straight connections between a path's vertices and emitters.
 
 #include "tungsten/scene/Interaction.h"
-#include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::path {
 

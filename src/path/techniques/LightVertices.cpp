@@ -2,6 +2,8 @@
 
 #include "path/techniques/Connection.h"
 
+#include "transport/Balance.h"
+
 #include "tungsten/core/Warp.h"
 
 #include <tbb/parallel_for.h>
@@ -43,7 +45,7 @@ Rgb LightVertex::scattered(const Vec3f& direction) const {
     const Vec3f wi = surface.frame.toLocal(direction), wo = surface.frame.toLocal(toLight);
     const BsdfQuery query = surface.query(TransportMode::Radiance);
     const Rgb value = surface.bsdf->eval(query, wi, wo) * power;
-    return lightPdf > 0.0f ? value * powerHeuristic(lightPdf, surface.bsdf->pdf(query, wi, wo)) : value;
+    return lightPdf > 0.0f ? value * transport::powerHeuristic(lightPdf, surface.bsdf->pdf(query, wi, wo)) : value;
 }
 
 bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, const Vec3f& toLight) {

@@ -2,6 +2,8 @@
 
 #include "photon/light/EmissionDirections.h"
 
+#include "transport/Balance.h"
+
 namespace tungsten::photon {
 
 namespace {
@@ -15,25 +17,25 @@ double distanceBetween(const Vec3f& a, const Vec3f& b) {
 /// Of light that goes everywhere alike, per solid angle.
 constexpr float InSphere = 0.25f * InvPi;
 
-/// Balance heuristic between a control vertex's density along the ray and a free flight's.
-float controlVertexShare(float controlVertexPdf, float sigmaT, float distance) {
-    return controlVertexPdf / (controlVertexPdf + sigmaT * std::exp(-sigmaT * distance));
+/// Density per length, for weights, of an ordinary photon at this distance along a flight.
+float pdfPhoton(const Medium& medium, float distance) {
+    return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
 }
 
 } // namespace
 
 GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuidance& guidance,
-                                   const SurfaceConnections* connections, Sampler sampler, uint64_t path,
+                                   const SurfaceConnections* connections, const Sampler& sampler, uint64_t path,
                                    Deposits& deposits, WalkCounters& counters)
-    : PhotonWalk(context, sampler, deposits, counters), guidance_(guidance), connections_(connections),
-      gate_(guidance.gate()) {
+    : path_(context, sampler, deposits, counters), scene_(context.scene), guidance_(guidance),
+      connections_(connections), gate_(guidance.gate()) {
     if (guidance.choosesFrames()) aimAtFrame(path);
 }
 
 void GuidedPhotonWalk::aimAtFrame(uint64_t path) {
-    const int frame = guidance_.frames().stratified(path, context_.frameShift);
+    const int frame = guidance_.frames().stratified(path, path_.context.frameShift);
     gate_ = guidance_.frames().frame(frame);
-    arrival_ = &context_.frameArrivals[size_t(frame)];
+    path_.arrival = &path_.context.frameArrivals[size_t(frame)];
 }
 
 void GuidedPhotonWalk::run() {
@@ -41,43 +43,43 @@ void GuidedPhotonWalk::run() {
 }
 
 void GuidedPhotonWalk::goOn() {
-    const int mostBounces = std::min(scene_.transport.maxBounces - 1, MostPhotonBounces);
-    while (bounce_ < mostBounces) {
-        const darts::Guide* guide = guidance_.guide(region_);
+    while (path_.mayBounce()) {
+        const darts::Guide* guide = guidance_.guide(path_.region);
         if (guide) {
-            if (!crossMedium(*scene_.medium(region_), *guide)) return;
+            if (!crossMedium(*scene_.medium(path_.region), *guide)) return;
             continue;
         }
-        ++counters_.rays;
-        const auto hit = scene_.geometry->intersect(ray_);
+        ++path_.counters.rays;
+        const auto hit = scene_.geometry->intersect(path_.ray);
         if (!hit) return;
-        if (const Medium* medium = scene_.medium(region_)) power_ = power_ * medium->transmittance(hit->t);
-        looked_ = connected_ = false;
+        if (const Medium* medium = scene_.medium(path_.region))
+            path_.power = path_.power * medium->transmittance(hit->t);
+        step_.leave();
         if (!meetSurface(*hit)) return;
     }
 }
 
 bool GuidedPhotonWalk::emit() {
-    const auto chosen = context_.emitters.sample(sampler_.next1D());
+    const auto chosen = path_.context.emitters.sample(path_.sampler.next1D());
     const Emitter& emitter = scene_.emitters[chosen.index];
     const float frames = guidance_.choosesFrames() ? float(guidance_.frames().frames) : 1.0f;
     if (emitter.isDelta() || emitter.isInfinite()) {
-        if (!emitFrom(emitter, chosen.probability)) return false;
-        power_ = power_ * frames;
+        if (!path_.emitFrom(emitter, chosen.probability)) return false;
+        path_.power = path_.power * frames;
         return true;
     }
-    time_ = emitter.emissionTime;
-    region_ = scene_.regionOf(emitter);
-    power_ = Rgb(frames / chosen.probability);
-    const darts::Guide* guide = guidance_.guide(region_);
+    path_.time = emitter.emissionTime;
+    path_.region = scene_.regionOf(emitter);
+    path_.power = Rgb(frames / chosen.probability);
+    const darts::Guide* guide = guidance_.guide(path_.region);
     return emitFromPoint(emitter, guide && guide->settings().guideEmission ? guide : nullptr);
 }
 
 bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide* guide) {
-    const SurfaceSample start = sampleEmissionPoint(emitter, sampler_.next2D());
-    ray_ = Ray{start.position, Vec3f(0.0f)};
-    connectable_ = true;
-    if (!arrival_->mayContinue(ray_.origin, time_)) return false;
+    const SurfaceSample start = sampleEmissionPoint(emitter, path_.sampler.next2D());
+    path_.ray = Ray{start.position, Vec3f(0.0f)};
+    path_.connectable = true;
+    if (!path_.arrival->mayContinue(path_.ray.origin, path_.time)) return false;
     connectToSurfaces(start.margin(), InSphere * meanComponent(emitterPower(emitter)),
                       [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
     // What is guided aims at the camera itself.
@@ -87,123 +89,112 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
         if (!look(*guide, {start.position, start.margin()})) return false;
         inversePdf = redirect(*guide, own);
     } else {
-        const float u = sampler_.next1D(), v = sampler_.next1D();
+        const float u = path_.sampler.next1D(), v = path_.sampler.next1D();
         const darts::Vec3 direction = own.sample(u, v);
-        ray_.direction = darts::to<Vec3f>(direction);
+        path_.ray.direction = darts::to<Vec3f>(direction);
         inversePdf = 1.0f / own.pdf(direction);
     }
-    ray_ = start.leave(ray_.direction);
-    power_ = power_ * emittedIntensity(emitter, start, ray_.direction) * inversePdf;
-    return !isBlack(power_);
+    path_.ray = start.leave(path_.ray.direction);
+    path_.power = path_.power * emittedIntensity(emitter, start, path_.ray.direction) * inversePdf;
+    return !isBlack(path_.power);
 }
 
 template <typename Scattering>
 void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering) {
-    if (!connections_ || !bears(power_)) return;
-    const LightVertex vertex{ray_.origin, margin, time_, bounce_, region_, power_, usual};
+    if (!connections_ || !path_.bears(path_.power)) return;
+    const LightVertex vertex{path_.ray.origin, margin, path_.time, path_.bounce, path_.region, path_.power, usual};
     if (connections_->hasTarget())
-        connections_->connect(vertex, gate_, scattering, sampler_, draws_, deposits_.arrivals, counters_.rays);
+        connections_->connect(vertex, gate_, scattering, path_.sampler, draws_, path_.deposits.arrivals,
+                              path_.counters.rays);
     else
-        deposits_.worths.push_back(connections_->worth(vertex, gate_));
+        path_.deposits.worths.push_back(connections_->worth(vertex, gate_));
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
-    if (!arriveOnSurface(hit)) return false;
-    if (connections_ && (surface_.bsdf->lobes() & lobe::Smooth) != 0) {
-        const Vec3f before = ray_.direction;
-        const Region behind = region_;
-        ray_.origin = hit.position;
+    if (!path_.arriveOnSurface(hit)) return false;
+    if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0) {
+        const Vec3f before = path_.ray.direction;
+        const Region behind = path_.region;
+        path_.ray.origin = hit.position;
         // Light leaves to the side of the direction; a boundary's other side is another region.
         connectToSurfaces(hit.margin(), 2.0f * InSphere, [&](const Vec3f& direction) {
-            if (!surface_.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
-            const Region ahead = regionBeyond(surface_, direction, behind);
+            if (!path_.surface.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
+            const Region ahead = regionBeyond(path_.surface, direction, behind);
             if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
-            return surface_.bsdf->eval(surface_.query(TransportMode::Photons, lobe::Smooth), surface_.wi,
-                                       surface_.frame.toLocal(direction)) *
-                   surface_.photonShadingFactor(-before, direction);
+            return path_.surface.bsdf->eval(path_.surface.query(TransportMode::Photons, lobe::Smooth), path_.surface.wi,
+                                            path_.surface.frame.toLocal(direction)) *
+                   path_.surface.photonShadingFactor(-before, direction);
         });
     }
-    return leaveSurface();
+    return path_.leaveSurface();
 }
 
 bool GuidedPhotonWalk::look(const darts::Guide& guide, const transport::Start& start) {
-    residual_ = guidance_.residual(start, region_, time_, gate_, counters_.rays);
-    looked_ = true;
+    step_.look(guidance_.residual(start, path_.region, path_.time, gate_, path_.counters.rays));
     // Along a direction that is fixed the surface ahead bounds the lengths: they are drawn when it is known.
-    connected_ = guide.settings().lengthFirst && !(start.ahead.length2() > 0.0f);
-    if (connected_) connection_ = drawConnection(guide, residual_);
+    if (!guide.settings().lengthFirst || start.ahead.length2() > 0.0f) return step_.residual().alive();
+    const darts::ConnectionSample connection = drawConnection(guide, step_.residual());
+    step_.connect(connection);
     // A density of 0: the response is over, or the delta gate, but surfaces may still be seen in its kernel.
-    return residual_.alive() && (!connected_ || connection_.inversePdf > 0.0f || guidance_.meetsDeltaGate());
+    return step_.residual().alive() && (connection.inversePdf > 0.0f || guidance_.meetsDeltaGate());
 }
 
 darts::ConnectionSample GuidedPhotonWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
     if (guidance_.meetsDeltaGate() && storesVertices()) return guidance_.onDeltaGate(residual);
-    return guide.sampleConnection(residual, sampler_.next1D(), guidance_.response(time_));
+    return guide.sampleConnection(residual, path_.sampler.next1D(), guidance_.response(path_.time));
 }
 
 template <typename Scatterer>
 float GuidedPhotonWalk::redirect(const darts::Guide& guide, const Scatterer& scatterer) {
-    const auto random = [this] { return sampler_.next1D(); };
-    const darts::DirectionSample next =
-        guide.sampleDirection(residual_, connection_, scatterer, guidance_.view(), random);
-    ray_.direction = darts::to<Vec3f>(next.direction);
+    const auto random = [this] { return path_.sampler.next1D(); };
+    const darts::DirectionSample next = step_.sampleDirection(guide, scatterer, guidance_.view(), random);
+    path_.ray.direction = darts::to<Vec3f>(next.direction);
     return next.inversePdf;
 }
 
 bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
-    if (!(guide.settings().roulette > 0.0f)) return true;
-    const float useful = guide.logUsefulness(residual_, meanComponent(power_));
-    // Models do not compare: what one promises, another may keep.
-    if (!started_ || rouletteMedium_ != region_.medium || rouletteWay_ != residual_.way) {
-        firstUsefulness_ = useful;
-        started_ = true;
-        rouletteMedium_ = region_.medium;
-        rouletteWay_ = residual_.way;
-        return true;
-    }
-    const float survival = guide.survival(useful, firstUsefulness_);
+    const float survival = step_.survival(guide, path_.region.medium, meanComponent(path_.power));
     if (survival >= 1.0f) return true;
-    if (sampler_.next1D() >= survival) return false;
-    power_ = power_ / survival;
+    if (path_.sampler.next1D() >= survival) return false;
+    path_.power = path_.power / survival;
     return true;
 }
 
 bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& guide) {
-    if (++flights_ > medium.maxBounces) return false;
-    if (!looked_ && (!look(guide, transport::Start::along(ray_)) || !survives(guide))) return false; // after a surface
-    const darts::Heading heading = residual_.heading(darts::vec3(ray_.direction));
-    const float h = heading.h;
-    ray_.tMax = guide.distance().bound(residual_, h);
-    ++counters_.rays;
-    const auto hit = scene_.geometry->intersect(ray_);
-    ray_.tMax = Infinity;
+    if (++path_.flights > medium.maxBounces) return false;
+    const bool afterSurface = !step_.hasLooked();
+    if (afterSurface && (!look(guide, transport::Start::along(path_.ray)) || !survives(guide))) return false;
+    const darts::Heading heading = step_.heading(path_.ray.direction);
+    path_.ray.tMax = step_.bound(guide, heading.h);
+    ++path_.counters.rays;
+    const auto hit = scene_.geometry->intersect(path_.ray);
+    path_.ray.tMax = Infinity;
     const float surface = hit ? hit->t : Infinity;
-    if (hit && residual_.way == darts::Way::Out && residual_.exit.connects)
-        residual_.exit.leaveOdds = guidance_.leaveOdds(region_, ray_.direction, *hit);
-    const Flight flight{medium, guide, h, surface};
-    if (context_.storeVolume) std::visit([&](auto& list) { leaveOn(flight, list); }, deposits_.volume);
+    if (hit && step_.residual().way == darts::Way::Out && step_.residual().exit.connects)
+        step_.leaveWithOdds(guidance_.leaveOdds(path_.region, path_.ray.direction, *hit));
+    const Flight flight{medium, guide, heading.h, surface};
+    if (path_.context.storeVolume) std::visit([&](auto& list) { leaveOn(flight, list); }, path_.deposits.volume);
 
-    const auto random = [this] { return sampler_.next1D(); };
-    const darts::DistanceSample step = guide.sampleDistance(residual_, heading, surface, darts::vec3(power_), random);
-    power_ = power_ * Rgb(step.transmittanceOverPdf.x, step.transmittanceOverPdf.y, step.transmittanceOverPdf.z);
-    looked_ = connected_ = false;
-    if (isBlack(power_)) return false;
-    if (step.surface) return meetSurface(*hit);
-    power_ = power_ * medium.sigmaS;
-    if (context_.storeVolume) std::visit([&](auto& list) { leaveAt(step.distance, flight, list); }, deposits_.volume);
-    return scatter(medium, guide, step.distance);
+    const auto random = [this] { return path_.sampler.next1D(); };
+    const darts::DistanceSample next = step_.sampleDistance(guide, heading, surface, path_.power, random);
+    path_.power = path_.power * darts::to<Rgb>(next.transmittanceOverPdf);
+    if (isBlack(path_.power)) return false;
+    if (next.surface) {
+        step_.leave();
+        return meetSurface(*hit);
+    }
+    path_.power = path_.power * medium.sigmaS;
+    if (path_.context.storeVolume)
+        std::visit([&](auto& list) { leaveAt(next.distance, flight, list); }, path_.deposits.volume);
+    step_.leave();
+    return scatter(medium, guide, next.distance);
 }
 
 bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, float distance) {
-    const Vec3f position = ray_.at(distance), before = ray_.direction;
-    time_ += distanceBetween(ray_.origin, position) / double(region_.speed);
-    ++bounce_;
-    ++consecutiveMedium_;
-    ray_ = Ray{position, before};
-    connectable_ = true;
-    fromLight_ = false;
+    const Vec3f position = path_.ray.at(distance), before = path_.ray.direction;
+    path_.collide(position, distanceBetween(path_.ray.origin, position));
     if (!look(guide, {position}) || !survives(guide)) return false;
-    if (flights_ < medium.maxBounces) // else no flight would leave here
+    if (path_.flights < medium.maxBounces) // else no flight would leave here
         connectToSurfaces({}, InSphere,
                           [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
     split(guide, medium, before);
@@ -212,78 +203,71 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
 
 bool GuidedPhotonWalk::leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before) {
     const float inversePdf = redirect(guide, darts::PhaseScatterer{medium.phase, before});
-    power_ = power_ * (medium.phase.eval(before, ray_.direction) * inversePdf);
-    return !isBlack(power_);
+    path_.power = path_.power * (medium.phase.eval(before, path_.ray.direction) * inversePdf);
+    return !isBlack(path_.power);
 }
 
 void GuidedPhotonWalk::split(const darts::Guide& guide, const Medium& medium, const Vec3f& before) {
-    const int copies = splits_.copies(guide.splits(residual_));
-    power_ = power_ / float(copies);
+    const int copies = step_.copies(guide);
+    path_.power = path_.power / float(copies);
     for (int i = 1; i < copies; ++i) {
         GuidedPhotonWalk copy(*this);
         if (copy.leave(medium, guide, before)) copy.goOn();
-        sampler_ = copy.sampler_;
-        if (connected_) connection_ = drawConnection(guide, residual_);
+        path_.sampler = copy.path_.sampler;
+        if (guide.settings().lengthFirst) step_.connect(drawConnection(guide, step_.residual()));
     }
 }
 
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points) {
     const auto& [medium, guide, h, surface] = flight;
-    if (!guide.settings().elliptical) return;
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
-    reachable_ = residual_;
-    if (!connected_) {
-        reachable_ = darts::Guide::beforeSurface(residual_, h, surface);
-        if (!reachable_.alive()) return;
-        connection_ = drawConnection(guide, reachable_);
-    }
-    const auto vertex = guide.controlVertex(residual_, connection_, h, surface);
-    if (!vertex) return;
-    ++counters_.controlVertices;
-    const Vec3f position = ray_.at(vertex->distance);
-    Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
+    if (!guide.settings().elliptical || !path_.orderCounts(1)) return;
+    const auto draw = [&](const darts::Residual& residual) { return drawConnection(guide, residual); };
+    const auto met = step_.meetControlVertex({guide, h, path_.time, storesPhotons()}, surface, draw);
+    if (!met) return;
+    const darts::ControlVertex& vertex = met->vertex;
+    ++path_.counters.controlVertices;
+    Rgb power = path_.power * medium.sigmaS * medium.transmittance(vertex.distance) * vertex.inversePdf;
     if (storesPhotons())
-        power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
+        power = power * transport::balance(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance));
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
-    store(points, context_.arrival, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
-          power, bounce_ + 1);
+    store(points, path_.context.arrival, path_.ray.at(vertex.distance), power);
 }
 
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<PhotonBeam>& beams) {
     const Medium& medium = flight.medium;
-    if (!guidance_.directView()) return depositFlight(beams, medium, flight.surface);
-    if (!bears(power_) || (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0)) return;
-    const FlightPart seen = guidance_.view().seenPart(ray_.origin, ray_.direction, context_.settings.volumeReach());
+    if (!guidance_.directView()) return path_.depositBeam(beams, medium, flight.surface);
+    if (!path_.bears(path_.power) || !path_.orderCounts(1)) return;
+    const Ray& ray = path_.ray;
+    const FlightPart seen = guidance_.view().seenPart(ray.origin, ray.direction, path_.context.settings.volumeReach());
     const float end = std::min(flight.surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
-    storeBeam(beams, *arrival_, medium,
-              {time_, ray_.origin, ray_.direction, power_, float(seen.start), end, uint16_t(bounce_),
-               int16_t(region_.medium)});
+    storeBeam(beams, *path_.arrival, medium,
+              {path_.time, ray.origin, ray.direction, path_.power, float(seen.start), end, uint16_t(path_.bounce),
+               int16_t(path_.region.medium)});
 }
 
 void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList<Photon>& points) {
-    const auto& [medium, guide, h, surface] = flight;
-    if (!storesPhotons() && guide.settings().elliptical) return;
-    if (!context_.settings.lowOrderScattering && consecutiveMedium_ == 0) return;
+    const bool elliptical = flight.guide.settings().elliptical;
+    if ((!storesPhotons() && elliptical) || !path_.orderCounts(1)) return;
     float share = 0.0f;
-    if (guide.settings().elliptical)
-        share = controlVertexShare(guide.pdfControlVertex(reachable_, h, distance), meanComponent(medium.sigmaT()),
-                                   distance);
-    const Vec3f position = ray_.at(distance);
-    store(points, *arrival_, position, time_ + distanceBetween(ray_.origin, position) / double(region_.speed),
-          power_ * (1.0f - share), bounce_ + 1);
+    if (elliptical)
+        share = transport::balance(step_.controlVertexPdf(distance).value_or(0.0f), pdfPhoton(flight.medium, distance));
+    store(points, *path_.arrival, path_.ray.at(distance), path_.power * (1.0f - share));
 }
 
 void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {}
 
 void GuidedPhotonWalk::store(DepositList<Photon>& points, const ArrivalCulling& arrival, const Vec3f& position,
-                             double time, const Rgb& power, int bounce) {
-    if (!bears(power) || bounce > MostPhotonBounces) return;
-    if (guidance_.directView() && !guidance_.view().sees(position, context_.settings.volumeReach())) return;
-    ++counters_.volumeDeposits;
+                             const Rgb& power) {
+    const int bounce = path_.bounce + 1;
+    if (!path_.bears(power) || bounce > MostPhotonBounces) return;
+    if (guidance_.directView() && !guidance_.view().sees(position, path_.context.settings.volumeReach())) return;
+    ++path_.counters.volumeDeposits;
+    const double time = path_.time + distanceBetween(path_.ray.origin, position) / double(path_.region.speed);
     if (!arrival.mayCount(position, time)) return;
-    ++counters_.countingDeposits;
-    points.records.push_back({time, position, ray_.direction, power, uint16_t(bounce), int16_t(region_.medium)});
+    ++path_.counters.countingDeposits;
+    points.records.push_back(
+        {time, position, path_.ray.direction, power, uint16_t(bounce), int16_t(path_.region.medium)});
 }
 
 } // namespace tungsten::photon

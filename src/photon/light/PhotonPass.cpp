@@ -1,6 +1,7 @@
 #include "photon/light/PhotonPass.h"
 
 #include "photon/light/GuidedPhotonWalk.h"
+#include "photon/light/PhotonWalk.h"
 #include "photon/store/StoreFilling.h"
 
 #include <tbb/parallel_for.h>

@@ -1,5 +1,7 @@
 #include "photon/view/GlossyLight.h"
 
+#include "transport/Balance.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -43,7 +45,7 @@ std::optional<ArrivedLight> GlossyLight::connect(const Sensor& sensor, const Sen
     if (!light || !(light->direct.pdf > 0.0f)) return light ? std::optional(light->arrived) : std::nullopt;
     const BsdfQuery query = surface.query(TransportMode::Radiance);
     const float bsdfPdf = surface.bsdf->pdf(query, surface.wi, surface.frame.toLocal(light->direct.direction));
-    const float weight = powerHeuristic(light->direct.pdf * light->probability, bsdfPdf);
+    const float weight = transport::powerHeuristic(light->direct.pdf * light->probability, bsdfPdf);
     return ArrivedLight{light->arrived.radiance * weight, light->arrived.time};
 }
 
@@ -53,7 +55,7 @@ float GlossyLight::emissionWeight(const SensorState& state, const SurfaceInterac
     const float lightPdf =
         pdfDirect(scene_.emitters[size_t(index)], state.glossyVertex, light.hit.position, light.hit.ng) *
         lights_.lights().probability(index);
-    return powerHeuristic(state.glossyPdf, lightPdf);
+    return transport::powerHeuristic(state.glossyPdf, lightPdf);
 }
 
 } // namespace tungsten::photon

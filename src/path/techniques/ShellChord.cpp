@@ -1,4 +1,4 @@
-#include "path/guided/ShellChord.h"
+#include "path/techniques/ShellChord.h"
 
 namespace tungsten::path {
 

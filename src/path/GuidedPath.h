@@ -1,0 +1,136 @@
+#pragma once
+// A path that is guided towards one target: where it has got to, and what its techniques ask of it. Each technique
+// (src/path/techniques) connects, or draws, from here; how dense others would have found the same path it asks them.
+
+#include "path/ArrivalBound.h"
+#include "path/CameraPath.h"
+#include "path/PathTarget.h"
+#include "path/techniques/Connection.h"
+
+#include "transport/GuidedStep.h"
+
+namespace tungsten::path {
+
+class LightPaths;
+
+/// Sampling by medium.
+struct PathGuides {
+    std::vector<darts::Guide> media;    ///< for scattering in it, and flights
+    std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
+    std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
+    std::vector<darts::Guide> view;     ///< for flights from the camera
+    std::vector<darts::Guide> plain;    ///< bounds in time alone, where refraction hides where light goes
+};
+
+/// What guided walks share.
+struct GuidedContext {
+    const Scene& scene;
+    const PathSettings& settings;
+    const Sensor& sensor;
+    const PathGuides& guides;
+    const LightPaths& lightPaths;
+    const ArrivalBound& arrival;
+    const transport::WaysOut* waysOut; ///< null: media are taken for infinite
+    bool forwardBoundaries;            ///< connections must look through index-matched surfaces
+};
+
+/// The vertex at which the present straight way starts, as the densities of what may be found along it need it.
+struct LastVertex {
+    enum class Kind { Specular, Surface, Medium };
+    /// What besides the straight way could have found its end.
+    enum class Tried { Nothing, LightVertices, ReflectedLightToo };
+
+    Kind kind = Kind::Specular;
+    Vec3f position{0.0f}; ///< on a surface
+    float pdf = 0.0f;     ///< of its own sampling, for the present direction, per solid angle
+    Tried tried = Tried::Nothing;
+
+    [[nodiscard]] bool triedReflectedLight() const { return tried == Tried::ReflectedLightToo; }
+};
+
+/// How the walk came to the ray's origin, if reflected light was tried at the vertex before and may end here.
+struct Arrival {
+    float pdf;    ///< by the walk's own sampling, per area or volume
+    Vec3f normal; ///< of the surface here, on the side of the vertex before; 0 in media
+};
+
+/// A vertex's scattering towards a direction (cosine included) and the density of its own sampling, per solid angle.
+struct Scattering {
+    Rgb value{0.0f};
+    float pdf = 0.0f;
+};
+
+/// From a vertex to the target.
+struct Straight {
+    Vec3f direction;
+    float distance;
+};
+
+/// Path lengths, half open.
+struct LengthsInGate {
+    float low, high;
+};
+
+struct GuidedPath {
+    GuidedPath(const GuidedContext& sharedContext, PixelSink& sink, PathCounters& counters, const Sampler& sampler)
+        : context(sharedContext), state(sharedContext.scene, sink, counters, sampler) {}
+
+    [[nodiscard]] const Scene& scene() const { return context.scene; }
+    [[nodiscard]] float next() { return state.sampler.next1D(); }
+
+    [[nodiscard]] Straight straightFrom(const Vec3f& position) const {
+        const Vec3f offset = target->point.position - position;
+        const float distance = offset.length();
+        return {distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f), distance};
+    }
+    /// Along a ray from `region`, on the part on which something may be in the way.
+    [[nodiscard]] Visibility traceToTarget(Ray ray, const Straight& way, const Region& region) {
+        ray.tMax = target->point.margin().before(way.direction, way.distance);
+        return traceConnection(context.scene, context.forwardBoundaries, ray, way.distance, region,
+                               state.counters.shadowRays);
+    }
+    /// From the ray's origin, on `surface` if there is one, up to `reach`.
+    [[nodiscard]] Ray leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const;
+    /// At the ray's origin: on `surface`, or in the medium if there is none.
+    [[nodiscard]] Scattering scatteringTowards(const Vec3f& direction, const SurfaceInteraction* surface) const;
+
+    [[nodiscard]] bool mayConnect(double time, float distance) const {
+        return distance > 0.0f && context.arrival.mayConnect(time, distance, target->start);
+    }
+    /// Of what arrives at the ray's origin inside the gate, from the target.
+    [[nodiscard]] LengthsInGate lengthsInGate() const;
+    /// Whether a path with this many further interactions and medium scatters counts.
+    [[nodiscard]] bool counts(int interactions, int mediumScatters) const {
+        const TransportSettings& transport = context.scene.transport;
+        const int total = state.interactions + interactions + target->interactions;
+        if (total < transport.minBounces || total >= transport.maxBounces) return false;
+        const int inMedia = state.mediumScatters + mediumScatters + target->mediumScatters;
+        if (inMedia == 0) return context.settings.includeSurfaces;
+        return context.settings.lowOrderScattering || inMedia > 1;
+    }
+    [[nodiscard]] bool mayFly(const Medium* medium) const { return !medium || state.flights < medium->maxBounces; }
+
+    [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
+        const bool connects = step.residual().exit.connects;
+        return (connects ? context.guides.media : context.guides.plain)[size_t(region.medium)];
+    }
+    /// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere. `back` is
+    /// the way there, turned round.
+    [[nodiscard]] const darts::Guide* guideFor(const SurfaceInteraction& surface, const Vec3f& back) const;
+    /// Of a connection from a vertex with this residual.
+    [[nodiscard]] darts::ConnectionSample drawConnection(const darts::Guide& guide, const darts::Residual& residual);
+    /// Ordinary connections share with control vertices: in bodies that light must leave, whose directions do not
+    /// follow the connections' weights so closely.
+    [[nodiscard]] bool sharesConnections() const {
+        return step.residual().way != darts::Way::Through && !context.sensor.gate.delta;
+    }
+
+    const GuidedContext& context;
+    const PathTarget* target = nullptr;
+    CameraPath state;
+    transport::GuidedStep step; ///< looks from the ray's origin
+    LastVertex last;
+    std::optional<Arrival> arrival;
+};
+
+} // namespace tungsten::path

@@ -1,0 +1,75 @@
+#include "path/techniques/ControlVertices.h"
+
+#include "path/techniques/EmitterConnections.h"
+#include "path/techniques/ShellChord.h"
+
+#include "transport/Balance.h"
+
+namespace tungsten::path {
+
+namespace {
+
+/// The last vertex before the target, in the medium of the present flight; `arrival` is the total time of flight.
+void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& vertex, double arrival) {
+    CameraPath& state = path.state;
+    if (!path.context.forwardBoundaries && !path.counts(1, 1)) return;
+    const Vec3f position = state.ray.at(vertex.distance);
+    const Straight way = path.straightFrom(position);
+    if (!(vertex.toTarget > 0.0f) || !(way.distance > 0.0f)) return;
+    ++state.counters.controlVertices;
+    const Rgb light = path.target->intensity(-way.direction);
+    if (isBlack(light)) return;
+    const float phase = medium.phase.eval(state.ray.direction, way.direction);
+    const float chance =
+        path.guideOf(state.region).chance(path.step.residual(), darts::vec3(state.ray.direction), vertex, phase);
+    if (chance < 1.0f && !(path.next() < chance)) return;
+    const Visibility visibility = path.traceToTarget({position, way.direction}, way, state.region);
+    if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
+    const float share = ControlVertices::share(path, medium, vertex.distance);
+    const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
+    const Rgb radiance = state.throughput * medium.sigmaS * medium.transmittance(vertex.distance) * light *
+                         visibility.transmittance * weight;
+    // A delta gate is one of time, the connection's weight dt/dS one of length.
+    state.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival);
+}
+
+} // namespace
+
+void ControlVertices::sample(GuidedPath& path, const Medium& medium, const darts::Guide& guide, float h,
+                             float surface) {
+    if (!guide.settings().elliptical) return;
+    const auto draw = [&](const darts::Residual& residual) { return path.drawConnection(guide, residual); };
+    const auto met = path.step.meetControlVertex({guide, h, path.state.time, path.sharesConnections()}, surface, draw);
+    if (!met) return;
+    const double arrival = met->departure + met->length / double(path.state.region.speed) + path.target->start;
+    add(path, medium, met->vertex, arrival);
+}
+
+void ControlVertices::sampleUntimed(GuidedPath& path, const Medium& medium, float surface) {
+    const CameraPath& state = path.state;
+    if (!path.guideOf(state.region).settings().elliptical) return;
+    const TimeGate& gate = path.context.sensor.gate;
+    const PathTarget& target = *path.target;
+    const double speed = double(state.region.speed), low = speed * (gate.start - target.start),
+                 high = speed * (gate.end() - target.start);
+    const ShellChord chord(target.point.position - state.ray.origin, state.ray.direction, low, high, double(surface));
+    const auto addAt = [&](double t, double inversePdf) {
+        const double toTarget = double((target.point.position - state.ray.at(float(t))).length());
+        add(path, medium, {float(t), float(toTarget), float(inversePdf)}, toTarget / speed + target.start);
+    };
+    if (gate.delta) {
+        std::array<double, 2> t{}, perRadius{};
+        const int count = chord.intersect(low, t, perRadius);
+        for (size_t i = 0; i < size_t(count); ++i) addAt(t[i], perRadius[i]);
+    } else if (!chord.empty()) {
+        const double t = chord.sample(path.state.sampler.nextDouble()), pdf = chord.pdf(t);
+        if (pdf > 0.0) addAt(t, 1.0 / pdf);
+    }
+}
+
+float ControlVertices::share(const GuidedPath& path, const Medium& medium, float distance) {
+    const auto own = density(path, distance);
+    return own ? transport::balance(*own, MediumConnections::density(medium, distance)) : 1.0f;
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,36 @@
+#pragma once
+// Ordinary ways to the target from vertices where the walk has come by itself: connections, and the emitter met.
+
+#include "path/GuidedPath.h"
+
+#include "transport/Balance.h"
+
+namespace tungsten::path {
+
+/// From vertices in media.
+struct MediumConnections {
+    /// From the ray's origin, less the share of control vertices.
+    static void connect(GuidedPath& path, const Medium& medium, float controlShare);
+    /// Per length, for weights, of the walk's flights that end at `distance`.
+    [[nodiscard]] static float density(const Medium& medium, float distance) {
+        return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
+    }
+};
+
+/// From surfaces at the end of the ray.
+struct SurfaceConnections {
+    /// `throughput` includes the way there.
+    static void connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
+    /// Per area, of the surface point as the walk's next vertex.
+    [[nodiscard]] static float density(const GuidedPath& path, const SurfaceHit& hit);
+};
+
+/// Emitters that the walk meets.
+struct EmittersMet {
+    /// Light that the surface at the end of the ray emits, if it is the target's; `throughput` includes the way there.
+    static void add(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
+    /// Per solid angle at the last vertex, a surface.
+    [[nodiscard]] static float density(const GuidedPath& path) { return path.last.pdf; }
+};
+
+} // namespace tungsten::path

@@ -1,0 +1,16 @@
+#pragma once
+// Light by way of surface points that it reaches first (LightVertices.h), tried from vertices of the walk.
+
+#include "path/GuidedPath.h"
+#include "path/techniques/LightVertices.h"
+
+namespace tungsten::path {
+
+struct LightVertexConnections {
+    /// From the ray's origin: on `surface`, or in the medium if there is none.
+    static void connect(GuidedPath& path, const SurfaceInteraction* surface, const LightVertexCache& cache);
+    /// Per area, of a surface point that light reaches with density `areaPdf`.
+    [[nodiscard]] static float density(float areaPdf) { return triedDensity(areaPdf); }
+};
+
+} // namespace tungsten::path

@@ -1,0 +1,89 @@
+#pragma once
+// Where a light path has got to, and what it deposits: what every walk from a light keeps.
+
+#include "photon/PhotonSettings.h"
+#include "photon/light/Deposits.h"
+#include "photon/store/ArrivalCulling.h"
+
+#include "tungsten/scene/Interaction.h"
+
+#include <span>
+
+namespace tungsten::photon {
+
+struct WalkCounters {
+    uint64_t rays = 0, controlVertices = 0;
+    /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
+    uint64_t volumeDeposits = 0, countingDeposits = 0;
+    uint64_t nonFinite = 0; ///< powers: nothing was stored
+};
+
+/// What every walk of a pass shares.
+struct WalkContext {
+    const Scene& scene;
+    const PhotonSettings& settings;
+    const ArrivalCulling& arrival;
+    std::span<const ArrivalCulling> frameArrivals; ///< for paths that aim at single frames
+    float frameShift; ///< of the order of frames: over passes, each is aimed at equally often
+    const Distribution1D& emitters;
+    bool storeSurface, storeVolume;
+    bool connects = false; ///< to surfaces: SurfaceConnections
+    /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
+    /// photons are, not from how dense those few are that bring what connections cannot.
+    bool densityPhotons = false;
+    bool glossySensorPaths = false; ///< SensorPathRules::glossy
+};
+
+struct LightPath {
+    LightPath(const WalkContext& walkContext, const Sampler& ownSampler, Deposits& ownDeposits,
+              WalkCounters& ownCounters)
+        : context(walkContext), arrival(&walkContext.arrival), sampler(ownSampler), deposits(ownDeposits),
+          counters(ownCounters) {}
+
+    /// By the emitter's own distribution; `probability` is that of its choice. False ends the path.
+    bool emitFrom(const Emitter& emitter, float probability);
+    /// A photon with bounce b takes part in paths of at least b interactions.
+    [[nodiscard]] bool mayBounce() const {
+        return bounce < std::min(context.scene.transport.maxBounces - 1, MostPhotonBounces);
+    }
+    /// To a vertex in a medium after a flight of this length; its direction is yet to be drawn.
+    void collide(const Vec3f& position, double length);
+    /// Time, bounce and deposit; `surface` is set. False ends the path.
+    bool arriveOnSurface(const SurfaceHit& hit);
+    /// By the BSDF. False ends the path.
+    bool leaveSurface();
+
+    /// False, and counted if it is not finite, for a power that leaves nothing.
+    bool bears(const Rgb& carried);
+    /// False if it cannot be gathered.
+    bool deposit(DepositList<Photon>& list, const Vec3f& position, const Rgb& carried, int medium);
+    /// A flight through a medium up to `reach`.
+    void depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
+    /// Whether what has been scattered so often in this medium is to be stored, counting `further` scatterings.
+    [[nodiscard]] bool orderCounts(int further = 0) const {
+        return context.settings.lowOrderScattering || consecutiveMedium + further > 1;
+    }
+
+    const WalkContext& context;
+    const ArrivalCulling* arrival;
+    Sampler sampler;
+    Deposits& deposits;
+    WalkCounters& counters;
+
+    SurfaceInteraction surface; ///< where the path is, between arriving and leaving
+    Ray ray;
+    Region region;
+    Rgb power{0.0f};
+    double time = 0.0;
+    int bounce = 0;
+    int flights = 0;           ///< distances sampled since the last surface
+    int consecutiveMedium = 0; ///< medium vertices since the last light or surface
+    bool connectable = false;  ///< the last vertex has no single direction and lies in this region: it connects
+    bool fromLight = true;     ///< nothing has scattered since the light but mirrors and refraction
+
+  private:
+    /// Whether sensor paths along its glossy lobes find the light that arrives on `surface`.
+    [[nodiscard]] bool foundBySensorPaths() const;
+};
+
+} // namespace tungsten::photon

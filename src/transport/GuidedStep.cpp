@@ -1,0 +1,35 @@
+#include "transport/GuidedStep.h"
+
+namespace tungsten::transport {
+
+void GuidedStep::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
+                         uint64_t& rays) {
+    looked_ = Looked::Out;
+    waysOut.look(start, region, aim, residual_, rays);
+    reachable_.way = residual_.way;
+    reachable_.exit = residual_.exit;
+    // What cannot be connected to is met by chance, anywhere on the emitter.
+    if (reachable_.exit.connects) reachable_.exit.surplus = surplus_;
+}
+
+void GuidedStep::startRoulette(const darts::Guide& guide, int medium, float throughput) {
+    if (!(guide.settings().roulette > 0.0f)) return;
+    if (first_ && first_->medium == medium && first_->way == reachable_.way) return;
+    first_ = First{guide.logUsefulness(reachable_, throughput), medium, reachable_.way};
+}
+
+float GuidedStep::survival(const darts::Guide& guide, int medium, float throughput) {
+    if (!(guide.settings().roulette > 0.0f)) return 1.0f;
+    const float useful = guide.logUsefulness(reachable_, throughput);
+    if (first_ && first_->medium == medium && first_->way == reachable_.way)
+        return guide.survival(useful, first_->usefulness);
+    first_ = First{useful, medium, reachable_.way};
+    return 1.0f;
+}
+
+void GuidedStep::passBoundary(float distance) {
+    if (std::holds_alternative<OnWay>(connection_)) std::get<OnWay>(connection_).vertex.distance -= distance;
+    if (shared_) shared_->behind += distance;
+}
+
+} // namespace tungsten::transport

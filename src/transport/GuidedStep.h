@@ -1,0 +1,193 @@
+#pragma once
+// One step of a walk that is guided towards a target, from vertex to vertex (docs/method.md, sections 3 to 6). Its
+// stages, in this order:
+//   look        what is still to come from the vertex;
+//   roulette    whether the walk goes on, and in how many copies;
+//   connection  the length of the rest of the path, should the next vertex be the last one: the control vertex;
+//   direction   of the straight way ahead, to suit the connection if its length is drawn first;
+//   flight      the control vertex on the way, then the distance to the next vertex.
+// A straight way may cross several regions: the stages up to the direction are then passed once, the flight in each.
+//
+// A step draws no random numbers of its own and adds no light: the walk says how, and where its light goes.
+
+#include "transport/WaysOut.h"
+
+#include "darts/Guide.h"
+
+#include <optional>
+#include <variant>
+
+namespace tungsten::transport {
+
+class GuidedStep {
+  public:
+    /// The control vertex of a connection, on the straight way ahead.
+    struct OnWay {
+        darts::ControlVertex vertex; ///< at a distance from the ray's origin
+        double length = 0.0;         ///< of the whole connection
+        double departure = 0.0;      ///< the walk's time where the connection starts
+    };
+
+    // Look. Whatever the walk may find besides its target may arrive later by `surplus`, a length.
+    void lookAhead(const darts::Residual& residual, float surplus) {
+        look(residual);
+        looked_ = Looked::Ahead;
+        reachable_.excess += surplus;
+        reachable_.width += surplus;
+        surplus_ = surplus;
+    }
+    /// How light gets to the target, too. Adds the rays traced to `rays`.
+    void lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim, uint64_t& rays);
+    /// Both at once, when the walk knows.
+    void look(const darts::Residual& residual) {
+        looked_ = Looked::Out;
+        residual_ = residual;
+        reachable_ = residual;
+        surplus_ = 0.0f;
+    }
+    /// The vertex is left behind.
+    void leave() {
+        looked_ = Looked::Nowhere;
+        startWay();
+    }
+    [[nodiscard]] bool hasLooked() const { return looked_ != Looked::Nowhere; }
+    [[nodiscard]] bool hasLookedOut() const { return looked_ == Looked::Out; }
+    /// Towards the target.
+    [[nodiscard]] const darts::Residual& residual() const { return residual_; }
+    /// The same for everything that the walk may find.
+    [[nodiscard]] const darts::Residual& reachable() const { return reachable_; }
+    /// The flight ahead leaves the body at its end with these odds (WaysOut::leaveOdds).
+    void leaveWithOdds(float odds) { reachable_.exit.leaveOdds = odds; }
+
+    // Roulette. Models of what is still to come do not compare: where another one holds, in another medium or by
+    // another way out, usefulness is measured anew.
+    void startRoulette(const darts::Guide& guide, int medium, float throughput);
+    /// Probability of going on; 1 where the roulette starts.
+    [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput);
+    /// Into how many copies the walk goes on, itself included (darts::Splits).
+    [[nodiscard]] int copies(const darts::Guide& guide) { return splits_.copies(guide.splits(reachable_)); }
+
+    // Connection.
+    /// A straight way starts whose connection is drawn in flight, when the surface ahead is known, unless connect()
+    /// comes before.
+    void startWay() {
+        connection_ = Later{};
+        shared_.reset();
+    }
+    /// Before the direction that is to suit it.
+    void connect(const darts::ConnectionSample& connection) { connection_ = connection; }
+
+    // Direction.
+    template <typename Scatterer, typename View, typename Random>
+    [[nodiscard]] darts::DirectionSample sampleDirection(const darts::Guide& guide, const Scatterer& scatterer,
+                                                         const View& view, Random&& random) const {
+        const bool drawn = std::holds_alternative<darts::ConnectionSample>(connection_);
+        return guide.sampleDirection(residual_, drawn ? std::get<darts::ConnectionSample>(connection_) : NoConnection,
+                                     scatterer, view, random);
+    }
+    /// What a flight's control vertex depends on.
+    struct Way {
+        const darts::Guide& guide;
+        float h;        ///< 1 - cos of the angle between the way and the target's direction
+        double elapsed; ///< the walk's time at the ray's origin
+        bool shares;    ///< ordinary vertices share with control vertices: controlVertexPdf() will be asked for
+    };
+    /// Of a connection drawn before: its control vertex now lies on the way.
+    void place(const Way& way) {
+        if (!std::holds_alternative<darts::ConnectionSample>(connection_)) return;
+        const auto placed = onWay(way, std::get<darts::ConnectionSample>(connection_), Infinity);
+        if (way.shares) shared_ = Shared{&way.guide, residual_, way.h, 0.0f};
+        if (placed)
+            connection_ = *placed;
+        else
+            connection_ = Over{};
+    }
+    /// Beyond a boundary that light passes straight at its speed, at this distance.
+    void passBoundary(float distance);
+
+    // Flight.
+    [[nodiscard]] darts::Heading heading(const Vec3f& direction) const {
+        return residual_.heading(darts::vec3(direction));
+    }
+    /// Distance beyond which nothing can be in time; for flights through what scatters, if its guide is to end them.
+    [[nodiscard]] float bound(const Vec3f& direction) const {
+        return reachable_.latest(darts::oneMinusCosine(darts::vec3(direction), reachable_.axis)).firstLeg();
+    }
+    [[nodiscard]] float bound(const darts::Guide& guide, float h) const {
+        return guide.distance().bound(reachable_, h);
+    }
+    /// The control vertex between the ray's origin and the surface ahead, if there is one. Its connection is drawn now
+    /// by draw(residual) if it has not been before.
+    template <typename Draw>
+    [[nodiscard]] std::optional<OnWay> meetControlVertex(const Way& way, float surface, Draw&& draw) {
+        if (std::holds_alternative<Later>(connection_)) return drawControlVertex(way, surface, draw);
+        place(way);
+        return takeControlVertex(surface);
+    }
+    /// Density per length along the ray of control vertices at `distance`: a function of the straight way. None if they
+    /// do not share, or if none can lie before the surface.
+    [[nodiscard]] std::optional<float> controlVertexPdf(float distance) const {
+        if (!shared_) return std::nullopt;
+        return shared_->guide->pdfControlVertex(shared_->residual, shared_->h, shared_->behind + distance);
+    }
+    template <typename Random>
+    [[nodiscard]] darts::DistanceSample sampleDistance(const darts::Guide& guide, const darts::Heading& heading,
+                                                       float surface, const Rgb& throughput, Random&& random) const {
+        return guide.sampleDistance(reachable_, heading, surface, darts::vec3(throughput), random);
+    }
+
+  private:
+    enum class Looked { Nowhere, Ahead, Out };
+    struct Later {}; ///< not drawn yet
+    struct Over {};  ///< its control vertex is behind, or there is none
+    /// How the connections of the present straight way were drawn.
+    struct Shared {
+        const darts::Guide* guide;
+        darts::Residual residual; ///< of the connection's length
+        float h;
+        float behind; ///< distance from where it was drawn to the ray's origin
+    };
+    /// The usefulness that the walk is measured by, and the model it holds for.
+    struct First {
+        float usefulness; ///< logarithm
+        int medium;
+        darts::Way way;
+    };
+
+    static constexpr darts::ConnectionSample NoConnection{};
+
+    template <typename Draw>
+    std::optional<OnWay> drawControlVertex(const Way& way, float surface, Draw&& draw) {
+        shared_.reset();
+        if (!residual_.alive()) return std::nullopt;
+        const darts::Residual before = darts::Guide::beforeSurface(residual_, way.h, surface);
+        if (!before.alive()) return std::nullopt;
+        const darts::ConnectionSample connection = draw(before);
+        if (way.shares) shared_ = Shared{&way.guide, before, way.h, 0.0f};
+        return onWay(way, connection, surface);
+    }
+    std::optional<OnWay> takeControlVertex(float surface) {
+        if (!std::holds_alternative<OnWay>(connection_)) return std::nullopt;
+        const OnWay ahead = std::get<OnWay>(connection_);
+        if (!(ahead.vertex.distance < surface)) return std::nullopt;
+        connection_ = Over{};
+        if (!(ahead.vertex.distance >= 0.0f)) return std::nullopt;
+        return ahead;
+    }
+    [[nodiscard]] std::optional<OnWay> onWay(const Way& way, const darts::ConnectionSample& connection,
+                                             float surface) const {
+        const auto vertex = way.guide.controlVertex(residual_, connection, way.h, surface);
+        if (!vertex) return std::nullopt;
+        return OnWay{*vertex, residual_.shortest + double(connection.excess - residual_.low), way.elapsed};
+    }
+
+    Looked looked_ = Looked::Nowhere;
+    darts::Residual residual_, reachable_; ///< at the vertex looked from
+    float surplus_ = 0.0f;                 ///< of reachable_ over residual_, a length
+    std::variant<Later, darts::ConnectionSample, OnWay, Over> connection_;
+    std::optional<Shared> shared_;
+    std::optional<First> first_;
+    darts::Splits splits_;
+};
+
+} // namespace tungsten::transport

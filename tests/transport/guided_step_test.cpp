@@ -1,0 +1,170 @@
+// The stages of a guided step: what a walk may ask in which state, and what it gets.
+
+#include "transport/GuidedStep.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::transport {
+namespace {
+
+const darts::Medium Fog{{0.1f, 0.1f, 0.1f}, {1.0f, 1.0f, 1.0f}, 0.0f};
+
+darts::Guide guideWith(float roulette, darts::Greens greens = darts::Greens::Diffusion) {
+    darts::Settings settings;
+    settings.elliptical = settings.lengthFirst = true;
+    settings.roulette = roulette;
+    settings.greens = greens;
+    settings.direction = darts::Direction::Phase;
+    return {settings, Fog};
+}
+
+/// 4 away from the target along z, up to 6 to go.
+darts::Residual ahead(double low = 5.0, double high = 6.0) {
+    return darts::Residual::of({0.0f, 0.0f, 4.0f}, {low, high});
+}
+
+const Vec3f Aslant(0.6f, 0.0f, 0.8f);
+
+darts::ConnectionSample noDraw(const darts::Residual&) {
+    ADD_FAILURE() << "a connection was drawn twice";
+    return {};
+}
+
+TEST(GuidedStep, LooksInTwoStages) {
+    GuidedStep step;
+    EXPECT_FALSE(step.hasLooked());
+    step.lookAhead(ahead(), 0.5f);
+    EXPECT_TRUE(step.hasLooked());
+    EXPECT_FALSE(step.hasLookedOut());
+    EXPECT_FLOAT_EQ(step.residual().excess, 2.0f);
+    EXPECT_FLOAT_EQ(step.reachable().excess, 2.5f);
+    EXPECT_FLOAT_EQ(step.reachable().width, step.residual().width + 0.5f);
+    EXPECT_EQ(step.reachable().low, step.residual().low);
+    step.look(ahead());
+    EXPECT_TRUE(step.hasLookedOut());
+    EXPECT_EQ(step.reachable().excess, step.residual().excess);
+    step.leave();
+    EXPECT_FALSE(step.hasLooked());
+}
+
+/// Both ways to a control vertex must arrive after the length that was drawn.
+void expectArrivesAfter(float length, const GuidedStep::OnWay& met) {
+    const Vec3f vertex = Aslant * met.vertex.distance;
+    EXPECT_NEAR(met.vertex.distance + (Vec3f(0.0f, 0.0f, 4.0f) - vertex).length(), length, 1e-5f);
+    EXPECT_NEAR(met.length, length, 1e-6);
+    EXPECT_EQ(met.departure, 3.0);
+}
+
+TEST(GuidedStep, ConnectionDrawnInFlight) {
+    const darts::Guide guide = guideWith(0.1f);
+    GuidedStep step;
+    step.look(ahead());
+    const float h = step.heading(Aslant).h;
+    int draws = 0;
+    const auto draw = [&](const darts::Residual& residual) {
+        ++draws;
+        EXPECT_LT(residual.width, 1.0f) << "connections that end behind the surface are left out";
+        return darts::ConnectionSample{residual.low + 0.5f * residual.width, residual.width};
+    };
+    const auto met = step.meetControlVertex({guide, h, 3.0, true}, 2.8f, draw);
+    ASSERT_TRUE(met);
+    EXPECT_LT(met->vertex.distance, 2.8f);
+    expectArrivesAfter(float(met->length), *met);
+    EXPECT_EQ(draws, 1);
+    // Density and draw agree; there is none behind the surface.
+    ASSERT_TRUE(step.controlVertexPdf(met->vertex.distance));
+    EXPECT_GT(*step.controlVertexPdf(met->vertex.distance), 0.0f);
+    EXPECT_EQ(*step.controlVertexPdf(2.9f), 0.0f);
+    // The next flight of the same way draws its own.
+    EXPECT_TRUE(step.meetControlVertex({guide, h, 3.0, false}, 2.8f, draw));
+    EXPECT_EQ(draws, 2);
+    EXPECT_FALSE(step.controlVertexPdf(1.0f)) << "does not share";
+}
+
+TEST(GuidedStep, ConnectionDrawnBeforeIsMetOnce) {
+    const darts::Guide guide = guideWith(0.1f);
+    GuidedStep step;
+    step.look(ahead());
+    step.connect({1.5f, 2.0f});
+    const GuidedStep::Way way{guide, step.heading(Aslant).h, 3.0, true};
+    const auto met = step.meetControlVertex(way, Infinity, noDraw);
+    ASSERT_TRUE(met);
+    expectArrivesAfter(5.5f, *met);
+    EXPECT_FALSE(step.meetControlVertex(way, Infinity, noDraw)) << "it is behind";
+    step.startWay();
+    EXPECT_FALSE(step.controlVertexPdf(1.0f)) << "another way";
+}
+
+TEST(GuidedStep, ConnectionGoesOnThroughBoundaries) {
+    const darts::Guide guide = guideWith(0.1f);
+    GuidedStep step;
+    step.look(ahead());
+    step.connect({1.5f, 2.0f});
+    const float h = step.heading(Aslant).h;
+    step.place({guide, h, 3.0, true});
+    GuidedStep whole = step;
+    const auto there = whole.meetControlVertex({guide, h, 3.0, true}, Infinity, noDraw);
+    ASSERT_TRUE(there);
+    const float distance = there->vertex.distance, pdf = *step.controlVertexPdf(distance);
+
+    EXPECT_FALSE(step.meetControlVertex({guide, h, 3.0, true}, 0.5f * distance, noDraw)) << "not reached yet";
+    step.passBoundary(0.5f * distance);
+    EXPECT_EQ(*step.controlVertexPdf(distance - 0.5f * distance), pdf);
+    // Time has gone on since: the connection still counts from its own start.
+    const auto beyond = step.meetControlVertex({guide, h, 4.0, true}, distance, noDraw);
+    ASSERT_TRUE(beyond);
+    EXPECT_FLOAT_EQ(beyond->vertex.distance, 0.5f * distance);
+    EXPECT_EQ(beyond->departure, 3.0);
+    EXPECT_EQ(beyond->length, there->length);
+
+    step.startWay();
+    step.connect({1.5f, 2.0f});
+    step.place({guide, h, 3.0, true});
+    step.passBoundary(1.5f * distance);
+    EXPECT_FALSE(step.meetControlVertex({guide, h, 3.0, true}, Infinity, noDraw)) << "it lies in what was passed";
+}
+
+TEST(GuidedStep, DirectionsSuitTheConnectionDrawnBefore) {
+    darts::Settings settings;
+    settings.lengthFirst = true;
+    const darts::Guide guide(settings, Fog);
+    const auto density = [&](float excess) {
+        GuidedStep step;
+        step.look(ahead());
+        step.connect({excess, 1.0f});
+        const auto half = [] { return 0.5f; };
+        return step.sampleDirection(guide, darts::HenyeyGreenstein{}, darts::NoView{}, half).inversePdf;
+    };
+    EXPECT_NE(density(1.1f), density(1.9f));
+}
+
+TEST(GuidedStep, RouletteStartsAnewWithAnotherModel) {
+    const darts::Guide guide = guideWith(0.5f);
+    GuidedStep step;
+    step.look(ahead());
+    EXPECT_EQ(step.survival(guide, 0, 1.0f), 1.0f) << "it starts";
+    EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);
+    step.leave();
+    step.look(ahead());
+    EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f) << "vertices of one model compare";
+    EXPECT_EQ(step.survival(guide, 1, 0.25f), 1.0f) << "another medium";
+    EXPECT_NEAR(step.survival(guide, 1, 0.0625f), 0.5f, 1e-5f);
+    darts::Residual unknown = ahead();
+    unknown.way = darts::Way::Unknown;
+    step.look(unknown);
+    EXPECT_EQ(step.survival(guide, 1, 1e-6f), 1.0f) << "another way";
+}
+
+TEST(GuidedStep, RouletteCanStartBeforeItIsPlayed) {
+    const darts::Guide guide = guideWith(0.5f);
+    GuidedStep step;
+    step.look(ahead());
+    step.startRoulette(guide, 0, 1.0f);
+    step.startRoulette(guide, 0, 0.25f); // goes on
+    EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);
+    const darts::Guide never = guideWith(0.0f);
+    EXPECT_EQ(step.survival(never, 0, 1e-30f), 1.0f);
+}
+
+} // namespace
+} // namespace tungsten::transport
