@@ -33,7 +33,7 @@ void readGuidance(const ObjectReader& block, const Scene& scene, const EffectPla
         settings.scheme.on = false;
         block.warn(settings.lightSampling ? "enable_volume_light_sampling" : "enable_light_sampling",
                    "guided paths connect to emitters; without it paths are sampled plainly");
-    } else if (!plan.mediumScattering) {
+    } else if (!plan.mediumScattering || !plan.heterogeneousMedia.empty()) {
         settings.scheme.on = false;
     } else if (settings.scheme.followsBodies() && !plan.surfaceScattering && !scene.transport.gate.delta) {
         settings.scheme.on = !transport::isSealed(scene);

@@ -56,7 +56,7 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
         // Directions are guided for the sake of control vertices.
         if (!medium.scatters() || (!settings.elliptical && !scheme.direction))
             settings.direction = darts::Direction::Phase;
-        const darts::Medium coefficients{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()};
+        const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
         guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
         darts::Settings view = settings, surface = settings, glossy = settings;
@@ -107,7 +107,9 @@ void PathTracer::plan(EffectPlan& plan) const {
     const std::string sampling = settings_.scheme.published ? "published DARTS sampling" : "DARTS sampling";
     plan.describe("guided paths", settings_.scheme.on,
                   settings_.scheme.on ? sampling + " of scattering media"
-                                      : "no time gate, no scattering medium but behind refraction, or not asked for");
+                  : !plan.heterogeneousMedia.empty()
+                      ? plan.heterogeneity()
+                      : "no time gate, no scattering medium but behind refraction, or not asked for");
     if (settings_.scheme.on) transport::WaysOut::plan(*scene_, settings_.scheme, true, plan);
     const std::string obstacle = lightVertexObstacle(plan);
     plan.describe("light vertices", obstacle.empty(),

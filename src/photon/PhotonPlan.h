@@ -32,6 +32,7 @@ struct PhotonPlan {
 
     float highestSpeed = 1.0f; ///< of light, wherever a path can get
     bool oneSpeed = true;
+    bool homogeneous = true;   ///< coefficients are constant in every medium: splats and records of flights count on it
     bool straightRays = false; ///< from one point at one speed: records can be splatted, surfaces connected
     bool folds = false;        ///< mirrors, refraction or followed glossy surfaces can be seen
     /// Every sensor path is one straight chain at one speed, or shall be taken for one: control vertices alone do.
@@ -39,7 +40,7 @@ struct PhotonPlan {
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
-    [[nodiscard]] bool splats() const { return straightRays && volume.on; }
+    [[nodiscard]] bool splats() const { return straightRays && homogeneous && volume.on; }
 
   private:
     void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

@@ -73,8 +73,8 @@ void GuidedPathWalk::addControlVertex(const Medium& medium, const darts::Control
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !counts(1 + visibility.crossings, 1)) return;
     const float share = shareOfControlVertex(medium, vertex.distance);
     const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
-    const Rgb radiance =
-        throughput_ * medium.sigmaS * medium.transmittance(vertex.distance) * light * visibility.transmittance * weight;
+    const Rgb radiance = throughput_ * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
+                         visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
     sink_.addInside(context_.sensor.gate.delta ? radiance * region_.speed : radiance, arrival);
 }
@@ -212,7 +212,7 @@ void GuidedPathWalk::connectToReflectedLight(const SurfaceInteraction* surface) 
         region = regionBeyond(there, -direction, region_);
     } else {
         const float phase = medium->phase.eval(direction, vertex.toGlossy);
-        end = {medium->sigmaS * phase, phase};
+        end = {medium->sigmaS() * phase, phase};
     }
     const Scattering scattering = scatteringTowards(direction, surface);
     if (isBlack(scattering.value) || isBlack(end.value)) return;
@@ -248,7 +248,7 @@ float GuidedPathWalk::shareOfWalk(const SurfaceInteraction& surface, const Strai
     if (!lightVertexTried_ || !mayBeLightVertex(surface, -ray_.direction, way.direction)) return 1.0f;
     const float lightCosine = std::abs(way.direction.dot(ng)), cosine = std::abs(ray_.direction.dot(ng));
     const float areaPdf =
-        pdfLightDirection(*target_->emitter, target_->point, -way.direction) * lightCosine / sqr(way.distance);
+        pdfEmissionDirection(*target_->emitter, target_->point, -way.direction) * lightCosine / sqr(way.distance);
     const float walk = scatteringPdf_ * cosine / sqr(surface.hit.t);
     return walk / (walk + triedDensity(areaPdf) +
                    reflectedDensity(surface, -ray_.direction, surface.hit.t, way.direction, areaPdf));

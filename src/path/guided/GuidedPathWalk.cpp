@@ -98,7 +98,7 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     throughput_ = throughput_ * darts::to<Rgb>(flight.transmittanceOverPdf);
     if (isBlack(throughput_)) return false;
     if (flight.surface) return scatterOnSurface(*hit);
-    throughput_ = throughput_ * medium.sigmaS;
+    throughput_ = throughput_ * medium.sigmaS();
     return scatterInMedium(medium, flight.distance);
 }
 
@@ -139,7 +139,7 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const S
     const double t = next() < 0.5f ? chord.begin() + flights.sample(u).offset : chord.sample(u);
     const double pdf = 0.5 * flights.pdf(t - chord.begin()) + 0.5 * chord.pdf(t);
     if (!(pdf > 0.0)) return std::nullopt;
-    throughput_ = throughput_ * medium.sigmaS * medium.transmittance(float(t)) * float(1.0 / pdf);
+    throughput_ = throughput_ * medium.sigmaS() * medium.transmittance(float(t)) * float(1.0 / pdf);
     return float(t);
 }
 

@@ -189,7 +189,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     looked_ = connected_ = false;
     if (isBlack(power_)) return false;
     if (step.surface) return meetSurface(*hit);
-    power_ = power_ * medium.sigmaS;
+    power_ = power_ * medium.sigmaS();
     if (context_.storeVolume) std::visit([&](auto& list) { leaveAt(step.distance, flight, list); }, deposits_.volume);
     return scatter(medium, guide, step.distance);
 }
@@ -241,7 +241,7 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points
     if (!vertex) return;
     ++counters_.controlVertices;
     const Vec3f position = ray_.at(vertex->distance);
-    Rgb power = power_ * medium.sigmaS * medium.transmittance(vertex->distance) * vertex->inversePdf;
+    Rgb power = power_ * medium.sigmaS() * medium.transmittance(vertex->distance) * vertex->inversePdf;
     if (storesPhotons())
         power = power * controlVertexShare(1.0f / vertex->inversePdf, meanComponent(medium.sigmaT()), vertex->distance);
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
