@@ -8,31 +8,11 @@ constexpr size_t MostSources = 8;
 /// Relative to the time: rounding of lengths in float.
 constexpr double Slack = 1e-6;
 
-struct Ball {
-    Vec3f centre;
-    float radius;
-};
-
-Ball ballAround(const Shape& shape) {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) return {sphere->centre, sphere->radius};
-    if (const auto* disk = std::get_if<Disk>(&shape)) return {disk->centre, disk->radius};
-    const Imath::Box3f box = boundsOf(shape);
-    return {box.center(), 0.5f * box.size().length()};
-}
-
-Vec3f positionOf(const EmitterModel& model) {
-    if (const auto* spot = std::get_if<SpotEmitter>(&model)) return spot->position;
-    return std::get<PointEmitter>(model).position;
-}
-
 } // namespace
 
 ArrivalBound::Source ArrivalBound::sourceOf(const Emitter& emitter) {
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) {
-        const Ball ball = ballAround(*area->shape);
-        return {ball.centre, ball.radius, emitter.emissionTime};
-    }
-    return {positionOf(emitter.model), 0.0f, emitter.emissionTime};
+    const BoundingSphere sphere = boundingSphere(emitter);
+    return {sphere.centre, sphere.radius, emitter.emissionTime};
 }
 
 ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {

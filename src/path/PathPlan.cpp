@@ -13,6 +13,7 @@ std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, c
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
     if (!facts.mediumScattering) return "no medium scatters";
+    if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
     const bool sealed = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
                         transport::isSealed(scene);
     return sealed ? "all that scatters lies behind walls that refract: no connection is complete" : "";

@@ -4,13 +4,6 @@ namespace tungsten::path {
 
 namespace {
 
-/// Largest distance between two points of a surface, from above.
-float diameter(const Shape& shape) {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) return 2.0f * sphere->radius;
-    if (const auto* disk = std::get_if<Disk>(&shape)) return 2.0f * disk->radius;
-    return boundsOf(shape).size().length();
-}
-
 bool chosenFrom(const Emitter& emitter, TargetChoice::Emitters emitters) {
     return !emitter.isInfinite() && (emitters == TargetChoice::Emitters::All || emitter.isDelta());
 }
@@ -25,9 +18,9 @@ Rgb PathTarget::intensity(const Vec3f& direction) const {
         const Rgb value = surface->bsdf->eval(surface->query(TransportMode::Photons, lobe::Smooth), surface->wi, wo);
         return power * value * surface->photonShadingFactor(-incoming, direction);
     }
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter->model))
+    if (const float area = emittingArea(*emitter); area > 0.0f)
         return emittedRadiance(*emitter, point.uv, point.normal, direction) *
-               (std::abs(direction.dot(point.normal)) * area->areaSampler->area() / probability);
+               (std::abs(direction.dot(point.normal)) * area / probability);
     return emittedIntensity(*emitter, point, direction) / probability;
 }
 
@@ -39,8 +32,7 @@ TargetChoice::TargetChoice(const Scene& scene, Emitters emitters) : scene_(scene
         powers.push_back(power);
         total += power;
         count_ += power > 0.0f ? 1 : 0;
-        const auto* area = std::get_if<AreaEmitter>(&emitter.model);
-        radii_.push_back(area ? diameter(*area->shape) : 0.0f);
+        radii_.push_back(2.0f * boundingSphere(emitter).radius);
     }
     for (float& power : powers)
         if (power > 0.0f) power = 0.5f * power / total + 0.5f / float(count_);

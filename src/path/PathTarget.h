@@ -56,7 +56,7 @@ class TargetChoice {
 
     const Scene& scene_;
     Distribution1D distribution_;
-    std::vector<float> radii_; ///< of a ball about a point of the surface that holds the area emitter, by emitter
+    std::vector<float> radii_; ///< of a ball about any of its points that holds the emitter, by emitter
     int count_ = 0;
 };
 

@@ -56,7 +56,7 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
         // Directions are guided for the sake of control vertices.
         if (!medium.scatters() || (!settings.elliptical && !scheme.direction))
             settings.direction = darts::Direction::Phase;
-        const darts::Medium coefficients{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()};
+        const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
         guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
         darts::Settings view = settings, surface = settings, glossy = settings;

@@ -20,8 +20,8 @@ std::string guidanceObstacle(const Scene& scene, const transport::Policy& policy
     if (!policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!facts.mediumScattering) return "no medium scatters";
-    if (std::holds_alternative<Orthographic>(scene.camera.model))
-        return "an orthographic camera has no position to aim at";
+    if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
+    if (scene.camera.hasParallelRays()) return "an orthographic camera has no position to aim at";
     return {};
 }
 
@@ -38,6 +38,7 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     PhotonPlan plan;
     plan.highestSpeed = facts.highestSpeed;
     plan.oneSpeed = !facts.speedsDiffer;
+    plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
     const std::string obstacle = guidanceObstacle(scene, settings.policy, facts);
     plan.guidance = {obstacle.empty(), obstacle.empty() ? "the scene asks for DARTS" : obstacle};
@@ -84,14 +85,12 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 }
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
-    volume.on = facts.mediumScattering;
-    volume.reason = std::visit(
-        [&](const auto& p) {
-            return std::string(volume.on ? p.Reason : "no medium scatters: no volume photon is stored or gathered");
-        },
-        settings.primitive);
-    const bool delta = scene.transport.gate.delta;
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
+    volume.on = facts.mediumScattering && (homogeneous || atVertices);
+    volume.reason = !facts.mediumScattering ? "no medium scatters: no volume photon is stored or gathered"
+                    : !volume.on            ? facts.heterogeneity()
+                                            : std::visit([](const auto& p) { return p.Reason; }, settings.primitive);
+    const bool delta = scene.transport.gate.delta;
     const std::string kernel = "delta gate: a box about it that narrows with the radius";
     temporalKernel = {delta, !delta                         ? "the gate has a width, or none"
                              : meetsDeltaGate && atVertices ? kernel + "; control vertices lie on the gate itself"

@@ -29,6 +29,7 @@ struct PhotonPlan {
 
     float highestSpeed = 1.0f; ///< of light, wherever a path can get
     bool oneSpeed = true;
+    bool homogeneous = true;   ///< coefficients are constant in every medium: splats and records of flights count on it
     bool straightRays = false; ///< from one point at one speed: records can be splatted, surfaces connected
     bool folds = false;        ///< mirrors, refraction or followed glossy surfaces can be seen
     /// Every sensor path is one straight chain at one speed, or shall be taken for one: control vertices alone do.
@@ -37,7 +38,7 @@ struct PhotonPlan {
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
     bool looksAgain = false; ///< at what sensor paths meet, when the photons are there: splats are not all
-    [[nodiscard]] bool splats() const { return straightRays && volume.on; }
+    [[nodiscard]] bool splats() const { return straightRays && homogeneous && volume.on; }
     /// Sensor paths are traced before the photons; else after them.
     [[nodiscard]] bool records() const { return splats() || connections.on; }
 

@@ -1,5 +1,7 @@
 #include "transport/Body.h"
 
+#include "tungsten/core/Overloaded.h"
+
 #include <algorithm>
 
 namespace tungsten::transport {
@@ -52,8 +54,10 @@ void addBoundary(const Scene& scene, size_t index, std::vector<Body>& bodies) {
             body.insides += 2; // around something: no simple shape
         } else if (++body.insides == 1 && primitive.bsdfs.size() == 1) {
             body.primitive = &primitive;
-            body.sphere = std::get_if<Sphere>(&primitive.shape);
-            if (const auto* mesh = std::get_if<TriangleMesh>(&primitive.shape)) body.faces = convexFaces(*mesh);
+            std::visit(Overloaded{[&](const Sphere& sphere) { body.sphere = &sphere; },
+                                  [&](const TriangleMesh& mesh) { body.faces = convexFaces(mesh); },
+                                  [](const Disk&) {}},
+                       primitive.shape);
         }
     }
 }
@@ -72,12 +76,6 @@ void joinTouching(const Scene& scene, std::vector<Body>& bodies) {
 }
 
 } // namespace
-
-float relativeIndex(const Bsdf& bsdf) {
-    if (const auto* smooth = std::get_if<Dielectric>(&bsdf.model)) return smooth->ior;
-    if (const auto* rough = std::get_if<RoughDielectric>(&bsdf.model)) return rough->ior;
-    return 1.0f;
-}
 
 Body::Exit Body::leave(const Vec3f& position, const Vec3f& direction) const {
     if (sphere) {
@@ -103,7 +101,7 @@ std::vector<Body> bodiesOf(const Scene& scene) {
         const Medium& medium = scene.media[i];
         if (medium.scatters())
             bodies[i].reducedSigmaT =
-                std::max(meanComponent(medium.sigmaA + medium.sigmaS * (1.0f - medium.phase.g())), 1e-20f);
+                std::max(meanComponent(medium.sigmaA() + medium.sigmaS() * (1.0f - medium.phase.g())), 1e-20f);
     }
     for (size_t i = 0; i < scene.primitives.size(); ++i)
         if (scene.primitives[i].boundsMedium) addBoundary(scene, i, bodies);
@@ -132,8 +130,11 @@ std::vector<BodySphere> spheresAboutBodies(const Scene& scene) {
                                         [](const BsdfPtr& bsdf) { return passesStraight(*bsdf) || refracts(*bsdf); });
         if (!passes || !scatters(primitive.inside.medium) || scatters(primitive.outside.medium)) continue;
         const Imath::Box3f box = boundsOf(primitive.shape);
-        const auto* sphere = std::get_if<Sphere>(&primitive.shape);
-        spheres.push_back({box.center(), sphere ? sphere->radius : 0.5f * box.size().length()});
+        const float radius =
+            std::visit(Overloaded{[](const Sphere& sphere) { return sphere.radius; },
+                                  [&](const OneOf<TriangleMesh, Disk> auto&) { return 0.5f * box.size().length(); }},
+                       primitive.shape);
+        spheres.push_back({box.center(), radius});
     }
     return spheres;
 }

@@ -15,8 +15,6 @@ inline bool passesStraight(const Bsdf& bsdf) {
 inline bool refracts(const Bsdf& bsdf) {
     return (bsdf.lobes() & (lobe::SpecularTransmission | lobe::GlossyTransmission)) != 0;
 }
-/// Of a refracting boundary, behind its normal over before it; 1 for others.
-float relativeIndex(const Bsdf& bsdf);
 
 /// All that is made of one medium.
 struct Body {

@@ -1,4 +1,4 @@
-# Installs the sampling library to temporary folders, once as a project of its own and once as a component of this build,
+# Installs the sampling library to temporary folders, once from a copy of its folder alone and once as a component of this build,
 # and builds and runs the example against each.
 #   cmake -DHOST_BUILD=... -DLIBRARY=<src/darts> -DWORK=... -DGENERATOR=... -DCOMPILER=... [-DLAUNCHER=...] -P package.cmake
 
@@ -26,8 +26,9 @@ function(run_example prefix)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-file(COPY ${LIBRARY}/example DESTINATION ${WORK}) # out of the tree, whose headers must not be found
-configure_and_build(${LIBRARY} ${WORK}/library)
+file(COPY ${LIBRARY}/ DESTINATION ${WORK}/darts) # out of the tree, where nothing else must be found
+file(RENAME ${WORK}/darts/example ${WORK}/example)
+configure_and_build(${WORK}/darts ${WORK}/library)
 run(${CMAKE_COMMAND} --install ${WORK}/library --prefix ${WORK}/alone)
 run_example(${WORK}/alone)
 run(${CMAKE_COMMAND} --install ${HOST_BUILD} --component darts --prefix ${WORK}/component)

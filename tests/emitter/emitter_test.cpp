@@ -147,6 +147,38 @@ TEST(Emitter, ConnectionsGiveTheIrradianceOfClosedForms) {
     EXPECT_NEAR(mean, expected, 4.5 * std::sqrt((squared / Count - mean * mean) / Count));
 }
 
+TEST(Emitter, DirectionsStayInTheConeWithItsDensity) {
+    const QuadLamp quad;
+    const ConeDiskLamp coneDisk;
+    Sampler sampler(8, RandomStream::Test, 0, 0);
+    for (const Emitter& emitter : {withModel(PointEmitter{Vec3f(0.0f), Rgb(3.0f)}), withModel(spot()), quad.emitter,
+                                   coneDisk.emitter, withModel(makeInfiniteSphere(Texture(2.0f), Frame(), true))})
+        for (int i = 0; i < 100; ++i) {
+            const Vec2f u = sampler.next2D();
+            const EmissionSample sample = sampleEmission(emitter, u, sampler.next2D());
+            const SurfaceSample start{sample.ray.origin, sample.normal, {0.0f, 0.0f}};
+            const EmissionCone cone = emissionCone(emitter, start);
+            const float pdf = pdfEmissionDirection(emitter, start, sample.ray.direction);
+            EXPECT_LE(1.0f - sample.ray.direction.dot(cone.axis), cone.widest + 1e-5f) << emitter.model.index();
+            EXPECT_NEAR(pdf, sample.pdfDirection, 1e-4f * pdf) << emitter.model.index();
+        }
+}
+
+TEST(Emitter, PhotonsStartInsideTheBoundingSphere) {
+    const QuadLamp quad;
+    CollimatedEmitter beam;
+    beam.position = Vec3f(1, 2, 3);
+    beam.radius = 0.5f;
+    Sampler sampler(9, RandomStream::Test, 0, 0);
+    for (const Emitter& emitter : {withModel(spot()), withModel(beam), quad.emitter}) {
+        const BoundingSphere sphere = boundingSphere(emitter);
+        for (int i = 0; i < 100; ++i) {
+            const Vec3f start = sampleEmission(emitter, sampler.next2D(), Vec2f(0.5f)).ray.origin;
+            EXPECT_LE((start - sphere.centre).length(), sphere.radius * 1.0001f) << emitter.model.index();
+        }
+    }
+}
+
 TEST(Emitter, AreaLightsAreOneSided) {
     const QuadLamp quad;
     EXPECT_EQ(emittedRadiance(quad.emitter, {0, 0}, Vec3f(0, -1, 0), Vec3f(0, -1, 0)), Rgb(5.0f));

@@ -63,8 +63,7 @@ TEST(PhaseFunction, AgreesWithExtendedPrecision) {
 
 Medium colouredFog() {
     Medium fog;
-    fog.sigmaA = Rgb(0.1f, 0.0f, 0.3f);
-    fog.sigmaS = Rgb(0.5f, 1.5f, 0.0f);
+    fog.model = Homogeneous{Rgb(0.1f, 0.0f, 0.3f), Rgb(0.5f, 1.5f, 0.0f)};
     return fog;
 }
 
@@ -88,7 +87,7 @@ TEST(Medium, FlightsEstimateTheCollisionIntegralPerChannel) {
                     1e-5f);
     }
     for (int c = 0; c < 3; ++c) {
-        const double sigmaT = double(fog.sigmaT()[c]), sigmaS = double(fog.sigmaS[c]);
+        const double sigmaT = double(fog.sigmaT()[c]), sigmaS = double(fog.sigmaS()[c]);
         const double expected = sigmaS / sigmaT * -std::expm1(-sigmaT * double(Reach));
         const double mean = collided[c] / Count, error = std::sqrt((squared[c] / Count - mean * mean) / Count);
         EXPECT_NEAR(mean, expected, 4.5 * error + 1e-12);
@@ -98,7 +97,7 @@ TEST(Medium, FlightsEstimateTheCollisionIntegralPerChannel) {
 
 TEST(Medium, FlightDistancesFollowTheirDensity) {
     Medium fog;
-    fog.sigmaS = Rgb(2.0f);
+    fog.model = Homogeneous{Rgb(0.0f), Rgb(2.0f)};
     EXPECT_GT(test::chiSquareUniform(
                   [&](Sampler& s) { return -std::expm1(-2.0 * double(sampleFlight(fog, Infinity, s).distance)); }),
               test::SmallestPValue);
@@ -106,7 +105,7 @@ TEST(Medium, FlightDistancesFollowTheirDensity) {
 
 TEST(Medium, AbsorptionAloneAndEmptinessAreCrossedAnalytically) {
     Medium smoke;
-    smoke.sigmaA = Rgb(0.7f);
+    smoke.model = Homogeneous{Rgb(0.7f), Rgb(0.0f)};
     Sampler sampler(1, RandomStream::Test, 0, 0);
     const FlightSample flight = sampleFlight(smoke, 2.0f, sampler);
     EXPECT_TRUE(flight.exited);
@@ -114,7 +113,7 @@ TEST(Medium, AbsorptionAloneAndEmptinessAreCrossedAnalytically) {
     EXPECT_EQ(smoke.transmittance(Infinity), Rgb(0.0f));
     EXPECT_EQ(Medium{}.transmittance(Infinity), Rgb(1.0f));
     Medium red;
-    red.sigmaA = Rgb(1.0f, 0.0f, 0.0f);
+    red.model = Homogeneous{Rgb(1.0f, 0.0f, 0.0f), Rgb(0.0f)};
     EXPECT_EQ(red.transmittance(Infinity), Rgb(0.0f));
     EXPECT_EQ(red.transmittance(2.0f).y, 1.0f);
 }
@@ -122,7 +121,7 @@ TEST(Medium, AbsorptionAloneAndEmptinessAreCrossedAnalytically) {
 TEST(Medium, OpticalDepthsFromTinyToHuge) {
     for (const float depth : {1e-6f, 1e-3f, 1.0f, 80.0f, 1e4f}) {
         Medium fog;
-        fog.sigmaS = Rgb(depth);
+        fog.model = Homogeneous{Rgb(0.0f), Rgb(depth)};
         for (uint64_t i = 0; i < 2000; ++i) {
             Sampler sampler(2, RandomStream::Test, 0, i);
             const FlightSample flight = sampleFlight(fog, 1.0f, sampler);

@@ -90,7 +90,7 @@ TEST(LightVertices, TheirDensityIsWhatWalksWeighAgainst) {
             if (std::holds_alternative<AreaEmitter>(emitter.model))
                 normal = light.find("sphere") != std::string::npos ? (origin - Vec3f(0.2f, 1.0f, 0.1f)).normalized()
                                                                    : Vec3f(0.0f, -1.0f, 0.0f);
-            const float pdf = pdfLightDirection(emitter, {origin, normal, Vec2f(0.0f)}, -vertex.toLight);
+            const float pdf = pdfEmissionDirection(emitter, {origin, normal, Vec2f(0.0f)}, -vertex.toLight);
             const float cosine = std::abs(vertex.toLight.dot(vertex.surface.hit.ng));
             EXPECT_NEAR(vertex.areaPdf, pdf * cosine / sqr(vertex.distance), 2e-3f * vertex.areaPdf) << light;
             ++seen;

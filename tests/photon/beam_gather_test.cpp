@@ -78,7 +78,7 @@ TEST(BeamGather, EvaluatesEveryBeamOnTheRayOnce) {
                 double(fog.phase.eval(beam.direction, -segment.direction)) / (2.0 * double(Radius) * a.sine);
             for (int k = 0; k < 3; ++k)
                 expected[k] +=
-                    weight * double(beam.power[k] * fog.sigmaS[k]) * std::exp(-double(fog.sigmaT()[k]) * (a.s + a.t));
+                    weight * double(beam.power[k] * fog.sigmaS()[k]) * std::exp(-double(fog.sigmaT()[k]) * (a.s + a.t));
         }
         FrameSums sums(1, Vec3d(0.0));
         const uint64_t gathered = gather.gather(segment, sums);

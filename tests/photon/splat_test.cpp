@@ -28,8 +28,7 @@ Scene foggyScene(const SplatCase& c) {
     Scene scene;
     for (int i = 0; i < 4; ++i) {
         Medium fog;
-        fog.sigmaA = Rgb(0.2f);
-        fog.sigmaS = i == 1 ? Rgb(0.5f, 1.0f, 2.0f) : Rgb(0.7f);
+        fog.model = Homogeneous{Rgb(0.2f), i == 1 ? Rgb(0.5f, 1.0f, 2.0f) : Rgb(0.7f)};
         if (i < 2) fog.phase.model = HenyeyGreenstein{i == 0 ? 0.4f : -0.6f};
         if (i == 2) fog.phase.model = Rayleigh{};
         scene.media.push_back(fog);

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace tungsten {
 namespace {
 
@@ -41,6 +43,17 @@ TEST(Describe, IntegratorsOfPluginsAreWhole) {
         EXPECT_EQ(paths.count(field), 1u) << field;
     EXPECT_EQ(paths.count("gather_radius"), 0u);
     EXPECT_EQ(fieldsOf(all, "photon_map").count("frame_num"), 0u) << "in steady state there are no frames";
+}
+
+TEST(Describe, TypesOfIntegratorsAreNamed) {
+    const auto integrators = typesOf(shippedDescriptions(), "integrators");
+    for (const auto& integrator : integrators) {
+        const auto type = std::find_if(integrator->fields.begin(), integrator->fields.end(),
+                                       [](const Field& field) { return field.name == "type"; });
+        ASSERT_NE(type, integrator->fields.end());
+        for (const auto& other : integrators)
+            EXPECT_NE(type->accepted.find(other->name), std::string::npos) << other->name << " in " << type->accepted;
+    }
 }
 
 TEST(Describe, BlocksWithinOthersStandOnce) {

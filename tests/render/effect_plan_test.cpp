@@ -35,6 +35,7 @@ TEST(EffectPlan, ABareSceneCallsForLittle) {
     EXPECT_FALSE(plan.timeResolved);
     EXPECT_FALSE(plan.mediumScattering);
     EXPECT_TRUE(plan.greyMedia);
+    EXPECT_EQ(plan.heterogeneity(), "");
     EXPECT_TRUE(plan.surfaceScattering);
     EXPECT_FALSE(plan.specularSensorPaths);
     EXPECT_FALSE(plan.forwardBoundaries);

@@ -42,8 +42,8 @@ TEST(SceneLoader, FieldsBecomeTypedValues) {
     const LoadedScene loaded = loadScene(file.path());
     const Scene& scene = *loaded.scene;
     ASSERT_EQ(scene.media.size(), 1u);
-    EXPECT_EQ(scene.media[0].sigmaS, Rgb(2, 4, 6));
-    EXPECT_EQ(scene.media[0].sigmaA, Rgb(1, 1, 1));
+    EXPECT_EQ(scene.media[0].sigmaS(), Rgb(2, 4, 6));
+    EXPECT_EQ(scene.media[0].sigmaA(), Rgb(1, 1, 1));
     EXPECT_FLOAT_EQ(scene.media[0].phase.g(), 0.7f);
     ASSERT_EQ(scene.primitives.size(), 2u);
     EXPECT_EQ(scene.primitives[0].inside.medium, 0);
@@ -66,7 +66,7 @@ TEST(SceneLoader, OverridesChangeTheSceneAndItsHash) {
     const uint64_t plain = loadScene(file.path()).hash;
     EXPECT_EQ(plain, loadScene(file.path()).hash);
     const LoadedScene changed = loadScene(file.path(), {{}, {"media.fog.sigma_a=0", "camera.resolution=[2,2]"}});
-    EXPECT_EQ(changed.scene->media[0].sigmaA, Rgb(0.0f));
+    EXPECT_EQ(changed.scene->media[0].sigmaA(), Rgb(0.0f));
     EXPECT_EQ(changed.scene->camera.resolution, Vec2i(2, 2));
     EXPECT_NE(changed.hash, plain);
     EXPECT_EQ(loadScene(file.path(), {{}, {"renderer.spp=99"}}).hash, plain);
@@ -186,7 +186,7 @@ TEST(SceneLoader, InlineMediaAndBsdfsWork) {
     EXPECT_EQ(loaded.scene->media.size(), 1u);
     EXPECT_EQ(loaded.scene->primitives[0].inside.medium, 0);
     EXPECT_NEAR(loaded.scene->primitives[0].bsdfs[0]->forwardWeight({0, 0}).x, 0.5f * 0.75f, 1e-6f);
-    EXPECT_TRUE(loaded.scene->emitters[0].isArea());
+    EXPECT_TRUE(loaded.scene->emitters[0].primitive().has_value());
 }
 
 std::string warningsOf(const std::string& json) {

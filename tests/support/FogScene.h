@@ -9,8 +9,7 @@ namespace tungsten::test {
 inline Scene fogScene() {
     Scene scene;
     Medium fog;
-    fog.sigmaA = Rgb(0.2f);
-    fog.sigmaS = Rgb(0.5f, 1.0f, 2.0f);
+    fog.model = Homogeneous{Rgb(0.2f), Rgb(0.5f, 1.0f, 2.0f)};
     fog.phase.model = HenyeyGreenstein{0.4f};
     scene.media.push_back(fog);
     return scene;

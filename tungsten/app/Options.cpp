@@ -75,49 +75,52 @@ std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
     return arguments;
 }
 
-} // namespace
-
-std::optional<Options> parseOptions(int argc, const char* const* argv) {
-    Options options;
+/// Options as they are written, before they are understood.
+struct OptionTexts {
     std::string checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre, describe;
     int64_t spp = 0;
+    const CLI::Option* description = nullptr; ///< --describe, which may have no value
+};
 
-    CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
-                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice, or before the first pass.",
-                 "tungsten"};
+void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("scenes", options.scenes, "scene files, rendered in sequence");
     app.set_version_flag("-v,--version", Version);
     app.add_option("-t,--threads", options.threads, "number of threads (default: all)")->check(CLI::Range(1, 1024));
     app.add_flag("-r,--restart", options.restart, "ignore a saved resume state");
-    app.add_option("-c,--checkpoint", checkpoint,
+    app.add_option("-c,--checkpoint", text.checkpoint,
                    "save images and a resume state every DURATION (no unit: minutes); resume from it");
     app.add_option("-i,--input-directory", options.inputDirectory,
                    "base of the scene's resources (default: the scene's folder)");
-    app.add_option("-d,--output-directory", directory, "base of every output file; created if missing");
-    app.add_option("--spp", spp, "samples per pixel in total")->check(CLI::Range(int64_t(1), int64_t(1000000000000)));
-    app.add_option("--timeout", timeout, "stop after DURATION of passes (no unit: minutes) and write what is there");
-    app.add_option("-s,--seed", seed, "seed of the random numbers (default 0xBA5EBA11)");
-    app.add_option("-o,--output-file", ldr, "tone-mapped image (.png)");
-    app.add_option("-e,--hdr-output-file", hdr, "linear image (.exr with standard error, .pfm, or .npy)");
-    app.add_option("--time-center", timeCentre, "centre of the time gate")->check(CLI::Number);
+    app.add_option("-d,--output-directory", text.directory, "base of every output file; created if missing");
+    app.add_option("--spp", text.spp, "samples per pixel in total")
+        ->check(CLI::Range(int64_t(1), int64_t(1000000000000)));
+    app.add_option("--timeout", text.timeout,
+                   "stop after DURATION of passes (no unit: minutes) and write what is there");
+    app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
+    app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
+    app.add_option("-e,--hdr-output-file", text.hdr, "linear image (.exr with standard error, .pfm, or .npy)");
+    app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
     app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
         ->allow_extra_args(false);
-    app.add_option("--resolution", resolution, "WIDTHxHEIGHT in pixels");
-    app.add_option("--stats", statistics, "write times, counters, memory and standard error to this JSON file");
+    app.add_option("--resolution", text.resolution, "WIDTHxHEIGHT in pixels");
+    app.add_option("--stats", text.statistics, "write times, counters, memory and standard error to this JSON file");
     app.add_option("--target-error", options.targetError,
                    "stop when the relative standard error is at most this (0.01 is 1 %)")
         ->check(CLI::PositiveNumber);
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
-    const CLI::Option* description =
-        app.add_option("--describe", describe,
+    text.description =
+        app.add_option("--describe", text.describe,
                        "print the fields of a type or block of the scene (--list; also scene, renderer, darts, ...): "
                        "unit, default, meaning and accepted values; of all without TYPE")
             ->expected(0, 1)
             ->option_text("[TYPE]");
     app.add_flag("--markdown", options.markdown, "--describe prints a page of tables");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
+}
 
+/// False: --help or --version has been answered.
+bool parse(CLI::App& app, int argc, const char* const* argv) {
     try {
         app.parse(reversedArguments(argc, argv));
     } catch (const CLI::ExtrasError& error) {
@@ -125,21 +128,38 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) {
             app.exit(error, std::cout, std::cerr);
-            return std::nullopt;
+            return false;
         }
         throw UsageError(std::string(error.what()) + " (--help lists the options)");
     }
-    if (!seed.empty()) options.seed = seedOption(seed);
-    if (!checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", checkpoint);
-    if (!timeout.empty()) options.timeoutSeconds = durationOption("--timeout", timeout);
-    if (spp > 0) options.spp = spp;
-    if (!resolution.empty()) options.overrides.push_back(resolutionOverride(resolution));
-    if (!timeCentre.empty()) options.overrides.push_back("integrator.transient_time_center=" + timeCentre);
-    if (!directory.empty()) options.outputs.directory = directory;
-    if (!ldr.empty()) options.outputs.ldr = ldr;
-    if (!hdr.empty()) options.outputs.hdr = hdr;
-    if (!statistics.empty()) options.outputs.statistics = statistics;
-    if (description->count() > 0) options.describe = describe;
+    return true;
+}
+
+void understand(const OptionTexts& text, Options& options) {
+    if (!text.seed.empty()) options.seed = seedOption(text.seed);
+    if (!text.checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", text.checkpoint);
+    if (!text.timeout.empty()) options.timeoutSeconds = durationOption("--timeout", text.timeout);
+    if (text.spp > 0) options.spp = text.spp;
+    if (!text.resolution.empty()) options.overrides.push_back(resolutionOverride(text.resolution));
+    if (!text.timeCentre.empty()) options.overrides.push_back("integrator.transient_time_center=" + text.timeCentre);
+    if (!text.directory.empty()) options.outputs.directory = text.directory;
+    if (!text.ldr.empty()) options.outputs.ldr = text.ldr;
+    if (!text.hdr.empty()) options.outputs.hdr = text.hdr;
+    if (!text.statistics.empty()) options.outputs.statistics = text.statistics;
+    if (text.description->count() > 0) options.describe = text.describe;
+}
+
+} // namespace
+
+std::optional<Options> parseOptions(int argc, const char* const* argv) {
+    Options options;
+    OptionTexts text;
+    CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
+                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice, or before the first pass.",
+                 "tungsten"};
+    declareOptions(app, options, text);
+    if (!parse(app, argc, argv)) return std::nullopt;
+    understand(text, options);
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
     if (options.scenes.empty() && !options.list && !options.describe)
         throw UsageError("no scene file given (--help lists the options)");

@@ -1,8 +1,17 @@
 #include "tungsten/bsdf/Bsdf.h"
 
 #include "tungsten/bsdf/Models.h"
+#include "tungsten/core/Overloaded.h"
 
 namespace tungsten {
+
+namespace {
+
+template <typename Model>
+concept Reflecting =
+    OneOf<Model, Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Plastic, RoughPlastic, PbrtPlastic, Null>;
+
+} // namespace
 
 Bsdf::Bsdf(std::string name_, BsdfModel model_, Texture albedo_)
     : name(std::move(name_)), model(std::move(model_)), albedo(std::move(albedo_)) {
@@ -31,7 +40,17 @@ Rgb Bsdf::forwardWeight(const Vec2f& uv) const {
     if ((lobes_ & lobe::Forward) == 0) return Rgb(0.0f);
     const BsdfQuery query{uv};
     const ModelPoint at{query, albedo.rgb(uv)};
-    return std::visit([&](const auto& m) { return forwardOf(m, at); }, model);
+    return std::visit(Overloaded{[&](const OneOf<Forward, Transparency, Mixed> auto& m) { return forwardOf(m, at); },
+                                 [](const OneOf<Dielectric, RoughDielectric> auto&) { return Rgb(0.0f); },
+                                 [](const Reflecting auto&) { return Rgb(0.0f); }},
+                      model);
+}
+
+float relativeIndex(const Bsdf& bsdf) {
+    return std::visit(Overloaded{[](const OneOf<Dielectric, RoughDielectric> auto& m) { return m.ior; },
+                                 [](const OneOf<Forward, Transparency, Mixed> auto&) { return 1.0f; },
+                                 [](const Reflecting auto&) { return 1.0f; }},
+                      bsdf.model);
 }
 
 } // namespace tungsten

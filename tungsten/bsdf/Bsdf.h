@@ -143,6 +143,9 @@ class Bsdf {
     LobeMask lobes_ = lobe::None;
 };
 
+/// Refractive index behind the normal over that before it; 1 where nothing is refracted.
+float relativeIndex(const Bsdf& bsdf);
+
 /// eta and k of the format's named metals; none for an unknown name.
 std::optional<std::pair<Rgb, Rgb>> conductorByName(const std::string& name);
 std::vector<std::string> conductorNames();

@@ -35,12 +35,13 @@ float Microfacet::density(const Vec3f& m) const {
         return InvPi * std::exp(-tanSquared(m) / sqr(alpha_)) / (sqr(alpha_) * sqr(cos2));
     case MicrofacetModel::Phong:
         return (exponent_ + 2.0f) * 0.5f * InvPi * std::pow(m.z, exponent_);
-    default: {
-        // alpha^2 / (pi (cos^2 (alpha^2 - 1) + 1)^2) with 1 - cos^2 from x and y: exact at small angles.
-        const float sin2 = m.x * m.x + m.y * m.y;
-        return sqr(alpha_) * InvPi / sqr(sqr(alpha_) * cos2 + sin2);
+    case MicrofacetModel::Ggx:
+    case MicrofacetModel::PbrtGgx:
+        break;
     }
-    }
+    // alpha^2 / (pi (cos^2 (alpha^2 - 1) + 1)^2) with 1 - cos^2 from x and y: exact at small angles.
+    const float sin2 = m.x * m.x + m.y * m.y;
+    return sqr(alpha_) * InvPi / sqr(sqr(alpha_) * cos2 + sin2);
 }
 
 float Microfacet::shadowingOne(const Vec3f& v, const Vec3f& m) const {
@@ -52,9 +53,11 @@ float Microfacet::shadowingOne(const Vec3f& v, const Vec3f& m) const {
         return rationalShadowing(1.0f / (alpha_ * std::sqrt(tan2)));
     case MicrofacetModel::Phong:
         return rationalShadowing(std::sqrt((0.5f * exponent_ + 1.0f) / tan2));
-    default:
-        return 2.0f / (1.0f + std::sqrt(1.0f + sqr(alpha_) * tan2));
+    case MicrofacetModel::Ggx:
+    case MicrofacetModel::PbrtGgx:
+        break;
     }
+    return 2.0f / (1.0f + std::sqrt(1.0f + sqr(alpha_) * tan2));
 }
 
 float Microfacet::shadowing(const Vec3f& wi, const Vec3f& wo, const Vec3f& m) const {

@@ -4,7 +4,8 @@
 //   evalModel f |cos wo| of its smooth lobes in `at.query.requested`
 //   pdfModel  density of sampleModel per solid angle (smooth lobes)
 //   sampleModel one continuation among the requested lobes
-//   forwardOf the weight of going straight through, which is what sampleModel brings there on average
+//   forwardOf the weight of going straight through, which is what sampleModel brings there on average; of those that
+//             do (Bsdf.cpp lists those that do not)
 // Reflective models are black from behind (wi.z <= 0): the caller flips the frame for two-sided shading.
 
 #include "tungsten/bsdf/Bsdf.h"
@@ -29,15 +30,8 @@ template <typename Model>
 float pdfModel(const Model& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo);
 template <typename Model>
 MaybeSample sampleModel(const Model& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u);
-template <typename Model>
-Rgb forwardOf(const Model&, const ModelPoint&) {
-    return Rgb(0.0f);
-}
-template <>
 Rgb forwardOf(const Forward&, const ModelPoint& at);
-template <>
 Rgb forwardOf(const Transparency& model, const ModelPoint& at);
-template <>
 Rgb forwardOf(const Mixed& model, const ModelPoint& at);
 
 /// Finishes a sample of smooth lobes: weight eval / pdf of the whole model.

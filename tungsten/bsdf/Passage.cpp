@@ -61,7 +61,6 @@ MaybeSample sampleModel(const Forward&, const ModelPoint& at, const Vec3f& wi, c
     if (!at.wants(lobe::Forward)) return std::nullopt;
     return passStraight(wi, Rgb(1.0f), 1.0f);
 }
-template <>
 Rgb forwardOf(const Forward&, const ModelPoint&) {
     return Rgb(1.0f);
 }
@@ -91,7 +90,6 @@ MaybeSample sampleModel(const Transparency& model, const ModelPoint& at, const V
     sample->pdf *= 1.0f - probability;
     return sample;
 }
-template <>
 Rgb forwardOf(const Transparency& model, const ModelPoint& at) {
     return Rgb(1.0f - model.alpha.alpha(at.query.uv));
 }
@@ -125,7 +123,6 @@ MaybeSample sampleModel(const Mixed& model, const ModelPoint& at, const Vec3f& w
     sample->pdf *= chosen;
     return sample;
 }
-template <>
 Rgb forwardOf(const Mixed& model, const ModelPoint& at) {
     const float ratio = model.ratio.scalar(at.query.uv);
     return at.albedo *

@@ -44,8 +44,15 @@ class Camera {
     [[nodiscard]] std::optional<Vec2f> project(const Vec3f& point) const;
     /// How far from position() the rays of a lens start at most: its radius in the world; 0 for other cameras.
     [[nodiscard]] float aperture() const;
+    /// How far from it, along the axis, the rays of a lens through one raster position meet; Infinity for other
+    /// cameras.
+    [[nodiscard]] float focusDistance() const;
+    /// Of a perspective image; none where rays are parallel.
+    [[nodiscard]] std::optional<FieldOfView> fieldOfView() const;
     /// Every sensor ray leaves the same point.
-    [[nodiscard]] bool hasSinglePosition() const { return std::holds_alternative<Pinhole>(model); }
+    [[nodiscard]] bool hasSinglePosition() const;
+    /// Every sensor ray has the same direction: position() says nothing about where it starts.
+    [[nodiscard]] bool hasParallelRays() const;
 };
 
 /// camera-to-world from the scene's transform: negates the x axis.

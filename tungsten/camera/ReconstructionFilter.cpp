@@ -55,9 +55,13 @@ float ReconstructionFilter::halfWidth() const {
         return 0.5f;
     case FilterType::Tent:
         return 1.0f;
-    default:
-        return 2.0f;
+    case FilterType::Gaussian:
+    case FilterType::MitchellNetravali:
+    case FilterType::CatmullRom:
+    case FilterType::Lanczos:
+        break;
     }
+    return 2.0f;
 }
 
 float ReconstructionFilter::eval(float x) const {

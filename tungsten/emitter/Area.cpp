@@ -6,8 +6,9 @@
 namespace tungsten {
 
 float AreaEmitter::cosCone() const {
-    const auto* disk = std::get_if<Disk>(shape);
-    return disk ? disk->cosConeAngle : 0.0f;
+    return std::visit(Overloaded{[](const Disk& disk) { return disk.cosConeAngle; },
+                                 [](const OneOf<TriangleMesh, Sphere> auto&) { return 0.0f; }},
+                      *shape);
 }
 
 float AreaEmitter::extent() const {

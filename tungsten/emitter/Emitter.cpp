@@ -1,17 +1,24 @@
 #include "tungsten/emitter/Emitter.h"
 
+#include "tungsten/core/Warp.h"
 #include "tungsten/emitter/Power.h"
 #include "tungsten/emitter/Sampling.h"
 
 namespace tungsten {
 
-bool Emitter::isDelta() const {
-    return std::holds_alternative<DirectionalPointEmitter>(model) || std::holds_alternative<CollimatedEmitter>(model);
+std::optional<uint32_t> Emitter::primitive() const {
+    using Answer = std::optional<uint32_t>;
+    return std::visit(Overloaded{[](const AreaEmitter& area) { return Answer(area.primitive); },
+                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                InfiniteSphereEmitter> auto&) { return Answer(); }},
+                      model);
 }
 
-bool Emitter::isPointLike() const {
-    if (const auto* beam = std::get_if<CollimatedEmitter>(&model)) return beam->radius == 0.0f;
-    return !isArea() && !isInfinite();
+bool Emitter::isConnectable() const {
+    return std::visit(Overloaded{[](const OneOf<PointEmitter, SpotEmitter, AreaEmitter> auto&) { return true; },
+                                 [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto&) { return false; },
+                                 [](const InfiniteSphereEmitter& sky) { return sky.samplable; }},
+                      model);
 }
 
 EmissionSample sampleEmission(const Emitter& emitter, const Vec2f& uPosition, const Vec2f& uDirection) {
@@ -19,58 +26,157 @@ EmissionSample sampleEmission(const Emitter& emitter, const Vec2f& uPosition, co
 }
 
 SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u) {
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) return area->areaSampler->sample(*area->shape, u);
-    const EmissionSample sample = sampleEmission(emitter, u, Vec2f(0.5f, 0.5f));
-    return {sample.ray.origin, sample.normal, {0.0f, 0.0f}};
+    return std::visit(Overloaded{[&](const AreaEmitter& area) { return area.areaSampler->sample(*area.shape, u); },
+                                 [&](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                 InfiniteSphereEmitter> auto& other) {
+                                     const EmissionSample sample = sampleEmission(other, u, Vec2f(0.5f, 0.5f));
+                                     return SurfaceSample{sample.ray.origin, sample.normal, {0.0f, 0.0f}};
+                                 }},
+                      emitter.model);
 }
 
 Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction) {
-    if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) return point->intensity;
-    if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model))
-        return spot->intensity * spot->falloffTowards(direction);
     const float cosine = direction.dot(start.normal);
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model); area && area->shinesAt(cosine))
-        return area->radiance.rgb(start.uv) * (cosine * area->areaSampler->area());
-    return Rgb(0.0f);
+    return std::visit(
+        Overloaded{[&](const PointEmitter& point) { return point.intensity; },
+                   [&](const SpotEmitter& spot) { return spot.intensity * spot.falloffTowards(direction); },
+                   [&](const AreaEmitter& area) {
+                       if (!area.shinesAt(cosine)) return Rgb(0.0f);
+                       return area.radiance.rgb(start.uv) * (cosine * area.areaSampler->area());
+                   },
+                   [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto&) { return Rgb(0.0f); },
+                   // It has no start that all directions share.
+                   [](const InfiniteSphereEmitter&) { return Rgb(0.0f); }},
+        emitter.model);
+}
+
+EmissionCone emissionCone(const Emitter& emitter, const SurfaceSample& start) {
+    return std::visit(Overloaded{[](const OneOf<PointEmitter, InfiniteSphereEmitter> auto&) { return EmissionCone{}; },
+                                 [](const SpotEmitter& spot) {
+                                     return EmissionCone{spot.direction, 1.0f - spot.cosOuter, false};
+                                 },
+                                 [&](const AreaEmitter& area) {
+                                     return EmissionCone{start.normal, 1.0f - area.cosCone(), true};
+                                 },
+                                 [](const DirectionalPointEmitter& beam) {
+                                     return EmissionCone{beam.direction, 0.0f, false};
+                                 },
+                                 [](const CollimatedEmitter& beam) {
+                                     return EmissionCone{beam.frame.n, 0.0f, false};
+                                 }},
+                      emitter.model);
+}
+
+float pdfEmissionDirection(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction) {
+    return std::visit(
+        Overloaded{[](const PointEmitter&) { return warp::squareToSpherePdf(); },
+                   [&](const SpotEmitter& spot) {
+                       return direction.dot(spot.direction) >= spot.cosOuter ? warp::squareToConePdf(spot.cosOuter)
+                                                                             : 0.0f;
+                   },
+                   [&](const AreaEmitter& area) {
+                       return warp::squareToCosineConePdf({0.0f, 0.0f, direction.dot(start.normal)}, area.cosCone());
+                   },
+                   [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto&) { return 0.0f; },
+                   [&](const InfiniteSphereEmitter& sky) { return pdfSky(sky, -direction); }},
+        emitter.model);
+}
+
+float emittingArea(const Emitter& emitter) {
+    return std::visit(Overloaded{[](const AreaEmitter& area) { return area.areaSampler->area(); },
+                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                InfiniteSphereEmitter> auto&) { return 0.0f; }},
+                      emitter.model);
+}
+
+BoundingSphere boundingSphere(const Emitter& emitter) {
+    return std::visit(Overloaded{[](const OneOf<PointEmitter, SpotEmitter, DirectionalPointEmitter> auto& point) {
+                                     return BoundingSphere{point.position, 0.0f};
+                                 },
+                                 [](const CollimatedEmitter& beam) {
+                                     return BoundingSphere{beam.position, beam.radius};
+                                 },
+                                 [](const AreaEmitter& area) { return boundingSphere(*area.shape); },
+                                 [](const InfiniteSphereEmitter& sky) {
+                                     return BoundingSphere{sky.sceneCentre, Infinity};
+                                 }},
+                      emitter.model);
 }
 
 std::optional<DirectSample> sampleDirect(const Emitter& emitter, const Vec3f& receiver, const Vec2f& u) {
+    using Answer = std::optional<DirectSample>;
     return std::visit(
-        [&](const auto& model) -> std::optional<DirectSample> {
-            using Model = std::decay_t<decltype(model)>;
-            constexpr bool SingleDirection =
-                std::is_same_v<Model, DirectionalPointEmitter> || std::is_same_v<Model, CollimatedEmitter>;
-            if constexpr (SingleDirection)
-                return std::nullopt;
-            else
-                return sampleDirect(model, receiver, u);
-        },
+        Overloaded{[&](const OneOf<PointEmitter, SpotEmitter, AreaEmitter, InfiniteSphereEmitter> auto& model) {
+                       return sampleDirect(model, receiver, u);
+                   },
+                   [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto&) { return Answer(); }},
         emitter.model);
 }
 
 float pdfDirect(const Emitter& emitter, const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) {
-    const auto* area = std::get_if<AreaEmitter>(&emitter.model);
-    if (!area) return 0.0f;
-    const Vec3f offset = position - receiver;
-    const float squared = offset.length2();
-    const float cosine = -offset.dot(ng) / std::sqrt(squared);
-    return cosine > 0.0f ? squared / (cosine * area->areaSampler->area()) : 0.0f;
+    return std::visit(Overloaded{[&](const AreaEmitter& area) {
+                                     const Vec3f offset = position - receiver;
+                                     const float squared = offset.length2();
+                                     const float cosine = -offset.dot(ng) / std::sqrt(squared);
+                                     return cosine > 0.0f ? squared / (cosine * area.areaSampler->area()) : 0.0f;
+                                 },
+                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                InfiniteSphereEmitter> auto&) { return 0.0f; }},
+                      emitter.model);
 }
 
 Rgb emittedRadiance(const Emitter& emitter, const Vec2f& uv, const Vec3f& ng, const Vec3f& towards) {
-    const auto* area = std::get_if<AreaEmitter>(&emitter.model);
-    return area && area->shinesAt(ng.dot(towards)) ? area->radiance.rgb(uv) : Rgb(0.0f);
+    return std::visit(Overloaded{[&](const AreaEmitter& area) {
+                                     return area.shinesAt(ng.dot(towards)) ? area.radiance.rgb(uv) : Rgb(0.0f);
+                                 },
+                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                InfiniteSphereEmitter> auto&) { return Rgb(0.0f); }},
+                      emitter.model);
+}
+
+float pdfDirectInfinite(const Emitter& emitter, const Vec3f& direction) {
+    return std::visit(
+        Overloaded{
+            [&](const InfiniteSphereEmitter& sky) { return sky.samplable ? pdfSky(sky, direction) : 0.0f; },
+            [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter> auto&) {
+                return 0.0f;
+            }},
+        emitter.model);
+}
+
+Rgb environmentRadiance(const Emitter& emitter, const Vec3f& direction) {
+    return std::visit(
+        Overloaded{
+            [&](const InfiniteSphereEmitter& sky) { return skyRadiance(sky, direction); },
+            [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter> auto&) {
+                return Rgb(0.0f);
+            }},
+        emitter.model);
+}
+
+void encloseScene(Emitter& emitter, const Vec3f& centre, float radius) {
+    std::visit(
+        Overloaded{
+            [&](InfiniteSphereEmitter& sky) {
+                sky.sceneCentre = centre;
+                sky.sceneRadius = radius;
+            },
+            [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter> auto&) {
+            }},
+        emitter.model);
 }
 
 Rgb emitterPower(const Emitter& emitter) {
-    if (const auto* point = std::get_if<PointEmitter>(&emitter.model)) return point->intensity * (4.0f * Pi);
-    if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model))
-        return spot->intensity * spotSolidAngle(spot->cosInner, spot->cosOuter);
-    if (const auto* beam = std::get_if<DirectionalPointEmitter>(&emitter.model)) return beam->power;
-    if (const auto* beam = std::get_if<CollimatedEmitter>(&emitter.model)) return beam->power;
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) return area->radiance.average() * area->extent();
-    const auto& sky = std::get<InfiniteSphereEmitter>(emitter.model);
-    return sky.radiance.average() * (4.0f * Pi * Pi * sqr(sky.sceneRadius));
+    return std::visit(
+        Overloaded{
+            [](const PointEmitter& point) { return point.intensity * (4.0f * Pi); },
+            [](const SpotEmitter& spot) { return spot.intensity * spotSolidAngle(spot.cosInner, spot.cosOuter); },
+            [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto& beam) { return beam.power; },
+            [](const AreaEmitter& area) { return area.radiance.average() * area.extent(); },
+            [](const InfiniteSphereEmitter& sky) {
+                return sky.radiance.average() * (4.0f * Pi * Pi * sqr(sky.sceneRadius));
+            }},
+        emitter.model);
 }
 
 } // namespace tungsten

@@ -2,6 +2,7 @@
 // Light sources: a closed set of plain structs. Radiometry and power: docs/scene-format.md, section 7.2.
 
 #include "tungsten/core/Distribution.h"
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/geometry/Shape.h"
 #include "tungsten/texture/Texture.h"
 
@@ -75,12 +76,25 @@ struct Emitter {
     int medium = -1;           ///< medium that surrounds it (ext_medium), -1 for vacuum
     float vacuumSpeed = -1.0f; ///< ext_speed_of_light where positive
 
-    [[nodiscard]] bool isInfinite() const { return std::holds_alternative<InfiniteSphereEmitter>(model); }
-    [[nodiscard]] bool isArea() const { return std::holds_alternative<AreaEmitter>(model); }
+    /// Light from infinitely far away, in every direction.
+    [[nodiscard]] bool isInfinite() const {
+        return std::visit(Overloaded{[](const InfiniteSphereEmitter&) { return true; },
+                                     [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter,
+                                                    SpotEmitter, AreaEmitter> auto&) { return false; }},
+                          model);
+    }
     /// Emits in a single direction (directional_point, collimated): cannot be connected to.
-    [[nodiscard]] bool isDelta() const;
-    /// Point-like in position (point, spot, directional_point, collimated of radius 0).
-    [[nodiscard]] bool isPointLike() const;
+    [[nodiscard]] bool isDelta() const {
+        return std::visit(
+            Overloaded{
+                [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto&) { return true; },
+                [](const OneOf<PointEmitter, SpotEmitter, AreaEmitter, InfiniteSphereEmitter> auto&) { return false; }},
+            model);
+    }
+    /// Is a surface: the index of its primitive in Scene::primitives.
+    [[nodiscard]] std::optional<uint32_t> primitive() const;
+    /// Vertices may connect to it.
+    [[nodiscard]] bool isConnectable() const;
 };
 
 /// A photon leaving an emitter.
@@ -97,6 +111,21 @@ EmissionSample sampleEmission(const Emitter& emitter, const Vec2f& uPosition, co
 Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction);
 /// A starting point for the above: position, normal (points: position only).
 SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u);
+
+/// The directions that sampleEmission draws from a start: all within a cone.
+struct EmissionCone {
+    Vec3f axis{0.0f, 0.0f, 1.0f};
+    float widest = 2.0f;         ///< largest 1 - cos of the angle about the axis; 2: the sphere
+    bool cosineWeighted = false; ///< density proportional to the cosine; else uniform
+};
+EmissionCone emissionCone(const Emitter& emitter, const SurfaceSample& start);
+/// Density of sampleEmission's directions per solid angle; 0 for a single direction.
+float pdfEmissionDirection(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction);
+
+/// Of the surface that emits; 0 for emitters that are none.
+float emittingArea(const Emitter& emitter);
+/// About all points from which it emits; of radius Infinity for the environment.
+BoundingSphere boundingSphere(const Emitter& emitter);
 
 /// A connection from a receiver to an emitter.
 struct DirectSample {
@@ -120,6 +149,9 @@ float pdfDirectInfinite(const Emitter& emitter, const Vec3f& direction);
 Rgb emittedRadiance(const Emitter& emitter, const Vec2f& uv, const Vec3f& ng, const Vec3f& towards);
 /// Radiance from the environment along an escaping direction.
 Rgb environmentRadiance(const Emitter& emitter, const Vec3f& direction);
+
+/// Tells an emitter that shines from outside how large the scene is; others have no use for it.
+void encloseScene(Emitter& emitter, const Vec3f& centre, float radius);
 
 /// Total emitted power per channel.
 Rgb emitterPower(const Emitter& emitter);

@@ -34,10 +34,6 @@ Vec3f sampleSky(const InfiniteSphereEmitter& sky, const Vec2f& u, float& pdf) {
     return direction.normalized();
 }
 
-const InfiniteSphereEmitter* skyOf(const Emitter& emitter) {
-    return std::get_if<InfiniteSphereEmitter>(&emitter.model);
-}
-
 } // namespace
 
 InfiniteSphereEmitter makeInfiniteSphere(const Texture& radiance, const Frame& frame, bool samplable) {
@@ -83,18 +79,15 @@ std::optional<DirectSample> sampleDirect(const InfiniteSphereEmitter& sky, const
     return DirectSample{direction, Infinity, sky.radiance.rgb(uvOf(sky, direction)) / pdf, pdf, receiver};
 }
 
-float pdfDirectInfinite(const Emitter& emitter, const Vec3f& direction) {
-    const InfiniteSphereEmitter* sky = skyOf(emitter);
-    if (!sky || !sky->samplable) return 0.0f;
-    if (!sky->distribution) return warp::squareToSpherePdf();
-    const Vec2f uv = uvOf(*sky, direction);
+float pdfSky(const InfiniteSphereEmitter& sky, const Vec3f& direction) {
+    if (!sky.distribution) return warp::squareToSpherePdf();
+    const Vec2f uv = uvOf(sky, direction);
     const float sinTheta = std::sin(uv.y * Pi);
-    return sinTheta > 0.0f ? sky->distribution->pdf(uv) / (2.0f * Pi * Pi * sinTheta) : 0.0f;
+    return sinTheta > 0.0f ? sky.distribution->pdf(uv) / (2.0f * Pi * Pi * sinTheta) : 0.0f;
 }
 
-Rgb environmentRadiance(const Emitter& emitter, const Vec3f& direction) {
-    const InfiniteSphereEmitter* sky = skyOf(emitter);
-    return sky ? sky->radiance.rgb(uvOf(*sky, direction)) : Rgb(0.0f);
+Rgb skyRadiance(const InfiniteSphereEmitter& sky, const Vec3f& direction) {
+    return sky.radiance.rgb(uvOf(sky, direction));
 }
 
 } // namespace tungsten

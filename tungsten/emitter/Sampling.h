@@ -18,4 +18,8 @@ std::optional<DirectSample> sampleDirect(const SpotEmitter& spot, const Vec3f& r
 std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& receiver, const Vec2f& u);
 std::optional<DirectSample> sampleDirect(const InfiniteSphereEmitter& sky, const Vec3f& receiver, const Vec2f& u);
 
+/// Density per solid angle of the directions towards an environment that both draw.
+float pdfSky(const InfiniteSphereEmitter& sky, const Vec3f& direction);
+Rgb skyRadiance(const InfiniteSphereEmitter& sky, const Vec3f& direction);
+
 } // namespace tungsten

@@ -1,5 +1,6 @@
 #include "tungsten/geometry/SceneGeometry.h"
 
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/geometry/AnalyticShape.h"
 
 #include <cstring>
@@ -150,13 +151,23 @@ RTCGeometry makeAnalytic(RTCDevice device, const Analytic& shape) {
     return geometry;
 }
 
+/// Null for a shape that no ray meets.
 RTCGeometry makeGeometry(RTCDevice device, const Shape& shape) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape))
-        return mesh->triangles.empty() || mesh->positions.empty() ? nullptr : makeTriangles(device, *mesh);
-    if (const auto* sphere = std::get_if<Sphere>(&shape))
-        return sphere->radius > 0.0f ? makeAnalytic(device, *sphere) : nullptr;
-    const Disk& disk = std::get<Disk>(shape);
-    return disk.radius > 0.0f ? makeAnalytic(device, disk) : nullptr;
+    return std::visit(Overloaded{[&](const TriangleMesh& mesh) {
+                                     return mesh.triangles.empty() || mesh.positions.empty()
+                                                ? nullptr
+                                                : makeTriangles(device, mesh);
+                                 },
+                                 [&](const OneOf<Sphere, Disk> auto& round) {
+                                     return round.radius > 0.0f ? makeAnalytic(device, round) : nullptr;
+                                 }},
+                      shape);
+}
+
+size_t trianglesOf(const Shape& shape) {
+    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size(); },
+                                 [](const OneOf<Sphere, Disk> auto&) { return size_t(0); }},
+                      shape);
 }
 
 /// The open interval (tMin, tMax) as the closest closed one; Embree needs tnear >= 0, and denormals may be flushed.
@@ -184,7 +195,7 @@ SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes) : shapes_(
     for (size_t i = 0; i < shapes_.size(); ++i) {
         const RTCGeometry geometry = makeGeometry(device_, *shapes_[i]);
         if (!geometry) continue;
-        if (const auto* mesh = std::get_if<TriangleMesh>(shapes_[i])) triangleCount_ += mesh->triangles.size();
+        triangleCount_ += trianglesOf(*shapes_[i]);
         rtcCommitGeometry(geometry);
         rtcAttachGeometryByID(scene_, geometry, unsigned(i));
         rtcReleaseGeometry(geometry);
@@ -213,13 +224,9 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
     hit.t = query.ray.tfar;
     hit.shape = query.hit.geomID;
     hit.face = query.hit.primID;
-    const Shape& shape = *shapes_[hit.shape];
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape))
-        completeHit(*mesh, ray, query.hit.u, query.hit.v, hit);
-    else if (const auto* sphere = std::get_if<Sphere>(&shape))
-        completeHit(*sphere, ray, hit);
-    else
-        completeHit(std::get<Disk>(shape), ray, hit);
+    std::visit(Overloaded{[&](const TriangleMesh& mesh) { completeHit(mesh, ray, query.hit.u, query.hit.v, hit); },
+                          [&](const OneOf<Sphere, Disk> auto& round) { completeHit(round, ray, hit); }},
+               *shapes_[hit.shape]);
     return hit;
 }
 

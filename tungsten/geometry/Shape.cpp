@@ -2,6 +2,7 @@
 
 #include "tungsten/geometry/Shape.h"
 
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/core/Warp.h"
 #include "tungsten/geometry/AnalyticShape.h"
 
@@ -9,12 +10,17 @@ namespace tungsten {
 
 namespace {
 
-std::vector<float> faceAreas(const Shape& shape) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape);
-    if (!mesh) return {};
-    std::vector<float> areas(mesh->triangles.size());
-    for (size_t i = 0; i < areas.size(); ++i) areas[i] = mesh->faceArea(uint32_t(i));
+std::vector<float> faceAreas(const TriangleMesh& mesh) {
+    std::vector<float> areas(mesh.triangles.size());
+    for (size_t i = 0; i < areas.size(); ++i) areas[i] = mesh.faceArea(uint32_t(i));
     return areas;
+}
+
+/// What drawing points needs beside the shape.
+Distribution1D faceDistribution(const Shape& shape) {
+    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return Distribution1D(faceAreas(mesh)); },
+                                 [](const OneOf<Sphere, Disk> auto&) { return Distribution1D(); }},
+                      shape);
 }
 
 SurfaceSample sampleOn(const TriangleMesh& mesh, const Distribution1D& triangles, const Vec2f& u) {
@@ -64,39 +70,53 @@ Disk makeDisk(const Transform& transform, float coneAngleDegrees) {
 
 Imath::Box3f boundsOf(const Shape& shape) {
     Imath::Box3f box;
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
-        for (const Vec3f& position : mesh->positions) box.extendBy(position);
-        return box;
-    }
     const auto around = [&](const Vec3f& centre, const Vec3f& extent) {
         box.extendBy(centre - extent);
         box.extendBy(centre + extent);
     };
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-        around(sphere->centre, Vec3f(sphere->radius));
-    } else {
-        const Disk& disk = std::get<Disk>(shape);
-        const Vec3f& n = disk.frame.n;
-        const auto half = [&](float c) { return disk.radius * std::sqrt(std::max(1.0f - c * c, 0.0f)); };
-        around(disk.centre, {half(n.x), half(n.y), half(n.z)});
-    }
+    std::visit(Overloaded{[&](const TriangleMesh& mesh) {
+                              for (const Vec3f& position : mesh.positions) box.extendBy(position);
+                          },
+                          [&](const Sphere& sphere) { around(sphere.centre, Vec3f(sphere.radius)); },
+                          [&](const Disk& disk) {
+                              const Vec3f& n = disk.frame.n;
+                              const auto half = [&](float c) {
+                                  return disk.radius * std::sqrt(std::max(1.0f - c * c, 0.0f));
+                              };
+                              around(disk.centre, {half(n.x), half(n.y), half(n.z)});
+                          }},
+               shape);
     return box;
 }
 
-float surfaceArea(const Shape& shape) {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) return 4.0f * Pi * sqr(sphere->radius);
-    if (const auto* disk = std::get_if<Disk>(&shape)) return Pi * sqr(disk->radius);
-    double area = 0.0;
-    for (const float face : faceAreas(shape)) area += double(face);
-    return float(area);
+BoundingSphere boundingSphere(const Shape& shape) {
+    return std::visit(Overloaded{[&](const TriangleMesh&) {
+                                     const Imath::Box3f box = boundsOf(shape);
+                                     return BoundingSphere{box.center(), 0.5f * box.size().length()};
+                                 },
+                                 [](const OneOf<Sphere, Disk> auto& round) {
+                                     return BoundingSphere{round.centre, round.radius};
+                                 }},
+                      shape);
 }
 
-AreaSampler::AreaSampler(const Shape& shape) : area_(surfaceArea(shape)), triangles_(faceAreas(shape)) {}
+float surfaceArea(const Shape& shape) {
+    return std::visit(Overloaded{[](const TriangleMesh& mesh) {
+                                     double area = 0.0;
+                                     for (const float face : faceAreas(mesh)) area += double(face);
+                                     return float(area);
+                                 },
+                                 [](const Sphere& sphere) { return 4.0f * Pi * sqr(sphere.radius); },
+                                 [](const Disk& disk) { return Pi * sqr(disk.radius); }},
+                      shape);
+}
+
+AreaSampler::AreaSampler(const Shape& shape) : area_(surfaceArea(shape)), triangles_(faceDistribution(shape)) {}
 
 SurfaceSample AreaSampler::sample(const Shape& shape, const Vec2f& u) const {
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) return sampleOn(*sphere, u);
-    if (const auto* disk = std::get_if<Disk>(&shape)) return sampleOn(*disk, u);
-    return sampleOn(std::get<TriangleMesh>(shape), triangles_, u);
+    return std::visit(Overloaded{[&](const TriangleMesh& mesh) { return sampleOn(mesh, triangles_, u); },
+                                 [&](const OneOf<Sphere, Disk> auto& round) { return sampleOn(round, u); }},
+                      shape);
 }
 
 } // namespace tungsten

@@ -37,6 +37,13 @@ float surfaceArea(const Shape& shape);
 /// Of the shape itself, no wider.
 Imath::Box3f boundsOf(const Shape& shape);
 
+struct BoundingSphere {
+    Vec3f centre;
+    float radius;
+};
+/// About the shape; twice the radius is no less than the distance of any two of its points.
+BoundingSphere boundingSphere(const Shape& shape);
+
 /// A point on a surface, uniform by area; density 1 / area per unit area.
 struct SurfaceSample {
     Vec3f position;

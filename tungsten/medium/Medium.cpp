@@ -2,11 +2,11 @@
 
 namespace tungsten {
 
-bool Medium::isGrey() const {
+bool Homogeneous::isGrey() const {
     return sigmaA.x == sigmaA.y && sigmaA.y == sigmaA.z && sigmaS.x == sigmaS.y && sigmaS.y == sigmaS.z;
 }
 
-Rgb Medium::transmittance(float distance) const {
+Rgb Homogeneous::transmittance(float distance) const {
     const auto channel = [distance](float sigma) { return sigma > 0.0f ? std::exp(-sigma * distance) : 1.0f; };
     const Rgb sigma = sigmaT();
     // Nothing comes from infinitely far through a medium, not even in a channel that it leaves alone
@@ -16,7 +16,13 @@ Rgb Medium::transmittance(float distance) const {
     return {channel(sigma.x), channel(sigma.y), channel(sigma.z)};
 }
 
-FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler) {
+namespace {
+
+float probabilityFlightExits(const Homogeneous& medium, float distance) {
+    return medium.scatters() ? meanComponent(medium.transmittance(distance)) : 1.0f;
+}
+
+FlightSample sampleFlight(const Homogeneous& medium, float tMax, Sampler& sampler) {
     if (!medium.scatters()) return {tMax, true, medium.transmittance(tMax), 1.0f};
     const Rgb sigma = medium.sigmaT();
     const int channel = std::min(int(sampler.next1D() * 3.0f), 2);
@@ -32,12 +38,22 @@ FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler) {
     return {t, false, medium.sigmaS * transmittance / pdf, pdf};
 }
 
-float pdfFlight(const Medium& medium, float distance) {
+float pdfFlight(const Homogeneous& medium, float distance) {
     return medium.scatters() ? meanComponent(medium.sigmaT() * medium.transmittance(distance)) : 0.0f;
 }
 
+} // namespace
+
+FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler) {
+    return std::visit([&](const auto& m) { return sampleFlight(m, tMax, sampler); }, medium.model);
+}
+
+float pdfFlight(const Medium& medium, float distance) {
+    return std::visit([&](const auto& m) { return pdfFlight(m, distance); }, medium.model);
+}
+
 float probabilityFlightExits(const Medium& medium, float distance) {
-    return medium.scatters() ? meanComponent(medium.transmittance(distance)) : 1.0f;
+    return std::visit([&](const auto& m) { return probabilityFlightExits(m, distance); }, medium.model);
 }
 
 } // namespace tungsten

@@ -1,6 +1,7 @@
 #pragma once
-// Homogeneous participating media.
+// Participating media: a closed set of models, and what a region filled with one has besides.
 
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/core/Random.h"
 #include "tungsten/medium/PhaseFunction.h"
 
@@ -8,22 +9,54 @@
 
 namespace tungsten {
 
-/// Coefficients per scene unit of length (density already multiplied in), per RGB channel.
+/// The same everywhere. Coefficients per scene unit of length (density already multiplied in), per RGB channel.
+struct Homogeneous {
+    Rgb sigmaA{0.0f}, sigmaS{0.0f};
+
+    [[nodiscard]] Rgb sigmaT() const { return sigmaA + sigmaS; }
+    [[nodiscard]] bool scatters() const { return !isBlack(sigmaS); }
+    [[nodiscard]] bool isVacuum() const { return isBlack(sigmaT()); }
+    [[nodiscard]] bool isGrey() const;
+    /// e^{-sigmaT d}; zero at infinity unless the medium is empty.
+    [[nodiscard]] Rgb transmittance(float distance) const;
+};
+
+using MediumModel = std::variant<Homogeneous>;
+
 struct Medium {
     std::string name;
-    Rgb sigmaA{0.0f}, sigmaS{0.0f};
+    MediumModel model;
     PhaseFunction phase;
     float speedOfLight = 1.0f;
     int maxBounces = 1024;    ///< distances sampled since the last surface before a path ends
     bool guided = false;      ///< `guided_homo`: asks for DARTS distance sampling
     bool guidedPhase = false; ///< phase function `ida` / `integrated_da`: asks for EDA direction sampling
 
-    [[nodiscard]] Rgb sigmaT() const { return sigmaA + sigmaS; }
-    [[nodiscard]] bool isVacuum() const { return isBlack(sigmaT()); }
-    [[nodiscard]] bool scatters() const { return !isBlack(sigmaS); }
-    [[nodiscard]] bool isGrey() const;
-    /// e^{-sigmaT d}; zero at infinity unless the medium is empty.
-    [[nodiscard]] Rgb transmittance(float distance) const;
+    /// Its coefficients are the same everywhere. Guidance, splats and photon beams take that for granted: plans decline
+    /// them elsewhere.
+    [[nodiscard]] bool isHomogeneous() const {
+        return std::visit(Overloaded{[](const Homogeneous&) { return true; }}, model);
+    }
+    [[nodiscard]] bool scatters() const {
+        return std::visit([](const auto& m) { return m.scatters(); }, model);
+    }
+    [[nodiscard]] bool isVacuum() const {
+        return std::visit([](const auto& m) { return m.isVacuum(); }, model);
+    }
+    /// Equal coefficients in all channels.
+    [[nodiscard]] bool isGrey() const {
+        return std::visit([](const auto& m) { return m.isGrey(); }, model);
+    }
+    /// Of a straight way of this length.
+    [[nodiscard]] Rgb transmittance(float distance) const {
+        return std::visit([&](const auto& m) { return m.transmittance(distance); }, model);
+    }
+
+    /// Where isHomogeneous().
+    [[nodiscard]] const Homogeneous& homogeneous() const { return std::get<Homogeneous>(model); }
+    [[nodiscard]] const Rgb& sigmaA() const { return homogeneous().sigmaA; }
+    [[nodiscard]] const Rgb& sigmaS() const { return homogeneous().sigmaS; }
+    [[nodiscard]] Rgb sigmaT() const { return homogeneous().sigmaT(); }
 };
 
 /// Outcome of a plain free flight up to `tMax`.

@@ -50,9 +50,4 @@ Vec3f PhaseFunction::sample(const Vec3f& before, const Vec2f& u) const {
         .normalized();
 }
 
-float PhaseFunction::g() const {
-    const auto* hg = std::get_if<HenyeyGreenstein>(&model);
-    return hg ? hg->g : 0.0f;
-}
-
 } // namespace tungsten

@@ -14,15 +14,21 @@ namespace tungsten {
 struct Isotropic {
     [[nodiscard]] float eval(float h) const;
     [[nodiscard]] float sample(float u) const;
+    [[nodiscard]] float meanCosine() const { return 0.0f; }
+    static constexpr bool OfHenyeyGreenstein = true; ///< at a mean cosine of 0
 };
 struct HenyeyGreenstein {
     float g = 0.0f;
     [[nodiscard]] float eval(float h) const;
     [[nodiscard]] float sample(float u) const;
+    [[nodiscard]] float meanCosine() const { return g; }
+    static constexpr bool OfHenyeyGreenstein = true;
 };
 struct Rayleigh {
     [[nodiscard]] float eval(float h) const;
     [[nodiscard]] float sample(float u) const;
+    [[nodiscard]] float meanCosine() const { return 0.0f; }
+    static constexpr bool OfHenyeyGreenstein = false;
 };
 
 /// Normalised over the sphere: eval is also the density per solid angle of sample.
@@ -34,7 +40,13 @@ class PhaseFunction {
     [[nodiscard]] float pdf(const Vec3f& before, const Vec3f& after) const { return eval(before, after); }
     [[nodiscard]] Vec3f sample(const Vec3f& before, const Vec2f& u) const;
     /// Mean cosine.
-    [[nodiscard]] float g() const;
+    [[nodiscard]] float g() const {
+        return std::visit([](const auto& phase) { return phase.meanCosine(); }, model);
+    }
+    /// Its values are those of Henyey and Greenstein's at g().
+    [[nodiscard]] bool isHenyeyGreenstein() const {
+        return std::visit([](const auto& phase) { return phase.OfHenyeyGreenstein; }, model);
+    }
 
   private:
     [[nodiscard]] Vec3f peak(const Vec3f& before) const { return g() < 0.0f ? -before : before; }

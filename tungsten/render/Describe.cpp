@@ -8,13 +8,23 @@ namespace {
 
 using Descriptions = std::vector<std::shared_ptr<Description>>;
 
-std::shared_ptr<Description> describeIntegrator(const std::string& type, const IntegratorRegistry::Entry& entry,
+/// The reader of scenes takes any type: which there are the registry alone knows, with those of plugins.
+void nameTypes(std::vector<Field>& fields, const IntegratorRegistry& registry) {
+    std::vector<std::string> types;
+    for (const auto& [type, entry] : registry.entries()) types.push_back(type);
+    for (Field& field : fields)
+        if (field.name == "type") field.accepted = listOf(types);
+}
+
+std::shared_ptr<Description> describeIntegrator(const std::string& type, const IntegratorRegistry& registry,
                                                 const std::shared_ptr<const Scene>& scene) {
+    const IntegratorRegistry::Entry& entry = registry.entries().at(type);
     auto description = std::make_shared<Description>();
     description->name = type;
     description->note = entry.description;
     const ObjectReader reader = ObjectReader::describing(description, type);
     describeTransport(reader, type);
+    nameTypes(description->fields, registry);
     try {
         (void)entry.factory(scene, reader);
     } catch (const std::exception& error) {
@@ -42,7 +52,7 @@ std::vector<DescribedKind> describeAll(const IntegratorRegistry& registry) {
     const std::shared_ptr<const Scene> scene = emptyScene();
     DescribedKind integrators{"integrators", {}};
     for (const auto& [type, entry] : registry.entries())
-        integrators.types.push_back(describeIntegrator(type, entry, scene));
+        integrators.types.push_back(describeIntegrator(type, registry, scene));
     kinds.insert(kinds.begin() + 1, std::move(integrators));
     Descriptions blocks = kinds.front().types;
     for (const DescribedKind& kind : kinds)

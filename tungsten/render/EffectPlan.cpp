@@ -73,6 +73,9 @@ void planMedia(const Scene& scene, EffectPlan& plan) {
     for (const int index : reachableMedia(scene)) {
         const Medium& medium = scene.media[size_t(index)];
         if (medium.scatters()) scattering += (scattering.empty() ? "" : ", ") + nameOf(medium.name, size_t(index));
+        if (!medium.isHomogeneous())
+            plan.heterogeneousMedia +=
+                (plan.heterogeneousMedia.empty() ? "" : ", ") + nameOf(medium.name, size_t(index));
         if (!medium.isGrey()) coloured += (coloured.empty() ? "" : ", ") + nameOf(medium.name, size_t(index));
     }
     plan.mediumScattering = !scattering.empty();
@@ -87,11 +90,11 @@ void planEmission(const Scene& scene, EffectPlan& plan) {
     std::string areas, skies;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
-        if (!emitter.isArea() && !emitter.isInfinite()) continue;
-        std::string& names = emitter.isArea() ? areas : skies;
-        const auto* area = std::get_if<AreaEmitter>(&emitter.model);
-        const std::string name = area ? scene.primitives[area->primitive].name : emitter.name;
-        names += (names.empty() ? "" : ", ") + nameOf(name, area ? area->primitive : i);
+        const auto surface = emitter.primitive();
+        if (!surface && !emitter.isInfinite()) continue;
+        std::string& names = surface ? areas : skies;
+        const std::string name = surface ? scene.primitives[*surface].name : emitter.name;
+        names += (names.empty() ? "" : ", ") + nameOf(name, surface.value_or(i));
     }
     plan.surfaceEmission = !areas.empty();
     plan.environment = !skies.empty();

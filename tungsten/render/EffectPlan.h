@@ -25,10 +25,16 @@ struct EffectPlan {
     bool speedsDiffer = false;        ///< light travels at different speeds in different regions
     float highestSpeed = 1.0f;        ///< of light, in any region that a path can reach
     bool greyMedia = true;            ///< all media have equal coefficients in all channels
+    std::string heterogeneousMedia;   ///< names of media that a path can reach and whose coefficients vary
     bool forwardBoundaries = false;   ///< index-matched boundaries: shadow rays must look through them
     bool surfaceEmission = false;     ///< emitters that camera rays can hit
     bool environment = false;
     bool textures = false;
+
+    /// Why nothing may take a medium's coefficients for constant; empty where it may.
+    [[nodiscard]] std::string heterogeneity() const {
+        return heterogeneousMedia.empty() ? "" : "coefficients vary from place to place in " + heterogeneousMedia;
+    }
 
     /// Every effect with its reason, integrators' own included, in order of description.
     std::vector<Effect> effects;

@@ -6,8 +6,7 @@ LightChoice::LightChoice(const Scene& scene) : scene_(scene), probabilities_(sce
     std::vector<float> powers;
     float total = 0.0f, count = 0.0f;
     for (const Emitter& emitter : scene.emitters) {
-        const auto* sky = std::get_if<InfiniteSphereEmitter>(&emitter.model);
-        const bool connectable = !emitter.isDelta() && !(sky && !sky->samplable);
+        const bool connectable = emitter.isConnectable();
         powers.push_back(connectable ? meanComponent(emitterPower(emitter)) : 0.0f);
         total += powers.back();
         count += connectable ? 1.0f : 0.0f;

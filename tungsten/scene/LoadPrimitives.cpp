@@ -1,5 +1,6 @@
 #include "tungsten/scene/LoadContext.h"
 
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/scene/LoadEmitters.h"
 
 #include <map>
@@ -85,8 +86,9 @@ void readRegions(LoadContext& context, const ObjectReader& reader, Primitive& pr
 }
 
 bool isUsable(const Shape& shape) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape);
-    return !mesh || !mesh->triangles.empty();
+    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return !mesh.triangles.empty(); },
+                                 [](const OneOf<Sphere, Disk> auto&) { return true; }},
+                      shape);
 }
 
 void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader readShape) {

@@ -54,12 +54,8 @@ void finishGeometry(Scene& scene) {
     for (const Primitive& primitive : scene.primitives) shapes.push_back(&primitive.shape);
     scene.geometry = std::make_unique<SceneGeometry>(shapes);
     const Vec3f low = scene.geometry->boundsMin(), high = scene.geometry->boundsMax();
-    for (Emitter& emitter : scene.emitters) {
-        auto* sky = std::get_if<InfiniteSphereEmitter>(&emitter.model);
-        if (!sky) continue;
-        sky->sceneCentre = (low + high) * 0.5f;
-        sky->sceneRadius = std::max((high - low).length() * 0.5f, 1e-6f);
-    }
+    const float radius = std::max((high - low).length() * 0.5f, 1e-6f);
+    for (Emitter& emitter : scene.emitters) encloseScene(emitter, (low + high) * 0.5f, radius);
 }
 
 /// What loading leaves beside the scene itself.

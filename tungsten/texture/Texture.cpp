@@ -2,66 +2,55 @@
 
 namespace tungsten {
 
-namespace {
-
-const Rgb& checkerColor(const CheckerTexture& checker, const Vec2f& uv) {
+const Rgb& CheckerTexture::rgb(const Vec2f& uv) const {
     const auto isOdd = [](float coordinate, int count) {
         return std::fmod(std::floor(coordinate * float(count)), 2.0f) != 0.0f;
     };
-    return isOdd(uv.x, checker.resU) != isOdd(uv.y, checker.resV) ? checker.onColor : checker.offColor;
+    return isOdd(uv.x, resU) != isOdd(uv.y, resV) ? onColor : offColor;
 }
 
-} // namespace
-
-Rgb Texture::lookupRgb(const Vec2f& uv) const {
-    if (const auto* checker = std::get_if<CheckerTexture>(&model)) return checkerColor(*checker, uv) * factor;
-    return std::get<BitmapTexture>(model).bitmap->rgb(uv) * factor;
-}
-
-float Texture::lookupScalar(const Vec2f& uv) const {
-    if (const auto* checker = std::get_if<CheckerTexture>(&model))
-        return meanComponent(checkerColor(*checker, uv) * factor);
-    return std::get<BitmapTexture>(model).bitmap->scalar(uv) * meanComponent(factor);
-}
-
-float Texture::alpha(const Vec2f& uv) const {
-    if (const auto* bitmap = std::get_if<BitmapTexture>(&model)) return bitmap->bitmap->alpha(uv);
-    return scalar(uv);
-}
-
-Rgb Texture::maximum() const {
-    if (const auto* constant = std::get_if<ConstantTexture>(&model)) return constant->value;
-    if (const auto* bitmap = std::get_if<BitmapTexture>(&model)) return bitmap->bitmap->maximum() * factor;
-    const auto& checker = std::get<CheckerTexture>(model);
-    const auto larger = [&](int c) { return std::max(checker.onColor[c], checker.offColor[c]) * factor[c]; };
+Rgb CheckerTexture::maximum() const {
+    const auto larger = [&](int c) { return std::max(onColor[c], offColor[c]); };
     return {larger(0), larger(1), larger(2)};
 }
 
-Rgb Texture::average() const {
-    if (const auto* constant = std::get_if<ConstantTexture>(&model)) return constant->value;
-    if (const auto* bitmap = std::get_if<BitmapTexture>(&model)) return bitmap->bitmap->average() * factor;
-    const auto& checker = std::get<CheckerTexture>(model);
+Rgb CheckerTexture::average() const {
     // Cells are on where column + row is odd: half of them, rounded down.
-    const int64_t cells = int64_t(checker.resU) * checker.resV;
+    const int64_t cells = int64_t(resU) * resV;
     const float on = cells > 0 ? float(double(cells / 2) / double(cells)) : 0.0f;
-    return (checker.onColor * on + checker.offColor * (1.0f - on)) * factor;
+    return onColor * on + offColor * (1.0f - on);
+}
+
+Vec2f BitmapTexture::derivatives(const Vec2f& uv, const Rgb& factor) const {
+    const Vec2f texel(1.0f / float(bitmap->width), 1.0f / float(bitmap->height));
+    const auto at = [&](float du, float dv) { return scalar({uv.x + du, uv.y + dv}, factor); };
+    return {at(texel.x, 0) - at(-texel.x, 0), at(0, texel.y) - at(0, -texel.y)};
+}
+
+float Texture::alpha(const Vec2f& uv) const {
+    return std::visit([&](const auto& m) { return m.alpha(uv, factor); }, model);
+}
+
+bool Texture::isConstant() const {
+    return std::visit([](const auto& m) { return m.Constant; }, model);
+}
+
+Rgb Texture::maximum() const {
+    return std::visit([&](const auto& m) { return Rgb(m.maximum() * factor); }, model);
+}
+
+Rgb Texture::average() const {
+    return std::visit([&](const auto& m) { return Rgb(m.average() * factor); }, model);
 }
 
 Texture Texture::scaled(const Rgb& by) const {
     Texture result = *this;
-    if (auto* constant = std::get_if<ConstantTexture>(&result.model))
-        constant->value = constant->value * by;
-    else
-        result.factor = result.factor * by;
+    result.factor = result.factor * by;
     return result;
 }
 
 Vec2f Texture::derivatives(const Vec2f& uv) const {
-    const auto* bitmap = std::get_if<BitmapTexture>(&model);
-    if (!bitmap) return {0.0f, 0.0f};
-    const Vec2f texel(1.0f / float(bitmap->bitmap->width), 1.0f / float(bitmap->bitmap->height));
-    const auto at = [&](float du, float dv) { return lookupScalar({uv.x + du, uv.y + dv}); };
-    return {at(texel.x, 0) - at(-texel.x, 0), at(0, texel.y) - at(0, -texel.y)};
+    return std::visit([&](const auto& m) { return m.derivatives(uv, factor); }, model);
 }
 
 } // namespace tungsten

@@ -45,21 +45,50 @@ class Bitmap {
 /// NaN becomes 0.
 std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file);
 
+// Models answer what Texture asks, before its factor.
+
 struct ConstantTexture {
     Rgb value{0.0f};
+
+    [[nodiscard]] const Rgb& rgb(const Vec2f&) const { return value; }
+    [[nodiscard]] float scalar(const Vec2f&, const Rgb& factor) const { return meanComponent(value * factor); }
+    [[nodiscard]] float alpha(const Vec2f& uv, const Rgb& factor) const { return scalar(uv, factor); }
+    [[nodiscard]] Vec2f derivatives(const Vec2f&, const Rgb&) const { return {0.0f, 0.0f}; }
+    [[nodiscard]] const Rgb& maximum() const { return value; }
+    [[nodiscard]] const Rgb& average() const { return value; }
+    static constexpr bool Constant = true;
 };
 struct CheckerTexture {
     Rgb onColor{0.8f}, offColor{0.2f};
     int resU = 20, resV = 20;
+
+    [[nodiscard]] const Rgb& rgb(const Vec2f& uv) const;
+    [[nodiscard]] float scalar(const Vec2f& uv, const Rgb& factor) const { return meanComponent(rgb(uv) * factor); }
+    [[nodiscard]] float alpha(const Vec2f& uv, const Rgb& factor) const { return scalar(uv, factor); }
+    /// The format has none.
+    [[nodiscard]] Vec2f derivatives(const Vec2f&, const Rgb&) const { return {0.0f, 0.0f}; }
+    [[nodiscard]] Rgb maximum() const;
+    [[nodiscard]] Rgb average() const;
+    static constexpr bool Constant = false;
 };
 struct BitmapTexture {
     std::shared_ptr<const Bitmap> bitmap;
+
+    [[nodiscard]] Rgb rgb(const Vec2f& uv) const { return bitmap->rgb(uv); }
+    [[nodiscard]] float scalar(const Vec2f& uv, const Rgb& factor) const {
+        return bitmap->scalar(uv) * meanComponent(factor);
+    }
+    [[nodiscard]] float alpha(const Vec2f& uv, const Rgb&) const { return bitmap->alpha(uv); }
+    [[nodiscard]] Vec2f derivatives(const Vec2f& uv, const Rgb& factor) const;
+    [[nodiscard]] Rgb maximum() const { return bitmap->maximum(); }
+    [[nodiscard]] Rgb average() const { return bitmap->average(); }
+    static constexpr bool Constant = false;
 };
 
 /// A value over the surface, by uv.
 struct Texture {
     std::variant<ConstantTexture, CheckerTexture, BitmapTexture> model;
-    Rgb factor{1.0f}; ///< multiplies checkers and bitmaps
+    Rgb factor{1.0f}; ///< multiplies the model
 
     Texture() = default;
     explicit Texture(const Rgb& constant) : model(ConstantTexture{constant}) {}
@@ -68,26 +97,20 @@ struct Texture {
     explicit Texture(std::shared_ptr<const Bitmap> bitmap) : model(BitmapTexture{std::move(bitmap)}) {}
 
     [[nodiscard]] Rgb rgb(const Vec2f& uv) const {
-        if (const auto* constant = std::get_if<ConstantTexture>(&model)) return constant->value;
-        return lookupRgb(uv);
+        return std::visit([&](const auto& m) { return Rgb(m.rgb(uv) * factor); }, model);
     }
     [[nodiscard]] float scalar(const Vec2f& uv) const {
-        if (const auto* constant = std::get_if<ConstantTexture>(&model)) return meanComponent(constant->value);
-        return lookupScalar(uv);
+        return std::visit([&](const auto& m) { return m.scalar(uv, factor); }, model);
     }
     /// The "auto" scalar of transparency: alpha where the file has four channels.
     [[nodiscard]] float alpha(const Vec2f& uv) const;
-    [[nodiscard]] bool isConstant() const { return std::holds_alternative<ConstantTexture>(model); }
+    [[nodiscard]] bool isConstant() const;
     [[nodiscard]] Rgb maximum() const;
     [[nodiscard]] Rgb average() const;
     /// Multiplied by a constant colour (power conversions).
-    [[nodiscard]] Texture scaled(const Rgb& factor) const;
+    [[nodiscard]] Texture scaled(const Rgb& by) const;
     /// Bump: central texel differences (dh/du, dh/dv) of the scalar, as the format defines them; zero for constants.
     [[nodiscard]] Vec2f derivatives(const Vec2f& uv) const;
-
-  private:
-    [[nodiscard]] Rgb lookupRgb(const Vec2f& uv) const;
-    [[nodiscard]] float lookupScalar(const Vec2f& uv) const;
 };
 
 } // namespace tungsten

@@ -97,7 +97,7 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     state.throughput = state.throughput * darts::to<Rgb>(flight.transmittanceOverPdf);
     if (isBlack(state.throughput)) return false;
     if (flight.surface) return scatterOnSurface(*hit);
-    state.throughput = state.throughput * medium.sigmaS;
+    state.throughput = state.throughput * medium.sigmaS();
     return scatterInMedium(medium, flight.distance);
 }
 
@@ -141,7 +141,7 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const S
     const double pdf = 0.5 * flights.pdf(t - chord.begin()) + 0.5 * chord.pdf(t);
     if (!(pdf > 0.0)) return std::nullopt;
     Rgb& throughput = path_.state.throughput;
-    throughput = throughput * medium.sigmaS * medium.transmittance(float(t)) * float(1.0 / pdf);
+    throughput = throughput * medium.sigmaS() * medium.transmittance(float(t)) * float(1.0 / pdf);
     return float(t);
 }
 

@@ -27,7 +27,7 @@ void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& ver
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
     const float share = ControlVertices::share(path, medium, vertex.distance);
     const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
-    const Rgb radiance = state.throughput * medium.sigmaS * medium.transmittance(vertex.distance) * light *
+    const Rgb radiance = state.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
     state.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival);

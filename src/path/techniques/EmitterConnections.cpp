@@ -18,7 +18,7 @@ float shareOfWalk(const GuidedPath& path, const SurfaceInteraction& surface, con
     const PathTarget& target = *path.target;
     const float lightCosine = std::abs(way.direction.dot(surface.hit.ng));
     const float areaPdf =
-        pdfLightDirection(*target.emitter, target.point, -way.direction) * lightCosine / sqr(way.distance);
+        pdfEmissionDirection(*target.emitter, target.point, -way.direction) * lightCosine / sqr(way.distance);
     return transport::balance(
         SurfaceConnections::density(path, surface.hit), LightVertexConnections::density(areaPdf),
         ReflectedConnections::density(path, surface, toVertex, surface.hit.t, way.direction, areaPdf));

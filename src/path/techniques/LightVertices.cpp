@@ -4,8 +4,6 @@
 
 #include "transport/Balance.h"
 
-#include "tungsten/core/Warp.h"
-
 #include <tbb/parallel_for.h>
 
 namespace tungsten::path {
@@ -50,14 +48,6 @@ Rgb LightVertex::scattered(const Vec3f& direction) const {
 
 bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, const Vec3f& toLight) {
     return scattersSmoothly(*surface.bsdf) && toVertex.dot(surface.hit.ng) * toLight.dot(surface.hit.ng) > 0.0f;
-}
-
-float pdfLightDirection(const Emitter& emitter, const SurfaceSample& point, const Vec3f& direction) {
-    if (const auto* area = std::get_if<AreaEmitter>(&emitter.model))
-        return warp::squareToCosineConePdf({0.0f, 0.0f, direction.dot(point.normal)}, area->cosCone());
-    if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model))
-        return direction.dot(spot->direction) >= spot->cosOuter ? warp::squareToConePdf(spot->cosOuter) : 0.0f;
-    return warp::squareToSpherePdf();
 }
 
 void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths,

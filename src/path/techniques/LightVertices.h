@@ -34,8 +34,6 @@ bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, 
 /// The light path `sampler` draws from the emitter, as far as its first surface; none where that is no light vertex.
 std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, float probability,
                                             Sampler& sampler);
-/// Density per solid angle with which light vertices draw the direction of light from a point of the emitter.
-float pdfLightDirection(const Emitter& emitter, const SurfaceSample& point, const Vec3f& direction);
 /// Light vertices of one emitter.
 class LightVertexCache {
   public:

@@ -24,7 +24,7 @@ std::optional<End> endOf(const GuidedPath& path, const ReflectedVertex& vertex, 
     if (!vertex.surface) {
         const Medium& medium = *path.scene().medium(region);
         const float phase = medium.phase.eval(direction, vertex.toGlossy);
-        return End{{medium.sigmaS * phase, phase}, perVolume, region};
+        return End{{medium.sigmaS() * phase, phase}, perVolume, region};
     }
     const SurfaceInteraction& there = *vertex.surface;
     if (!mayBeLightVertex(there, -direction, vertex.toGlossy) || !path.guideFor(there, -direction) ||

@@ -3,13 +3,8 @@
 namespace tungsten::photon {
 
 CameraView::CameraView(const Camera& camera) : position_(camera.position()), frame_(camera.toWorld.rotation()) {
-    FieldOfView fov;
-    if (const auto* pinhole = std::get_if<Pinhole>(&camera.model)) fov = *pinhole;
-    if (const auto* lens = std::get_if<ThinLens>(&camera.model)) {
-        fov = *lens;
-        const float focus = lens->focusDistance * camera.toWorld.z.length();
-        aperture_ = camera.aperture() * (1.0f + 1.0f / std::max(focus, 1e-6f));
-    }
+    const FieldOfView fov = camera.fieldOfView().value_or(FieldOfView());
+    aperture_ = camera.aperture() * (1.0f + 1.0f / std::max(camera.focusDistance(), 1e-6f));
     const float width = float(camera.resolution.x), height = float(camera.resolution.y);
     halfWidth_ = 1.0f / fov.planeDistance;
     halfHeight_ = halfWidth_ * height / width;

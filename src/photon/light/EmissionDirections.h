@@ -12,20 +12,16 @@
 
 namespace tungsten::photon {
 
-/// Uniform over what the emitter lights: the sphere of a point, the cone of a spot; cosine-weighted for surfaces, in
-/// the cone of a disk. A share goes towards bodies of fog that are small from there, each as much as the other.
+/// The emitter's cone of directions, of one that shines in more than a single direction. A share goes towards bodies of
+/// fog that are small from there, each as much as the other.
 class EmissionDirections {
   public:
     EmissionDirections(const Emitter& emitter, const SurfaceSample& start,
                        std::span<const transport::BodySphere> bodies = {}) {
-        if (const auto* spot = std::get_if<SpotEmitter>(&emitter.model)) {
-            axis_ = darts::vec3(spot->direction);
-            widest_ = 1.0f - spot->cosOuter;
-        } else if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) {
-            axis_ = darts::vec3(start.normal);
-            widest_ = 1.0f - area->cosCone();
-            cosine_ = true;
-        }
+        const EmissionCone cone = emissionCone(emitter, start);
+        axis_ = darts::vec3(cone.axis);
+        widest_ = cone.widest;
+        cosine_ = cone.cosineWeighted;
         for (const transport::BodySphere& body : bodies) addCone(start.position, body);
         if (!cones_.empty()) share_ = TowardsBodies;
     }
@@ -82,9 +78,9 @@ class EmissionDirections {
             cones_.push_back({axis, widest});
     }
 
-    darts::Vec3 axis_{0, 0, 1};
-    float widest_ = 2.0f; ///< largest 1 - cos
-    bool cosine_ = false;
+    darts::Vec3 axis_;
+    float widest_; ///< largest 1 - cos
+    bool cosine_;
     std::vector<Cone> cones_;
     float share_ = 0.0f;
 };

@@ -183,7 +183,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
         step_.leave();
         return meetSurface(*hit);
     }
-    path_.power = path_.power * medium.sigmaS;
+    path_.power = path_.power * medium.sigmaS();
     if (path_.context.storeVolume)
         std::visit([&](auto& list) { leaveAt(next.distance, flight, list); }, path_.deposits.volume);
     step_.leave();
@@ -226,7 +226,7 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points
     if (!met) return;
     const darts::ControlVertex& vertex = met->vertex;
     ++path_.counters.controlVertices;
-    Rgb power = path_.power * medium.sigmaS * medium.transmittance(vertex.distance) * vertex.inversePdf;
+    Rgb power = path_.power * medium.sigmaS() * medium.transmittance(vertex.distance) * vertex.inversePdf;
     if (storesPhotons())
         power = power * transport::balance(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance));
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.

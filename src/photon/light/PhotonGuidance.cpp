@@ -34,7 +34,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
             settings.greens = darts::Greens::None;
         }
         guides_.back() = std::make_unique<darts::Guide>(
-            settings, darts::Medium{darts::vec3(medium.sigmaA), darts::vec3(medium.sigmaS), medium.phase.g()});
+            settings, darts::Medium{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()});
     }
 }
 

@@ -7,7 +7,7 @@ namespace tungsten::photon {
 ImageFootprint::ImageFootprint(const Camera& camera)
     : frame_(camera.toWorld.rotation()), origin_(camera.position()), width_(camera.resolution.x),
       height_(camera.resolution.y), margin_(camera.filter.halfWidth() + 0.1f),
-      pixelsPerSlope_(0.5f * float(camera.resolution.x) * std::get<Pinhole>(camera.model).planeDistance) {}
+      pixelsPerSlope_(0.5f * float(camera.resolution.x) * camera.fieldOfView()->planeDistance) {}
 
 std::optional<ImageFootprint::Slopes> ImageFootprint::slopes(float sideways, float forward, float radius) {
     constexpr float Steepest = 14.0f;

@@ -30,7 +30,7 @@ ArrivalCulling::ArrivalCulling(const Scene& scene, const SensorPaths& paths)
     straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && paths.oneSpeed;
     directView_ = straightTimesKnown_ && !paths.fold;
     slack_ = double(scene.camera.aperture());
-    if (std::holds_alternative<Orthographic>(scene.camera.model)) slack_ = std::numeric_limits<double>::infinity();
+    if (scene.camera.hasParallelRays()) slack_ = std::numeric_limits<double>::infinity();
 }
 
 void ArrivalCulling::setGate(const TimeGate& gate) {

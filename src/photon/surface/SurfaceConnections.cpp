@@ -18,7 +18,7 @@ SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor,
     if (points_.empty()) return;
     const double pixelArea =
         4.0 / (double(record.width) * double(record.width)); // at the distance where the image is 2 wide
-    const double plane = std::get<Pinhole>(scene.camera.model).planeDistance;
+    const double plane = scene.camera.fieldOfView()->planeDistance;
     std::vector<ClusterPoint> points;
     for (const SensorPoint& point : points_) {
         const double length = point.time * speed_;

@@ -45,7 +45,7 @@ void evaluate(Query& query, uint32_t index) {
     }
     const Medium& medium = query.scene->media[size_t(segment.medium)];
     weight *= medium.phase.eval(beam.direction, -segment.direction) / (2.0f * query.radius * approach->sine);
-    const Rgb value = beam.power * medium.sigmaS * medium.transmittance(s + t) * weight;
+    const Rgb value = beam.power * medium.sigmaS() * medium.transmittance(s + t) * weight;
     (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
     ++query.gathered;
 }

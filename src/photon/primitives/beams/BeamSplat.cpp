@@ -55,10 +55,10 @@ class Splatter {
         r.time = beam.time + toFoot / speed_;
         r.shortest = float((sensor_.gate.start - r.time) * speed_);
         r.longest = float((sensor_.gate.end() - r.time) * speed_);
-        r.power = beam.power * medium.sigmaS * (scale_ / (2.0f * radius_));
+        r.power = beam.power * medium.sigmaS() * (scale_ / (2.0f * radius_));
         r.g = medium.phase.g();
         r.sigmaT = medium.sigmaT().x;
-        r.simple = medium.isGrey() && !std::holds_alternative<Rayleigh>(medium.phase.model);
+        r.simple = medium.isGrey() && medium.phase.isHenyeyGreenstein();
         r.medium = beam.medium;
         r.bounce = beam.bounce;
         r.area = *area;

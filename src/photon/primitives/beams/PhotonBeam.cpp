@@ -9,7 +9,7 @@ float visibleReach(const Medium& medium) {
     constexpr float OpticalDepth = 60.0f;
     float reach = 0.0f;
     for (int channel = 0; channel < 3; ++channel)
-        if (medium.sigmaS[channel] > 0.0f) reach = std::max(reach, OpticalDepth / medium.sigmaT()[channel]);
+        if (medium.sigmaS()[channel] > 0.0f) reach = std::max(reach, OpticalDepth / medium.sigmaT()[channel]);
     return reach;
 }
 

@@ -15,13 +15,12 @@ namespace {
 /// What photons of a medium share.
 struct MediumTerms {
     Rgb sigmaT;
-    bool grey, rayleigh;
-    float g;
+    bool grey, isotropic;
+    PhaseFunction phase;
 
     explicit MediumTerms(const Medium& medium)
         : sigmaT(medium.sigmaT()), grey(medium.isGrey()),
-          rayleigh(std::holds_alternative<Rayleigh>(medium.phase.model)), g(medium.phase.g()) {}
-    [[nodiscard]] bool isotropic() const { return g == 0.0f && !rayleigh; }
+          isotropic(medium.phase.g() == 0.0f && medium.phase.isHenyeyGreenstein()), phase(medium.phase) {}
 };
 
 /// A photon as the camera sees it: all that drawing needs.
@@ -124,7 +123,7 @@ class Splatter {
     [[nodiscard]] std::optional<EvenTerms> evenTerms(const Spot& spot, const BandPiece& piece) const {
         constexpr float MostDifference = 0.03f;
         const MediumTerms& medium = media_[size_t(piece.medium)];
-        if (!medium.grey || !medium.isotropic()) return std::nullopt;
+        if (!medium.grey || !medium.isotropic) return std::nullopt;
         const float squared = spot.offset.length2(), farthest = std::sqrt(squared),
                     nearest = std::sqrt(std::max(squared - 1.0f / spot.inverseSquaredRadius, 0.0f));
         const float low = (piece.leastStart - farthest) * medium.sigmaT.x,
@@ -172,10 +171,15 @@ class Splatter {
 
     /// Between the photon's direction and the way back along the rays.
     static Batch phase(const MediumTerms& medium, const Vec3f& w, const Meeting& met) {
-        if (medium.isotropic()) return Batch(0.25f * InvPi);
-        if (!medium.rayleigh) return henyeyGreenstein(medium.g, w, met.dx, met.dy, met.dz);
-        const Batch cosine = met.dx * w.x + met.dy * w.y + met.dz * w.z;
-        return 3.0f / 16.0f * InvPi * (1.0f + cosine * cosine);
+        if (medium.isotropic) return Batch(0.25f * InvPi);
+        return std::visit(
+            Overloaded{[](const Isotropic&) { return Batch(0.25f * InvPi); },
+                       [&](const HenyeyGreenstein& hg) { return henyeyGreenstein(hg.g, w, met.dx, met.dy, met.dz); },
+                       [&](const Rayleigh&) {
+                           const Batch cosine = met.dx * w.x + met.dy * w.y + met.dz * w.z;
+                           return Batch(3.0f / 16.0f * InvPi * (1.0f + cosine * cosine));
+                       }},
+            medium.phase.model);
     }
 
     const Scene& scene_;
