@@ -1,7 +1,7 @@
 // Light vertices and shell chords: what they sample, against quadrature and their own densities.
 
-#include "path/techniques/ShellChord.h"
 #include "path/techniques/LightVertices.h"
+#include "path/techniques/ShellChord.h"
 
 #include "support/ChiSquare.h"
 #include "support/SceneFile.h"
