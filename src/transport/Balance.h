@@ -10,8 +10,7 @@ namespace tungsten::transport {
 /// with densities in the same measure. 0 where the technique does not find it.
 template <typename... Densities>
 [[nodiscard]] float balance(float own, Densities... others) {
-    const float all = (own + ... + others);
-    return all > 0.0f ? own / all : 0.0f;
+    return own > 0.0f ? own / (own + ... + others) : 0.0f;
 }
 
 /// The same, more in favour of the higher of two densities (exponent 2).

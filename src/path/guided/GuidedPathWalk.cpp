@@ -148,7 +148,7 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const S
 void GuidedPathWalk::findAt(const SurfaceHit& hit, const Rgb& throughput) {
     if (isBlack(throughput)) return;
     EmittersMet::add(path_, hit, throughput);
-    if ((scene_.bsdfOf(hit).lobes() & lobe::Smooth) != 0) SurfaceConnections::connect(path_, hit, throughput);
+    if ((scene_.bsdfOf(hit).lobes() & lobe::Smooth) != 0) ConnectionsFromSurfaces::connect(path_, hit, throughput);
 }
 
 } // namespace tungsten::path

@@ -90,7 +90,7 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
     lookAhead(state.ray.origin);
     if (!path_.step.reachable().alive()) return false;
     lookOut({state.ray.origin});
-    MediumConnections::connect(path_, medium, controlShare);
+    ConnectionsFromMedia::connect(path_, medium, controlShare);
     const darts::Guide& guide = path_.guideOf(state.region);
     if (state.interactions + 1 >= scene_.transport.maxBounces || !survives(guide)) return false;
     split(guide, [&](GuidedPathWalk& copy) {
@@ -130,7 +130,7 @@ bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
     if (state.mediumScatters == 1 && !context_.settings.lowOrderScattering) return false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, state.ray.direction);
     const darts::Guide* guide = path_.guideFor(surface, -state.ray.direction);
-    arrive(guide ? SurfaceConnections::density(path_, hit) : 0.0f,
+    arrive(guide ? ConnectionsFromSurfaces::density(path_, hit) : 0.0f,
            state.ray.direction.dot(hit.ng) < 0.0f ? hit.ng : -hit.ng);
     return guide ? leaveGuided(surface, *guide) : leavePlainly(surface);
 }

@@ -69,7 +69,7 @@ void ControlVertices::sampleUntimed(GuidedPath& path, const Medium& medium, floa
 
 float ControlVertices::share(const GuidedPath& path, const Medium& medium, float distance) {
     const auto own = density(path, distance);
-    return own ? transport::balance(*own, MediumConnections::density(medium, distance)) : 1.0f;
+    return own ? transport::balance(*own, ConnectionsFromMedia::density(medium, distance)) : 1.0f;
 }
 
 } // namespace tungsten::path

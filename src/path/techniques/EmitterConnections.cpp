@@ -20,13 +20,13 @@ float shareOfWalk(const GuidedPath& path, const SurfaceInteraction& surface, con
     const float areaPdf =
         pdfEmissionDirection(*target.emitter, target.point, -way.direction) * lightCosine / sqr(way.distance);
     return transport::balance(
-        SurfaceConnections::density(path, surface.hit), LightVertexConnections::density(areaPdf),
+        ConnectionsFromSurfaces::density(path, surface.hit), LightVertexConnections::density(areaPdf),
         ReflectedConnections::density(path, surface, toVertex, surface.hit.t, way.direction, areaPdf));
 }
 
 } // namespace
 
-void MediumConnections::connect(GuidedPath& path, const Medium& medium, float controlShare) {
+void ConnectionsFromMedia::connect(GuidedPath& path, const Medium& medium, float controlShare) {
     CameraPath& state = path.state;
     if (path.step.residual().exit.sealed) return;
     if (controlShare == 1.0f && path.context.arrival.oneSpeed()) return; // control vertices find it
@@ -44,7 +44,7 @@ void MediumConnections::connect(GuidedPath& path, const Medium& medium, float co
                    state.time + visibility.time + path.target->start);
 }
 
-void SurfaceConnections::connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
+void ConnectionsFromSurfaces::connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
     CameraPath& state = path.state;
     const PathTarget& target = *path.target;
     const Straight way = path.straightFrom(hit.position);
@@ -70,7 +70,7 @@ void SurfaceConnections::connect(GuidedPath& path, const SurfaceHit& hit, const 
                    time + visibility.time + target.start);
 }
 
-float SurfaceConnections::density(const GuidedPath& path, const SurfaceHit& hit) {
+float ConnectionsFromSurfaces::density(const GuidedPath& path, const SurfaceHit& hit) {
     return path.last.pdf * std::abs(path.state.ray.direction.dot(hit.ng)) / sqr(hit.t);
 }
 

@@ -8,7 +8,7 @@
 namespace tungsten::path {
 
 /// From vertices in media.
-struct MediumConnections {
+struct ConnectionsFromMedia {
     /// From the ray's origin, less the share of control vertices.
     static void connect(GuidedPath& path, const Medium& medium, float controlShare);
     /// Per length, for weights, of the walk's flights that end at `distance`.
@@ -18,7 +18,7 @@ struct MediumConnections {
 };
 
 /// From surfaces at the end of the ray.
-struct SurfaceConnections {
+struct ConnectionsFromSurfaces {
     /// `throughput` includes the way there.
     static void connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
     /// Per area, of the surface point as the walk's next vertex.
