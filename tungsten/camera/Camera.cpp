@@ -12,6 +12,12 @@ Vec3f rasterDirection(const Vec2f& p, const Vec2i& resolution, float distance) {
     return {-1.0f + 2.0f * p.x / w, h / w - 2.0f * p.y / w, distance};
 }
 
+/// Inverse of rasterDirection, for a point on its plane.
+Vec2f rasterOf(const Vec3f& onPlane, const Vec2i& resolution) {
+    const float w = float(resolution.x), h = float(resolution.y);
+    return {0.5f * w * (1.0f + onPlane.x), 0.5f * (h - w * onPlane.y)};
+}
+
 } // namespace
 
 Transform cameraTransform(const Transform& sceneTransform) {
@@ -41,6 +47,33 @@ Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& u
     const Vec2f disk = warp::squareToDisk(uLens);
     const Vec3f start(disk.x * lens.apertureRadius, disk.y * lens.apertureRadius, 0.0f);
     return {toWorld.point(start), toWorld.vector((focus - start).normalized()).normalized()};
+}
+
+std::optional<SensorSample> Camera::sampleSensor(const Vec3f& point, const Vec2f& uLens) const {
+    const Vec3f local = toWorld.inverseVector(point - position());
+    const float volume = std::abs(toWorld.determinant());
+    if (const auto* orthographic = std::get_if<Orthographic>(&model)) {
+        if (!(local.z > 0.0f)) return std::nullopt;
+        const float step = 2.0f * orthographic->size / float(resolution.y), depth = toWorld.z.length();
+        const Vec2f raster(local.x / step + 0.5f * float(resolution.x), 0.5f * float(resolution.y) - local.y / step);
+        return SensorSample{-forward(), local.z * depth, depth / (sqr(step) * volume), raster - Vec2f(0.5f)};
+    }
+    const auto* lens = std::get_if<ThinLens>(&model);
+    const Vec2f disk = lens ? warp::squareToDisk(uLens) * lens->apertureRadius : Vec2f(0.0f);
+    const Vec3f start(disk.x, disk.y, 0.0f), along = local - start;
+    if (!(along.z > 0.0f)) return std::nullopt;
+    const float plane = lens ? lens->planeDistance : std::get<Pinhole>(model).planeDistance;
+    const Vec3f offset = toWorld.vector(along);
+    const float distance = offset.length();
+    // Raster area per solid angle of the camera frame is (plane w / 2)^2 / cos^3 for both; the world's solid angle is
+    // `volume` |along|^3 / distance^3 of that.
+    const float weight = 0.25f * sqr(plane * float(resolution.x)) / volume * distance / (along.z * along.z * along.z);
+    if (!lens)
+        return SensorSample{-offset / distance, distance, weight,
+                            rasterOf(along * (plane / along.z), resolution) - Vec2f(0.5f)};
+    // Where the ray crosses the plane of focus, seen from the middle of the lens; no half pixel, as in generateRay.
+    const Vec3f focus = start + along * (lens->focusDistance / along.z);
+    return SensorSample{-offset / distance, distance, weight, rasterOf(focus * (plane / focus.z), resolution)};
 }
 
 float Camera::aperture() const {
