@@ -1,6 +1,8 @@
 #pragma once
 // Settings of the path tracer's integrator block.
 
+#include "transport/BounceLimits.h"
+
 #include "darts/Scheme.h"
 
 #include "tungsten/scene/ObjectReader.h"
@@ -16,6 +18,12 @@ struct PathSettings {
     bool russianRoulette = true;
     darts::Scheme scheme; ///< on: walks are guided (time-resolved renders of scattering media)
 };
+
+/// What all integrators of this plugin read alike: max_bounces and its like are the scene's already.
+transport::BounceLimits readBounceLimits(const ObjectReader& block, const Scene& scene);
+bool readRussianRoulette(const ObjectReader& block, bool timeResolved);
+/// Settings of the photon integrators: a scene may switch between them and this plugin's by its type alone.
+void acceptPhotonSettings(const ObjectReader& block);
 
 /// Reads the block; problems and warnings go to the reader's diagnostics.
 PathSettings readPathSettings(const ObjectReader& block, const Scene& scene);

@@ -1,0 +1,57 @@
+#pragma once
+// When the sensor is open, and how it weighs times of arrival.
+
+#include "darts/ResidualRange.h"
+#include "darts/TemporalResponse.h"
+
+#include "tungsten/scene/Scene.h"
+
+#include <memory>
+#include <vector>
+
+namespace tungsten::transport {
+
+/// Weighs time evenly over the gate, or by a response W(T) whose support is the gate. Times are total times of flight,
+/// emission time included.
+struct Sensor {
+    TimeGate gate;
+    std::shared_ptr<const darts::TemporalResponse> response; ///< null: evenly
+    std::vector<darts::TimeGate> openTimes;                  ///< where the response is above 0; empty without one
+
+    Sensor(const TimeGate& openDuring, std::shared_ptr<const darts::TemporalResponse> weighedBy = nullptr)
+        : gate(openDuring), response(std::move(weighedBy)) {}
+    /// As the scene says; `gate` is the pass's, which is the scene's or a delta gate's temporal kernel.
+    static Sensor of(const Scene& scene, const TimeGate& gate) {
+        const TemporalResponse& r = scene.transport.response;
+        if (r.empty()) return {gate};
+        Sensor sensor{gate,
+                      std::make_shared<darts::TemporalResponse>(darts::TemporalResponse::tabulated(r.times, r.values))};
+        auto& open = sensor.openTimes;
+        for (size_t i = 0; i + 1 < r.times.size(); ++i) {
+            if (r.values[i] <= 0.0 && r.values[i + 1] <= 0.0) continue;
+            if (open.empty() || open.back().end < r.times[i]) open.push_back({r.times[i], r.times[i]});
+            open.back().end = r.times[i + 1];
+        }
+        return sensor;
+    }
+
+    /// Frame of a time; 0 in steady state, -1 while the sensor is closed.
+    [[nodiscard]] int frameOf(double time) const { return gate.steadyState ? 0 : gate.frameOf(time); }
+    /// Per unit of time: what light that arrives then counts in the mean over its frame. 1 in steady state and at a
+    /// delta gate.
+    [[nodiscard]] double density(double time) const { return response ? response->pdf(time) : evenDensity(); }
+    /// The same where no response weighs it.
+    [[nodiscard]] double evenDensity() const {
+        return response || gate.steadyState || gate.delta ? 1.0 : 1.0 / gate.frameWidth;
+    }
+    /// W(time) times the gate's width, W having the integral 1: relative to an even sensor.
+    [[nodiscard]] float weight(double time) const {
+        return response ? float(response->pdf(time) * gate.frameWidth) : 1.0f;
+    }
+    /// Something that arrives at a time in [from, to] may count, as far as the response is concerned.
+    [[nodiscard]] bool mayWeigh(double from, double to) const {
+        return !response || response->distribution(to) > response->distribution(from);
+    }
+};
+
+} // namespace tungsten::transport
