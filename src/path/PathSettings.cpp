@@ -81,9 +81,7 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
         block.flag("enable_light_sampling", true, {"none", "surface vertices connect to emitters"});
     settings.volumeLightSampling =
         block.flag("enable_volume_light_sampling", true, {"none", "medium vertices connect to emitters"});
-    const transport::BounceLimits limits = readBounceLimits(block, scene);
-    settings.lowOrderScattering = limits.lowOrderScattering;
-    settings.includeSurfaces = limits.includeSurfaces;
+    settings.limits = readBounceLimits(block, scene);
     settings.russianRoulette = readRussianRoulette(block, plan.timeResolved);
     readGuidance(block, scene, plan, settings);
     warnAboutSingleDirections(block, scene);

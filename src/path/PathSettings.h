@@ -13,8 +13,7 @@ namespace tungsten::path {
 struct PathSettings {
     bool lightSampling = true;       ///< connect surface vertices to emitters
     bool volumeLightSampling = true; ///< connect medium vertices to emitters
-    bool lowOrderScattering = true;  ///< false: nothing from paths with exactly one medium scatter
-    bool includeSurfaces = true;     ///< false: nothing that reaches surfaces without a medium scatter
+    transport::BounceLimits limits;
     bool russianRoulette = true;
     darts::Scheme scheme; ///< on: walks are guided (time-resolved renders of scattering media)
 };

@@ -4,8 +4,6 @@
 #include "path/guided/GuidedPathWalk.h"
 #include "tungsten/scene/LightChoice.h"
 
-#include "darts/TemporalResponse.h"
-
 #include "tungsten/render/Integrator.h"
 
 namespace tungsten::path {
@@ -30,8 +28,7 @@ class PathTracer : public Integrator {
 
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
-    std::optional<darts::TemporalResponse> response_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     LightChoice lights_;
     TargetChoice targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> arrival_;

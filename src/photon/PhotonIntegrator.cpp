@@ -76,7 +76,7 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, co
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
+    const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
     const bool splat = plan_.splats();
     const bool connect = plan_.connections.on;

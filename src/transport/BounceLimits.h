@@ -19,6 +19,13 @@ struct BounceLimits {
     [[nodiscard]] bool renders(int interactions) const {
         return interactions >= minBounces && interactions < maxBounces;
     }
+    /// How many more interactions make a whole path out of one that has so many.
+    struct Remaining {
+        int least, most;
+    };
+    [[nodiscard]] Remaining remaining(int interactions) const {
+        return {minBounces - interactions, maxBounces - 1 - interactions};
+    }
     /// A path that has interacted so often may be part of one that is rendered.
     [[nodiscard]] bool mayGoOn(int interactions) const { return interactions < maxBounces; }
     /// Of a path with so many scatterings in media, of which the last `inARow`, seen from the light, have no surface
@@ -30,7 +37,7 @@ struct BounceLimits {
     }
     /// The same for camera paths, of which endsAtSurface() has ended the others.
     [[nodiscard]] bool orderCounts(int mediumScatters) const { return orderCounts(mediumScatters, mediumScatters); }
-    /// A camera path ends at a surface after so many scatterings in media.
+    /// A camera path ends at a surface, index-matched ones included, after so many scatterings in media.
     [[nodiscard]] bool endsAtSurface(int mediumScatters) const { return mediumScatters == 1 && !lowOrderScattering; }
 };
 

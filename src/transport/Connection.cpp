@@ -10,8 +10,9 @@ std::optional<ConnectionEnd> connectionEnd(const Vertex& from, const Vertex& to)
     return ConnectionEnd{direction, distance, to.scattering(-direction) / sqr(distance), to.margin()};
 }
 
-std::optional<Connection> Connector::connect(const Vertex& vertex, const ConnectionEnd& end, uint64_t& rays) const {
-    const Rgb value = vertex.scattering(end.direction) * end.weight;
+std::optional<Connection> Connector::connect(const Vertex& vertex, const Rgb& throughput, const ConnectionEnd& end,
+                                             uint64_t& rays) const {
+    const Rgb value = throughput * vertex.scattering(end.direction) * end.weight;
     if (isBlack(value)) return std::nullopt;
     Ray ray = vertex.leave(end.direction);
     ray.tMax = end.margin.before(end.direction, end.distance);

@@ -26,7 +26,7 @@ inline ConnectionEnd connectionEnd(const SensorSample& sensor) {
 std::optional<ConnectionEnd> connectionEnd(const Vertex& from, const Vertex& to);
 
 struct Connection {
-    Rgb throughput;       ///< scattering at the vertex, transmittance and the end's weight
+    Rgb throughput;       ///< of the path up to the vertex, times scattering there, the end's weight and transmittance
     double time = 0.0;    ///< of flight along it
     int crossings = 0;    ///< index-matched surfaces on it: each is an interaction
     bool oneSpeed = true; ///< light goes at the speed at the vertex all the way
@@ -37,9 +37,10 @@ class Connector {
   public:
     Connector(const Scene& scene, bool forwardBoundaries) : scene_(scene), forwardBoundaries_(forwardBoundaries) {}
 
-    /// None where nothing gets through. Adds the rays traced to `rays`; none is traced where nothing scatters that way.
-    [[nodiscard]] std::optional<Connection> connect(const Vertex& vertex, const ConnectionEnd& end,
-                                                    uint64_t& rays) const;
+    /// `throughput` is the path's up to the vertex. None where nothing gets through. Adds the rays traced to `rays`;
+    /// none is traced where nothing scatters that way.
+    [[nodiscard]] std::optional<Connection> connect(const Vertex& vertex, const Rgb& throughput,
+                                                    const ConnectionEnd& end, uint64_t& rays) const;
     /// Along a ray that starts in `region`; its limits as traceVisibility() has them.
     [[nodiscard]] Visibility visibility(const Ray& ray, float distance, const Region& region, uint64_t& rays) const;
 

@@ -17,6 +17,14 @@ class GateBounds {
         : limited_(!gate.steadyState), oneSpeed_(!plan.speedsDiffer), start_(gate.start), end_(gate.end()),
           slowness_(1.0 / double(plan.highestSpeed)) {}
 
+    /// The same scene, the sensor open at another time.
+    [[nodiscard]] GateBounds during(const TimeGate& gate) const {
+        GateBounds bounds = *this;
+        bounds.limited_ = !gate.steadyState;
+        bounds.start_ = gate.start;
+        bounds.end_ = gate.end();
+        return bounds;
+    }
     /// When light that leaves at `time` is `distance` away, at the soonest.
     [[nodiscard]] double soonest(double time, double distance) const { return time + distance * slowness_; }
     /// Light that goes at least `distance` after `time` may arrive before the end.

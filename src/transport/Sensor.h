@@ -39,10 +39,10 @@ struct Sensor {
     [[nodiscard]] int frameOf(double time) const { return gate.steadyState ? 0 : gate.frameOf(time); }
     /// Per unit of time: what light that arrives then counts in the mean over its frame. 1 in steady state and at a
     /// delta gate.
-    [[nodiscard]] double density(double time) const { return response ? response->pdf(time) : evenDensity(); }
-    /// The same where no response weighs it.
-    [[nodiscard]] double evenDensity() const {
-        return response || gate.steadyState || gate.delta ? 1.0 : 1.0 / gate.frameWidth;
+    [[nodiscard]] double density(double time) const { return response ? response->pdf(time) : 1.0 / evenWidth(); }
+    /// What contributions are divided by where time is weighed evenly: the frame's width; else 1.
+    [[nodiscard]] double evenWidth() const {
+        return response || gate.steadyState || gate.delta ? 1.0 : gate.frameWidth;
     }
     /// W(time) times the gate's width, W having the integral 1: relative to an even sensor.
     [[nodiscard]] float weight(double time) const {

@@ -30,10 +30,8 @@ void GuidedPathWalk::goOn() {
 
 bool GuidedPathWalk::counts(int interactions, int mediumScatters) const {
     const int total = interactions_ + interactions + target_->interactions;
-    if (total < scene_.transport.minBounces || total >= scene_.transport.maxBounces) return false;
-    const int inMedia = mediumScatters_ + mediumScatters + target_->mediumScatters;
-    if (inMedia == 0) return context_.settings.includeSurfaces;
-    return context_.settings.lowOrderScattering || inMedia > 1;
+    const transport::BounceLimits& limits = context_.settings.limits;
+    return limits.renders(total) && limits.orderCounts(mediumScatters_ + mediumScatters + target_->mediumScatters);
 }
 
 void GuidedPathWalk::lookAhead(const Vec3f& position) {

@@ -33,7 +33,7 @@ struct PathGuides {
 struct GuidedContext {
     const Scene& scene;
     const PathSettings& settings;
-    const Sensor& sensor;
+    const transport::Sensor& sensor;
     const PathGuides& guides;
     const LightPaths& lightPaths;
     const ArrivalBound& arrival;

@@ -26,7 +26,7 @@ struct SurfaceScatterer {
 
 darts::ConnectionSample GuidedPathWalk::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
     return guide.sampleConnection(residual, next(),
-                                  {context_.sensor.response, time_ + target_->start, double(region_.speed)});
+                                  {context_.sensor.response.get(), time_ + target_->start, double(region_.speed)});
 }
 
 double GuidedPathWalk::arrivalOf(const darts::ConnectionSample& connection) const {
@@ -112,7 +112,7 @@ bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
     }
     if (++interactions_ >= scene_.transport.maxBounces) return false;
     // The format ends such a path at any surface, index-matched ones included.
-    if (mediumScatters_ == 1 && !context_.settings.lowOrderScattering) return false;
+    if (context_.settings.limits.endsAtSurface(mediumScatters_)) return false;
     lightVertexTried_ = false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
     const darts::Guide* guide = guideFor(surface, -ray_.direction);

@@ -101,12 +101,13 @@ void LightWalk::connect(const Vertex& vertex, const Rgb& power) {
     const bool unwarped = scene_.transport.cameraUnwarped;
     if (!context_.bounds.mayArrive(time_, unwarped ? 0.0 : double(sensor->distance))) return;
     ++counters_.connections;
-    const auto connection = context_.connector.connect(vertex, transport::connectionEnd(*sensor), counters_.shadowRays);
+    const auto connection =
+        context_.connector.connect(vertex, power, transport::connectionEnd(*sensor), counters_.shadowRays);
     if (!connection || !context_.limits.renders(interactions_ + connection->crossings)) return;
     const double time = time_ + (unwarped ? 0.0 : connection->time);
     const int frame = context_.sensor.frameOf(time);
     if (frame < 0) return;
-    const Rgb radiance = power * connection->throughput * float(context_.sensor.density(time));
+    const Rgb radiance = connection->throughput * float(context_.sensor.density(time));
     if (isFinite(radiance))
         splats_.push_back({sensor->raster, frame, radiance});
     else

@@ -1,15 +1,9 @@
 #include "path/plain/PathWalk.h"
 
 #include "path/techniques/Connection.h"
+#include "transport/Roulette.h"
 
 namespace tungsten::path {
-
-namespace {
-
-constexpr float RouletteThreshold = 0.1f;
-constexpr int RouletteFirstVertex = 3;
-
-} // namespace
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::run(Ray ray) {
@@ -72,12 +66,7 @@ bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::continueRoulette() {
-    if (!settings_.russianRoulette || interactions_ < RouletteFirstVertex) return true;
-    const float survival = maxComponent(throughput_);
-    if (survival >= RouletteThreshold) return true;
-    if (sampler_.next1D() >= survival) return false;
-    throughput_ = throughput_ / survival;
-    return true;
+    return !settings_.russianRoulette || transport::survivesRoulette(throughput_, interactions_, sampler_);
 }
 
 template <bool TimeResolved, bool Media>
@@ -106,8 +95,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     if (tooLate(hit.position)) return false;
     if (hit.shape < scene_.primitives.size() && scene_.primitives[hit.shape].emitter >= 0) addEmission(hit);
     if (++interactions_ >= scene_.transport.maxBounces) return false;
-    // The format ends such a path at any surface, index-matched ones included.
-    if (mediumScatters_ == 1 && !settings_.lowOrderScattering) return false;
+    if (settings_.limits.endsAtSurface(mediumScatters_)) return false;
 
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
     const LobeMask lobes = surface.bsdf->lobes();

@@ -62,13 +62,10 @@ class PathWalk : private CameraPath {
     void advanceClock(float length);
     /// Whether light found from `position` on can still arrive inside the gate.
     [[nodiscard]] bool tooLate(const Vec3f& position) const;
-    [[nodiscard]] bool rendered(int interactions) const {
-        return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
-    }
+    [[nodiscard]] bool rendered(int interactions) const { return settings_.limits.renders(interactions); }
     /// Whether light found at the end of the current segment counts (low_order_scattering, include_surfaces).
     [[nodiscard]] bool orderCounts(int further = 0) const {
-        if (mediumScatters_ + further == 0) return settings_.includeSurfaces;
-        return settings_.lowOrderScattering || mediumScatters_ + further > 1;
+        return settings_.limits.orderCounts(mediumScatters_ + further);
     }
 
     const PathSettings& settings_;
