@@ -25,6 +25,14 @@ Rgb PathTarget::intensity(const Vec3f& direction) const {
     return emittedIntensity(*emitter, point, direction) / probability;
 }
 
+std::optional<transport::ConnectionEnd> PathTarget::seenFrom(const Vec3f& position) const {
+    const Vec3f offset = point.position - position;
+    const float distance = offset.length();
+    if (!(distance > 0.0f)) return std::nullopt;
+    const Vec3f direction = offset / distance;
+    return transport::ConnectionEnd{direction, distance, intensity(-direction) / sqr(distance), point.margin()};
+}
+
 TargetChoice::TargetChoice(const Scene& scene, Emitters emitters) : scene_(scene) {
     std::vector<float> powers;
     float total = 0.0f;

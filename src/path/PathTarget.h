@@ -3,7 +3,7 @@
 
 #include "path/PixelSink.h"
 
-#include "transport/Vertex.h"
+#include "transport/Connection.h"
 
 #include <optional>
 
@@ -27,6 +27,8 @@ struct PathTarget {
     /// Power per steradian that leaves the point along the unit `direction` (intensity; radiance times cosine over the
     /// area density for surfaces), divided by the probability of the emitter's choice.
     [[nodiscard]] Rgb intensity(const Vec3f& direction) const;
+    /// To connect a vertex at `position` to it; none at its own place.
+    [[nodiscard]] std::optional<transport::ConnectionEnd> seenFrom(const Vec3f& position) const;
     /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;

@@ -1,9 +1,10 @@
 #include "path/plain/PathWalk.h"
 
-#include "path/techniques/Connection.h"
 #include "transport/Roulette.h"
 
 namespace tungsten::path {
+
+using transport::Vertex;
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::run(Ray ray) {
@@ -79,8 +80,7 @@ bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float 
     vertex_ = ray_.at(distance);
     if (tooLate(vertex_) || interactions_ >= scene_.transport.maxBounces) return false;
     const Vec3f before = ray_.direction;
-    if (settings_.volumeLightSampling && orderCounts()) connectFromMedium(medium);
-    if (settings_.volumeLightSampling && source_) connectMediumToSource(medium);
+    if (settings_.volumeLightSampling) connect({medium, vertex_, before, region_});
     ray_ = Ray{vertex_, medium.phase.sample(before, sampler_.next2D())};
     directionPdf_ = medium.phase.pdf(before, ray_.direction);
     weighted_ = settings_.volumeLightSampling;
@@ -99,9 +99,8 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
 
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
     const LobeMask lobes = surface.bsdf->lobes();
-    const bool smooth = (lobes & lobe::Smooth) != 0;
-    if (smooth && settings_.lightSampling && orderCounts()) connectFromSurface(surface);
-    if (smooth && settings_.lightSampling && source_) connectSurfaceToSource(surface);
+    if (settings_.lightSampling && (lobes & lobe::Smooth) != 0)
+        connect({scene_, surface, TransportMode::Radiance, region_});
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, sampler_);
     if (!exit) return false;
@@ -158,75 +157,31 @@ auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::o
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectFromMedium(const Medium& medium) {
-    const auto light = sampleLight(vertex_);
+void PathWalk<TimeResolved, Media>::connectToLight(const Vertex& vertex) {
+    const auto light = sampleLight(vertex.position());
     if (!light) return;
-    const float phase = medium.phase.eval(ray_.direction, light->direct.direction);
-    addConnection(*light, Rgb(phase), phase, {vertex_, light->direct.direction}, region_);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction& surface) {
-    const auto light = sampleLight(surface.hit.position);
-    if (!light || !surface.consistent(light->direct.direction, scene_.transport.consistencyChecks)) return;
-    const Vec3f wo = surface.frame.toLocal(light->direct.direction);
-    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi, wo);
-    if (isBlack(scattering)) return;
-    const float pdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
-    const Region region = regionBeyond(surface, light->direct.direction, region_);
-    addConnection(*light, scattering, pdf, surface.hit.leave(light->direct.direction), region);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, const Rgb& scattering, float directionPdf,
-                                                  Ray ray, const Region& region) {
-    ray.tMax = light.direct.reach();
-    const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, light.direct.distance, region, counters_.shadowRays);
-    if (isBlack(visibility.transmittance) || !rendered(interactions_ + visibility.crossings)) return;
+    const auto connection =
+        connector_.connect(vertex, throughput_, transport::connectionEnd(light->direct), counters_.shadowRays);
+    if (!connection || !rendered(interactions_ + connection->crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
-    const float pdf = light.direct.pdf;
-    const float weight = pdf > 0.0f ? powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
-    const Rgb radiance =
-        throughput_ * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
-    sink_.add(radiance, time_ + visibility.time + light.emitter.emissionTime);
+    const float pdf = light->direct.pdf;
+    const float weight =
+        pdf > 0.0f ? powerHeuristic(pdf * light->probability, vertex.pdf(light->direct.direction)) : 1.0f;
+    sink_.add(connection->throughput * (weight / light->probability),
+              time_ + connection->time + light->emitter.emissionTime);
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectMediumToSource(const Medium& medium) {
-    const Vec3f offset = source_->point.position - vertex_;
-    const float distance = offset.length();
-    if (!(distance > 0.0f)) return;
-    const Vec3f direction = offset / distance;
-    addSource(Rgb(medium.phase.eval(ray_.direction, direction)), {vertex_, direction}, distance, region_);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectSurfaceToSource(const SurfaceInteraction& surface) {
-    const Vec3f offset = source_->point.position - surface.hit.position;
-    const float distance = offset.length();
-    const Vec3f direction = offset / distance;
-    if (!(distance > 0.0f) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
-    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
-                                              surface.frame.toLocal(direction));
-    const Region region = regionBeyond(surface, direction, region_);
-    addSource(scattering, surface.hit.leave(direction), distance, region);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addSource(const Rgb& scattering, Ray ray, float distance, const Region& region) {
+void PathWalk<TimeResolved, Media>::connectToSource(const Vertex& vertex) {
     if (!orderCounts(source_->mediumScatters)) return;
+    const auto end = source_->seenFrom(vertex.position());
+    if (!end) return;
     ++counters_.connections;
     if constexpr (TimeResolved)
-        if (!arrival_.mayConnect(time_, distance, source_->start)) return;
-    const Rgb light = scattering * source_->intensity(-ray.direction) / sqr(distance);
-    if (isBlack(light)) return;
-    ray.tMax = source_->point.margin().before(ray.direction, distance);
-    const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, distance, region, counters_.shadowRays);
-    if (isBlack(visibility.transmittance)) return;
-    if (!rendered(interactions_ + visibility.crossings + source_->interactions)) return;
-    sink_.add(throughput_ * light * visibility.transmittance, time_ + visibility.time + source_->start);
+        if (!arrival_.mayConnect(time_, end->distance, source_->start)) return;
+    const auto connection = connector_.connect(vertex, throughput_, *end, counters_.shadowRays);
+    if (!connection || !rendered(interactions_ + connection->crossings + source_->interactions)) return;
+    sink_.add(connection->throughput, time_ + connection->time + source_->start);
 }
 
 template class PathWalk<false, false>;
