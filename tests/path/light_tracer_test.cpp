@@ -191,6 +191,7 @@ std::string complaints(const std::string& json, const std::string& override_) {
 
 TEST(LightTracer, SaysWhatItCannotShow) {
     EXPECT_EQ(complaints(room(""), "integrator.max_bounces=5"), "");
+    EXPECT_EQ(complaints(room(""), "integrator.darts=\"off\""), "");
     EXPECT_NE(complaints(room(""), "integrator.delta_time_gate=true").find("problem"), std::string::npos);
     EXPECT_NE(complaints(room(""), "camera.reconstruction_filter=\"dirac\"").find("camera.reconstruction_filter"),
               std::string::npos);

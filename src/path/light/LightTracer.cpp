@@ -36,7 +36,8 @@ void readRest(const ObjectReader& block, const Scene& scene) {
     acceptPhotonSettings(block);
     block.accept(
         {"enable_light_sampling", "enable_volume_light_sampling", "enable_guiding", "enable_elliptical", "darts"});
-    if (block.has("darts")) block.warn("darts", "does not guide the light tracer: its paths are plain");
+    const bool off = block.isText("darts") && block.text("darts", "", {"none", "guidance"}) == "off";
+    if (block.has("darts") && !off) block.warn("darts", "does not guide the light tracer: its paths are plain");
     Diagnostics& diagnostics = *block.diagnostics();
     if (scene.transport.gate.delta)
         block.problem("delta_time_gate", "plain light paths meet a delta gate with probability zero; give the gate a "
