@@ -5,8 +5,6 @@ namespace tungsten::path {
 namespace {
 
 constexpr size_t MostSources = 8;
-/// Relative to the time: rounding of lengths in float.
-constexpr double Slack = 1e-6;
 
 } // namespace
 
@@ -27,8 +25,7 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
 }
 
 ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
-    : start_(scene.transport.gate.start), end_(scene.transport.gate.end()), highestSpeed_(plan.highestSpeed),
-      slowness_(1.0 / double(highestSpeed_)), oneSpeed_(!plan.speedsDiffer) {
+    : bounds_(scene.transport.gate, plan), highestSpeed_(plan.highestSpeed) {
     // Environments never arrive; single directions are never found.
     for (const Emitter& emitter : scene.emitters)
         if (!emitter.isInfinite() && !emitter.isDelta()) sources_.push_back(sourceOf(emitter));
@@ -39,21 +36,9 @@ ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
 bool ArrivalBound::mayArrive(const Vec3f& position, double time) const {
     for (const Source& source : sources_) {
         const float gap = std::max((position - source.centre).length() - source.radius, 0.0f);
-        const double arrival = time + double(gap) * slowness_ + source.emissionTime;
-        if (arrival < end_ + Slack * std::abs(arrival)) return true;
+        if (beforeEnd(time, gap, source.emissionTime)) return true;
     }
     return false;
-}
-
-bool ArrivalBound::mayConnect(double time, float distance, double emissionTime) const {
-    const double arrival = time + double(distance) * slowness_ + emissionTime;
-    const double slack = Slack * std::abs(arrival);
-    return arrival < end_ + slack && (!oneSpeed_ || arrival >= start_ - slack);
-}
-
-bool ArrivalBound::beforeEnd(double time, float distance, double emissionTime) const {
-    const double arrival = time + double(distance) * slowness_ + emissionTime;
-    return arrival < end_ + Slack * std::abs(arrival);
 }
 
 } // namespace tungsten::path

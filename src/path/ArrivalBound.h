@@ -1,7 +1,7 @@
 #pragma once
 // Bounds on when light can arrive: what they reject contributes to no frame.
 
-#include "tungsten/render/EffectPlan.h"
+#include "transport/GateBounds.h"
 
 #include <vector>
 
@@ -16,12 +16,16 @@ class ArrivalBound {
     [[nodiscard]] bool mayArrive(const Vec3f& position, double time) const;
     /// A straight connection of this length to an emitter whose pulse starts at `emissionTime` may fall into the gate.
     /// Where all speeds are equal its time is known, so that one that comes too early is rejected too.
-    [[nodiscard]] bool mayConnect(double time, float distance, double emissionTime) const;
+    [[nodiscard]] bool mayConnect(double time, float distance, double emissionTime) const {
+        return bounds_.mayArrive(time + emissionTime, double(distance));
+    }
     /// Light that leaves a point at this distance at `emissionTime` may still arrive before the gate's end.
-    [[nodiscard]] bool beforeEnd(double time, float distance, double emissionTime) const;
+    [[nodiscard]] bool beforeEnd(double time, float distance, double emissionTime) const {
+        return bounds_.beforeEnd(time + emissionTime, double(distance));
+    }
     /// Of light, anywhere on a path.
     [[nodiscard]] float highestSpeed() const { return highestSpeed_; }
-    [[nodiscard]] bool oneSpeed() const { return oneSpeed_; }
+    [[nodiscard]] bool oneSpeed() const { return bounds_.oneSpeed(); }
 
   private:
     /// Emitters within `radius` of `centre` (rounding of coordinates included), the first pulse at `emissionTime`.
@@ -34,10 +38,8 @@ class ArrivalBound {
     static Source merged(const std::vector<Source>& sources);
 
     std::vector<Source> sources_; ///< a few: many emitters are merged into one
-    double start_ = 0.0, end_ = 0.0;
+    transport::GateBounds bounds_;
     float highestSpeed_ = 1.0f;
-    double slowness_ = 1.0; ///< 1 / highestSpeed_
-    bool oneSpeed_ = true;
 };
 
 } // namespace tungsten::path

@@ -39,8 +39,8 @@ const darts::Guide* GuidedPath::guideFor(const SurfaceInteraction& surface, cons
 }
 
 darts::ConnectionSample GuidedPath::drawConnection(const darts::Guide& guide, const darts::Residual& residual) {
-    return guide.sampleConnection(residual, next(),
-                                  {context.sensor.response, state.time + target->start, double(state.region.speed)});
+    return guide.sampleConnection(
+        residual, next(), {context.sensor.response.get(), state.time + target->start, double(state.region.speed)});
 }
 
 } // namespace tungsten::path

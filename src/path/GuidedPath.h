@@ -26,7 +26,7 @@ struct PathGuides {
 struct GuidedContext {
     const Scene& scene;
     const PathSettings& settings;
-    const Sensor& sensor;
+    const transport::Sensor& sensor;
     const PathGuides& guides;
     const LightPaths& lightPaths;
     const ArrivalBound& arrival;
@@ -101,12 +101,9 @@ struct GuidedPath {
     [[nodiscard]] LengthsInGate lengthsInGate() const;
     /// Whether a path with this many further interactions and medium scatters counts.
     [[nodiscard]] bool counts(int interactions, int mediumScatters) const {
-        const TransportSettings& transport = context.scene.transport;
-        const int total = state.interactions + interactions + target->interactions;
-        if (total < transport.minBounces || total >= transport.maxBounces) return false;
-        const int inMedia = state.mediumScatters + mediumScatters + target->mediumScatters;
-        if (inMedia == 0) return context.settings.includeSurfaces;
-        return context.settings.lowOrderScattering || inMedia > 1;
+        const transport::BounceLimits& limits = context.settings.limits;
+        return limits.renders(state.interactions + interactions + target->interactions) &&
+               limits.orderCounts(state.mediumScatters + mediumScatters + target->mediumScatters);
     }
     [[nodiscard]] bool mayFly(const Medium* medium) const { return !medium || state.flights < medium->maxBounces; }
 

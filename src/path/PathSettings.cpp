@@ -46,6 +46,25 @@ void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene) {
 
 } // namespace
 
+transport::BounceLimits readBounceLimits(const ObjectReader& block, const Scene& scene) {
+    transport::BounceLimits limits(scene.transport);
+    limits.lowOrderScattering = block.flag("low_order_scattering", true,
+                                           {"none", "false: leaves out paths with exactly one scattering in a medium"});
+    limits.includeSurfaces = block.flag(
+        "include_surfaces", true, {"none", "false: leaves out what reaches surfaces without a scattering in a medium"});
+    return limits;
+}
+
+bool readRussianRoulette(const ObjectReader& block, bool timeResolved) {
+    return block.flag("enable_rr", !timeResolved, {"none", "Russian roulette", "true in steady state, else false"});
+}
+
+void acceptPhotonSettings(const ObjectReader& block) {
+    block.accept({"photon_count", "volume_photon_count", "gather_photon_count", "gather_radius", "volume_gather_radius",
+                  "volume_photon_type", "fixed_volume_radius", "alpha", "volume_alpha", "use_grid", "grid_memory",
+                  "use_frustum_grid", "exclude_non_mis", "strict_time_width", "frustum_culling", "reuse_path_dir"});
+}
+
 PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     PathSettings settings;
     const EffectPlan facts = analyseScene(scene);
@@ -53,12 +72,8 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
         block.flag("enable_light_sampling", true, {"none", "surface vertices connect to emitters"});
     settings.volumeLightSampling =
         block.flag("enable_volume_light_sampling", true, {"none", "medium vertices connect to emitters"});
-    settings.lowOrderScattering = block.flag(
-        "low_order_scattering", true, {"none", "false: leaves out paths with exactly one scattering in a medium"});
-    settings.includeSurfaces = block.flag(
-        "include_surfaces", true, {"none", "false: leaves out what reaches surfaces without a scattering in a medium"});
-    settings.russianRoulette =
-        block.flag("enable_rr", !facts.timeResolved, {"none", "Russian roulette", "true in steady state, else false"});
+    settings.limits = readBounceLimits(block, scene);
+    settings.russianRoulette = readRussianRoulette(block, facts.timeResolved);
     settings.policy = transport::readPolicy(block);
     warnAboutUnguided(block, facts, settings);
     warnAboutSingleDirections(block, scene);
@@ -66,10 +81,7 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
         const std::string problem = deltaGateProblem(scene, settings, facts);
         if (!problem.empty()) block.problem("delta_time_gate", problem);
     }
-    // Settings of the photon integrators: a scene may switch between them and this one by its type alone.
-    block.accept({"photon_count", "volume_photon_count", "gather_photon_count", "gather_radius", "volume_gather_radius",
-                  "volume_photon_type", "fixed_volume_radius", "alpha", "volume_alpha", "use_grid", "grid_memory",
-                  "use_frustum_grid", "exclude_non_mis", "strict_time_width", "frustum_culling", "reuse_path_dir"});
+    acceptPhotonSettings(block);
     return settings;
 }
 

@@ -11,17 +11,19 @@ bool chosenFrom(const Emitter& emitter, TargetChoice::Emitters emitters) {
 } // namespace
 
 Rgb PathTarget::intensity(const Vec3f& direction) const {
-    if (medium) return power * medium->phase.eval(incoming, direction);
-    if (surface) {
-        if (!surface->consistent(direction, consistencyChecks)) return Rgb(0.0f);
-        const Vec3f wo = surface->frame.toLocal(direction);
-        const Rgb value = surface->bsdf->eval(surface->query(TransportMode::Photons, lobe::Smooth), surface->wi, wo);
-        return power * value * surface->photonShadingFactor(-incoming, direction);
-    }
+    if (source) return power * source->scattering(direction);
     if (const float area = emittingArea(*emitter); area > 0.0f)
         return emittedRadiance(*emitter, point.uv, point.normal, direction) *
                (std::abs(direction.dot(point.normal)) * area / probability);
     return emittedIntensity(*emitter, point, direction) / probability;
+}
+
+std::optional<transport::ConnectionEnd> PathTarget::seenFrom(const Vec3f& position) const {
+    const Vec3f offset = point.position - position;
+    const float distance = offset.length();
+    if (!(distance > 0.0f)) return std::nullopt;
+    const Vec3f direction = offset / distance;
+    return transport::ConnectionEnd{direction, distance, intensity(-direction) / sqr(distance), point.margin()};
 }
 
 TargetChoice::TargetChoice(const Scene& scene, Emitters emitters) : scene_(scene) {
@@ -75,12 +77,11 @@ std::optional<PathTarget> TargetChoice::scatterBeam(PathTarget target, Sampler& 
         if (!hit && flight.exited) return std::nullopt;
         const float length = hit ? hit->t : flight.distance;
         target.start += double(length) / double(beam.region.speed);
-        target.incoming = beam.ray.direction;
         ++target.interactions;
         if (!hit) {
             target.power = target.power * flight.weight;
             target.point = {beam.ray.at(length), beam.ray.direction, {0.0f, 0.0f}};
-            target.medium = medium;
+            target.source.emplace(*medium, target.point.position, beam.ray.direction, beam.region);
             target.surrounding = beam.region.medium;
             ++target.mediumScatters;
             return target;
@@ -88,7 +89,7 @@ std::optional<PathTarget> TargetChoice::scatterBeam(PathTarget target, Sampler& 
         if (medium)
             target.power = target.power * (medium->transmittance(length) / probabilityFlightExits(*medium, length));
         if (!meetSurface(target, beam, *hit, sampler)) return std::nullopt;
-        if (target.surface) {
+        if (target.source) {
             target.surrounding = beam.region.medium;
             return target;
         }
@@ -104,8 +105,7 @@ bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit&
     if (sampler.next1D() < scatters) {
         target.power = target.power / scatters;
         target.point = {hit.position, hit.ng, hit.uv, hit.error};
-        target.surface = surface;
-        target.consistencyChecks = scene_.transport.consistencyChecks;
+        target.source.emplace(scene_, surface, TransportMode::Photons, beam.region);
         return true;
     }
     if (onward == 0) return false;

@@ -3,7 +3,7 @@
 
 #include "path/PixelSink.h"
 
-#include "tungsten/scene/Interaction.h"
+#include "transport/Connection.h"
 
 #include <optional>
 
@@ -15,21 +15,20 @@ struct PathTarget {
     const Emitter* emitter = nullptr;
     int index = -1; ///< of the emitter; -1 for virtual sources, which cannot be hit
     SurfaceSample point{Vec3f(0.0f), Vec3f(0.0f), Vec2f(0.0f)};
-    int surrounding = -1;                      ///< medium about the point
-    float reach = 0.0f;                        ///< distance from `point` to the emitter's farthest point
-    double start = 0.0;                        ///< when light leaves the point
-    float probability = 1.0f;                  ///< of the emitter's choice
-    int interactions = 0;                      ///< of the light's own path so far, the virtual source included
-    int mediumScatters = 0;                    ///< of these, in media
-    Rgb power{0.0f};                           ///< that a virtual source scatters
-    Vec3f incoming{0.0f};                      ///< its direction
-    const Medium* medium = nullptr;            ///< of a virtual source in a medium
-    std::optional<SurfaceInteraction> surface; ///< of a virtual source on a surface
-    bool consistencyChecks = false;            ///< there: drop directions on the wrong side of the geometric normal
+    int surrounding = -1;                    ///< medium about the point
+    float reach = 0.0f;                      ///< distance from `point` to the emitter's farthest point
+    double start = 0.0;                      ///< when light leaves the point
+    float probability = 1.0f;                ///< of the emitter's choice
+    int interactions = 0;                    ///< of the light's own path so far, the virtual source included
+    int mediumScatters = 0;                  ///< of these, in media
+    std::optional<transport::Vertex> source; ///< of a virtual source: where light is scattered
+    Rgb power{0.0f};                         ///< that it scatters
 
     /// Power per steradian that leaves the point along the unit `direction` (intensity; radiance times cosine over the
     /// area density for surfaces), divided by the probability of the emitter's choice.
     [[nodiscard]] Rgb intensity(const Vec3f& direction) const;
+    /// To connect a vertex at `position` to it; none at its own place.
+    [[nodiscard]] std::optional<transport::ConnectionEnd> seenFrom(const Vec3f& position) const;
     /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;

@@ -72,18 +72,11 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
     return guides;
 }
 
-std::optional<darts::TemporalResponse> makeResponse(const TemporalResponse& response) {
-    if (response.empty()) return std::nullopt;
-    return darts::TemporalResponse::tabulated(response.times, response.values);
-}
-
 } // namespace
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
     : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)),
-      response_(makeResponse(scene_->transport.response)), sensor_{scene_->transport.gate,
-                                                                   response_ ? &*response_ : nullptr},
-      lights_(*scene_) {}
+      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)), lights_(*scene_) {}
 
 void PathTracer::plan(EffectPlan& plan) const {
     PathPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);

@@ -5,8 +5,6 @@
 #include "path/guided/GuidedPathWalk.h"
 #include "tungsten/scene/LightChoice.h"
 
-#include "darts/TemporalResponse.h"
-
 #include "tungsten/render/Integrator.h"
 
 namespace tungsten::path {
@@ -28,8 +26,7 @@ class PathTracer : public Integrator {
 
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
-    std::optional<darts::TemporalResponse> response_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     LightChoice lights_;
     PathPlan plan_;
     std::optional<TargetChoice>

@@ -1,18 +1,27 @@
-// Registration of the path tracers.
+// Registration of the path tracers and the light tracer.
 
 #include "path/PathTracer.h"
+#include "path/light/LightTracer.h"
 
 #include "tungsten/render/Plugin.h"
 
 namespace {
 
+template <typename Made>
+std::unique_ptr<tungsten::Integrator> make(std::shared_ptr<const tungsten::Scene> scene,
+                                           const tungsten::ObjectReader& settings) {
+    return std::make_unique<Made>(std::move(scene), settings);
+}
+
 void registerIntegrators(tungsten::IntegratorRegistry& registry) {
-    const auto make = [](std::shared_ptr<const tungsten::Scene> scene, const tungsten::ObjectReader& settings) {
-        return std::make_unique<tungsten::path::PathTracer>(std::move(scene), settings);
-    };
+    using tungsten::path::LightTracer;
+    using tungsten::path::PathTracer;
     registry.add("path_tracer", "unbiased path tracing with next-event estimation, steady state or time-resolved",
-                 make);
-    registry.add("transient_path_tracer", "the same, always time-resolved", make);
+                 make<PathTracer>);
+    registry.add("transient_path_tracer", "the same, always time-resolved", make<PathTracer>);
+    registry.add("light_tracer", "plain paths from the lights, connected to the camera; steady state or time-resolved",
+                 make<LightTracer>);
+    registry.add("transient_light_tracer", "the same, always time-resolved", make<LightTracer>);
 }
 
 } // namespace

@@ -88,7 +88,7 @@ void PhotonIntegrator::look(const GatherStructures& structures, const SensorReco
 }
 
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    const Sensor sensor = Sensor::of(*scene_, gate(step(pass)));
+    const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
     std::optional<SensorRecord> first;
     if (plan_.records()) first = record(pass, 0, statistics);

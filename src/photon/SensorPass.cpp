@@ -1,4 +1,5 @@
 #include "photon/SensorPass.h"
+#include "transport/BounceLimits.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
@@ -96,15 +97,15 @@ class SensorGather {
     }
 
     void add(const Rgb& radiance, double time) {
-        const Sensor& sensor = structures_.sensor;
-        const int frame = sensor.gate.steadyState ? 0 : sensor.gate.frameOf(time);
+        const transport::Sensor& sensor = structures_.sensor;
+        const int frame = sensor.frameOf(time);
         if (frame < 0) return;
         const Rgb weighed = radiance * sensor.weight(time);
         workspace_.sums[size_t(frame)] += Vec3d(double(weighed.x), double(weighed.y), double(weighed.z));
     }
 
     [[nodiscard]] bool rendered(int interactions) const {
-        return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
+        return transport::BounceLimits(scene_.transport).renders(interactions);
     }
 
     void addEmission(const SensorState& state, const SurfaceInteraction& surface, float weight) {

@@ -11,8 +11,8 @@ namespace tungsten::photon {
 /// Structures over one pass's photons, and the pass's radii.
 struct GatherStructures {
     const Store<Photon>& surfacePhotons;
-    Sensor sensor;         ///< its gate is the pass's: the scene's, or a delta gate's temporal kernel
-    bool splatted = false; ///< straight rays have their volume photons or beams already
+    transport::Sensor sensor; ///< its gate is the pass's: the scene's, or a delta gate's temporal kernel
+    bool splatted = false;    ///< straight rays have their volume photons or beams already
     bool includeSurfaces = true;
     SensorPathRules rules{};
     const GlossyLight* glossy = nullptr; ///< with rules.glossy

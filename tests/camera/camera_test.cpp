@@ -94,6 +94,89 @@ TEST(Camera, ProjectionInvertsRays) {
     }
 }
 
+/// A lens under a transform with unequal scales and shear, a pinhole and an orthographic camera.
+std::vector<Camera> unlikeCameras() {
+    Camera pinhole = lookingAlongMinusZ();
+    pinhole.toWorld.x *= 2.0f;
+    pinhole.toWorld.z *= 0.7f;
+    Camera lens = pinhole, orthographic = pinhole;
+    pinhole.model = Pinhole{70.0f};
+    lens.model = ThinLens{60.0f, 2.5f, 0.4f};
+    lens.toWorld.y += Vec3f(0.1f, 0.0f, 0.0f);
+    orthographic.model = Orthographic{1.5f};
+    return {pinhole, lens, orthographic};
+}
+
+TEST(Camera, SensorSamplesAreItsOwnRays) {
+    for (const Camera& camera : unlikeCameras())
+        for (const Vec2f& uLens : {Vec2f(0.3f, 0.8f), Vec2f(0.9f, 0.45f)}) {
+            const Ray ray = camera.generateRay({31, 4}, {0.5f, 0.5f}, uLens);
+            for (const float distance : {0.8f, 3.0f}) {
+                const auto sample = camera.sampleSensor(ray.at(distance), uLens);
+                ASSERT_TRUE(sample);
+                EXPECT_NEAR(sample->raster.x, 31.0f, 1e-3f);
+                EXPECT_NEAR(sample->raster.y, 4.0f, 1e-3f);
+                EXPECT_NEAR(sample->distance, distance, 1e-5f);
+                EXPECT_LT((sample->direction + ray.direction).length(), 1e-5f);
+            }
+            EXPECT_FALSE(camera.sampleSensor(ray.at(-5.0f), uLens));
+        }
+}
+
+/// Box pixels see a diffuse wall of radiance 1 through sampleSensor as through generateRay: each has the mean 1. Points
+/// of the wall are drawn evenly; their numbers in the pixels follow the weight, pixel by pixel.
+TEST(Camera, SensorWeightsAreTheDensityOfRays) {
+    for (Camera camera : unlikeCameras()) {
+        camera.resolution = {8, 4};
+        constexpr int Points = 400000;
+        constexpr float Half = 12.0f, Depth = 3.0f;
+        std::vector<double> sums(32, 0.0), squares(32, 0.0);
+        for (int i = 0; i < Points; ++i) {
+            Sampler s(5, RandomStream::Test, 0, uint64_t(i));
+            const Vec2f u = s.next2D(), uLens = s.next2D();
+            const Vec3f point(1.0f + Half * (2.0f * u.x - 1.0f), 2.0f + Half * (2.0f * u.y - 1.0f), 3.0f - Depth);
+            const auto sample = camera.sampleSensor(point, uLens);
+            ASSERT_TRUE(sample);
+            const int x = int(std::floor(sample->raster.x + 0.5f)), y = int(std::floor(sample->raster.y + 0.5f));
+            if (x < 0 || y < 0 || x >= 8 || y >= 4) continue;
+            // radiance x cosine at the wall, over the density of the point
+            const double value = double(sample->direction.z) * double(sample->weight) * double(sqr(2.0f * Half));
+            sums[size_t(y * 8 + x)] += value;
+            squares[size_t(y * 8 + x)] += value * value;
+        }
+        for (size_t pixel = 0; pixel < sums.size(); ++pixel) {
+            const double mean = sums[pixel] / Points, error = std::sqrt(squares[pixel]) / Points;
+            EXPECT_NEAR(mean, 1.0, 5.0 * error) << pixel;
+            EXPECT_LT(error, 0.05);
+        }
+    }
+}
+
+TEST(ReconstructionFilter, OffsetsFollowTheirDensity) {
+    for (const std::string& name : filterNames()) {
+        const ReconstructionFilter filter(*filterByName(name));
+        if (filter.type() == FilterType::Dirac) continue;
+        // Between the edges of the table's bins the density is constant.
+        const float step = filter.type() == FilterType::Box ? 0.125f : filter.halfWidth() / 31.0f;
+        const int cells = int(std::lround(filter.reach() / step));
+        std::vector<double> observed(size_t(2 * cells), 0.0), expected;
+        constexpr int Count = 200000;
+        for (int i = 0; i < Count; ++i) {
+            Sampler s(6, RandomStream::Test, 0, uint64_t(i));
+            const int cell = int(std::floor(filter.sample(s.next2D()).x / step)) + cells;
+            observed[size_t(std::clamp(cell, 0, 2 * cells - 1))] += 1.0;
+        }
+        double total = 0.0;
+        for (int cell = 0; cell < 2 * cells; ++cell) {
+            expected.push_back(double(filter.pdf((float(cell - cells) + 0.5f) * step)) * double(step) * Count);
+            total += expected.back();
+        }
+        EXPECT_NEAR(total / Count, 1.0, 1e-5) << name;
+        EXPECT_GT(test::chiSquarePValue(observed, expected), test::SmallestPValue) << name;
+        EXPECT_EQ(filter.pdf(filter.reach() * 1.001f), 0.0f);
+    }
+}
+
 TEST(ReconstructionFilter, BoxIsUniformAndTentHasTheFormatsOffset) {
     const ReconstructionFilter box(FilterType::Box), tent(FilterType::Tent);
     EXPECT_GT(test::chiSquareUniform([&](Sampler& s) { return double(box.sample(s.next2D()).y) + 0.5; }),

@@ -28,8 +28,8 @@ class SharedArrivals : public testing::Test {
 
     [[nodiscard]] Image share(const std::vector<SurfaceArrival>& arrivals, float radius, float distance = 100.0f) {
         Film film(24, 20, 1);
-        shareArrivals(*loaded_.scene, Sensor(loaded_.scene->transport.gate), record_, arrivals, {radius, distance}, 3.0,
-                      film, statistics_);
+        shareArrivals(*loaded_.scene, transport::Sensor(loaded_.scene->transport.gate), record_, arrivals,
+                      {radius, distance}, 3.0, film, statistics_);
         Image image(24, 20);
         for (int y = 0; y < 20; ++y)
             for (int x = 0; x < 24; ++x) image.at(x, y) = film.passPixel(0, x, y);

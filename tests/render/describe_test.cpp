@@ -34,7 +34,7 @@ std::set<std::string> fieldsOf(const std::vector<DescribedKind>& all, const std:
 TEST(Describe, IntegratorsOfPluginsAreWhole) {
     const auto all = shippedDescriptions();
     const auto integrators = typesOf(all, "integrators");
-    EXPECT_EQ(integrators.size(), 6u);
+    EXPECT_EQ(integrators.size(), 8u);
     for (const auto& type : integrators) test::expectDescribed(*type);
     const auto photons = fieldsOf(all, "progressive_transient_photon_map"), paths = fieldsOf(all, "path_tracer");
     for (const char* field : {"gather_radius", "volume_photon_type", "frame_num", "max_bounces", "darts"})

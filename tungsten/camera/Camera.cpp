@@ -13,6 +13,12 @@ Vec3f rasterDirection(const Vec2f& p, const Vec2i& resolution, float distance) {
     return {-1.0f + 2.0f * p.x / w, h / w - 2.0f * p.y / w, distance};
 }
 
+/// Inverse of rasterDirection, for a point on its plane.
+Vec2f rasterOf(const Vec3f& onPlane, const Vec2i& resolution) {
+    const float w = float(resolution.x), h = float(resolution.y);
+    return {0.5f * w * (1.0f + onPlane.x), 0.5f * (h - w * onPlane.y)};
+}
+
 } // namespace
 
 Transform cameraTransform(const Transform& sceneTransform) {
@@ -44,6 +50,43 @@ Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& u
                        const Vec3f local(-halfWidth + centre.x * step, orthographic.size - centre.y * step, 0.0f);
                        return {toWorld.point(local), forward()};
                    }},
+        model);
+}
+
+std::optional<SensorSample> Camera::sampleSensor(const Vec3f& point, const Vec2f& uLens) const {
+    const Vec3f local = toWorld.inverseVector(point - position());
+    const float volume = std::abs(toWorld.determinant());
+    // Raster area per solid angle of the camera frame is (plane w / 2)^2 / cos^3 for both views with a field; the
+    // world's solid angle is `volume` |along|^3 / distance^3 of that.
+    const auto through = [&](const Vec3f& along, float plane, const Vec2f& raster) {
+        const Vec3f offset = toWorld.vector(along);
+        const float distance = offset.length(), cubed = along.z * along.z * along.z;
+        const float weight = 0.25f * sqr(plane * float(resolution.x)) / volume * distance / cubed;
+        return SensorSample{-offset / distance, distance, weight, raster};
+    };
+    return std::visit(
+        Overloaded{
+            [&](const Pinhole& pinhole) -> std::optional<SensorSample> {
+                if (!(local.z > 0.0f)) return std::nullopt;
+                const Vec2f raster = rasterOf(local * (pinhole.planeDistance / local.z), resolution);
+                return through(local, pinhole.planeDistance, raster - Vec2f(0.5f));
+            },
+            [&](const ThinLens& lens) -> std::optional<SensorSample> {
+                const Vec2f disk = warp::squareToDisk(uLens) * lens.apertureRadius;
+                const Vec3f start(disk.x, disk.y, 0.0f), along = local - start;
+                if (!(along.z > 0.0f)) return std::nullopt;
+                // Where the ray crosses the plane of focus, seen from the middle of the lens; no half pixel, as in
+                // generateRay.
+                const Vec3f focus = start + along * (lens.focusDistance / along.z);
+                return through(along, lens.planeDistance, rasterOf(focus * (lens.planeDistance / focus.z), resolution));
+            },
+            [&](const Orthographic& orthographic) -> std::optional<SensorSample> {
+                if (!(local.z > 0.0f)) return std::nullopt;
+                const float step = 2.0f * orthographic.size / float(resolution.y), depth = toWorld.z.length();
+                const Vec2f raster(local.x / step + 0.5f * float(resolution.x),
+                                   0.5f * float(resolution.y) - local.y / step);
+                return SensorSample{-forward(), local.z * depth, depth / (sqr(step) * volume), raster - Vec2f(0.5f)};
+            }},
         model);
 }
 

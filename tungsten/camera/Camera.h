@@ -26,6 +26,17 @@ struct Orthographic {
     float size = 1.0f; ///< half the image height
 };
 
+/// A connection from a point to the sensor.
+struct SensorSample {
+    Vec3f direction; ///< from the point, unit
+    float distance;
+    /// Power scattered per steradian towards the sensor, times this, is what the point adds to the image per pixel of
+    /// area about `raster`: the density of raster positions per solid angle over distance^2 (orthographic: per area
+    /// across the rays), divided by the density of the place on the lens. Visibility not included.
+    float weight;
+    Vec2f raster; ///< position in the image, in pixels; whole numbers are the centres of filters
+};
+
 /// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated
 /// (docs/scene-format.md, section 3).
 class Camera {
@@ -37,6 +48,9 @@ class Camera {
 
     /// Ray through raster position `pixel` + 0.5 + filter offset; weight 1. `uLens` is used by the thin lens only.
     [[nodiscard]] Ray generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const;
+    /// The ray of generateRay that meets `point` after leaving the lens where `uLens` says; none behind the camera. The
+    /// raster position may lie outside the image.
+    [[nodiscard]] std::optional<SensorSample> sampleSensor(const Vec3f& point, const Vec2f& uLens) const;
     [[nodiscard]] Vec3f position() const { return toWorld.translation; }
     [[nodiscard]] Vec3f forward() const { return toWorld.z.normalized(); }
     /// Raster position of a world point (pinhole and thin lens: through the lens centre; orthographic: along the axis);

@@ -97,6 +97,19 @@ Vec2f ReconstructionFilter::sample(const Vec2f& u) const {
     return {axis(u.x), axis(u.y)};
 }
 
+float ReconstructionFilter::pdf(float offset) const {
+    if (type_ == FilterType::Dirac) return 0.0f;
+    if (type_ == FilterType::Box) return offset >= -0.5f && offset < 0.5f ? 1.0f : 0.0f;
+    const float place = std::abs(offset) / halfWidth() * float(Bins) - 1.0f; // sample() without its last step
+    if (!(place >= 0.0f && place < float(Bins))) return 0.0f;
+    return bins_.probability(size_t(place)) * 0.5f * float(Bins) / halfWidth();
+}
+
+float ReconstructionFilter::reach() const {
+    const bool tabulated = bins_.size() > 0;
+    return tabulated ? halfWidth() * float(Bins + 1) / float(Bins) : halfWidth();
+}
+
 std::optional<FilterType> filterByName(const std::string& name) {
     const auto found = filterTypes().find(name);
     return found == filterTypes().end() ? std::nullopt : std::optional(found->second);

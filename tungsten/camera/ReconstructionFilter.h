@@ -18,6 +18,10 @@ class ReconstructionFilter {
     explicit ReconstructionFilter(FilterType type = FilterType::Tent);
     /// Offset from the pixel centre, in pixels.
     [[nodiscard]] Vec2f sample(const Vec2f& u) const;
+    /// Density of sample() along one axis, per pixel; an image is the mean over offsets drawn from the product of both.
+    [[nodiscard]] float pdf(float offset) const;
+    /// Offsets have no larger magnitude.
+    [[nodiscard]] float reach() const;
     /// Unnormalised one-dimensional profile.
     [[nodiscard]] float eval(float x) const;
     [[nodiscard]] float halfWidth() const;

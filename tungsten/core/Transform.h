@@ -11,6 +11,10 @@ struct Transform {
 
     [[nodiscard]] Vec3f point(const Vec3f& p) const { return x * p.x + y * p.y + z * p.z + translation; }
     [[nodiscard]] Vec3f vector(const Vec3f& v) const { return x * v.x + y * v.y + z * v.z; }
+    /// The vector that vector() maps to `v`; the determinant must not be 0.
+    [[nodiscard]] Vec3f inverseVector(const Vec3f& v) const {
+        return Vec3f(y.cross(z).dot(v), z.cross(x).dot(v), x.cross(y).dot(v)) / determinant();
+    }
     /// Column lengths: the scale factors of a transform without shear.
     [[nodiscard]] Vec3f scale() const { return {x.length(), y.length(), z.length()}; }
     /// Columns normalised: the rotation part (may mirror).

@@ -127,7 +127,7 @@ bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
     }
     if (++state.interactions >= scene_.transport.maxBounces) return false;
     // The format ends such a path at any surface, index-matched ones included.
-    if (state.mediumScatters == 1 && !context_.settings.lowOrderScattering) return false;
+    if (context_.settings.limits.endsAtSurface(state.mediumScatters)) return false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, state.ray.direction);
     const darts::Guide* guide = path_.guideFor(surface, -state.ray.direction);
     arrive(guide ? ConnectionsFromSurfaces::density(path_, hit) : 0.0f,

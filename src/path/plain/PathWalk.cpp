@@ -1,17 +1,12 @@
 #include "path/plain/PathWalk.h"
 
-#include "path/techniques/Connection.h"
+#include "transport/Roulette.h"
 
 #include "transport/Balance.h"
 
 namespace tungsten::path {
 
-namespace {
-
-constexpr float RouletteThreshold = 0.1f;
-constexpr int RouletteFirstVertex = 3;
-
-} // namespace
+using transport::Vertex;
 
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::run(Ray ray) {
@@ -74,12 +69,8 @@ bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::continueRoulette() {
-    if (!settings_.russianRoulette || path_.interactions < RouletteFirstVertex) return true;
-    const float survival = maxComponent(path_.throughput);
-    if (survival >= RouletteThreshold) return true;
-    if (path_.sampler.next1D() >= survival) return false;
-    path_.throughput = path_.throughput / survival;
-    return true;
+    return !settings_.russianRoulette ||
+           transport::survivesRoulette(path_.throughput, path_.interactions, path_.sampler);
 }
 
 template <bool TimeResolved, bool Media>
@@ -92,8 +83,7 @@ bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float 
     vertex_ = path_.ray.at(distance);
     if (tooLate(vertex_) || path_.interactions >= scene_.transport.maxBounces) return false;
     const Vec3f before = path_.ray.direction;
-    if (settings_.volumeLightSampling && orderCounts()) connectFromMedium(medium);
-    if (settings_.volumeLightSampling && source_) connectMediumToSource(medium);
+    if (settings_.volumeLightSampling) connect({medium, vertex_, before, path_.region});
     path_.ray = Ray{vertex_, medium.phase.sample(before, path_.sampler.next2D())};
     directionPdf_ = medium.phase.pdf(before, path_.ray.direction);
     weighted_ = settings_.volumeLightSampling;
@@ -108,14 +98,12 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     if (tooLate(hit.position)) return false;
     if (hit.shape < scene_.primitives.size() && scene_.primitives[hit.shape].emitter >= 0) addEmission(hit);
     if (++path_.interactions >= scene_.transport.maxBounces) return false;
-    // The format ends such a path at any surface, index-matched ones included.
-    if (path_.mediumScatters == 1 && !settings_.lowOrderScattering) return false;
+    if (settings_.limits.endsAtSurface(path_.mediumScatters)) return false;
 
     const SurfaceInteraction surface = makeInteraction(scene_, hit, path_.ray.direction);
     const LobeMask lobes = surface.bsdf->lobes();
-    const bool smooth = (lobes & lobe::Smooth) != 0;
-    if (smooth && settings_.lightSampling && orderCounts()) connectFromSurface(surface);
-    if (smooth && settings_.lightSampling && source_) connectSurfaceToSource(surface);
+    if (settings_.lightSampling && (lobes & lobe::Smooth) != 0)
+        connect({scene_, surface, TransportMode::Radiance, path_.region});
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, path_.sampler);
     if (!exit) return false;
@@ -175,75 +163,31 @@ auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::o
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectFromMedium(const Medium& medium) {
-    const auto light = sampleLight(vertex_);
+void PathWalk<TimeResolved, Media>::connectToLight(const Vertex& vertex) {
+    const auto light = sampleLight(vertex.position());
     if (!light) return;
-    const float phase = medium.phase.eval(path_.ray.direction, light->direct.direction);
-    addConnection(*light, Rgb(phase), phase, {vertex_, light->direct.direction}, path_.region);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectFromSurface(const SurfaceInteraction& surface) {
-    const auto light = sampleLight(surface.hit.position);
-    if (!light || !surface.consistent(light->direct.direction, scene_.transport.consistencyChecks)) return;
-    const Vec3f wo = surface.frame.toLocal(light->direct.direction);
-    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi, wo);
-    if (isBlack(scattering)) return;
-    const float pdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
-    const Region region = regionBeyond(surface, light->direct.direction, path_.region);
-    addConnection(*light, scattering, pdf, surface.hit.leave(light->direct.direction), region);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addConnection(const LightSample& light, const Rgb& scattering, float directionPdf,
-                                                  Ray ray, const Region& region) {
-    ray.tMax = light.direct.reach();
-    const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, light.direct.distance, region, path_.counters.shadowRays);
-    if (isBlack(visibility.transmittance) || !rendered(path_.interactions + visibility.crossings)) return;
+    const auto connection = connector_.connect(vertex, path_.throughput, transport::connectionEnd(light->direct),
+                                               path_.counters.shadowRays);
+    if (!connection || !rendered(path_.interactions + connection->crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
-    const float pdf = light.direct.pdf;
-    const float weight = pdf > 0.0f ? transport::powerHeuristic(pdf * light.probability, directionPdf) : 1.0f;
-    const Rgb radiance =
-        path_.throughput * scattering * light.direct.weight * visibility.transmittance * (weight / light.probability);
-    path_.sink.add(radiance, path_.time + visibility.time + light.emitter.emissionTime);
+    const float pdf = light->direct.pdf;
+    const float weight =
+        pdf > 0.0f ? transport::powerHeuristic(pdf * light->probability, vertex.pdf(light->direct.direction)) : 1.0f;
+    path_.sink.add(connection->throughput * (weight / light->probability),
+                   path_.time + connection->time + light->emitter.emissionTime);
 }
 
 template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectMediumToSource(const Medium& medium) {
-    const Vec3f offset = source_->point.position - vertex_;
-    const float distance = offset.length();
-    if (!(distance > 0.0f)) return;
-    const Vec3f direction = offset / distance;
-    addSource(Rgb(medium.phase.eval(path_.ray.direction, direction)), {vertex_, direction}, distance, path_.region);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::connectSurfaceToSource(const SurfaceInteraction& surface) {
-    const Vec3f offset = source_->point.position - surface.hit.position;
-    const float distance = offset.length();
-    const Vec3f direction = offset / distance;
-    if (!(distance > 0.0f) || !surface.consistent(direction, scene_.transport.consistencyChecks)) return;
-    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi,
-                                              surface.frame.toLocal(direction));
-    const Region region = regionBeyond(surface, direction, path_.region);
-    addSource(scattering, surface.hit.leave(direction), distance, region);
-}
-
-template <bool TimeResolved, bool Media>
-void PathWalk<TimeResolved, Media>::addSource(const Rgb& scattering, Ray ray, float distance, const Region& region) {
+void PathWalk<TimeResolved, Media>::connectToSource(const Vertex& vertex) {
     if (!orderCounts(source_->mediumScatters)) return;
+    const auto end = source_->seenFrom(vertex.position());
+    if (!end) return;
     ++path_.counters.connections;
     if constexpr (TimeResolved)
-        if (!arrival_.mayConnect(path_.time, distance, source_->start)) return;
-    const Rgb light = scattering * source_->intensity(-ray.direction) / sqr(distance);
-    if (isBlack(light)) return;
-    ray.tMax = source_->point.margin().before(ray.direction, distance);
-    const Visibility visibility =
-        traceConnection(scene_, forwardBoundaries_, ray, distance, region, path_.counters.shadowRays);
-    if (isBlack(visibility.transmittance)) return;
-    if (!rendered(path_.interactions + visibility.crossings + source_->interactions)) return;
-    path_.sink.add(path_.throughput * light * visibility.transmittance, path_.time + visibility.time + source_->start);
+        if (!arrival_.mayConnect(path_.time, end->distance, source_->start)) return;
+    const auto connection = connector_.connect(vertex, path_.throughput, *end, path_.counters.shadowRays);
+    if (!connection || !rendered(path_.interactions + connection->crossings + source_->interactions)) return;
+    path_.sink.add(connection->throughput, path_.time + connection->time + source_->start);
 }
 
 template class PathWalk<false, false>;

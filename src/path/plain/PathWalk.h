@@ -5,6 +5,7 @@
 #include "path/CameraPath.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
+#include "transport/Connection.h"
 #include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::path {
@@ -27,7 +28,7 @@ class PathWalk {
     PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
              const PathTarget* source)
         : path_(context.scene, sink, counters, sampler), scene_(context.scene), settings_(context.settings),
-          lights_(context.lights), arrival_(context.arrival), forwardBoundaries_(context.forwardBoundaries),
+          lights_(context.lights), arrival_(context.arrival), connector_(context.scene, context.forwardBoundaries),
           source_(source) {}
 
     void run(Ray ray);
@@ -49,27 +50,21 @@ class PathWalk {
     void addEnvironment();
     /// None when the emitter cannot light the position, or not inside the gate.
     std::optional<LightSample> sampleLight(const Vec3f& position);
-    void connectFromMedium(const Medium& medium);
-    void connectFromSurface(const SurfaceInteraction& surface);
-    void connectMediumToSource(const Medium& medium);
-    void connectSurfaceToSource(const SurfaceInteraction& surface);
-    /// Adds light through a connection whose scattering value (cosine included) and density of the walk's own sampling
-    /// are given. The ray starts in `region`; its tMin is above 0 when it leaves a surface.
-    void addConnection(const LightSample& light, const Rgb& scattering, float directionPdf, Ray ray,
-                       const Region& region);
-    /// The same for the virtual source, seen along `direction` at `distance`.
-    void addSource(const Rgb& scattering, Ray ray, float distance, const Region& region);
+    /// Adds the light that connections of a vertex bring: to an emitter, and to the virtual source.
+    void connect(const transport::Vertex& vertex) {
+        if (orderCounts()) connectToLight(vertex);
+        if (source_) connectToSource(vertex);
+    }
+    void connectToLight(const transport::Vertex& vertex);
+    void connectToSource(const transport::Vertex& vertex);
     bool continueRoulette();
     void advanceClock(float length);
     /// Whether light found from `position` on can still arrive inside the gate.
     [[nodiscard]] bool tooLate(const Vec3f& position) const;
-    [[nodiscard]] bool rendered(int interactions) const {
-        return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
-    }
+    [[nodiscard]] bool rendered(int interactions) const { return settings_.limits.renders(interactions); }
     /// Whether light found at the end of the current segment counts (low_order_scattering, include_surfaces).
     [[nodiscard]] bool orderCounts(int further = 0) const {
-        if (path_.mediumScatters + further == 0) return settings_.includeSurfaces;
-        return settings_.lowOrderScattering || path_.mediumScatters + further > 1;
+        return settings_.limits.orderCounts(path_.mediumScatters + further);
     }
 
     CameraPath path_;
@@ -77,7 +72,7 @@ class PathWalk {
     const PathSettings& settings_;
     const LightChoice& lights_;
     const ArrivalBound& arrival_;
-    bool forwardBoundaries_;
+    transport::Connector connector_;
     const PathTarget* source_;
     /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while
     /// specular.

@@ -1,7 +1,7 @@
 #pragma once
 // Points that light has reached, a few of which are tried at once for arrival at a place within a range of lengths.
 
-#include "tungsten/core/Types.h"
+#include "transport/GateBounds.h"
 
 #include <array>
 #include <cmath>
@@ -53,7 +53,7 @@ auto ArrivalWindow::choose(const Vec3f& position, float low, float high, const V
     if (count_ == 0) return std::nullopt;
     const size_t first = std::min(size_t(u.x * float(count_)), count_ - 1);
     const float *x = &x_[first], *y = &y_[first], *z = &z_[first], *length = &length_[first];
-    constexpr float Slack = 1e-6f; // rounding; the sensor tests times exactly
+    constexpr auto Slack = float(transport::FlightSlack);
     const float from = low - Slack * std::abs(low), to = high + Slack * std::abs(high);
     std::array<float, Size> squared, importances;
     std::array<uint32_t, Size> inside, candidates;

@@ -17,7 +17,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
       unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), choosesFrames_(plan.framesOneByOne.on),
       drawsByResponse_(plan.drawsByResponse), meetsDeltaGate_(plan.meetsDeltaGate),
-      sensor_(Sensor::of(scene, scene.transport.gate)) {
+      sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
     if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
     if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);

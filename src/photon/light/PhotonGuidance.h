@@ -3,7 +3,7 @@
 
 #include "photon/PhotonPlan.h"
 #include "photon/light/CameraView.h"
-#include "photon/view/Sensor.h"
+#include "transport/Sensor.h"
 
 #include "darts/Guide.h"
 
@@ -79,7 +79,7 @@ class PhotonGuidance {
     double speed_;
     double slack_; ///< of arrival times, from the aperture
     bool unwarped_, directView_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;
 };

@@ -27,8 +27,8 @@ class VolumeGather {
     static constexpr const char* GatheredCounter = Primitive::Gathered;
 
     /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
-    VolumeGather(const Scene& scene, const Sensor& sensor, const ArrivalCulling& culling, Store<Record> store,
-                 Radii radii, const SensorRays& rays)
+    VolumeGather(const Scene& scene, const transport::Sensor& sensor, const ArrivalCulling& culling,
+                 Store<Record> store, Radii radii, const SensorRays& rays)
         : scene_(scene), sensor_(sensor), scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
         if (!culling.directView() && culling.straightTimesKnown())
             straight_ = Primitive::straight(scene, culling, all_.records, all_.radii);
@@ -79,7 +79,7 @@ class VolumeGather {
     }
 
     const Scene& scene_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     float scale_;
     Selection<Record> all_;
     std::optional<Selection<Record>> straight_; ///< none: all

@@ -22,7 +22,7 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
 } // namespace
 
 ArrivalCulling::ArrivalCulling(const Scene& scene, const SensorPaths& paths)
-    : sensor_(Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
+    : sensor_(transport::Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
       highestSpeed_(double(paths.highestSpeed)) {
     setGate(scene.transport.gate);
     const Vec3f position = scene.camera.position();

@@ -1,7 +1,7 @@
 #pragma once
 // Which photons can still be seen inside the time gate.
 
-#include "photon/view/Sensor.h"
+#include "transport/Sensor.h"
 
 #include "tungsten/scene/Scene.h"
 
@@ -54,7 +54,7 @@ class ArrivalCulling {
     [[nodiscard]] bool insideGate(double arrival, bool testStart) const;
     [[nodiscard]] double soonestArrival(const Vec3f& position, double time) const;
 
-    Sensor sensor_;
+    transport::Sensor sensor_;
     bool straightTimesKnown_ = false;
     bool directView_ = false;
     bool unwarped_ = false;

@@ -121,7 +121,7 @@ SharingKernel SharingKernel::of(size_t points, size_t arrivals, float gatherRadi
     return {pixels * factor, gatherRadius * factor};
 }
 
-void shareArrivals(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+void shareArrivals(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                    const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
                    Statistics& statistics) {
     if (arrivals.empty()) return;

@@ -3,8 +3,8 @@
 // camera sees, as gathering photons is, but of connections that arrive in time.
 
 #include "photon/surface/SurfaceArrival.h"
-#include "photon/view/Sensor.h"
 #include "photon/view/SensorRecord.h"
+#include "transport/Sensor.h"
 
 #include "tungsten/film/Film.h"
 
@@ -22,7 +22,7 @@ struct SharingKernel {
 
 /// Adds to the pass image, for every sensor point, the mean over the points in its kernel of what arrived there,
 /// reflected by its own BSDF, times `scale`.
-void shareArrivals(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+void shareArrivals(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                    const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
                    Statistics& statistics);
 

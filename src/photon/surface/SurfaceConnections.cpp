@@ -1,5 +1,8 @@
 #include "photon/surface/SurfaceConnections.h"
 
+#include "transport/BounceLimits.h"
+#include "transport/GateBounds.h"
+
 #include <algorithm>
 
 namespace tungsten::photon {
@@ -12,7 +15,7 @@ float usualIntensity(const LightVertex& vertex) {
 
 } // namespace
 
-SurfaceConnections::SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                                        const PassInfo& pass, const Spread& spread)
     : scene_(scene), sensor_(sensor), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
@@ -38,7 +41,8 @@ SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& ver
     const double low = speed_ * (gate.begin - vertex.time), high = speed_ * (gate.end - vertex.time);
     if (!clusters_ || !(high > 0.0)) return ranges;
     // arrive() tests exactly.
-    const float slack = 4e-6f * float(high) + 1e-5f * float(high - low);
+    constexpr auto Slack = float(transport::FlightSlack); // a few times: clusters add lengths in float
+    const float slack = 4.0f * Slack * float(high) + 10.0f * Slack * float(high - low);
     const auto open = [&](const darts::TimeGate& times) {
         const LengthRange range{float(speed_ * (times.begin - vertex.time)) - slack,
                                 float(speed_ * (times.end - vertex.time)) + slack};
@@ -86,7 +90,7 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     const Visibility visibility = traceVisibility(scene_, ray, draw.distance, vertex.region, rays);
     if (isBlack(visibility.transmittance)) return;
     const int interactions = point.interactions + vertex.bounce + 1 + visibility.crossings;
-    if (interactions < scene_.transport.minBounces || interactions >= scene_.transport.maxBounces) return;
+    if (!transport::BounceLimits(scene_.transport).renders(interactions)) return;
     const double time = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
     if (!(time >= gate.begin && time < gate.end)) return;
     arrival.frame = sensor_.gate.frameOf(time);

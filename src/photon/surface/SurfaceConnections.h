@@ -5,8 +5,8 @@
 #include "photon/surface/SensorClusters.h"
 #include "photon/surface/SpreadArrival.h"
 #include "photon/surface/SurfaceArrival.h"
-#include "photon/view/Sensor.h"
 #include "photon/view/SensorRecord.h"
+#include "transport/Sensor.h"
 
 #include "darts/ResidualRange.h"
 
@@ -46,8 +46,8 @@ struct Spread {
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
-    SurfaceConnections(const Scene& scene, const Sensor& sensor, const SensorRecord& record, const PassInfo& pass,
-                       const Spread& spread);
+    SurfaceConnections(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                       const PassInfo& pass, const Spread& spread);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
     /// Appends what a vertex sends to sensor points. `scattering(direction)` is the vertex's BSDF or phase function
@@ -89,7 +89,7 @@ class SurfaceConnections {
                 std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const;
 
     const Scene& scene_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     const std::vector<SensorPoint>& points_;
     double speed_;
     float perListed_ = 0.0f;

@@ -38,7 +38,7 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
 GlossyLight::GlossyLight(const Scene& scene, const EffectPlan& plan)
     : scene_(scene), lights_(scene, plan), oversampled_(pixelsNearGlossy(scene)) {}
 
-std::optional<ArrivedLight> GlossyLight::connect(const Sensor& sensor, const SensorState& state,
+std::optional<ArrivedLight> GlossyLight::connect(const transport::Sensor& sensor, const SensorState& state,
                                                  const SurfaceInteraction& surface, Sampler& sampler,
                                                  uint64_t& rays) const {
     const auto light = lights_.connect(sensor, state, surface, sampler, rays);

@@ -12,7 +12,7 @@ class GlossyLight {
 
     /// By a point on a light, weighed against sensor paths that hit the light. `state` is the path up to the glossy
     /// surface. None when it arrives outside the sensor's gate. Adds the rays traced to `rays`.
-    [[nodiscard]] std::optional<ArrivedLight> connect(const Sensor& sensor, const SensorState& state,
+    [[nodiscard]] std::optional<ArrivedLight> connect(const transport::Sensor& sensor, const SensorState& state,
                                                       const SurfaceInteraction& surface, Sampler& sampler,
                                                       uint64_t& rays) const;
     /// Weight of emission that a path hits behind a glossy surface: 0 in mirrors, which photons see to.

@@ -1,11 +1,12 @@
 #pragma once
 // Surface points of sensor paths, connected to points of lights.
 
-#include "photon/view/Sensor.h"
 #include "photon/view/SensorPath.h"
+#include "transport/Connection.h"
+#include "transport/GateBounds.h"
+#include "transport/Sensor.h"
 
 #include "tungsten/emitter/Emitter.h"
-#include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::photon {
@@ -28,18 +29,16 @@ class LightConnector {
 
     /// `state` is the path up to the surface. None when nothing arrives, or outside the sensor's gate. Adds the rays
     /// traced to `rays`.
-    [[nodiscard]] std::optional<LightConnection> connect(const Sensor& sensor, const SensorState& state,
+    [[nodiscard]] std::optional<LightConnection> connect(const transport::Sensor& sensor, const SensorState& state,
                                                          const SurfaceInteraction& surface, Sampler& sampler,
                                                          uint64_t& rays) const;
     [[nodiscard]] const LightChoice& lights() const { return lights_; }
 
   private:
-    [[nodiscard]] bool mayArrive(const TimeGate& gate, double start, double distance) const;
-
     const Scene& scene_;
     LightChoice lights_;
-    double highestSpeed_;
-    bool oneSpeed_;
+    transport::Connector connector_;
+    transport::GateBounds bounds_;
 };
 
 } // namespace tungsten::photon

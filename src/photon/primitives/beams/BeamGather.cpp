@@ -1,6 +1,7 @@
 #include "photon/primitives/beams/BeamGather.h"
 
 #include "photon/primitives/SegmentQuery.h"
+#include "transport/BounceLimits.h"
 
 namespace tungsten::photon {
 
@@ -10,7 +11,7 @@ namespace {
 struct Query {
     embree::Context context;
     const Scene* scene;
-    const Sensor* sensor;
+    const transport::Sensor* sensor;
     const PhotonBeam* beams;
     const EmbreeBeams::Piece* pieces;
     const CameraSegment* segment;
@@ -29,15 +30,15 @@ void evaluate(Query& query, uint32_t index) {
     const float s = approach->alongBeam, t = approach->alongCamera;
     // Only the piece that holds the closest point counts, so that a beam counts once.
     if (!(s >= piece.start) || s >= piece.end || !(t > 0.0f) || t > segment.length) return;
-    const TransportSettings& transport = query.scene->transport;
+    const TransportSettings& settings = query.scene->transport;
     const int interactions = segment.interactions + beam.bounce + 1;
-    if (interactions < transport.minBounces || interactions >= transport.maxBounces) return;
+    if (!transport::BounceLimits(settings).renders(interactions)) return;
     int frame = 0;
     float weight = 1.0f;
     if (!query.sensor->gate.steadyState) {
         // Through the beam's point, as for photon points: then ArrivalCulling's parts of beams are exact.
-        const float toCamera = transport.cameraUnwarped ? 0.0f : std::sqrt(sqr(t) + sqr(approach->distance));
-        const double cameraTime = transport.cameraUnwarped ? 0.0 : segment.time;
+        const float toCamera = settings.cameraUnwarped ? 0.0f : std::sqrt(sqr(t) + sqr(approach->distance));
+        const double cameraTime = settings.cameraUnwarped ? 0.0 : segment.time;
         const double arrival = beam.time + cameraTime + (double(s) + double(toCamera)) * segment.inverseSpeed;
         frame = query.sensor->gate.frameOf(arrival);
         if (frame < 0) return;
@@ -52,7 +53,7 @@ void evaluate(Query& query, uint32_t index) {
 
 } // namespace
 
-BeamGather::BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams,
+BeamGather::BeamGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<PhotonBeam>& beams,
                        const Radii& radius, bool fewRays)
     : scene_(scene), sensor_(sensor), beams_(beams), radius_(radius[0]), structure_(beams, radius_, fewRays) {}
 

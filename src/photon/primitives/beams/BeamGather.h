@@ -32,8 +32,8 @@ class BeamGather {
   public:
     /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
     /// `fewRays`: few segments will be asked for.
-    BeamGather(const Scene& scene, const Sensor& sensor, const std::vector<PhotonBeam>& beams, const Radii& radius,
-               bool fewRays = false);
+    BeamGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<PhotonBeam>& beams,
+               const Radii& radius, bool fewRays = false);
 
     /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the
     /// sensor, to the frames they fall in (docs/photon-primitives.md, eq. 4). Returns how many were gathered.
@@ -41,7 +41,7 @@ class BeamGather {
 
   private:
     const Scene& scene_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     const std::vector<PhotonBeam>& beams_;
     float radius_;
     EmbreeBeams structure_;

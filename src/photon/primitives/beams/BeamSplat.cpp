@@ -2,6 +2,7 @@
 
 #include "photon/raster/ImageBand.h"
 #include "photon/raster/ImageFootprint.h"
+#include "transport/BounceLimits.h"
 
 #include <tbb/parallel_for.h>
 
@@ -30,8 +31,8 @@ struct Ribbon {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, float radius, double scale,
-             Film& film)
+    Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, float radius,
+             double scale, Film& film)
         : scene_(scene), sensor_(sensor), record_(record), footprint_(scene.camera), radius_(radius),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
           timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {}
@@ -115,9 +116,10 @@ class Splatter {
     uint64_t collect(const Ribbon& ribbon, const Approaches& found, BandPiece& piece, size_t first) const {
         auto weight = Batch::load_aligned(found.weight);
         auto inside = weight > 0.0f;
-        if (piece.mixed)
-            inside = piece.select(inside, first, ribbon.medium, scene_.transport.minBounces - ribbon.bounce - 1,
-                                  scene_.transport.maxBounces - ribbon.bounce - 2);
+        if (piece.mixed) {
+            const auto [least, most] = transport::BounceLimits(scene_.transport).remaining(ribbon.bounce + 1);
+            inside = piece.select(inside, first, ribbon.medium, least, most);
+        }
         if (!timeless_) {
             Batch length = Batch::load_aligned(found.alongBeam);
             if (!scene_.transport.cameraUnwarped) length += Batch::load_aligned(found.toCamera);
@@ -154,7 +156,7 @@ class Splatter {
     }
 
     [[nodiscard]] bool rendered(int interactions) const {
-        return interactions >= scene_.transport.minBounces && interactions < scene_.transport.maxBounces;
+        return transport::BounceLimits(scene_.transport).renders(interactions);
     }
     uint64_t add(const Ribbon& ribbon, const StraightPiece& piece, int y, int x, const Approaches& found,
                  int lane) const {
@@ -184,7 +186,7 @@ class Splatter {
     }
 
     const Scene& scene_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     const SensorRecord& record_;
     ImageFootprint footprint_;
     float radius_, scale_;
@@ -195,7 +197,7 @@ class Splatter {
 
 } // namespace
 
-uint64_t splatBeams(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                     const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, radius, scale, film);
     const size_t bands = ImageBand::count(record.height);

@@ -2,8 +2,8 @@
 // Photon beams brought to the pixels instead of pixels to the beams: for straight rays from one point.
 
 #include "photon/primitives/beams/PhotonBeam.h"
-#include "photon/view/Sensor.h"
 #include "photon/view/SensorRecord.h"
+#include "transport/Sensor.h"
 
 #include "tungsten/film/Film.h"
 
@@ -12,7 +12,7 @@ namespace tungsten::photon {
 /// Adds what BeamGather would gather along the recorded straight rays to the pass image, times `scale`. Each beam
 /// visits the pixels that its ribbon covers. Returns the number of beams gathered, one per pixel and beam. `sensor` has
 /// the pass's gate.
-uint64_t splatBeams(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                     const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film);
 
 } // namespace tungsten::photon

@@ -32,7 +32,7 @@ double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& rad
     return meeting.share();
 }
 
-uint64_t Beams::splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                       const Selection<PhotonBeam>& beams, double scale, Film& film) {
     return splatBeams(scene, sensor, record, beams.records, beams.radii[0], scale, film);
 }

@@ -31,7 +31,7 @@ struct Beams {
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
     static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
-    static uint64_t splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                           const Selection<PhotonBeam>& beams, double scale, Film& film);
 };
 

@@ -2,6 +2,7 @@
 
 #include "photon/primitives/SegmentQuery.h"
 #include "photon/store/NearestPhotons.h"
+#include "transport/BounceLimits.h"
 
 #include <tbb/parallel_for.h>
 
@@ -13,7 +14,7 @@ namespace {
 struct Query {
     embree::Context context;
     const Scene* scene;
-    const Sensor* sensor;
+    const transport::Sensor* sensor;
     const std::vector<Photon>* photons;
     const std::vector<float>* squaredRadii;
     const CameraSegment* segment;
@@ -32,15 +33,15 @@ void evaluate(Query& query, uint32_t index) {
         query.squaredRadii->size() == 1 ? query.squaredRadii->front() : (*query.squaredRadii)[index];
     const float kernel = biweight((offset - segment.direction * along).length2(), squaredRadius);
     if (kernel <= 0.0f) return;
-    const TransportSettings& transport = query.scene->transport;
+    const TransportSettings& settings = query.scene->transport;
     const int interactions = segment.interactions + photon.bounce;
-    if (interactions < transport.minBounces || interactions >= transport.maxBounces) return;
+    if (!transport::BounceLimits(settings).renders(interactions)) return;
     int frame = 0;
     float weight = kernel;
     if (!query.sensor->gate.steadyState) {
         // The photon's own distance to the segment's origin: the exact time of the path through the photon.
         const double cameraTime =
-            transport.cameraUnwarped ? 0.0 : segment.time + double(offset.length()) * segment.inverseSpeed;
+            settings.cameraUnwarped ? 0.0 : segment.time + double(offset.length()) * segment.inverseSpeed;
         const double arrival = photon.time + cameraTime;
         frame = query.sensor->gate.frameOf(arrival);
         if (frame < 0) return;
@@ -55,7 +56,7 @@ void evaluate(Query& query, uint32_t index) {
 
 } // namespace
 
-PointGather::PointGather(const Scene& scene, const Sensor& sensor, const std::vector<Photon>& photons,
+PointGather::PointGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<Photon>& photons,
                          const Radii& radii, bool)
     : scene_(scene), sensor_(sensor), photons_(photons) {
     std::vector<PointWithRadius> points;

@@ -5,7 +5,7 @@
 #include "photon/store/EmbreePoints.h"
 #include "photon/store/Store.h"
 #include "photon/view/CameraSegment.h"
-#include "photon/view/Sensor.h"
+#include "transport/Sensor.h"
 
 #include "tungsten/scene/Scene.h"
 
@@ -24,8 +24,8 @@ class PointGather {
   public:
     /// `photons` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box. Few
     /// rays or many need the same structure.
-    PointGather(const Scene& scene, const Sensor& sensor, const std::vector<Photon>& photons, const Radii& radii,
-                bool fewRays = false);
+    PointGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<Photon>& photons,
+                const Radii& radii, bool fewRays = false);
 
     /// Adds sum of power K f_p T, weighed by the sensor, over the photons near the segment to the frames they fall in.
     /// Returns how many were gathered.
@@ -33,7 +33,7 @@ class PointGather {
 
   private:
     const Scene& scene_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     const std::vector<Photon>& photons_;
     std::vector<float> squaredRadii_;
     std::unique_ptr<EmbreePoints> points_;

@@ -2,6 +2,7 @@
 
 #include "photon/raster/ImageBand.h"
 #include "photon/raster/ImageFootprint.h"
+#include "transport/BounceLimits.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -54,7 +55,7 @@ struct Meeting {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, double scale)
+    Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale)
         : scene_(scene), sensor_(sensor), record_(record), scale_(float(scale)), footprint_(scene.camera),
           media_(scene.media.begin(), scene.media.end()) {}
 
@@ -87,8 +88,7 @@ class Splatter {
         const int top = std::max(spot.disc.area.top, band.firstRow),
                   bottom = std::min(spot.disc.area.bottom, band.lastRow);
         const auto [left, right] = footprint_.columns(spot.disc, top);
-        const int least = scene_.transport.minBounces - spot.bounce,
-                  most = scene_.transport.maxBounces - spot.bounce - 1;
+        const auto [least, most] = transport::BounceLimits(scene_.transport).remaining(spot.bounce);
         Batch gathered(0.0f);
         for (BandPiece& piece : band.pieces) {
             if (!piece.mixed &&
@@ -183,7 +183,7 @@ class Splatter {
     }
 
     const Scene& scene_;
-    Sensor sensor_;
+    transport::Sensor sensor_;
     const SensorRecord& record_;
     float scale_;
     ImageFootprint footprint_;
@@ -218,7 +218,7 @@ std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, c
 
 } // namespace
 
-uint64_t splatPhotons(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, scale);
     std::vector<Spot> spots(photons.size());

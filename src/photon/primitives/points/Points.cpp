@@ -42,7 +42,7 @@ double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radi
     return meeting.share();
 }
 
-uint64_t Points::splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+uint64_t Points::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                        const Selection<Photon>& photons, double scale, Film& film) {
     return splatPhotons(scene, sensor, record, photons.records, photons.radii, scale, film);
 }

@@ -35,7 +35,7 @@ struct Points {
                                       const std::vector<Photon>& photons, const Radii& radii);
     /// The part that folded rays need where straight ones have theirs splatted (FoldedMeeting).
     static double foldedShare(const std::vector<Photon>& photons, const Radii& radii);
-    static uint64_t splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                           const Selection<Photon>& photons, double scale, Film& film);
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// How the sensor weighs times of arrival.
+// When the sensor is open, and how it weighs times of arrival.
 
 #include "darts/ResidualRange.h"
 #include "darts/TemporalResponse.h"
@@ -9,9 +9,10 @@
 #include <memory>
 #include <vector>
 
-namespace tungsten::photon {
+namespace tungsten::transport {
 
-/// When the sensor is open, and how it weighs that time: evenly, or by a response W(T) whose support is the gate.
+/// Weighs time evenly over the gate, or by a response W(T) whose support is the gate. Times are total times of flight,
+/// emission time included.
 struct Sensor {
     TimeGate gate;
     std::shared_ptr<const darts::TemporalResponse> response; ///< null: evenly
@@ -34,8 +35,16 @@ struct Sensor {
         return sensor;
     }
 
-    /// W(time) times the gate's width, W having the integral 1: relative to an even sensor, whose image is a mean over
-    /// the gate. `time` is the total time of flight, emission time included.
+    /// Frame of a time; 0 in steady state, -1 while the sensor is closed.
+    [[nodiscard]] int frameOf(double time) const { return gate.steadyState ? 0 : gate.frameOf(time); }
+    /// Per unit of time: what light that arrives then counts in the mean over its frame. 1 in steady state and at a
+    /// delta gate.
+    [[nodiscard]] double density(double time) const { return response ? response->pdf(time) : 1.0 / evenWidth(); }
+    /// What contributions are divided by where time is weighed evenly: the frame's width; else 1.
+    [[nodiscard]] double evenWidth() const {
+        return response || gate.steadyState || gate.delta ? 1.0 : gate.frameWidth;
+    }
+    /// W(time) times the gate's width, W having the integral 1: relative to an even sensor.
     [[nodiscard]] float weight(double time) const {
         return response ? float(response->pdf(time) * gate.frameWidth) : 1.0f;
     }
@@ -45,4 +54,4 @@ struct Sensor {
     }
 };
 
-} // namespace tungsten::photon
+} // namespace tungsten::transport

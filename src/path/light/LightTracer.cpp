@@ -1,0 +1,127 @@
+#include "path/light/LightTracer.h"
+
+#include "path/PathSettings.h"
+
+#include <tbb/parallel_for.h>
+
+namespace tungsten::path {
+
+namespace {
+
+constexpr uint64_t PathsPerBatch = 1024;
+constexpr uint64_t BatchesPerWave = 64; ///< traced in parallel before they are added in order
+
+Distribution1D emitterChoice(const Scene& scene) {
+    std::vector<float> powers;
+    float total = 0.0f, shining = 0.0f;
+    for (const Emitter& emitter : scene.emitters) {
+        powers.push_back(meanComponent(emitterPower(emitter)));
+        total += powers.back();
+        shining += powers.back() > 0.0f ? 1.0f : 0.0f;
+    }
+    for (float& power : powers)
+        if (power > 0.0f) power = 0.5f * power / total + 0.5f / shining;
+    return Distribution1D(powers);
+}
+
+/// Of the first surface that mirrors or refracts; none if there is no such.
+const Primitive* firstSpecular(const Scene& scene) {
+    for (const Primitive& primitive : scene.primitives)
+        for (const BsdfPtr& bsdf : primitive.bsdfs)
+            if ((bsdf->lobes() & lobe::Specular) != 0) return &primitive;
+    return nullptr;
+}
+
+void readRest(const ObjectReader& block, const Scene& scene) {
+    acceptPhotonSettings(block);
+    block.accept(
+        {"enable_light_sampling", "enable_volume_light_sampling", "enable_guiding", "enable_elliptical", "darts"});
+    const bool off = block.isText("darts") && block.text("darts", "", {"none", "guidance"}) == "off";
+    if (block.has("darts") && !off) block.warn("darts", "does not guide the light tracer: its paths are plain");
+    Diagnostics& diagnostics = *block.diagnostics();
+    if (scene.transport.gate.delta)
+        block.problem("delta_time_gate", "plain light paths meet a delta gate with probability zero; give the gate a "
+                                         "width, or use path_tracer with \"darts\": \"best\"");
+    if (scene.camera.filter.type() == FilterType::Dirac)
+        diagnostics.problems.push_back({diagnostics.file, "camera.reconstruction_filter",
+                                        "light paths meet single points of the image with probability zero; use "
+                                        "\"box\" or another filter that has a width"});
+    if (const Primitive* specular = firstSpecular(scene))
+        diagnostics.warnings.push_back({diagnostics.file, "primitives",
+                                        "the light tracer does not show what is seen in or through '" + specular->name +
+                                            "' and other surfaces that mirror or refract; the path tracer does"});
+    if (!scene.infiniteEmitters.empty())
+        diagnostics.warnings.push_back({diagnostics.file, "primitives",
+                                        "the light tracer does not show the environment itself, only what it lights"});
+}
+
+void report(const LightWalkCounters& counters, Statistics& statistics) {
+    statistics.add("rays", counters.rays);
+    statistics.add("shadow rays", counters.shadowRays);
+    statistics.add("medium events", counters.mediumEvents);
+    statistics.add("surface events", counters.surfaceEvents);
+    statistics.add("connections", counters.connections);
+    statistics.add("non-finite samples", counters.nonFinite);
+}
+
+} // namespace
+
+LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
+    : scene_(std::move(scene)), limits_(readBounceLimits(settings, *scene_)),
+      russianRoulette_(readRussianRoulette(settings, !scene_->transport.gate.steadyState)),
+      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)), emitters_(emitterChoice(*scene_)) {
+    readRest(settings, *scene_);
+}
+
+void LightTracer::plan(EffectPlan& plan) const {
+    plan.describe("light paths", emitters_.total() > 0.0,
+                  emitters_.total() > 0.0 ? "one for every sample of a pixel, connected to the camera at each vertex"
+                                          : "nothing shines");
+    plan.describe("emission in view", plan.surfaceEmission,
+                  plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
+    if (plan.environment)
+        plan.describe("environment in view", false, "no light path starts on the way from the camera to infinity");
+    if (plan.specularSensorPaths)
+        plan.describe("mirrors and refraction in view", false,
+                      "connections to the camera are straight: what is seen in mirrors or through refraction is "
+                      "missing; caustics are found");
+    plan.describe("Russian roulette", russianRoulette_,
+                  russianRoulette_ ? "enable_rr, or its default in steady state"
+                                   : "off by default in time-resolved renders");
+}
+
+void LightTracer::prepare(const EffectPlan& plan, Statistics&) {
+    forwardBoundaries_ = plan.forwardBoundaries;
+    bounds_ = {scene_->transport.gate, plan};
+}
+
+void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
+    const StageTimer timer(statistics, "light paths");
+    const uint64_t pixels = uint64_t(film.width()) * uint64_t(film.height()), paths = pixels * pass.samples;
+    if (!(emitters_.total() > 0.0)) return;
+    const LightWalkContext context{*scene_,         limits_, sensor_, bounds_, emitters_, {*scene_, forwardBoundaries_},
+                                   russianRoulette_};
+    const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
+    for (uint64_t traced = 0; traced < paths; traced += PathsPerBatch * BatchesPerWave) {
+        const uint64_t wave = std::min(paths - traced, PathsPerBatch * BatchesPerWave);
+        std::vector<std::vector<Splat>> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
+        tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
+            LightWalkCounters counters;
+            for (uint64_t path = first; path < last; ++path) {
+                // As many paths as pixels make a sample: but for rounding the image does not depend on
+                // how samples are cut into passes.
+                const auto sample = uint32_t(pass.firstSample + path / pixels);
+                LightWalk(context, Sampler(pass.seed, RandomStream::Photon, sample, path % pixels), batches[b],
+                          counters)
+                    .run();
+            }
+            FilmSplats::sortByRow(batches[b]);
+            report(counters, statistics);
+        });
+        splats.add(batches);
+    }
+    statistics.add("light paths", paths);
+}
+
+} // namespace tungsten::path

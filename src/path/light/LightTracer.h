@@ -1,0 +1,27 @@
+#pragma once
+// The integrators `light_tracer` and `transient_light_tracer`: plain paths from the lights, unbiased for what is seen
+// straight on, steady state or time-resolved.
+
+#include "path/light/LightWalk.h"
+
+#include "tungsten/render/Integrator.h"
+
+namespace tungsten::path {
+
+class LightTracer : public Integrator {
+  public:
+    LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings);
+    void plan(EffectPlan& plan) const override;
+    void prepare(const EffectPlan& plan, Statistics& statistics) override;
+    void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
+
+  private:
+    std::shared_ptr<const Scene> scene_;
+    transport::BounceLimits limits_;
+    bool russianRoulette_, forwardBoundaries_ = true;
+    transport::Sensor sensor_;
+    transport::GateBounds bounds_;
+    Distribution1D emitters_; ///< half by power and half evenly
+};
+
+} // namespace tungsten::path

@@ -1,0 +1,124 @@
+#include "path/light/LightWalk.h"
+
+#include "transport/Roulette.h"
+
+namespace tungsten::path {
+
+using transport::Vertex;
+
+void LightWalk::run() {
+    if (!emit()) return;
+    // The last vertex needs no way on.
+    while (context_.limits.mayGoOn(interactions_ + 1)) {
+        if (const Medium* medium = scene_.medium(region_)) {
+            if (!crossMedium(*medium)) return;
+            continue;
+        }
+        ++counters_.rays;
+        const auto hit = scene_.geometry->intersect(ray_);
+        if (!hit || !scatterOnSurface(*hit)) return;
+    }
+}
+
+bool LightWalk::emit() {
+    const auto chosen = context_.emitters.sample(sampler_.next1D());
+    const Emitter& emitter = scene_.emitters[chosen.index];
+    time_ = emitter.emissionTime;
+    if (emitter.primitive()) showEmitter(emitter, chosen.probability);
+    const Vec2f uPosition = sampler_.next2D();
+    const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());
+    power_ = emission.power / chosen.probability;
+    region_ = scene_.regionOf(emitter);
+    ray_ = emission.ray;
+    return !isBlack(power_);
+}
+
+void LightWalk::showEmitter(const Emitter& emitter, float probability) {
+    const SurfaceSample point = sampleEmissionPoint(emitter, sampler_.next2D());
+    connect({scene_, emitter, point}, Rgb(1.0f / probability));
+}
+
+bool LightWalk::crossMedium(const Medium& medium) {
+    if (medium.scatters() && ++flights_ > medium.maxBounces) return false;
+    const FlightSample flight = sampleFlight(medium, Infinity, sampler_);
+    ray_.tMax = flight.distance;
+    ++counters_.rays;
+    const auto hit = scene_.geometry->intersect(ray_);
+    if (!hit && flight.exited) return false;
+    if (!hit) {
+        throughput_ = throughput_ * flight.weight;
+        return scatterInMedium(medium, flight.distance);
+    }
+    throughput_ = throughput_ * (medium.transmittance(hit->t) / probabilityFlightExits(medium, hit->t));
+    return scatterOnSurface(*hit);
+}
+
+bool LightWalk::arrive(const Vec3f& position, float length) {
+    time_ += double(length) / double(region_.speed);
+    ++interactions_;
+    const Camera& camera = scene_.camera;
+    // Orthographic rays start anywhere.
+    const bool anywhere = scene_.transport.cameraUnwarped || camera.hasParallelRays();
+    const float gap = anywhere ? 0.0f : std::max((position - camera.position()).length() - camera.aperture(), 0.0f);
+    return !isBlack(throughput_) && context_.bounds.beforeEnd(time_, double(gap));
+}
+
+bool LightWalk::scatterInMedium(const Medium& medium, float distance) {
+    ++counters_.mediumEvents;
+    ++mediumScatters_;
+    inARow_ = flights_; // those before have scattered here, too
+    const Vec3f position = ray_.at(distance), before = ray_.direction;
+    if (!arrive(position, distance)) return false;
+    connect({medium, position, before, region_}, power_ * throughput_);
+    ray_ = Ray{position, medium.phase.sample(before, sampler_.next2D())};
+    return continueRoulette();
+}
+
+bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
+    ++counters_.surfaceEvents;
+    flights_ = 0;
+    if (!arrive(hit.position, hit.t)) return false;
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
+    connect({scene_, surface, TransportMode::Photons, region_}, power_ * throughput_);
+    const auto exit =
+        sampleExit(surface, surface.query(TransportMode::Photons), scene_.transport.consistencyChecks, sampler_);
+    if (!exit) return false;
+    throughput_ = throughput_ * exit->weight;
+    if (!exit->straight()) throughput_ = throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction);
+    region_ = regionBeyond(surface, exit->direction, region_);
+    ray_ = hit.leave(exit->direction);
+    return !isBlack(throughput_) && continueRoulette();
+}
+
+bool LightWalk::continueRoulette() {
+    return !context_.russianRoulette || transport::survivesRoulette(throughput_, interactions_, sampler_);
+}
+
+void LightWalk::connect(const Vertex& vertex, const Rgb& power) {
+    if (!vertex.isConnectible() || !context_.limits.orderCounts(mediumScatters_, inARow_)) return;
+    const auto sensor = scene_.camera.sampleSensor(vertex.position(), sampler_.next2D());
+    if (!sensor || !inView(sensor->raster)) return;
+    const bool unwarped = scene_.transport.cameraUnwarped;
+    if (!context_.bounds.mayArrive(time_, unwarped ? 0.0 : double(sensor->distance))) return;
+    ++counters_.connections;
+    const auto connection =
+        context_.connector.connect(vertex, power, transport::connectionEnd(*sensor), counters_.shadowRays);
+    if (!connection || !context_.limits.renders(interactions_ + connection->crossings)) return;
+    const double time = time_ + (unwarped ? 0.0 : connection->time);
+    const int frame = context_.sensor.frameOf(time);
+    if (frame < 0) return;
+    const Rgb radiance = connection->throughput * float(context_.sensor.density(time));
+    if (isFinite(radiance))
+        splats_.push_back({sensor->raster, frame, radiance});
+    else
+        ++counters_.nonFinite;
+}
+
+bool LightWalk::inView(const Vec2f& raster) const {
+    const Vec2i& size = scene_.camera.resolution;
+    const float reach = scene_.camera.filter.reach();
+    return raster.x >= -reach && raster.y >= -reach && raster.x <= float(size.x - 1) + reach &&
+           raster.y <= float(size.y - 1) + reach;
+}
+
+} // namespace tungsten::path

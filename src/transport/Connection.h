@@ -1,0 +1,52 @@
+#pragma once
+// The straight line between two points of a light path.
+
+#include "transport/Vertex.h"
+
+#include <optional>
+
+namespace tungsten::transport {
+
+/// What a vertex is connected to, as seen from there.
+struct ConnectionEnd {
+    Vec3f direction; ///< unit
+    float distance;  ///< may be Infinity
+    Rgb weight; ///< what it sends or takes along the line over squared distance and density; visibility not included
+    SurfaceMargin margin{};
+};
+/// A point on an emitter.
+inline ConnectionEnd connectionEnd(const DirectSample& light) {
+    return {light.direction, light.distance, light.weight, light.margin};
+}
+/// A place on the camera's lens.
+inline ConnectionEnd connectionEnd(const SensorSample& sensor) {
+    return {sensor.direction, sensor.distance, Rgb(sensor.weight), {}};
+}
+/// Another vertex; none if it is at the same place.
+std::optional<ConnectionEnd> connectionEnd(const Vertex& from, const Vertex& to);
+
+struct Connection {
+    Rgb throughput;       ///< of the path up to the vertex, times scattering there, the end's weight and transmittance
+    double time = 0.0;    ///< of flight along it
+    int crossings = 0;    ///< index-matched surfaces on it: each is an interaction
+    bool oneSpeed = true; ///< light goes at the speed at the vertex all the way
+};
+
+/// Connects vertices. Without index-matched boundaries in the scene every surface is opaque: one ray, one region.
+class Connector {
+  public:
+    Connector(const Scene& scene, bool forwardBoundaries) : scene_(scene), forwardBoundaries_(forwardBoundaries) {}
+
+    /// `throughput` is the path's up to the vertex. None where nothing gets through. Adds the rays traced to `rays`;
+    /// none is traced where nothing scatters that way.
+    [[nodiscard]] std::optional<Connection> connect(const Vertex& vertex, const Rgb& throughput,
+                                                    const ConnectionEnd& end, uint64_t& rays) const;
+    /// Along a ray that starts in `region`; its limits as traceVisibility() has them.
+    [[nodiscard]] Visibility visibility(const Ray& ray, float distance, const Region& region, uint64_t& rays) const;
+
+  private:
+    const Scene& scene_;
+    bool forwardBoundaries_;
+};
+
+} // namespace tungsten::transport

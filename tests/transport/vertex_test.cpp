@@ -1,0 +1,138 @@
+// Vertices and their connections, and the tests that paths pass on their way: numbers known by hand.
+
+#include "transport/BounceLimits.h"
+#include "transport/Connection.h"
+#include "transport/GateBounds.h"
+
+#include "support/SceneFile.h"
+
+#include "tungsten/scene/SceneLoader.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::transport {
+namespace {
+
+/// A lamp over a floor; between them a slab of slow fog, 1 high, with index-matched faces.
+class Lamp : public testing::Test {
+  protected:
+    static std::shared_ptr<const Scene> load() {
+        const test::SceneFile file(R"({
+          "media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.2, "sigma_s": 0.3, "speed_of_light": 0.5,
+                     "phase_function": {"type": "henyey_greenstein", "g": 0.6}}],
+          "primitives": [{"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"scale": 8}},
+                         {"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"},
+                          "transform": {"position": [0, 2, 0], "scale": [4, 1, 4]}},
+                         {"type": "quad", "bsdf": {"type": "null"}, "emission": 3,
+                          "transform": {"position": [0, 4, 0], "scale": 2, "rotation": [180, 0, 0]}},
+                         {"type": "directional_point", "power": 1, "transform": {"position": [3, 4, 0]}}],
+          "camera": {"resolution": 1, "transform": {"position": [0, 1, 5], "look_at": [0, 0, 0]}},
+          "integrator": {"type": "path_tracer"}, "renderer": {}})");
+        return loadScene(file.path()).scene;
+    }
+    /// The point of the floor under (x, z), met by light or from the camera along `direction`.
+    [[nodiscard]] Vertex floorAt(float x, float z, const Vec3f& direction, TransportMode mode) const {
+        const Vec3f from = Vec3f(x, 0.0f, z) - direction;
+        const auto hit = scene_->geometry->intersect({from, direction});
+        return {*scene_, makeInteraction(*scene_, *hit, direction), mode, Region{-1, 1.0f}};
+    }
+    [[nodiscard]] const Emitter& lamp() const { return scene_->emitters[0]; }
+    [[nodiscard]] Vertex lampPoint() const { return {*scene_, lamp(), sampleEmissionPoint(lamp(), {0.5f, 0.5f})}; }
+
+    std::shared_ptr<const Scene> scene_ = load();
+    Connector connector_{*scene_, true};
+    uint64_t rays_ = 0;
+};
+
+TEST_F(Lamp, ScatteringHasTheCosineOfTheWayOn) {
+    const Vec3f down = Vec3f(0.0f, -1.0f, 0.0f), oblique = Vec3f(0.6f, 0.8f, 0.0f);
+    EXPECT_NEAR(floorAt(0, 0, -oblique, TransportMode::Radiance).scattering(-down).x, 0.5f * InvPi, 1e-6f);
+    EXPECT_NEAR(floorAt(0, 0, down, TransportMode::Photons).scattering(oblique).x, 0.5f * InvPi * 0.8f, 1e-6f);
+    EXPECT_NEAR(floorAt(0, 0, down, TransportMode::Photons).pdf(oblique), InvPi * 0.8f, 1e-6f);
+    // Radiance times area (4) and cosine.
+    EXPECT_NEAR(lampPoint().scattering(-oblique).x, 3.0f * 4.0f * 0.8f, 1e-5f);
+    EXPECT_EQ(lampPoint().scattering(oblique).x, 0.0f);
+    const Vertex inFog(scene_->media[0], Vec3f(0, 2, 0), down, Region{0, 0.5f});
+    EXPECT_NEAR(inFog.scattering(oblique).x, 0.25f * InvPi * 0.64f / std::pow(1.36f + 1.2f * 0.8f, 1.5f), 1e-6f);
+    EXPECT_EQ(inFog.pdf(oblique), inFog.scattering(oblique).x);
+}
+
+TEST_F(Lamp, DensitiesPerAreaAreThoseOfThePoint) {
+    const Vec3f receiver(1.0f, 0.0f, 0.5f);
+    const Vertex light = lampPoint();
+    const Vec3f offset = light.position() - receiver, direction = offset / offset.length();
+    const float pdf = pdfDirect(lamp(), receiver, light.position(), light.margin().normal);
+    EXPECT_NEAR(light.areaDensity(pdf, direction, offset.length()), 0.25f, 1e-6f); // 1 / area
+    const Vertex floor = floorAt(0, 0, Vec3f(0, -1, 0), TransportMode::Photons);
+    EXPECT_NEAR(floor.areaDensity(2.0f, Vec3f(0.6f, 0.8f, 0.0f), 4.0f), 0.1f, 1e-6f);
+    const Vertex inFog(scene_->media[0], Vec3f(0, 2, 0), direction, Region{0, 0.5f});
+    EXPECT_NEAR(inFog.areaDensity(2.0f, direction, 4.0f), 0.125f, 1e-6f);
+}
+
+TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
+    const Vertex light = lampPoint();
+    const Vec3f above = light.position();
+    const Vertex floor = floorAt(above.x, above.z, Vec3f(-0.6f, -0.8f, 0.0f), TransportMode::Radiance);
+    for (const bool fromLight : {false, true}) {
+        const Vertex &from = fromLight ? light : floor, &to = fromLight ? floor : light;
+        const auto end = connectionEnd(from, to);
+        ASSERT_TRUE(end);
+        const auto connection = connector_.connect(from, Rgb(2.0f), *end, rays_);
+        ASSERT_TRUE(connection);
+        EXPECT_NEAR(connection->throughput.x, 2.0f * 0.5f * InvPi * 12.0f / 16.0f * std::exp(-0.5f), 1e-5f);
+        EXPECT_NEAR(connection->time, 5.0, 1e-5); // 3 at speed 1, 1 at 0.5
+        EXPECT_EQ(connection->crossings, 2);
+        EXPECT_FALSE(connection->oneSpeed);
+    }
+    // Behind the lamp there is nothing.
+    const Vertex behind(scene_->media[0], Vec3f(0, 5, 0), Vec3f(0, 1, 0), Region{-1, 1.0f});
+    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), *connectionEnd(behind, floor), rays_));
+    EXPECT_FALSE(connectionEnd(floor, floor));
+}
+
+TEST_F(Lamp, OnlySingleDirectionsCannotBeConnected) {
+    EXPECT_TRUE(lampPoint().isConnectible());
+    EXPECT_TRUE(floorAt(0, 0, Vec3f(0, -1, 0), TransportMode::Radiance).isConnectible());
+    const Emitter& laser = scene_->emitters[1];
+    EXPECT_FALSE(Vertex(*scene_, laser, sampleEmissionPoint(laser, {0.5f, 0.5f})).isConnectible());
+}
+
+TEST(GateBounds, RejectOnlyWhatCannotArrive) {
+    EffectPlan plan;
+    plan.highestSpeed = 2.0f;
+    const TimeGate gate{false, false, 4.0, 1.0, 2}; // [4, 6)
+    const GateBounds bounds(gate, plan);
+    EXPECT_FALSE(bounds.mayArrive(3.0, 1.9)); // at 3.95
+    EXPECT_TRUE(bounds.mayArrive(3.0, 2.0));
+    EXPECT_TRUE(bounds.mayArrive(3.0, 2.0 - 1e-6)); // rounding
+    EXPECT_TRUE(bounds.mayArrive(3.0, 5.9));
+    EXPECT_FALSE(bounds.mayArrive(3.0, 6.1));
+    EXPECT_TRUE(bounds.beforeEnd(3.0, 0.0));
+    EXPECT_FALSE(bounds.beforeEnd(3.0, 6.1));
+    plan.speedsDiffer = true;
+    EXPECT_TRUE(GateBounds(gate, plan).mayArrive(3.0, 1.0)); // may be slower
+    EXPECT_TRUE(GateBounds(TimeGate{}, plan).mayArrive(0.0, double(Infinity)));
+    EXPECT_FALSE(bounds.mayArrive(0.0, double(Infinity)));
+    EXPECT_TRUE(bounds.during(TimeGate{false, false, 0.0, 1.0, 1}).mayArrive(0.0, 1.0));
+}
+
+TEST(BounceLimits, CountInteractionsAndOrders) {
+    TransportSettings settings;
+    settings.minBounces = 2;
+    settings.maxBounces = 5;
+    BounceLimits limits(settings);
+    for (int n = 0; n < 8; ++n) {
+        EXPECT_EQ(limits.renders(n), n >= 2 && n < 5);
+        const auto [least, most] = limits.remaining(n);
+        for (int more = 0; more < 8; ++more)
+            EXPECT_EQ(more >= least && more <= most, limits.renders(n + more)) << n << " " << more;
+    }
+    EXPECT_TRUE(limits.orderCounts(0) && limits.orderCounts(1) && !limits.endsAtSurface(1));
+    limits.includeSurfaces = limits.lowOrderScattering = false;
+    EXPECT_FALSE(limits.orderCounts(0) || limits.orderCounts(1));
+    EXPECT_TRUE(limits.orderCounts(2) && limits.endsAtSurface(1) && !limits.endsAtSurface(2));
+    EXPECT_FALSE(limits.orderCounts(2, 1)); // the camera's first one met a surface next
+}
+
+} // namespace
+} // namespace tungsten::transport
