@@ -1,5 +1,6 @@
 #include "path/PathTracer.h"
 
+#include "path/Tuning.h"
 #include "path/plain/PathWalk.h"
 
 #include <tbb/blocked_range2d.h>
@@ -38,16 +39,6 @@ float radicalInverse(uint32_t index) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
-/// Surfaces may reflect sharply where the connection lobe sends few directions: they keep a third of the directions or
-/// more for themselves. (cbox: 1.5 times less variance than 0.1.)
-constexpr float SurfaceAlpha = 0.5f;
-/// Where nothing is diffuse guided directions hardly ever fall into the lobe; what they are given, a chain of glossy
-/// reflections lacks once per reflection. (Dragon: 1.7 times less variance than 0.5.)
-constexpr float GlossyAlpha = 5.0f;
-/// Rays from the camera go on to surfaces at better odds than by transmittance: what surfaces show varies more than
-/// what the fog before them does. (1.5 times less variance on cbox, 1.4 on staircase; 8 is too many.)
-constexpr float ViewSurfaceOdds = 4.0f;
-
 PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
     PathGuides guides;
     for (const Medium& medium : scene.media) {
@@ -61,9 +52,9 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
         guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
         darts::Settings view = settings, surface = settings, glossy = settings;
         if (!scheme.published) {
-            view.surfaceOdds = ViewSurfaceOdds;
-            surface.alpha = std::max(surface.alpha, SurfaceAlpha);
-            glossy.alpha = std::max(glossy.alpha, GlossyAlpha);
+            view.surfaceOdds = tuning::ViewSurfaceOdds;
+            surface.alpha = std::max(surface.alpha, tuning::SurfaceAlpha);
+            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
         }
         guides.view.emplace_back(view, coefficients);
         guides.surfaces.emplace_back(surface, coefficients);

@@ -1,5 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
+#include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/surface/SharedArrivals.h"
 
@@ -10,9 +11,11 @@ namespace {
 /// Camera paths per pixel that look for surface points. One leaves the noise of lines that a narrow gate lights; more
 /// cost little in small images alone, and in large ones there are more points than can be listed.
 uint32_t surfaceSamples(const Vec2i& resolution) {
-    constexpr size_t Wanted = 1 << 16, Least = 2, Most = 4;
     const size_t pixels = size_t(resolution.x) * size_t(resolution.y);
-    return pixels > SensorClusters::MostPoints ? 1 : uint32_t(std::clamp(Wanted / pixels, Least, Most));
+    return pixels > SensorClusters::MostPoints
+               ? 1
+               : uint32_t(std::clamp(tuning::SurfacePoints / pixels, tuning::LeastSurfaceSamples,
+                                     tuning::MostSurfaceSamples));
 }
 
 } // namespace
@@ -47,7 +50,7 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
     const StageTimer timer(statistics, "build");
     const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
     const SensorRays rays{structures.splatted, plan_.folds && settings_.includeSurfaces,
-                          glossy_ ? GlossyLight::HighlightPaths : 0, uFolded};
+                          glossy_ ? tuning::HighlightPaths : 0, uFolded};
     const auto build = [&]<typename Primitive>(const Primitive& primitive) {
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;

@@ -1,4 +1,6 @@
 #include "photon/SensorPass.h"
+
+#include "photon/Tuning.h"
 #include "transport/BounceLimits.h"
 
 #include <tbb/blocked_range2d.h>
@@ -157,7 +159,7 @@ struct HighlightVisitor {
         gather.segmentPart(state, hit, part);
     }
     void surface(const SensorState& state, const SurfaceInteraction& surface) {
-        gather.highlight(state, surface, 1.0f / float(GlossyLight::HighlightPaths));
+        gather.highlight(state, surface, 1.0f / float(tuning::HighlightPaths));
     }
     void escaped(const SensorState&) const {}
 };
@@ -187,7 +189,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
         }
         if (!oversampled) return;
         Sampler sampler(pass.seed, RandomStream::Highlight, sample, pixel);
-        for (uint32_t k = 0; k < GlossyLight::HighlightPaths; ++k) follow(sampler, HighlightVisitor{gather, k});
+        for (uint32_t k = 0; k < tuning::HighlightPaths; ++k) follow(sampler, HighlightVisitor{gather, k});
     };
     const uint32_t first = record ? record->sample : uint32_t(pass.firstSample), samples = record ? 1 : pass.samples;
     const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {

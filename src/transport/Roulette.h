@@ -1,17 +1,17 @@
 #pragma once
 // Russian roulette of plain walks.
 
+#include "transport/Tuning.h"
+
 #include "tungsten/core/Random.h"
 
 namespace tungsten::transport {
 
 /// False ends the path; else the throughput, relative to that of the path's start, makes up for those that ended.
 inline bool survivesRoulette(Rgb& throughput, int interactions, Sampler& sampler) {
-    constexpr float Threshold = 0.1f;
-    constexpr int FirstInteraction = 3;
-    if (interactions < FirstInteraction) return true;
+    if (interactions < tuning::RouletteFirstInteraction) return true;
     const float survival = maxComponent(throughput);
-    if (survival >= Threshold) return true;
+    if (survival >= tuning::RouletteThreshold) return true;
     if (sampler.next1D() >= survival) return false;
     throughput = throughput / survival;
     return true;

@@ -1,30 +1,12 @@
 #include "transport/WaysOut.h"
 
+#include "transport/Tuning.h"
+
 #include "tungsten/scene/Interaction.h"
 
 namespace tungsten::transport {
 
 namespace {
-
-/// Light crosses fewer transport mean free paths than these as if nothing were there.
-constexpr float ThinDepth = 1.0f;
-/// Bodies across which there are fewer are taken for infinite, and all of them if the whole rest of the path is
-/// shorter: light hardly scatters twice on its way out. (Bench: study bodies, two rooms and several lights, paths; the
-/// test agreement.SingleScattering, coloured and slow, points.)
-constexpr float ThinBody = 2.0f, ShortRest = 6.0f;
-constexpr int MostLayers = 8;
-constexpr float LeastCosine = 0.05f;
-/// Flights that enter a body look out from so many transport mean free paths on: from the boundary itself the way out
-/// would miss it.
-constexpr float EntryDepth = 0.05f;
-/// Other faces count up to so many times the depth under the one that the straight way leaves through.
-constexpr float FarthestFace = 4.0f;
-/// Bench: study bodies, MSE x CPU of paths, dense cube and lamp in fog: 3.4 and 0.94 at 1, 1.2 and 0.66 at 0.1, 1.3 and
-/// 0.78 at 0.01. Lower ones would starve what is lit from the bodies.
-constexpr float LeaveOdds = 0.1f;
-/// Of what leaves a body by other ways, the part that may be sent to the aim from surfaces and media outside: without
-/// it deep places would be rare, and bright. (Bench: study bodies.)
-constexpr float Elsewhere = 0.02f;
 
 Region regionBehind(const Scene& scene, const SurfaceHit& hit, const Vec3f& direction, const Region& region) {
     return regionBeyond(makeInteraction(scene, hit, direction), direction, region);
@@ -79,7 +61,7 @@ bool WaysOut::any() const {
 }
 
 bool WaysOut::isThin(const Body& body) {
-    return body.box.size().length() * body.reducedSigmaT < ThinBody;
+    return body.box.size().length() * body.reducedSigmaT < tuning::ThinBody;
 }
 
 void WaysOut::look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
@@ -87,7 +69,7 @@ void WaysOut::look(const Start& start, const Region& region, const Aim& aim, dar
     if (region.medium < 0 || residual.C == 0.0f) return;
     const Body& body = bodies_[size_t(region.medium)];
     if (!body.ends() || (aim.medium == region.medium && body.insides == 1)) return;
-    if ((residual.C + residual.excess) * body.reducedSigmaT < ShortRest || isThin(body)) return;
+    if ((residual.C + residual.excess) * body.reducedSigmaT < tuning::ShortRest || isThin(body)) return;
     if (body.primitive) {
         const Body::Exit exit = body.leave(start.position, darts::to<Vec3f>(residual.axis));
         const Bsdf& bsdf = *body.primitive->bsdfs[0];
@@ -96,9 +78,9 @@ void WaysOut::look(const Start& start, const Region& region, const Aim& aim, dar
                      region, aim, residual, rays);
     }
     const bool entering = start.clear > 0.0f;
-    const Vec3f position = entering
-                               ? start.position + start.ahead * std::max(EntryDepth / body.reducedSigmaT, start.clear)
-                               : start.position;
+    const Vec3f position =
+        entering ? start.position + start.ahead * std::max(tuning::EntryDepth / body.reducedSigmaT, start.clear)
+                 : start.position;
     const Vec3f toAim = aim.position - position;
     const float distance = toAim.length();
     const Vec3f direction = toAim / distance;
@@ -112,7 +94,7 @@ std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region
                                                    darts::Residual& residual, uint64_t& rays) const {
     std::optional<Boundary> hole; // the last one entered
     Region at = region;
-    for (int layer = 0; layer < MostLayers; ++layer) {
+    for (int layer = 0; layer < tuning::MostLayers; ++layer) {
         ++rays;
         const auto hit = scene_.geometry->intersect(way);
         if (!hit) return at.medium != region.medium ? hole : std::nullopt;
@@ -153,16 +135,16 @@ void WaysOut::leave(const Boundary& boundary, const Vec3f& position, const Regio
     exit.gate = residual.width;
     exit.inside = std::min(boundary.exit.distance, residual.C);
     const Vec3f direction = darts::to<Vec3f>(residual.axis);
-    exit.slant = 1.0f / std::max(direction.dot(boundary.exit.face.normal), LeastCosine);
+    exit.slant = 1.0f / std::max(direction.dot(boundary.exit.face.normal), tuning::LeastCosine);
     exit.faces.add(faceOf(body, boundary.exit.face, position, aim.position));
     for (const Body::Face& face : body.faces) {
         if (exit.faces.full()) break;
         const bool same = face.normal.dot(boundary.exit.face.normal) > 0.99f;
         if (same || !((aim.position - face.point).dot(face.normal) > 0.0f)) continue;
         const darts::Exit::Face other = faceOf(body, face, position, aim.position);
-        if (other.depth < FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT) exit.faces.add(other);
+        if (other.depth < tuning::FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT) exit.faces.add(other);
     }
-    if (layered_ || surfaces_) exit.elsewhere = Elsewhere;
+    if (layered_ || surfaces_) exit.elsewhere = tuning::Elsewhere;
     exit.mismatch = darts::boundaryMismatch(boundary.index);
     exit.outerSpeed = region.speed / boundary.beyond.speed;
     if (aim.sides) {
@@ -181,13 +163,13 @@ void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region&
     Region beyond = boundary.beyond;
     SurfaceMargin margin = boundary.margin;
     float from = way.tMin, slow = 0.0f; // length, and the time it takes as a length at the body's speed
-    for (int layer = 0; layer < MostLayers && from < way.tMax; ++layer) {
+    for (int layer = 0; layer < tuning::MostLayers && from < way.tMax; ++layer) {
         ++rays;
         const auto hit =
             scene_.geometry->intersect({way.origin, way.direction, margin.beyond(way.direction, from), way.tMax});
         const float to = hit ? hit->t : residual.C, length = to - from;
         const Body* body = beyond.medium < 0 ? nullptr : &bodies_[size_t(beyond.medium)];
-        if (body && body->reducedSigmaT * length > ThinDepth)
+        if (body && body->reducedSigmaT * length > tuning::ThinDepth)
             residual.exit.faces[0].beyond += length * cosine * std::sqrt(own.diffusion() / body->diffusion());
         else
             slow += length * region.speed / beyond.speed;
@@ -204,7 +186,7 @@ float WaysOut::leaveOdds(const Region& region, const Vec3f& direction, const Sur
     if (!passesStraight(scene_.bsdfOf(hit))) return 1.0f;
     const Region beyond = regionBehind(scene_, hit, direction, region);
     const float ahead = beyond.medium < 0 ? 0.0f : bodies_[size_t(beyond.medium)].reducedSigmaT;
-    return ahead < 0.1f * bodies_[size_t(region.medium)].reducedSigmaT ? LeaveOdds : 1.0f;
+    return ahead < 0.1f * bodies_[size_t(region.medium)].reducedSigmaT ? tuning::LeaveOdds : 1.0f;
 }
 
 std::string WaysOut::describe(int medium, bool straightOnly) const {

@@ -1,3 +1,4 @@
+#include "photon/Tuning.h"
 #include "photon/primitives/VolumePrimitive.h"
 
 #include "tungsten/core/Random.h"
@@ -71,8 +72,8 @@ TEST(FoldedSelection, LinesMeetAsManyDiscsAsAreWanted) {
                                       const Vec3f offset = photons[i].position - origin;
                                       return offset.cross(direction).length2() < Radius * Radius;
                                   });
-    EXPECT_GT(met, 1.5 * FoldedMeetings);
-    EXPECT_NEAR(Points::foldedShare(photons, Radius) * met, FoldedMeetings, 0.05 * FoldedMeetings);
+    EXPECT_GT(met, 1.5 * tuning::FoldedMeetings);
+    EXPECT_NEAR(Points::foldedShare(photons, Radius) * met, tuning::FoldedMeetings, 0.05 * tuning::FoldedMeetings);
     EXPECT_EQ(Points::foldedShare(photons, 0.1f * Radius), 1.0);
 }
 
@@ -95,8 +96,8 @@ TEST(FoldedSelection, LinesMeetAsManyBeamsAsAreWanted) {
                        const float s = offset.cross(direction).dot(normal) / squaredSine;
                        return std::abs(offset.dot(normal)) < Radius * std::sqrt(squaredSine) && s > 0.5f && s < 1.0f;
                    });
-    EXPECT_GT(met, 1.5 * FoldedMeetings);
-    EXPECT_NEAR(Beams::foldedShare(beams, Radius) * met, FoldedMeetings, 0.05 * FoldedMeetings);
+    EXPECT_GT(met, 1.5 * tuning::FoldedMeetings);
+    EXPECT_NEAR(Beams::foldedShare(beams, Radius) * met, tuning::FoldedMeetings, 0.05 * tuning::FoldedMeetings);
     beams.resize(100);
     EXPECT_EQ(Beams::foldedShare(beams, Radius), 1.0);
 }

@@ -1,12 +1,10 @@
 #include "path/techniques/LightPaths.h"
 
+#include "path/Tuning.h"
+
 namespace tungsten::path {
 
 namespace {
-
-constexpr size_t FewestPaths = 4096, MostPaths = 32768;
-/// Scenes with more lights have none of these: each would be reached by few.
-constexpr size_t MostEmitters = 64;
 
 /// Extinction of the scene's scattering media, on the average.
 Flights flightsIn(const Scene& scene) {
@@ -24,7 +22,8 @@ Flights flightsIn(const Scene& scene) {
 
 bool LightPaths::helpWith(const Scene& scene) {
     const auto helps = [](const Emitter& emitter) { return !emitter.isDelta() && !emitter.isInfinite(); };
-    return scene.emitters.size() <= MostEmitters && std::any_of(scene.emitters.begin(), scene.emitters.end(), helps);
+    return scene.emitters.size() <= tuning::MostEmitters &&
+           std::any_of(scene.emitters.begin(), scene.emitters.end(), helps);
 }
 
 bool LightPaths::reflectedIn(const Scene& scene) {
@@ -42,14 +41,14 @@ void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, Statis
     for (size_t i = 0; i < reflected_.size(); ++i) {
         if (!(targets.probability(i) > 0.0f) || scene.emitters[i].isDelta()) continue;
         reflected_[i].prepare(scene, scene.emitters[i], flights_);
-        statistics.add("light paths", ReflectedLightCache::PilotPaths);
+        statistics.add("light paths", tuning::PilotPaths);
     }
 }
 
 void LightPaths::trace(const Scene& scene, const TargetChoice& targets, const PassInfo& pass, Statistics& statistics) {
     const size_t samples = size_t(scene.camera.resolution.x) * size_t(scene.camera.resolution.y) * pass.samples;
-    const auto all = float(std::clamp(samples / 4, FewestPaths, MostPaths));
-    const auto reflected = float(std::clamp(samples / 4, FewestPaths, MostPaths));
+    const auto all = float(std::clamp(samples / 4, tuning::FewestPaths, tuning::MostPaths));
+    const auto reflected = float(std::clamp(samples / 4, tuning::FewestPaths, tuning::MostPaths));
     uint64_t paths = 0;
     for (size_t i = 0; i < vertices_.size(); ++i) {
         const float probability = targets.probability(i);

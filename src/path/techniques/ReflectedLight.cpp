@@ -1,5 +1,7 @@
 #include "path/techniques/ReflectedLight.h"
 
+#include "path/Tuning.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::path {
@@ -68,8 +70,9 @@ bool endsReflectedLight(const Bsdf& bsdf) {
 }
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights) {
-    trace(scene, emitter, 1.0f, PilotPaths, PassInfo{.index = PilotPass}, flights);
-    tried_ = vertices_.empty() ? 0.0f : float(ArrivalWindow::Size) * float(PilotPaths) / float(vertices_.size());
+    trace(scene, emitter, 1.0f, tuning::PilotPaths, PassInfo{.index = PilotPass}, flights);
+    tried_ =
+        vertices_.empty() ? 0.0f : float(ArrivalWindow::Size) * float(tuning::PilotPaths) / float(vertices_.size());
 }
 
 void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths,

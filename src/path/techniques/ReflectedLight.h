@@ -41,7 +41,6 @@ class ReflectedLightCache {
         float weight = 0.0f; ///< 1 / (probability x number of light paths)
     };
 
-    static constexpr size_t PilotPaths = 32768;
     /// Learns from light paths of its own how many of them reflect.
     void prepare(const Scene& scene, const Emitter& emitter, const Flights& flights);
     /// No glossy surface in the light, none seen, or an emitter of a single direction.

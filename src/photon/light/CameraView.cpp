@@ -1,5 +1,7 @@
 #include "photon/light/CameraView.h"
 
+#include "photon/Tuning.h"
+
 namespace tungsten::photon {
 
 CameraView::CameraView(const Camera& camera) : position_(camera.position()), frame_(camera.toWorld.rotation()) {
@@ -22,17 +24,17 @@ CameraView::CameraView(const Camera& camera) : position_(camera.position()), fra
 }
 
 darts::Vec3 CameraView::sample(float u, float v) const {
-    if (u < SphereShare) return darts::directionAbout({0, 0, 1}, 2.0f * u / SphereShare, v);
-    const float x = (2.0f * (u - SphereShare) / (1.0f - SphereShare) - 1.0f) * halfWidth_;
+    if (u < tuning::SphereShare) return darts::directionAbout({0, 0, 1}, 2.0f * u / tuning::SphereShare, v);
+    const float x = (2.0f * (u - tuning::SphereShare) / (1.0f - tuning::SphereShare) - 1.0f) * halfWidth_;
     return darts::vec3(frame_.toWorld(Vec3f(x, (2.0f * v - 1.0f) * halfHeight_, 1.0f)).normalized());
 }
 
 float CameraView::pdf(const darts::Vec3& direction) const {
-    constexpr float Sphere = SphereShare / (4.0f * Pi);
+    constexpr float Sphere = tuning::SphereShare / (4.0f * Pi);
     const Vec3f local = frame_.toLocal(Vec3f(direction.x, direction.y, direction.z));
     if (local.z <= 0.0f || std::abs(local.x) > halfWidth_ * local.z || std::abs(local.y) > halfHeight_ * local.z)
         return Sphere;
-    return Sphere + (1.0f - SphereShare) / (4.0f * halfWidth_ * halfHeight_ * local.z * local.z * local.z);
+    return Sphere + (1.0f - tuning::SphereShare) / (4.0f * halfWidth_ * halfHeight_ * local.z * local.z * local.z);
 }
 
 std::array<Vec3f, 4> CameraView::sides() const {

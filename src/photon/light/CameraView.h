@@ -1,6 +1,7 @@
 #pragma once
 // What the camera can see: a distribution of directions into its image, and a test for points.
 
+#include "photon/Tuning.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include "darts/Vec3.h"
@@ -28,8 +29,6 @@ class CameraView {
     [[nodiscard]] std::array<Vec3f, 4> sides() const;
 
   private:
-    static constexpr float SphereShare = 0.1f;
-
     Vec3f position_;
     Frame frame_;
     float halfWidth_, halfHeight_; ///< of the image at distance 1, widened if narrow

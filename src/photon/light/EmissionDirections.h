@@ -1,6 +1,8 @@
 #pragma once
 // An emitter's own distribution of directions, as a scatterer of the sampling library.
 
+#include "photon/Tuning.h"
+
 #include "darts/Vec3.h"
 
 #include "transport/Body.h"
@@ -23,7 +25,7 @@ class EmissionDirections {
         widest_ = cone.widest;
         cosine_ = cone.cosineWeighted;
         for (const transport::BodySphere& body : bodies) addCone(start.position, body);
-        if (!cones_.empty()) share_ = TowardsBodies;
+        if (!cones_.empty()) share_ = tuning::TowardsBodies;
     }
     [[nodiscard]] darts::Vec3 sample(float u, float v) const {
         if (u < share_) {
@@ -49,8 +51,6 @@ class EmissionDirections {
 
   private:
     static constexpr float Rounding = 1e-6f, LeastCosine = 1e-6f;
-    /// At most twice as bad as all or nothing, wherever the light counts.
-    static constexpr float TowardsBodies = 0.5f;
 
     struct Cone {
         darts::Vec3 axis;

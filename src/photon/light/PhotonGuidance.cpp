@@ -1,15 +1,8 @@
 #include "photon/light/PhotonGuidance.h"
 
+#include "photon/Tuning.h"
+
 namespace tungsten::photon {
-
-namespace {
-
-/// Gates above are wide, in mean free paths: most connections are not close to the straight way, so that the direction
-/// need not know their length, and a length drawn after the direction knows where the surface is. MSE x CPU time of
-/// sequences of 3.5 and 7 mean free paths in a cube of fog: 1.64 to 0.60, 0.17 to 0.08.
-constexpr double WideGate = 2.0;
-
-} // namespace
 
 PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan)
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
@@ -27,7 +20,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
         darts::Settings settings =
             policy.sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
         const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
-        if (width > WideGate && !choosesFrames_ && !policy.sampling.lengthFirst) settings.lengthFirst = false;
+        if (width > tuning::WideGate && !choosesFrames_ && !policy.sampling.lengthFirst) settings.lengthFirst = false;
         if (unwarped_) {
             // Any place seen will do: nothing to aim at, only the bound in time.
             settings.direction = darts::Direction::Phase;

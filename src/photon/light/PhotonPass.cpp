@@ -1,5 +1,6 @@
 #include "photon/light/PhotonPass.h"
 
+#include "photon/Tuning.h"
 #include "photon/light/GuidedPhotonWalk.h"
 #include "photon/light/PhotonWalk.h"
 #include "photon/store/StoreFilling.h"
@@ -9,16 +10,6 @@
 namespace tungsten::photon {
 
 namespace {
-
-constexpr uint64_t PathsPerBatch = 256;
-constexpr uint64_t BatchesPerWave = 16; ///< traced in parallel, then appended in order
-constexpr uint64_t PilotPaths = 256;    ///< before a pass
-
-/// How often the vertices of a pass try to connect to surfaces, about, and those of a path: more in short passes.
-constexpr double ConnectionsPerPass = 1 << 17, LeastPerPath = 4.0, MostPerPath = 16.0;
-/// A pass has paths for so many tries at least, for each point but no more in all; what arrives does not decide, or
-/// dark passes would be longer.
-constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
 
 struct Batch {
     explicit Batch(const VolumePrimitive& primitive) : deposits(primitive) {}
@@ -102,7 +93,7 @@ void PhotonPass::setGate(const TimeGate& gate) {
 
 void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
     // Paths of their own: the target must not depend on the paths that it is for.
-    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, PilotPaths);
+    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
     const WalkContext context{scene_, settings_, arrival_, frameArrivals_, 0.0f, emitters_, false, storeVolume_};
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths, Batch(settings_.primitive));
@@ -122,7 +113,8 @@ void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections
     // Paths until the store of photons or beams is full.
     const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
     const double expected = std::min(double(settings_.volumePhotonCount) * perDeposit, double(settings_.photonCount));
-    const double perPath = std::clamp(ConnectionsPerPass / std::max(expected, 1.0), LeastPerPath, MostPerPath);
+    const double perPath =
+        std::clamp(tuning::ConnectionsPerPass / std::max(expected, 1.0), tuning::LeastPerPath, tuning::MostPerPath);
     connections.setTarget(commonTarget(std::move(worths), perPath * double(paths)));
 }
 
@@ -134,14 +126,17 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     std::visit([&](auto& store) { store.full = !storeVolume_; }, maps.volume);
     const auto volumeFull = [&] { return std::visit([](const auto& store) { return store.full; }, maps.volume); };
     uint64_t traced = 0;
-    const uint64_t least =
-        connections ? std::min(ConnectionsPerPoint * connections->points(), MostLeast) / uint64_t(MostPerPath) : 0;
+    const uint64_t least = connections
+                               ? std::min(tuning::ConnectionsPerPoint * connections->points(), tuning::MostLeast) /
+                                     uint64_t(tuning::MostPerPath)
+                               : 0;
     Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
     const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     const auto finished = [&] { return volumeFull() && (connections ? traced >= least : maps.surface.full); };
     while (traced < settings_.photonCount && !finished()) {
-        const uint64_t wave = std::min(settings_.photonCount - traced, PathsPerBatch * BatchesPerWave);
-        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch, Batch(settings_.primitive));
+        const uint64_t wave = std::min(settings_.photonCount - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
+        std::vector<Batch> batches((wave + tuning::PathsPerBatch - 1) / tuning::PathsPerBatch,
+                                   Batch(settings_.primitive));
         const WalkContext context{scene_,
                                   settings_,
                                   arrival_,
@@ -154,7 +149,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   densityPhotons_,
                                   glossySensorPaths_};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
-            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
+            const uint64_t first = traced + b * tuning::PathsPerBatch,
+                           last = std::min(first + tuning::PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
             for (uint64_t path = first; path < last; ++path) {
                 const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);

@@ -1,5 +1,7 @@
 #include "photon/store/FoldedSelection.h"
 
+#include "photon/Tuning.h"
+
 #include <cmath>
 
 namespace tungsten::photon {
@@ -10,7 +12,7 @@ double FoldedMeeting::share() const {
     const double shadow =
         0.5 * (double(size.x) * double(size.y) + double(size.y) * double(size.z) + double(size.z) * double(size.x));
     const double met = area_ / shadow;
-    return met > FoldedMeetings && std::isfinite(met) ? FoldedMeetings / met : 1.0;
+    return met > tuning::FoldedMeetings && std::isfinite(met) ? tuning::FoldedMeetings / met : 1.0;
 }
 
 } // namespace tungsten::photon

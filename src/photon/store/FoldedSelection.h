@@ -8,10 +8,6 @@
 
 namespace tungsten::photon {
 
-/// MSE x CPU time of dragon at 160x160, before highlight paths shared them: 0.25 with all photons, 0.17 with 64, 0.20
-/// with 32 and 16.
-inline constexpr double FoldedMeetings = 48.0;
-
 /// Discs or ribbons as lines through all of them see them.
 class FoldedMeeting {
   public:
@@ -24,7 +20,7 @@ class FoldedMeeting {
     }
     /// Of a disc or ribbon, averaged over directions.
     void addArea(double area) { area_ += area; }
-    /// The part of the records of which such a line meets FoldedMeetings, at most 1.
+    /// The part of the records of which such a line meets tuning::FoldedMeetings, at most 1.
     [[nodiscard]] double share() const;
 
   private:

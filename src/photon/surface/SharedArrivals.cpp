@@ -1,5 +1,7 @@
 #include "photon/surface/SharedArrivals.h"
 
+#include "photon/Tuning.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -113,11 +115,9 @@ class Sharing {
 } // namespace
 
 SharingKernel SharingKernel::of(size_t points, size_t arrivals, float gatherRadius, float factor) {
-    // cbox at 128x128 without a bound on the distance, MSE x CPU time: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08
-    // with 2.5; then time grows. But without the bound a small image's blocks are off by 4 % (cornell-fog, 64x64).
-    constexpr float Wanted = 100.0f, Least = 2.5f, Most = 4.0f;
     const float each = float(arrivals) / float(std::max<size_t>(points, 1));
-    const float pixels = std::clamp(std::sqrt(Wanted * InvPi / std::max(each, 1e-3f)), Least, Most);
+    const float pixels = std::clamp(std::sqrt(tuning::SharedArrivals * InvPi / std::max(each, 1e-3f)),
+                                    tuning::LeastShared, tuning::MostShared);
     return {pixels * factor, gatherRadius * factor};
 }
 

@@ -18,9 +18,8 @@ class GlossyLight {
     /// Weight of emission that a path hits behind a glossy surface: 0 in mirrors, which photons see to.
     [[nodiscard]] float emissionWeight(const SensorState& state, const SurfaceInteraction& light) const;
     /// Highlights are finer than pixels, and a narrow gate leaves lines of them; the fog that a glossy surface shows is
-    /// as fine near lights. Such pixels look for both along HighlightPaths paths, which gather nothing else.
+    /// as fine near lights. Such pixels look for both along tuning::HighlightPaths paths, which gather nothing else.
     [[nodiscard]] bool oversampled(size_t pixel) const { return oversampled_[pixel] != 0; }
-    static constexpr uint32_t HighlightPaths = 16;
 
   private:
     const Scene& scene_;

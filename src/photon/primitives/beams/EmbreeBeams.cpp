@@ -1,5 +1,7 @@
 #include "photon/primitives/beams/EmbreeBeams.h"
 
+#include "photon/Tuning.h"
+
 #include <new>
 
 namespace tungsten::photon {
@@ -12,10 +14,6 @@ struct CurveVertex {
     float radius;
 };
 
-/// Measured on cbox/transient-beams.json, 20 000 beams at 128x128, gather + build against uncut beams: steady state
-/// with radius 0.1: 1.6 to 1.9 s, radius 0.01: 0.9 to 1.2 s; a narrow gate's parts are not cut.
-constexpr float PieceInRadii = 16.0f, MostPieces = 16.0f;
-
 template <typename Element>
 Element* newBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, size_t count) {
     auto* buffer = static_cast<Element*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), count));
@@ -27,7 +25,7 @@ Element* newBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, s
 
 EmbreeBeams::EmbreeBeams(const std::vector<PhotonBeam>& beams, float radius, bool fewRays)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    cut(beams, radius, fewRays ? 1.0f : MostPieces);
+    cut(beams, radius, fewRays ? 1.0f : tuning::MostPieces);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE);
     auto* vertices = newBuffer<CurveVertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * pieces_.size());
     auto* firstVertices = newBuffer<uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, pieces_.size());
@@ -50,7 +48,7 @@ void EmbreeBeams::cut(const std::vector<PhotonBeam>& beams, float radius, float 
     for (uint32_t i = 0; i < beams.size(); ++i) {
         const PhotonBeam& beam = beams[i];
         const float length = beam.tEnd - beam.tStart;
-        const float count = std::clamp(std::ceil(length / (PieceInRadii * radius)), 1.0f, mostPieces);
+        const float count = std::clamp(std::ceil(length / (tuning::PieceInRadii * radius)), 1.0f, mostPieces);
         float start = beam.tStart;
         for (float k = 1.0f; k <= count; ++k) {
             const float end = k == count ? beam.tEnd : beam.tStart + length * (k / count);

@@ -1,0 +1,36 @@
+#pragma once
+// Constants of path tracing that were tuned by measurement. To see what one is worth, change
+// it, build, and compare before and after by the bench named:
+//   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
+//   infinite_medium   build/bin/infinite_medium
+//   micro             build/bin/micro
+
+#include <cstddef>
+
+namespace tungsten::path::tuning {
+
+// --- Guided paths ----------------------------------------------------------------------------------------------------
+
+/// Surfaces may reflect sharply where the connection lobe sends few directions: they keep a third of the directions or
+/// more for themselves. (cbox: 1.5 times less variance than 0.1.) Bench: study cbox-128
+inline constexpr float SurfaceAlpha = 0.5f;
+/// Where nothing is diffuse guided directions hardly ever fall into the lobe; what they are given, a chain of glossy
+/// reflections lacks once per reflection. (Dragon: 1.7 times less variance than 0.5.) Bench: study dragon-160
+inline constexpr float GlossyAlpha = 5.0f;
+/// Rays from the camera go on to surfaces at better odds than by transmittance: what surfaces show varies more than
+/// what the fog before them does. (1.5 times less variance on cbox, 1.4 on staircase; 8 is too many.) Bench: study
+/// staircase-160
+inline constexpr float ViewSurfaceOdds = 4.0f;
+
+// --- Light paths -----------------------------------------------------------------------------------------------------
+
+/// Light paths of a pass, a quarter of its samples within these. Bench: study cbox-128
+inline constexpr size_t FewestPaths = 4096, MostPaths = 32768;
+/// Scenes with more lights have none of these: each would be reached by few.
+inline constexpr size_t MostEmitters = 64;
+/// How many light vertices, or ends of reflected light, a vertex tries. Bench: study cbox-128
+inline constexpr size_t Tried = 64;
+/// Light paths that tell how many of an emitter's reflect. Bench: study dragon-160
+inline constexpr size_t PilotPaths = 32768;
+
+} // namespace tungsten::path::tuning

@@ -1,0 +1,71 @@
+#pragma once
+// Constants of photon maps that were tuned by measurement. To see what one is worth, change
+// it, build, and compare before and after by the bench named:
+//   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
+//   infinite_medium   build/bin/infinite_medium
+//   micro             build/bin/micro
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tungsten::photon::tuning {
+
+// --- Sensor paths ----------------------------------------------------------------------------------------------------
+
+/// Camera paths per pixel that look for surface points to connect to: as many as give an image of this many, at least
+/// and at most. One leaves the noise of lines that a narrow gate lights; more cost little in small images alone. Bench:
+/// study cbox-128
+inline constexpr size_t SurfacePoints = 1 << 16, LeastSurfaceSamples = 2, MostSurfaceSamples = 4;
+
+/// Photons or beams that a folded ray meets, about, out of all. MSE x CPU of dragon at 160 x 160, before highlight
+/// paths shared them: 0.25 with all photons, 0.17 with 64, 0.20 with 32 and 16. Bench: study dragon-160
+inline constexpr double FoldedMeetings = 48.0;
+
+/// Paths of a pixel near glossy surfaces that look for lights. Bench: study dragon-160
+inline constexpr uint32_t HighlightPaths = 16;
+
+// --- Guided light paths ----------------------------------------------------------------------------------------------
+
+/// Gates above are wide, in mean free paths: most connections are not close to the straight way, so that the direction
+/// need not know their length, and a length drawn after the direction knows where the surface is. MSE x CPU of
+/// sequences of 3.5 and 7 mean free paths in a cube of fog: 1.64 to 0.60, 0.17 to 0.08. Bench: study bodies
+inline constexpr double WideGate = 2.0;
+
+/// Of directions into the camera's view, the part that is uniform over the sphere: light behind the image's edge keeps
+/// a density. Bench: infinite_medium
+inline constexpr float SphereShare = 0.1f;
+
+/// Of directions from lamps outside fog, the part that goes towards its bodies: at most twice as bad as all or nothing,
+/// wherever the light counts. Bench: study bodies
+inline constexpr float TowardsBodies = 0.5f;
+
+// --- Connections to surfaces -----------------------------------------------------------------------------------------
+
+/// How often the vertices of a pass try to connect, about, and those of a path: more in short passes. Bench: study
+/// cbox-128
+inline constexpr double ConnectionsPerPass = 1 << 17, LeastPerPath = 4.0, MostPerPath = 16.0;
+/// A pass has paths for so many tries at least, for each point but no more in all; what arrives does not decide, or
+/// dark passes would be longer. Bench: study staircase-160
+inline constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
+
+/// Light from close by is spread over so many square roots of the area that a pixel covers. cbox, MSE x CPU: 0.086 at
+/// 0.25, 0.076 at 0.5 and at 1. Bench: study cbox-128
+inline constexpr float SpreadPixels = 0.5f;
+
+/// Arrivals that neighbouring pixels share, and the radius of sharing in pixels. cbox at 128 x 128 without a bound on
+/// the distance, MSE x CPU: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08 with 2.5; then time grows. But without the
+/// bound a small image's blocks are off by 4 % (cornell-fog, 64 x 64). Bench: study cbox-128
+inline constexpr float SharedArrivals = 100.0f, LeastShared = 2.5f, MostShared = 4.0f;
+
+// --- Stores and structures -------------------------------------------------------------------------------------------
+
+/// Photon beams are cut into pieces of so many radii, at most so many, for Embree. cbox/transient-beams.json, 20 000
+/// beams at 128 x 128, gather and build against uncut beams: steady state with radius 0.1: 1.6 to 1.9 s, radius 0.01:
+/// 0.9 to 1.2 s; a narrow gate's parts are not cut. Bench: micro
+inline constexpr float PieceInRadii = 16.0f, MostPieces = 16.0f;
+
+/// Light paths traced by one task, tasks whose photons are then appended in order, and paths before a pass that tell
+/// what connections are worth.
+inline constexpr uint64_t PathsPerBatch = 256, BatchesPerWave = 16, PilotPaths = 256;
+
+} // namespace tungsten::photon::tuning

@@ -1,0 +1,41 @@
+#pragma once
+// Constants that integrators share and that were tuned by measurement. To see what one is worth, change it,
+// build, and compare before and after by the bench named:
+//   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
+//   infinite_medium   build/bin/infinite_medium
+//   micro             build/bin/micro
+
+namespace tungsten::transport::tuning {
+
+// --- Roulette of plain walks -----------------------------------------------------------------------------------------
+
+/// Ends walks whose throughput is below, from this interaction on. Bench: study cbox-128
+inline constexpr float RouletteThreshold = 0.1f;
+inline constexpr int RouletteFirstInteraction = 3;
+
+// --- Ways out of bodies. Bench: study bodies ----------------------------------------------------------------------
+
+/// Light crosses fewer transport mean free paths than these as if nothing were there.
+inline constexpr float ThinDepth = 1.0f;
+/// Bodies across which there are fewer are taken for infinite, and all of them if the whole rest of the path is
+/// shorter: light hardly scatters twice on its way out. (Two rooms and several lights, paths; the test
+/// agreement.SingleScattering, coloured and slow, points.)
+inline constexpr float ThinBody = 2.0f, ShortRest = 6.0f;
+/// Media that a way goes through before what is beyond counts as unknown.
+inline constexpr int MostLayers = 8;
+/// Between a way and the normal of the face it leaves through.
+inline constexpr float LeastCosine = 0.05f;
+/// Flights that enter a body look out from so many transport mean free paths on: from the boundary itself the way out
+/// would miss it.
+inline constexpr float EntryDepth = 0.05f;
+/// Other faces count up to so many times the depth under the one that the straight way leaves through.
+inline constexpr float FarthestFace = 4.0f;
+/// Factor on the odds of leaving a body where what leaves has been connected to already. MSE x CPU of paths, dense cube
+/// and lamp in fog: 3.4 and 0.94 at 1, 1.2 and 0.66 at 0.1, 1.3 and 0.78 at 0.01. Lower ones would starve what is lit
+/// from the bodies.
+inline constexpr float LeaveOdds = 0.1f;
+/// Of what leaves a body by other ways, the part that may be sent to the aim from surfaces and media outside: without
+/// it deep places would be rare, and bright.
+inline constexpr float Elsewhere = 0.02f;
+
+} // namespace tungsten::transport::tuning
