@@ -83,6 +83,7 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
     volume.on = facts.mediumScattering;
+    splattable = std::visit([](const auto& p) { return p.Splatted; }, settings.primitive);
     volume.reason = std::visit(
         [&](const auto& p) {
             return std::string(volume.on ? p.Reason : "no medium scatters: no volume photon is stored or gathered");

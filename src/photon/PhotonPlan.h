@@ -39,7 +39,9 @@ struct PhotonPlan {
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
-    [[nodiscard]] bool splats() const { return straightRays && volume.on; }
+    bool splattable = true; ///< the volume primitive is
+
+    [[nodiscard]] bool splats() const { return straightRays && volume.on && splattable; }
 
   private:
     void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

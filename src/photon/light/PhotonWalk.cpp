@@ -5,7 +5,11 @@
 namespace tungsten::photon {
 
 void PhotonWalk::run() {
-    if (!emit()) return;
+    if (emit()) goOn();
+    endChain();
+}
+
+void PhotonWalk::goOn() {
     // A photon with bounce b takes part in paths of at least b interactions.
     const int mostBounces = std::min(scene_.transport.maxBounces - 1, MostPhotonBounces);
     while (bounce_ < mostBounces) {
@@ -39,6 +43,8 @@ bool PhotonWalk::emitFrom(const Emitter& emitter, float probability) {
     time_ = emitter.emissionTime;
     region_ = scene_.regionOf(emitter);
     ray_ = emission.ray;
+    if (std::holds_alternative<DepositList<CollapsedFlights>>(deposits_.volume))
+        chain_.beginAt(scene_, emitter, probability, uPosition);
     return !isBlack(power_) && arrival_->mayContinue(ray_.origin, time_);
 }
 
@@ -71,6 +77,21 @@ void PhotonWalk::depositVertex(DepositList<Photon>& points, const Vec3f& positio
 
 void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
 
+void PhotonWalk::depositFlight(DepositList<CollapsedFlights>& flights, const Medium&, float reach) {
+    chain_.fly({scene_, *arrival_, std::get<Slices>(context_.settings.primitive).classes},
+               {ray_.origin, ray_.direction, power_, time_, reach, bounce_}, region_.medium, sampler_, flights);
+}
+
+void PhotonWalk::depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position) {
+    chain_.scatter({scene_, *arrival_, std::get<Slices>(context_.settings.primitive).classes},
+                   {position, ray_.direction, power_, time_, Infinity, bounce_}, sampler_, flights);
+}
+
+void PhotonWalk::endChain() {
+    if (auto* flights = std::get_if<DepositList<CollapsedFlights>>(&deposits_.volume))
+        chain_.end({scene_, *arrival_, std::get<Slices>(context_.settings.primitive).classes}, sampler_, *flights);
+}
+
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     const Vec3f position = ray_.at(distance);
     time_ += double(distance) / double(region_.speed);
@@ -85,6 +106,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
 }
 
 bool PhotonWalk::arriveOnSurface(const SurfaceHit& hit) {
+    endChain();
     time_ += double(hit.t) / double(region_.speed);
     ++bounce_;
     flights_ = 0;

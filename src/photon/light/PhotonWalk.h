@@ -3,6 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
+#include "photon/primitives/sliced/FlightChain.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include "tungsten/scene/Interaction.h"
@@ -43,6 +44,7 @@ class PhotonWalk {
     void run();
 
   protected:
+    void goOn();
     bool emit();
     /// By the emitter's own distribution; `probability` is that of its choice.
     bool emitFrom(const Emitter& emitter, float probability);
@@ -52,8 +54,12 @@ class PhotonWalk {
     /// What a flight through a medium, up to `reach`, leaves for a primitive, and what the vertex at its end does.
     void depositFlight(DepositList<Photon>& points, const Medium& medium, float reach);
     void depositFlight(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
+    void depositFlight(DepositList<CollapsedFlights>& flights, const Medium& medium, float reach);
     void depositVertex(DepositList<Photon>& points, const Vec3f& position);
     void depositVertex(DepositList<PhotonBeam>& beams, const Vec3f& position);
+    void depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position);
+    /// The path leaves the medium, or ends.
+    void endChain();
     /// Time, bounce and deposit; surface_ is set.
     bool arriveOnSurface(const SurfaceHit& hit);
     bool leaveSurface();
@@ -71,6 +77,7 @@ class PhotonWalk {
     Deposits& deposits_;
     WalkCounters& counters_;
 
+    FlightChain chain_;          ///< of the flights since the last light or surface, for slices
     SurfaceInteraction surface_; ///< where the path is, between arriving and leaving
     Ray ray_;
     Region region_;
