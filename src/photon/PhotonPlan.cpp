@@ -83,7 +83,9 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
     volume.on = facts.mediumScattering;
-    splattable = std::visit([](const auto& p) { return p.Splatted; }, settings.primitive);
+    const bool slices = std::holds_alternative<Slices>(settings.primitive);
+    slicesSplat = slices && scene.transport.gate.delta && oneSpeed;
+    slicesGather = slices && !slicesSplat;
     volume.reason = std::visit(
         [&](const auto& p) {
             return std::string(volume.on ? p.Reason : "no medium scatters: no volume photon is stored or gathered");

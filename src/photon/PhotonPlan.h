@@ -39,9 +39,10 @@ struct PhotonPlan {
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
-    bool splattable = true; ///< the volume primitive is
+    bool slicesSplat = false;  ///< slices at a delta gate, one speed: along straight rays of any camera
+    bool slicesGather = false; ///< slices at other gates: they have no splat there
 
-    [[nodiscard]] bool splats() const { return straightRays && volume.on && splattable; }
+    [[nodiscard]] bool splats() const { return volume.on && !slicesGather && (straightRays || slicesSplat); }
 
   private:
     void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

@@ -19,7 +19,7 @@ struct Beams {
     using Record = PhotonBeam;
     using Gather = BeamGather;
     static constexpr const char* Type = "beams";
-    static constexpr bool AtVertices = false, Guided = true, Splatted = true;
+    static constexpr bool AtVertices = false;
     static constexpr const char* Effect = "photon beams";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
     static constexpr const char* Stored = "photon beams";

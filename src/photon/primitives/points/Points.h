@@ -20,8 +20,6 @@ struct Points {
     using Gather = PointGather;
     static constexpr const char* Type = "points"; ///< volume_photon_type
     static constexpr bool AtVertices = true;      ///< records are vertices, so that control vertices can be
-    static constexpr bool Guided = true;          ///< light paths can aim at the camera
-    static constexpr bool Splatted = true;        ///< straight rays have their records brought to them
     static constexpr const char* Effect = "volume photon points";
     static constexpr const char* Reason = "a medium scatters";
     static constexpr const char* Stored = "stored volume photons"; ///< counters

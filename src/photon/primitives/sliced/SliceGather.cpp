@@ -25,18 +25,24 @@ EmbreeSlices::Box reached(const CollapsedFlights& flights, float length) {
 
 } // namespace
 
+std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<CollapsedFlights>& records) {
+    std::vector<PhotonBeam> beams;
+    for (const CollapsedFlights& flights : records)
+        if (flights.shape == FlightShape::Beam)
+            beams.push_back({flights.time, flights.base, flights.directions[0], flights.power, 0.0f,
+                             std::min(flights.reach, visibleReach(scene.media[size_t(flights.medium)])), flights.bounce,
+                             flights.medium});
+    return beams;
+}
+
 SliceGather::SliceGather(const Scene& scene, const Sensor& sensor, const std::vector<CollapsedFlights>& records,
                          const Radii& radius, bool fewRays)
-    : estimate_(scene, sensor) {
+    : estimate_(scene, sensor), beams_(beamsAmong(scene, records)) {
     std::vector<EmbreeSlices::Box> boxes;
     const TimeGate& gate = sensor.gate;
     for (const CollapsedFlights& flights : records) {
         const Medium& medium = scene.media[size_t(flights.medium)];
-        if (flights.shape == FlightShape::Beam) {
-            beams_.push_back({flights.time, flights.base, flights.directions[0], flights.power, 0.0f,
-                              std::min(flights.reach, visibleReach(medium)), flights.bounce, flights.medium});
-            continue;
-        }
+        if (flights.shape == FlightShape::Beam) continue;
         const double left = gate.steadyState ? std::numeric_limits<double>::infinity()
                                              : (gate.end() - flights.time) * double(medium.speedOfLight);
         const float length = float(std::min(left, double(visibleReach(medium))));

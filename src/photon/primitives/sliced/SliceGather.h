@@ -9,6 +9,9 @@
 
 namespace tungsten::photon {
 
+/// The beams among the records.
+std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<CollapsedFlights>& records);
+
 class SliceGather {
   public:
     /// `records` must stay alive; `radius`: of beams. As BeamGather.

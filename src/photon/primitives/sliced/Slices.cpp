@@ -2,6 +2,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/sliced/SliceSplat.h"
 
 namespace tungsten::photon {
 
@@ -10,6 +11,11 @@ Radii Slices::radii(const PhotonSettings& settings, bool deltaGate, const std::v
     // Of the beams among them.
     return settings.volumeRadius *
            (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
+}
+
+uint64_t Slices::splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                       const Selection<CollapsedFlights>& slices, double scale, Film& film) {
+    return splatSlices(scene, sensor, record, slices.records, slices.radii, scale, film);
 }
 
 } // namespace tungsten::photon

@@ -21,7 +21,7 @@ class SliceGather;
 struct Slices {
     using Record = CollapsedFlights;
     using Gather = SliceGather;
-    static constexpr bool AtVertices = false, Guided = false, Splatted = false;
+    static constexpr bool AtVertices = false;
     static constexpr const char* Effect = "sliced primitives";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
     static constexpr const char* Stored = "sliced primitives"; ///< counters
@@ -39,10 +39,9 @@ struct Slices {
         return std::nullopt;
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
-    static uint64_t splat(const Scene&, const Sensor&, const SensorRecord&, const Selection<CollapsedFlights>&, double,
-                          Film&) {
-        return 0;
-    }
+    /// One frame, any camera.
+    static uint64_t splat(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+                          const Selection<CollapsedFlights>& slices, double scale, Film& film);
 };
 
 } // namespace tungsten::photon
