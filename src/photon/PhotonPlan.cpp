@@ -84,7 +84,7 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
     volume.on = facts.mediumScattering;
     const bool slices = std::holds_alternative<Slices>(settings.primitive);
-    slicesSplat = slices && scene.transport.gate.delta && oneSpeed;
+    slicesSplat = slices && scene.transport.gate.delta && (oneSpeed || scene.transport.cameraUnwarped);
     slicesGather = slices && !slicesSplat;
     volume.reason = std::visit(
         [&](const auto& p) {

@@ -20,10 +20,19 @@ Rgb SliceEstimate::leavingBall(const SliceMeeting& m, const BallReach<double>& r
     const Rgb power = ball.emitter >= 0 ? ball.power * emittedIntensity(scene_.emitters[size_t(ball.emitter)],
                                                                         ball.lightPoint(), last)
                                         : ball.power * m.medium.phase.eval(ball.directions[1], last);
-    if (!occluders_ || isBlack(power)) return power;
-    Ray ray = ball.emitter >= 0 ? ball.lightPoint().leave(last) : Ray{ball.base, last};
-    ray.tMax = float(reach.length);
-    return scene_.geometry->occluded(ray) ? Rgb(0.0f) : power;
+    if (isBlack(power) || unoccluded(ball, inFloat(m.sight.at(reach.alongRay)))) return power;
+    return Rgb(0.0f);
+}
+
+bool SliceEstimate::unoccluded(const CollapsedFlights& ball, const Vec3f& end) const {
+    if (!occluders_) return true;
+    const Vec3f way = end - ball.base;
+    const float length = way.length();
+    if (!(length > 0.0f)) return true;
+    const Vec3f direction = way / length;
+    Ray ray = ball.emitter >= 0 ? ball.lightPoint().leave(direction) : Ray{ball.base, direction};
+    ray.tMax = length;
+    return !scene_.geometry->occluded(ray);
 }
 
 bool SliceEstimate::addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {

@@ -19,6 +19,11 @@ class SliceEstimate {
     /// Returns whether it added anything.
     bool add(const CollapsedFlights& flights, const CameraSegment& segment, FrameSums& sums) const;
 
+    /// Nothing lies on the first `count` flights of these lengths.
+    [[nodiscard]] bool unoccluded(const CollapsedFlights& flights, const double* lengths, int count) const;
+    /// Nothing lies between a ball's centre and this point.
+    [[nodiscard]] bool unoccluded(const CollapsedFlights& ball, const Vec3f& end) const;
+
   private:
     /// Time of arrival along a ray.
     struct ArrivalLine {
@@ -51,8 +56,6 @@ class SliceEstimate {
         }
         return any;
     }
-    /// Nothing lies on the first `count` flights of these lengths.
-    [[nodiscard]] bool unoccluded(const CollapsedFlights& flights, const double* lengths, int count) const;
     static bool deposit(const Vec3d& value, const Rgb& power, double factor, int frame, FrameSums& sums);
 
     const Scene& scene_;

@@ -2,7 +2,7 @@
 
 #include "photon/primitives/sliced/SliceEstimate.h"
 #include "photon/primitives/sliced/SliceGather.h"
-#include "photon/primitives/sliced/SliceLanes.h"
+#include "photon/primitives/sliced/SliceWeights.h"
 #include "photon/raster/ImageBand.h"
 #include "photon/raster/ImageFootprint.h"
 
@@ -14,27 +14,36 @@ namespace {
 
 /// A record as the image sees it.
 struct Slice {
-    const CollapsedFlights* flights;
+    LaneRecord record;
     PixelArea area;
-    VolumeLanes volume; ///< of its directions
     float residual;     ///< path length left at the base, at the delta gate
     Rgb power;          ///< with the collapsed collisions
-    float pdfs;         ///< of a ball's two flights
-    float g, sigmaT;
     bool ball, inLanes; ///< inLanes: evaluated a register at a time; otherwise ray by ray
 };
 
-/// Rays of one band that are not in the band itself.
+/// What a band's rays have besides the band.
 struct BandRays {
     std::vector<float> x, y, z; ///< origins; empty: all the record's
+    /// With occluders: what is drawn is looked at in doses, each of them tested once.
+    std::vector<float> dose, filled;
+    bool dosed = false;
 };
+
+/// Where flights of a register of rays end.
+struct LaneFlights {
+    std::array<Batch, 3> lengths;
+    Batch alongRay;
+};
+
+constexpr size_t PilotStep = 8;
+constexpr float DosesPerRay = 64.0f;
 
 class Splatter {
   public:
     Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, double scale, Film& film)
         : scene_(scene), sensor_(sensor), record_(record), estimate_(scene, sensor), scale_(scale), film_(film),
           warped_(!scene.transport.cameraUnwarped), delta_(scene.transport.gate.delta),
-          occluders_(!scene.primitives.empty()), speed_(double(scene.cameraRegion.speed)) {
+          occluders_(!scene.primitives.empty()) {
         if (record.origins.empty()) footprint_.emplace(scene.camera);
     }
 
@@ -42,32 +51,34 @@ class Splatter {
         const Medium& medium = scene_.media[size_t(flights.medium)];
         const TimeGate& gate = sensor_.gate;
         const double until = delta_ ? scene_.transport.gate.start : gate.end();
-        const double left =
-            gate.steadyState ? std::numeric_limits<double>::infinity() : (until - flights.time) * speed_;
+        const double left = gate.steadyState ? std::numeric_limits<double>::infinity()
+                                             : (until - flights.time) * double(medium.speedOfLight);
         const float length = float(std::min(left, double(visibleReach(medium))));
         if (!(length > 0.0f)) return std::nullopt;
         const auto area = areaOf(flights, length);
         if (!area) return std::nullopt;
         const bool ball = flights.shape == FlightShape::Ball;
-        Slice s{&flights,
+        const auto& w = flights.directions;
+        const PointEmitter* light =
+            flights.emitter >= 0 ? std::get_if<PointEmitter>(&scene_.emitters[size_t(flights.emitter)].model) : nullptr;
+        Slice s{{&flights, VolumeLanes({w[0], w[1], w[2]}), medium.phase.g(), medium.sigmaT().x,
+                 ball ? 0.0f : medium.phase.pdf(w[1], w[2]), 1.0f, light != nullptr},
                 *area,
-                VolumeLanes({flights.directions[0], flights.directions[1], flights.directions[2]}),
                 float(left),
                 flights.power,
-                1.0f,
-                medium.phase.g(),
-                medium.sigmaT().x,
                 ball,
                 false};
-        s.inLanes = delta_ && (ball || flights.shape == FlightShape::Volume) && flights.emitter < 0 &&
+        s.inLanes = delta_ && (ball || flights.shape == FlightShape::Volume) && (flights.emitter < 0 || light) &&
                     medium.isGrey() && !std::holds_alternative<Rayleigh>(medium.phase.model);
         const double sigmaS = double(medium.sigmaS.x);
-        s.power = flights.power * float(scale_ * speed_ * gate.frameWidth * (ball ? sigmaS : sigmaS * sigmaS * sigmaS));
-        if (ball) s.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
+        s.power = flights.power *
+                  float(scale_ * double(medium.speedOfLight) * gate.frameWidth * collisions(sigmaS, flights.flights()));
+        if (light) s.power = s.power * light->intensity;
+        if (ball) s.record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
         return s;
     }
 
-    uint64_t draw(const Slice& slice, ImageBand& band, const BandRays& rays) const {
+    uint64_t draw(const Slice& slice, ImageBand& band, BandRays& rays) const {
         uint64_t gathered = 0;
         const auto shows = [&](const BandPiece& piece) { return piece.mixed || shownIn(slice, piece); };
         if (std::none_of(band.pieces.begin(), band.pieces.end(), shows)) return 0;
@@ -96,129 +107,107 @@ class Splatter {
     }
     /// Of a piece that all rays share.
     [[nodiscard]] bool shownIn(const Slice& slice, const BandPiece& piece) const {
-        const int sum = piece.interactions + slice.flights->bounce + slice.flights->flights();
-        return piece.medium == slice.flights->medium && sum >= scene_.transport.minBounces &&
+        const int sum = piece.interactions + slice.record.flights->bounce + slice.record.flights->flights();
+        return piece.medium == slice.record.flights->medium && sum >= scene_.transport.minBounces &&
                sum < scene_.transport.maxBounces;
     }
 
-    uint64_t drawLanes(const Slice& slice, ImageBand& band, const BandRays& origins, int x, int y) const {
+    uint64_t drawLanes(const Slice& slice, ImageBand& band, BandRays& origins, int x, int y) const {
         const size_t i = band.at(x, y);
         const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
-        const Vec3f &o = record_.origin, &b = slice.flights->base;
+        const Vec3f &o = record_.origin, &b = slice.record.flights->base;
         const Lanes3 toOrigin = origins.x.empty()
                                     ? Lanes3(o - b)
                                     : Lanes3(load(origins.x) - b.x, load(origins.y) - b.y, load(origins.z) - b.z);
         const LaneRays rays{toOrigin, {load(band.x), load(band.y), load(band.z)}, Batch(slice.residual)};
         if (!slice.ball) {
-            const LaneSlice met = slice.volume.meet(rays, warped_);
+            LaneSlice met = slice.record.volume.meet(rays, warped_);
+            if (occluders_) met.met = met.met && met.t1 < slice.record.flights->reach;
             if (!xsimd::any(met.met)) return 0;
-            const Batch weight = volumeWeight(slice, rays, met);
-            return collect(slice, band, met.met, met.alongRay, weight, x, y);
+            const Batch weight = volumeWeight(slice.record, rays, met, warped_);
+            return collect(slice, band, origins, met.met, {{met.t1, met.t2, met.t3}, met.alongRay}, weight, x, y);
         }
         const BallLanes met(rays, warped_);
         if (!xsimd::any(met.met)) return 0;
-        uint64_t gathered = collect(slice, band, met.met, met.nearRay, ballWeight(slice, rays, met, met.nearRay), x, y);
-        if (!warped_)
-            gathered += collect(slice, band, met.met, met.farRay, ballWeight(slice, rays, met, met.farRay), x, y);
+        uint64_t gathered = 0;
+        const auto reach = [&](const Batch& alongRay) {
+            gathered += collect(slice, band, origins, met.met, {{met.length, met.length, met.length}, alongRay},
+                                ballWeight(slice.record, rays, met, alongRay, warped_), x, y);
+        };
+        reach(met.nearRay);
+        if (!warped_) reach(met.farRay);
         return gathered;
     }
 
-    /// Without the transmittance, whose exponent is added in collect: (7), (16).
-    [[nodiscard]] Batch volumeWeight(const Slice& slice, const LaneRays& rays, const LaneSlice& met) const {
-        const auto& w = slice.flights->directions;
-        const Batch flights = met.t1 + met.t2 + met.t3;
-        Batch weight = henyeyGreenstein(slice.g, Lanes3(w[2]), -rays.direction) / met.jacobian *
-                       xsimd::exp(-slice.sigmaT * (flights + met.alongRay));
-        if (slice.flights->shared) {
-            const float phasePdf = scene_.media[size_t(slice.flights->medium)].phase.pdf(w[1], w[2]);
-            const Batch pdfs = slice.sigmaT * slice.sigmaT * xsimd::exp(-slice.sigmaT * (met.t1 + met.t2));
-            const Lanes3 last(w[2]);
-            weight = weight *
-                     volumeShareOf(phasePdf * met.jacobian, pdfs * met.t3 * met.t3 * perLength(last, rays.direction));
-        }
-        return weight;
-    }
-    /// Change of path length along the ray.
-    [[nodiscard]] Batch perLength(const Lanes3& last, const Lanes3& ray) const {
-        const Lanes3 sum = last + ray;
-        return warped_ ? 0.5f * sum.dot(sum) : xsimd::abs(last.dot(ray));
-    }
-    /// a / (a + b)
-    static Batch volumeShareOf(const Batch& a, const Batch& b) { return a / xsimd::max(a + b, Batch(1e-37f)); }
-
-    /// (11), (16)
-    [[nodiscard]] Batch ballWeight(const Slice& slice, const LaneRays& rays, const BallLanes& met,
-                                   const Batch& alongRay) const {
-        const auto& w = slice.flights->directions;
-        const Lanes3 last = (rays.toOrigin + rays.direction * alongRay) * (1.0f / met.length);
-        const Batch first = henyeyGreenstein(slice.g, Lanes3(w[1]), last);
-        Batch weight = first * henyeyGreenstein(slice.g, last, -rays.direction) / met.jacobian *
-                       xsimd::exp(-slice.sigmaT * (met.length + alongRay));
-        if (slice.flights->shared) {
-            const Lanes3 a(w[0]), b(w[1]);
-            const Lanes3& c = rays.direction;
-            const Batch volume =
-                xsimd::abs(warped_ ? (a + c).dot((b + c).cross(last + c)) : (a - last).dot((b - last).cross(c)));
-            const Batch ball = slice.pdfs * met.jacobian;
-            weight = weight * (ball / xsimd::max(first * volume + ball, Batch(1e-37f)));
-        }
-        return weight;
-    }
-
-    /// Into the band's sums; what may be occluded, ray by ray into the film.
-    uint64_t collect(const Slice& slice, ImageBand& band, const LaneMask& met, const Batch& alongRay,
-                     const Batch& weight, int x, int y) const {
+    /// Into the band's sums.
+    uint64_t collect(const Slice& slice, ImageBand& band, BandRays& rays, const LaneMask& met,
+                     const LaneFlights& flights, const Batch& weight, int x, int y) const {
         const size_t i = band.at(x, y);
+        const int before = slice.record.flights->bounce + slice.record.flights->flights();
         uint64_t gathered = 0;
         for (BandPiece& piece : band.pieces) {
             const Batch start = Batch::load_unaligned(piece.start.data() + i);
-            LaneMask inside = met && alongRay >= start && alongRay < Batch::load_unaligned(piece.end.data() + i);
+            LaneMask inside =
+                met && flights.alongRay >= start && flights.alongRay < Batch::load_unaligned(piece.end.data() + i);
             if (piece.mixed)
-                inside =
-                    piece.select(inside, i, slice.flights->medium,
-                                 scene_.transport.minBounces - slice.flights->bounce - slice.flights->flights(),
-                                 scene_.transport.maxBounces - 1 - slice.flights->bounce - slice.flights->flights());
+                inside = piece.select(inside, i, slice.record.flights->medium, scene_.transport.minBounces - before,
+                                      scene_.transport.maxBounces - 1 - before);
             else if (!shownIn(slice, piece))
                 continue;
             if (!xsimd::any(inside)) continue;
-            if (occluders_) {
-                gathered += drawSelected(slice, piece, inside, x, y);
-                continue;
-            }
             // The throughput holds the way to the piece.
-            const Batch here = xsimd::select(inside, weight * xsimd::exp(slice.sigmaT * start), Batch(0.0f));
+            Batch here = xsimd::select(inside, weight * xsimd::exp(slice.record.sigmaT * start), Batch(0.0f));
+            if (occluders_) here = tested(slice, band, rays, flights, here, x, y);
             for (int k = 0; k < 3; ++k) piece.add(i, here, k, slice.power[k]);
             gathered += uint64_t(darts::lanes::sum(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
         }
         return gathered;
     }
 
-    /// What may be occluded: ray by ray, those that are selected.
-    uint64_t drawSelected(const Slice& slice, const BandPiece& piece, const LaneMask& selected, int x, int y) const {
-        alignas(64) float chosen[Lanes];
-        xsimd::select(selected, Batch(1.0f), Batch(0.0f)).store_aligned(chosen);
-        uint64_t gathered = 0;
-        FrameSums sums(1);
-        for (int lane = 0; lane < Lanes; ++lane) {
-            if (!(chosen[lane] > 0.0f)) continue;
-            const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x + lane);
-            const StraightPiece& recorded = record_.pieces[piece.number];
-            sums[0] = Vec3d(0.0);
-            if (!estimate_.add(*slice.flights, segmentOf(recorded, pixel), sums)) continue;
-            ++gathered;
-            addToFilm(sums, recorded.throughput[pixel], x + lane, y);
+    /// Whole doses in place of weights: shadow rays cost a hundred times what weights do. Whenever what a ray has been
+    /// given fills another dose, by the record at hand, that one is tested and stands for the dose; evenly from a
+    /// random start, so that every record brings what it weighs on average.
+    Batch tested(const Slice& slice, const ImageBand& band, BandRays& rays, const LaneFlights& flights,
+                 const Batch& weight, int x, int y) const {
+        const size_t i = band.at(x, y);
+        const float power = meanComponent(slice.power);
+        const Batch dose = Batch::load_unaligned(rays.dose.data() + i);
+        const Batch filled = Batch::load_unaligned(rays.filled.data() + i);
+        if (!rays.dosed) { // the pilot that finds the doses
+            (filled + weight * power).store_unaligned(rays.filled.data() + i);
+            return Batch(0.0f);
         }
-        return gathered;
+        const Batch sum = filled + weight * power / dose, whole = xsimd::floor(sum);
+        (sum - whole).store_unaligned(rays.filled.data() + i);
+        if (!xsimd::any(whole > 0.0f)) return Batch(0.0f);
+        alignas(64) std::array<float, Lanes> doses, along;
+        alignas(64) std::array<std::array<float, Lanes>, 3> lengths;
+        (whole * dose / power).store_aligned(doses.data());
+        flights.alongRay.store_aligned(along.data());
+        for (size_t k = 0; k < 3; ++k) flights.lengths[k].store_aligned(lengths[k].data());
+        for (size_t lane = 0; lane < size_t(Lanes); ++lane) {
+            if (!(doses[lane] > 0.0f)) continue;
+            const std::array<double, 3> t{double(lengths[0][lane]), double(lengths[1][lane]), double(lengths[2][lane])};
+            const size_t at = i + lane;
+            const Vec3f origin = rays.x.empty() ? record_.origin : Vec3f(rays.x[at], rays.y[at], rays.z[at]);
+            const Vec3f end = origin + Vec3f(band.x[at], band.y[at], band.z[at]) * along[lane];
+            const bool open = slice.ball ? estimate_.unoccluded(*slice.record.flights, end)
+                                         : estimate_.unoccluded(*slice.record.flights, t.data(), 3);
+            if (!open) doses[lane] = 0.0f;
+        }
+        return Batch::load_aligned(doses.data());
     }
+
     uint64_t drawRays(const Slice& slice, int x, int y, int last) const {
         uint64_t gathered = 0;
         FrameSums sums(size_t(sensor_.gate.frames));
         for (; x <= last; ++x) {
             const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
             for (const StraightPiece& piece : record_.pieces) {
-                if (!(piece.end[pixel] > piece.start[pixel]) || piece.medium[pixel] != slice.flights->medium) continue;
+                if (!(piece.end[pixel] > piece.start[pixel]) || piece.medium[pixel] != slice.record.flights->medium)
+                    continue;
                 std::fill(sums.begin(), sums.end(), Vec3d(0.0));
-                if (!estimate_.add(*slice.flights, segmentOf(piece, pixel), sums)) continue;
+                if (!estimate_.add(*slice.record.flights, segmentOf(piece, pixel), sums)) continue;
                 ++gathered;
                 addToFilm(sums, piece.throughput[pixel], x, y);
             }
@@ -237,8 +226,9 @@ class Splatter {
         const Vec3f direction(record_.x[pixel], record_.y[pixel], record_.z[pixel]);
         const Vec3f origin = record_.origins.empty() ? record_.origin : record_.origins[pixel];
         const float start = piece.start[pixel];
-        return {origin + direction * start, direction,    piece.end[pixel] - start,
-                double(start) / speed_,     1.0 / speed_, piece.interactions[pixel],
+        const double inverseSpeed = 1.0 / double(scene_.media[size_t(piece.medium[pixel])].speedOfLight);
+        return {origin + direction * start,   direction,    piece.end[pixel] - start,
+                double(start) * inverseSpeed, inverseSpeed, piece.interactions[pixel],
                 piece.medium[pixel]};
     }
 
@@ -257,6 +247,22 @@ class Splatter {
                 }
             }
         return gathered;
+    }
+    /// By a pilot over a part of what is to be drawn: any dose above 0 will do, this one makes about DosesPerRay.
+    void findDoses(const std::vector<std::optional<Slice>>& slices, const std::vector<uint32_t>& drawn, ImageBand& band,
+                   BandRays& rays) const {
+        if (!occluders_ || drawn.empty()) return;
+        rays.dose.assign(band.x.size(), 1.0f);
+        rays.filled.assign(band.x.size(), 0.0f);
+        for (size_t k = 0; k < drawn.size(); k += PilotStep)
+            if (slices[drawn[k]]->inLanes) draw(*slices[drawn[k]], band, rays);
+        const CollapsedFlights& first = *slices[drawn.front()]->record.flights;
+        Sampler sampler(first.random[0], RandomStream::Folded, first.random[1], drawn.size());
+        for (size_t i = 0; i < rays.dose.size(); ++i) {
+            rays.dose[i] = std::max(rays.filled[i] * (float(PilotStep) / DosesPerRay), 1e-30f);
+            rays.filled[i] = sampler.next1D();
+        }
+        rays.dosed = true;
     }
     [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
         BandRays rays;
@@ -282,7 +288,6 @@ class Splatter {
     double scale_;
     Film& film_;
     bool warped_, delta_, occluders_;
-    double speed_;
 };
 
 } // namespace
@@ -309,7 +314,8 @@ uint64_t splatSlices(const Scene& scene, const Sensor& sensor, const SensorRecor
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
         ImageBand band(record, number);
-        const BandRays rays = splatter.originsOf(band);
+        BandRays rays = splatter.originsOf(band);
+        splatter.findDoses(slices, drawn, band, rays);
         for (const uint32_t i : drawn) gathered[number] += splatter.draw(*slices[i], band, rays);
         band.addToFilm(0, film);
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
