@@ -38,6 +38,9 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
     const auto fromBeams = [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); };
     const bool beams = slices.classes.beams && (!slices.classes.lights || !scene.primitives.empty() ||
                                                 std::any_of(scene.emitters.begin(), scene.emitters.end(), fromBeams));
+    // What beams make wants many light paths, and they are cheap. volumetric-caustic at 160x88: variance / mean^2 x CPU
+    // seconds 0.6 with all slices, 0.3 with a tenth of them; simple-volumetric 0.0024 and 0.0019.
+    if (beams) slices.classes.share = 0.1f;
     if (beams && settings.volumeRadius >= Unbounded)
         block.problem("volume_gather_radius",
                       "what scatters once after a surface or a beam of light are beams, also with '" + type +

@@ -40,7 +40,7 @@ void FlightChain::depositLight(const Rules& rules, Sampler& sampler, DepositList
     ball.directions[0] = light_.normal;
     ball.directions[1].x = light_.error;
     ball.lengths = {light_.uv.x, light_.uv.y};
-    list.records.push_back(ball);
+    thin(rules, ball, sampler, list);
 }
 
 void FlightChain::scatter(const Rules& rules, const ChainVertex& vertex, Sampler& sampler,
@@ -56,7 +56,7 @@ void FlightChain::scatter(const Rules& rules, const ChainVertex& vertex, Sampler
         ball.lengths = {(before - at(centre - 2).position).length(), (vertex.position - before).length()};
         ball.shared = rules.classes.shared;
     }
-    list.records.push_back(ball);
+    thin(rules, ball, sampler, list);
 }
 
 void FlightChain::complete(const Rules& rules, int last, Sampler& sampler, DepositList<CollapsedFlights>& list) const {
@@ -69,7 +69,7 @@ void FlightChain::complete(const Rules& rules, int last, Sampler& sampler, Depos
         CollapsedFlights flights = record(at(first), FlightShape(k), sampler);
         for (int i = 0; i < k; ++i) flights.directions[size_t(i)] = direction(first + i);
         flights.shared = k == 3 && rules.classes.shared;
-        list.records.push_back(flights);
+        thin(rules, flights, sampler, list);
     }
 }
 
@@ -89,10 +89,23 @@ void FlightChain::end(const Rules& rules, Sampler& sampler, DepositList<Collapse
     emitter_ = -1;
 }
 
+void FlightChain::thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
+                       DepositList<CollapsedFlights>& list) {
+    const float share = rules.classes.share;
+    if (share < 1.0f) {
+        if (sampler.next1D() >= share) return;
+        flights.power = flights.power / share;
+    }
+    list.records.push_back(flights);
+}
+
 /// `chain`: the base's index among the chain's vertices.
 bool FlightChain::counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights) {
     if (!isFinite(base.power) || isBlack(base.power)) return false;
-    if (base.bounce + flights >= rules.scene.transport.maxBounces) return false;
+    const TransportSettings& transport = rules.scene.transport;
+    if (base.bounce + flights >= transport.maxBounces) return false;
+    // Without surfaces sensor paths add no interactions.
+    if (rules.scene.primitives.empty() && base.bounce + flights < transport.minBounces) return false;
     if (chain + flights > rules.scene.media[size_t(medium)].maxBounces) return false;
     return rules.arrival.mayContinue(base.position, base.time);
 }

@@ -43,6 +43,9 @@ class FlightChain {
     void complete(const Rules& rules, int last, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
     void depositLight(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
     [[nodiscard]] static bool counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights);
+    /// Leaves a share of them.
+    static void thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
+                     DepositList<CollapsedFlights>& list);
     [[nodiscard]] CollapsedFlights record(const ChainVertex& base, FlightShape shape, Sampler& sampler) const;
     [[nodiscard]] const ChainVertex& at(int flight) const { return vertices_[size_t(flight % Most)]; }
     [[nodiscard]] const Vec3f& direction(int flight) const { return directions_[size_t(flight % Most)]; }

@@ -1,5 +1,6 @@
 #include "photon/primitives/sliced/SliceSplat.h"
 
+#include "photon/primitives/beams/BeamSplat.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
 #include "photon/primitives/sliced/SliceGather.h"
 #include "photon/primitives/sliced/SliceWeights.h"
@@ -290,6 +291,13 @@ class Splatter {
     bool warped_, delta_, occluders_;
 };
 
+/// Of the media that scatter and the camera's region: what splatBeams needs.
+bool oneSpeed(const Scene& scene) {
+    return std::all_of(scene.media.begin(), scene.media.end(), [&](const Medium& medium) {
+        return !medium.scatters() || medium.speedOfLight == scene.cameraRegion.speed;
+    });
+}
+
 } // namespace
 
 uint64_t splatSlices(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
@@ -308,8 +316,9 @@ uint64_t splatSlices(const Scene& scene, const Sensor& sensor, const SensorRecor
                  ++band)
                 byBand[size_t(band)].push_back(uint32_t(i));
     const auto beams = beamsAmong(scene, records);
+    const bool drawBeams = record.origins.empty() && oneSpeed(scene);
     std::optional<BeamGather> beamGather;
-    if (!beams.empty()) beamGather.emplace(scene, sensor, beams, radius);
+    if (!beams.empty() && !drawBeams) beamGather.emplace(scene, sensor, beams, radius);
     std::vector<uint64_t> gathered(bands, 0);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
@@ -320,7 +329,7 @@ uint64_t splatSlices(const Scene& scene, const Sensor& sensor, const SensorRecor
         band.addToFilm(0, film);
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
     });
-    uint64_t total = 0;
+    uint64_t total = drawBeams ? splatBeams(scene, sensor, record, beams, radius[0], scale, film) : 0;
     for (const uint64_t count : gathered) total += count;
     return total;
 }
