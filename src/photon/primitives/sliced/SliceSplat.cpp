@@ -2,25 +2,15 @@
 
 #include "photon/primitives/beams/BeamSplat.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
+#include "photon/primitives/sliced/SliceFootprints.h"
 #include "photon/primitives/sliced/SliceGather.h"
-#include "photon/primitives/sliced/SliceWeights.h"
 #include "photon/raster/ImageBand.h"
-#include "photon/raster/ImageFootprint.h"
 
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
 
 namespace {
-
-/// A record as the image sees it.
-struct Slice {
-    LaneRecord record;
-    PixelArea area;
-    float residual;     ///< path length left at the base, at the delta gate
-    Rgb power;          ///< with the collapsed collisions
-    bool ball, inLanes; ///< inLanes: evaluated a register at a time; otherwise ray by ray
-};
 
 /// What a band's rays have besides the band.
 struct BandRays {
@@ -43,43 +33,9 @@ class Splatter {
   public:
     Splatter(const Scene& scene, const Sensor& sensor, const SensorRecord& record, double scale, Film& film)
         : scene_(scene), sensor_(sensor), record_(record), estimate_(scene, sensor), scale_(scale), film_(film),
-          warped_(!scene.transport.cameraUnwarped), delta_(scene.transport.gate.delta),
-          occluders_(!scene.primitives.empty()) {
-        if (record.origins.empty()) footprint_.emplace(scene.camera);
-    }
+          warped_(!scene.transport.cameraUnwarped), occluders_(!scene.primitives.empty()) {}
 
-    [[nodiscard]] std::optional<Slice> prepare(const CollapsedFlights& flights) const {
-        const Medium& medium = scene_.media[size_t(flights.medium)];
-        const TimeGate& gate = sensor_.gate;
-        const double until = delta_ ? scene_.transport.gate.start : gate.end();
-        const double left = gate.steadyState ? std::numeric_limits<double>::infinity()
-                                             : (until - flights.time) * double(medium.speedOfLight);
-        const float length = float(std::min(left, double(visibleReach(medium))));
-        if (!(length > 0.0f)) return std::nullopt;
-        const auto area = areaOf(flights, length);
-        if (!area) return std::nullopt;
-        const bool ball = flights.shape == FlightShape::Ball;
-        const auto& w = flights.directions;
-        const PointEmitter* light =
-            flights.emitter >= 0 ? std::get_if<PointEmitter>(&scene_.emitters[size_t(flights.emitter)].model) : nullptr;
-        Slice s{{&flights, VolumeLanes({w[0], w[1], w[2]}), medium.phase.g(), medium.sigmaT().x,
-                 ball ? 0.0f : medium.phase.pdf(w[1], w[2]), 1.0f, light != nullptr},
-                *area,
-                float(left),
-                flights.power,
-                ball,
-                false};
-        s.inLanes = delta_ && (ball || flights.shape == FlightShape::Volume) && (flights.emitter < 0 || light) &&
-                    medium.isGrey() && !std::holds_alternative<Rayleigh>(medium.phase.model);
-        const double sigmaS = double(medium.sigmaS.x);
-        s.power = flights.power *
-                  float(scale_ * double(medium.speedOfLight) * gate.frameWidth * collisions(sigmaS, flights.flights()));
-        if (light) s.power = s.power * light->intensity;
-        if (ball) s.record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
-        return s;
-    }
-
-    uint64_t draw(const Slice& slice, ImageBand& band, BandRays& rays) const {
+    uint64_t draw(const ImageSlice& slice, ImageBand& band, BandRays& rays) const {
         uint64_t gathered = 0;
         const auto shows = [&](const BandPiece& piece) { return piece.mixed || shownIn(slice, piece); };
         if (std::none_of(band.pieces.begin(), band.pieces.end(), shows)) return 0;
@@ -91,29 +47,14 @@ class Splatter {
     }
 
   private:
-    [[nodiscard]] std::optional<PixelArea> areaOf(const CollapsedFlights& flights, float length) const {
-        const PixelArea all{0, record_.width - 1, 0, record_.height - 1};
-        if (!footprint_) return all;
-        if (flights.shape == FlightShape::Ball) {
-            const auto area = footprint_->around(flights.base, 1.0001f * length);
-            return area;
-        }
-        std::array<Vec3f, 5> points;
-        points[0] = flights.base;
-        const auto count = size_t(flights.flights());
-        for (size_t i = 0; i < count; ++i) points[i + 1] = flights.base + flights.directions[i] * length;
-        // An unwarped slice is the triangle alone.
-        const bool triangle = delta_ && !warped_ && flights.shape == FlightShape::Volume;
-        return footprint_->aroundHull(std::span(points).subspan(triangle ? 1 : 0, count + (triangle ? 0 : 1)));
-    }
     /// Of a piece that all rays share.
-    [[nodiscard]] bool shownIn(const Slice& slice, const BandPiece& piece) const {
+    [[nodiscard]] bool shownIn(const ImageSlice& slice, const BandPiece& piece) const {
         const int sum = piece.interactions + slice.record.flights->bounce + slice.record.flights->flights();
         return piece.medium == slice.record.flights->medium && sum >= scene_.transport.minBounces &&
                sum < scene_.transport.maxBounces;
     }
 
-    uint64_t drawLanes(const Slice& slice, ImageBand& band, BandRays& origins, int x, int y) const {
+    uint64_t drawLanes(const ImageSlice& slice, ImageBand& band, BandRays& origins, int x, int y) const {
         const size_t i = band.at(x, y);
         const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
         const Vec3f &o = record_.origin, &b = slice.record.flights->base;
@@ -141,7 +82,7 @@ class Splatter {
     }
 
     /// Into the band's sums.
-    uint64_t collect(const Slice& slice, ImageBand& band, BandRays& rays, const LaneMask& met,
+    uint64_t collect(const ImageSlice& slice, ImageBand& band, BandRays& rays, const LaneMask& met,
                      const LaneFlights& flights, const Batch& weight, int x, int y) const {
         const size_t i = band.at(x, y);
         const int before = slice.record.flights->bounce + slice.record.flights->flights();
@@ -168,7 +109,7 @@ class Splatter {
     /// Whole doses in place of weights: shadow rays cost a hundred times what weights do. Whenever what a ray has been
     /// given fills another dose, by the record at hand, that one is tested and stands for the dose; evenly from a
     /// random start, so that every record brings what it weighs on average.
-    Batch tested(const Slice& slice, const ImageBand& band, BandRays& rays, const LaneFlights& flights,
+    Batch tested(const ImageSlice& slice, const ImageBand& band, BandRays& rays, const LaneFlights& flights,
                  const Batch& weight, int x, int y) const {
         const size_t i = band.at(x, y);
         const float power = meanComponent(slice.power);
@@ -199,7 +140,7 @@ class Splatter {
         return Batch::load_aligned(doses.data());
     }
 
-    uint64_t drawRays(const Slice& slice, int x, int y, int last) const {
+    uint64_t drawRays(const ImageSlice& slice, int x, int y, int last) const {
         uint64_t gathered = 0;
         FrameSums sums(size_t(sensor_.gate.frames));
         for (; x <= last; ++x) {
@@ -250,8 +191,8 @@ class Splatter {
         return gathered;
     }
     /// By a pilot over a part of what is to be drawn: any dose above 0 will do, this one makes about DosesPerRay.
-    void findDoses(const std::vector<std::optional<Slice>>& slices, const std::vector<uint32_t>& drawn, ImageBand& band,
-                   BandRays& rays) const {
+    void findDoses(const std::vector<std::optional<ImageSlice>>& slices, const std::vector<uint32_t>& drawn,
+                   ImageBand& band, BandRays& rays) const {
         if (!occluders_ || drawn.empty()) return;
         rays.dose.assign(band.x.size(), 1.0f);
         rays.filled.assign(band.x.size(), 0.0f);
@@ -285,10 +226,9 @@ class Splatter {
     Sensor sensor_;
     const SensorRecord& record_;
     SliceEstimate estimate_;
-    std::optional<ImageFootprint> footprint_;
     double scale_;
     Film& film_;
-    bool warped_, delta_, occluders_;
+    bool warped_, occluders_;
 };
 
 /// Of the media that scatter and the camera's region: what splatBeams needs.
@@ -303,10 +243,11 @@ bool oneSpeed(const Scene& scene) {
 uint64_t splatSlices(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
                      const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, scale, film);
+    const SliceFootprints footprints(scene, sensor.gate, scale);
     const size_t bands = ImageBand::count(record.height);
-    std::vector<std::optional<Slice>> slices(records.size());
+    std::vector<std::optional<ImageSlice>> slices(records.size());
     tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
-        if (records[i].shape != FlightShape::Beam) slices[i] = splatter.prepare(records[i]);
+        if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i]);
     });
     // Records by band, in their own order: the sums do not depend on the threads.
     std::vector<std::vector<uint32_t>> byBand(bands);
