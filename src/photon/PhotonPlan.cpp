@@ -85,6 +85,9 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 }
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+    const bool slices = std::holds_alternative<Slices>(settings.primitive);
+    slicesSplat = slices && scene.transport.gate.delta && (oneSpeed || scene.transport.cameraUnwarped);
+    slicesGather = slices && !slicesSplat;
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
     volume.reason = !facts.mediumScattering ? "no medium scatters: no volume photon is stored or gathered"

@@ -165,7 +165,7 @@ TEST(PhotonMap, AdaptiveRadiiEstimateTheSameRadiance) {
 }
 
 TEST(PhotonMap, WrongSettingsAreExplained) {
-    for (const char* bad : {"integrator.volume_photon_type=beans", "integrator.volume_photon_type=planes",
+    for (const char* bad : {"integrator.volume_photon_type=beans", "integrator.volume_photon_type=planes_1d",
                             "integrator.photon_count=0", "integrator.alpha=2"})
         EXPECT_THROW(renderPhotons(test::litFloor(1), {{bad}, 1, 1}), InputError) << bad;
 }

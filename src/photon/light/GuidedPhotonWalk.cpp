@@ -64,7 +64,7 @@ bool GuidedPhotonWalk::emit() {
     const Emitter& emitter = scene_.emitters[chosen.index];
     const float frames = guidance_.choosesFrames() ? float(guidance_.frames().frames) : 1.0f;
     if (emitter.isDelta() || emitter.isInfinite()) {
-        if (!path_.emitFrom(emitter, chosen.probability)) return false;
+        if (!path_.emitFrom(emitter, chosen.probability, path_.sampler.next2D())) return false;
         path_.power = path_.power * frames;
         return true;
     }

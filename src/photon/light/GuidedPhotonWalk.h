@@ -58,9 +58,12 @@ class GuidedPhotonWalk {
     void leaveOn(const Flight& flight, DepositList<Photon>& points);
     /// Beams: in direct view only what the camera's image shows; the store's room is for what can count.
     void leaveOn(const Flight& flight, DepositList<PhotonBeam>& beams);
+    /// Slices have plain paths.
+    void leaveOn(const Flight&, DepositList<CollapsedFlights>&) {}
     /// Points: ordinary photons share with control vertices where sensor paths can fold.
     void leaveAt(float distance, const Flight& flight, DepositList<Photon>& points);
     void leaveAt(float distance, const Flight& flight, DepositList<PhotonBeam>& beams);
+    void leaveAt(float, const Flight&, DepositList<CollapsedFlights>&) {}
     /// Ordinary photons share with the control vertices of this flight, by the balance heuristic: where these alone are
     /// not complete, and in bodies that light must leave, whose directions do not follow the connections so closely.
     [[nodiscard]] bool storesPhotons() const {

@@ -4,8 +4,7 @@
 
 namespace tungsten::photon {
 
-bool LightPath::emitFrom(const Emitter& emitter, float probability) {
-    const Vec2f uPosition = sampler.next2D();
+bool LightPath::emitFrom(const Emitter& emitter, float probability, const Vec2f& uPosition) {
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
     power = emission.power / probability;
     time = emitter.emissionTime;

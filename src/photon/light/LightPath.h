@@ -41,7 +41,7 @@ struct LightPath {
           counters(ownCounters) {}
 
     /// By the emitter's own distribution; `probability` is that of its choice. False ends the path.
-    bool emitFrom(const Emitter& emitter, float probability);
+    bool emitFrom(const Emitter& emitter, float probability, const Vec2f& uPosition);
     /// A photon with bounce b takes part in paths of at least b interactions.
     [[nodiscard]] bool mayBounce() const {
         return bounce < std::min(context.scene.transport.maxBounces - 1, MostPhotonBounces);

@@ -3,7 +3,11 @@
 namespace tungsten::photon {
 
 void PhotonWalk::run() {
-    if (!emit()) return;
+    if (emit()) goOn();
+    endChain();
+}
+
+void PhotonWalk::goOn() {
     while (path_.mayBounce()) {
         ++path_.counters.rays;
         const auto hit = scene_.geometry->intersect(path_.ray);
@@ -25,7 +29,11 @@ void PhotonWalk::run() {
 
 bool PhotonWalk::emit() {
     const auto chosen = path_.context.emitters.sample(path_.sampler.next1D());
-    return path_.emitFrom(scene_.emitters[chosen.index], chosen.probability);
+    const Emitter& emitter = scene_.emitters[chosen.index];
+    const Vec2f uPosition = path_.sampler.next2D();
+    if (std::holds_alternative<DepositList<CollapsedFlights>>(path_.deposits.volume))
+        chain_.beginAt(scene_, emitter, chosen.probability, uPosition);
+    return path_.emitFrom(emitter, chosen.probability, uPosition);
 }
 
 void PhotonWalk::depositFlight(DepositList<Photon>&, const Medium&, float) {}
@@ -41,6 +49,30 @@ void PhotonWalk::depositVertex(DepositList<Photon>& points, const Vec3f& positio
 }
 
 void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
+
+FlightChain::Rules PhotonWalk::chainRules() const {
+    return {scene_, *path_.arrival, std::get<Slices>(path_.context.settings.primitive).classes};
+}
+
+void PhotonWalk::depositFlight(DepositList<CollapsedFlights>& flights, const Medium&, float reach) {
+    chain_.fly(chainRules(), {path_.ray.origin, path_.ray.direction, path_.power, path_.time, reach, path_.bounce},
+               path_.region.medium, path_.sampler, flights);
+}
+
+void PhotonWalk::depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position) {
+    chain_.scatter(chainRules(), {position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
+                   path_.sampler, flights);
+}
+
+void PhotonWalk::endChain() {
+    if (auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume))
+        chain_.end(chainRules(), path_.sampler, *flights);
+}
+
+bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
+    endChain();
+    return path_.arriveOnSurface(hit) && path_.leaveSurface();
+}
 
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     path_.collide(path_.ray.at(distance), double(distance));

@@ -2,6 +2,7 @@
 // Plain light paths: free flights and directions by the scene's own distributions.
 
 #include "photon/light/LightPath.h"
+#include "photon/primitives/sliced/FlightChain.h"
 
 namespace tungsten::photon {
 
@@ -13,18 +14,25 @@ class PhotonWalk {
     void run();
 
   private:
+    void goOn();
     bool emit();
     // False ends the path.
     bool scatterInMedium(const Medium& medium, float distance);
-    bool scatterOnSurface(const SurfaceHit& hit) { return path_.arriveOnSurface(hit) && path_.leaveSurface(); }
+    bool scatterOnSurface(const SurfaceHit& hit);
     /// What a flight through a medium, up to `reach`, leaves for a primitive, and what the vertex at its end does.
     void depositFlight(DepositList<Photon>& points, const Medium& medium, float reach);
     void depositFlight(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
+    void depositFlight(DepositList<CollapsedFlights>& flights, const Medium& medium, float reach);
     void depositVertex(DepositList<Photon>& points, const Vec3f& position);
     void depositVertex(DepositList<PhotonBeam>& beams, const Vec3f& position);
+    void depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position);
+    [[nodiscard]] FlightChain::Rules chainRules() const;
+    /// The path leaves the medium, or ends.
+    void endChain();
 
     LightPath path_;
     const Scene& scene_;
+    FlightChain chain_; ///< of the flights since the last light or surface, for slices
 };
 
 } // namespace tungsten::photon

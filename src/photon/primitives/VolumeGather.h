@@ -4,6 +4,7 @@
 #include "photon/primitives/VolumePrimitive.h"
 #include "photon/primitives/beams/BeamGather.h"
 #include "photon/primitives/points/PointGather.h"
+#include "photon/primitives/sliced/SliceGather.h"
 #include "photon/view/SensorRecord.h"
 
 #include "tungsten/film/Film.h"

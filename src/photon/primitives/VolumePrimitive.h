@@ -4,6 +4,7 @@
 
 #include "photon/primitives/beams/Beams.h"
 #include "photon/primitives/points/Points.h"
+#include "photon/primitives/sliced/Slices.h"
 
 #include "tungsten/core/Overloaded.h"
 
@@ -11,7 +12,7 @@
 
 namespace tungsten::photon {
 
-using VolumePrimitive = std::variant<Points, Beams>;
+using VolumePrimitive = std::variant<Points, Beams, Slices>;
 
 namespace detail {
 

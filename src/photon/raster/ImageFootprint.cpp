@@ -47,6 +47,24 @@ std::optional<PixelArea> ImageFootprint::around(const Vec3f& start, const Vec3f&
     return area(bounds(a.x, b.x), bounds(a.y, b.y));
 }
 
+std::optional<PixelArea> ImageFootprint::aroundHull(std::span<const Vec3f> points) const {
+    std::optional<Slopes> x = Slopes{Infinity, -Infinity}, y = x;
+    bool behind = true;
+    const auto include = [](std::optional<Slopes>& bounds, const std::optional<Slopes>& of) {
+        if (bounds && of)
+            bounds = Slopes{std::min(bounds->low, of->low), std::max(bounds->high, of->high)};
+        else
+            bounds.reset();
+    };
+    for (const Vec3f& point : points) {
+        const Vec3f p = frame_.toLocal(point - origin_);
+        behind = behind && p.z < 0.0f;
+        include(x, slopes(p.x, p.z, 0.0f));
+        include(y, slopes(p.y, p.z, 0.0f));
+    }
+    return behind ? std::nullopt : area(x, y);
+}
+
 std::optional<ImageDisc> ImageFootprint::disc(const Vec3f& point, float radius) const {
     const Vec3f p = frame_.toLocal(point - origin_);
     if (p.z < -radius) return std::nullopt;

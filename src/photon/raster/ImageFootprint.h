@@ -6,6 +6,7 @@
 #include "tungsten/camera/Camera.h"
 
 #include <optional>
+#include <span>
 
 namespace tungsten::photon {
 
@@ -39,6 +40,8 @@ class ImageFootprint {
     [[nodiscard]] std::optional<PixelArea> around(const Vec3f& point, float radius) const {
         return around(point, point, radius);
     }
+    /// Pixels whose rays can meet the hull of these points; none if there are none.
+    [[nodiscard]] std::optional<PixelArea> aroundHull(std::span<const Vec3f> points) const;
     /// The same with the image's outline.
     [[nodiscard]] std::optional<ImageDisc> disc(const Vec3f& point, float radius) const;
     /// Columns [left[i], right[i]] of row firstRow + i whose pixels can have rays through the sphere; none if right <

@@ -97,6 +97,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
     record.origin = scene.camera.position();
     const size_t pixels = size_t(record.width) * size_t(record.height);
     for (auto* component : {&record.x, &record.y, &record.z}) component->resize(pixels);
+    if (!scene.camera.hasSinglePosition()) record.origins.resize(pixels);
     std::vector<Recorder> rows(size_t(record.height), Recorder{scene, wishes, {}, {}, {}, {}});
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
         uint64_t rays = 0;
@@ -108,6 +109,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             record.x[pixel] = ray.direction.x;
             record.y[pixel] = ray.direction.y;
             record.z[pixel] = ray.direction.z;
+            if (!record.origins.empty()) record.origins[pixel] = ray.origin;
             rows[y].begin(uint32_t(pixel));
             rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
             rows[y].end();

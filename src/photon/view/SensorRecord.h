@@ -47,7 +47,8 @@ struct SensorRecord {
     int width = 0, height = 0;
     uint32_t sample = 0;               ///< of the pixels
     uint32_t samples = 1;              ///< camera paths of a pixel that have left points
-    Vec3f origin;                      ///< of every ray
+    Vec3f origin;                      ///< of every ray, if the camera has one position
+    std::vector<Vec3f> origins;        ///< otherwise, by pixel
     std::vector<float> x, y, z;        ///< unit direction of every pixel's ray
     std::vector<StraightPiece> pieces; ///< first, second, ... piece of every ray
     std::vector<SensorPoint> points;   ///< in pixel order

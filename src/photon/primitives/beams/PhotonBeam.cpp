@@ -2,8 +2,6 @@
 
 namespace tungsten::photon {
 
-namespace {
-
 /// Beyond an optical depth of 60 in every channel that scatters, nothing shows in a float.
 float visibleReach(const Medium& medium) {
     constexpr float OpticalDepth = 60.0f;
@@ -12,8 +10,6 @@ float visibleReach(const Medium& medium) {
         if (medium.sigmaS()[channel] > 0.0f) reach = std::max(reach, OpticalDepth / medium.sigmaT()[channel]);
     return reach;
 }
-
-} // namespace
 
 void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight) {
     flight.tEnd = std::min(flight.tEnd, visibleReach(medium));

@@ -20,6 +20,9 @@ struct PhotonBeam {
 };
 static_assert(sizeof(PhotonBeam) == 56, "millions are stored: no padding");
 
+/// Beyond it nothing of a flight shows in a float.
+float visibleReach(const Medium& medium);
+
 /// Appends the part of a flight that sensor paths can see inside the gate; nothing if there is none. `flight` runs from
 /// tStart 0 to tEnd, the next surface (Infinity if there is none).
 void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight);

@@ -1,0 +1,73 @@
+// Balls: at one time, and over a gate.
+
+#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/sliced/SliceEstimate.h"
+
+namespace tungsten::photon {
+
+bool SliceEstimate::addBall(const SliceMeeting& m, FrameSums& sums) const {
+    if (m.flights.shared || scene_.transport.gate.delta)
+        return eachSlice(
+            m, [&](int frame, double time, double width) { return addBallSlice(m, frame, time, width, sums); });
+    bool any = false;
+    for (int frame = sensor_.gate.nearestFrame(m.start); frame < sensor_.gate.frames; ++frame)
+        any = addBallGate(m, frame, sums) || any;
+    return any;
+}
+
+Rgb SliceEstimate::leavingBall(const SliceMeeting& m, const BallReach<double>& reach, const Vec3f& last) const {
+    const CollapsedFlights& ball = m.flights;
+    const Rgb power = ball.emitter >= 0 ? ball.power * emittedIntensity(scene_.emitters[size_t(ball.emitter)],
+                                                                        ball.lightPoint(), last)
+                                        : ball.power * m.medium.phase.eval(ball.directions[1], last);
+    if (isBlack(power) || unoccluded(ball, inFloat(m.sight.at(reach.alongRay)))) return power;
+    return Rgb(0.0f);
+}
+
+bool SliceEstimate::unoccluded(const CollapsedFlights& ball, const Vec3f& end) const {
+    if (!occluders_) return true;
+    const Vec3f way = end - ball.base;
+    const float length = way.length();
+    if (!(length > 0.0f)) return true;
+    const Vec3f direction = way / length;
+    Ray ray = ball.emitter >= 0 ? ball.lightPoint().leave(direction) : Ray{ball.base, direction};
+    ray.tMax = length;
+    return !scene_.geometry->occluded(ray);
+}
+
+bool SliceEstimate::addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
+    const auto slice = sliceBall(m.base, m.sight, m.residual(time));
+    bool any = false;
+    for (int i = 0; i < slice.count; ++i) {
+        const BallReach<double>& reach = slice.reaches[size_t(i)];
+        const Vec3d last = (m.sight.at(reach.alongRay) - m.base) / reach.length;
+        double factor = m.speed * width * m.phase(inFloat(last));
+        if (m.flights.shared) {
+            const auto& t = m.flights.lengths;
+            const double pdfs = double(pdfFlight(m.medium, t[0])) * double(pdfFlight(m.medium, t[1]));
+            const double phasePdf = double(m.medium.phase.pdf(m.flights.directions[1], inFloat(last)));
+            const auto w = m.directions<2>();
+            const SharedPath<double> path{{w[0], w[1], last}, reach.length, phasePdf, pdfs};
+            factor *= ballShare(path.ratio(m.sight.direction, warped_));
+        }
+        const Vec3d value = m.perChannel([&](const auto& medium) { return reach.weight(medium); });
+        any = deposit(value, leavingBall(m, reach, inFloat(last)), factor, frame, sums) || any;
+    }
+    return any;
+}
+
+bool SliceEstimate::addBallGate(const SliceMeeting& m, int frame, FrameSums& sums) const {
+    const TimeGate& gate = sensor_.gate;
+    const auto lit =
+        gateBall<double>(m.base, m.sight, {m.residual(gate.frameStart(frame)), m.residual(gate.frameStart(frame + 1))});
+    if (!(lit.angles() > 0.0)) return false;
+    const auto reach = lit.sample(m.random(0, frame));
+    if (!(reach.length > 0.0)) return false;
+    const Vec3f last = inFloat((m.sight.at(reach.alongRay) - m.base) / reach.length);
+    const double arrival = m.arrival(reach.length + m.sight.warp() * reach.alongRay);
+    const double factor = m.phase(last) * double(sensor_.weight(arrival));
+    const Vec3d value = m.perChannel([&](const auto& medium) { return lit.weight(reach, medium); });
+    return deposit(value, leavingBall(m, reach, last), factor, frame, sums);
+}
+
+} // namespace tungsten::photon

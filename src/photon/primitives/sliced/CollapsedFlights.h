@@ -1,0 +1,41 @@
+#pragma once
+// What light paths leave for planes, volumes, balls and hypervolumes.
+
+#include "photon/store/Store.h"
+
+#include "tungsten/geometry/Shape.h"
+
+#include <array>
+
+namespace tungsten::photon {
+
+enum class FlightShape : uint8_t { Ball = 0, Beam = 1, Plane = 2, Volume = 3, Hypervolume = 4 };
+
+/// A base, and the directions of the flights from it whose lengths are integrated: one of a beam to four of a
+/// hypervolume (long ones, docs/photon-primitives.md, section 2). A ball has a vertex, its centre, and integrates over
+/// direction and length of the flight from there.
+struct CollapsedFlights {
+    double time; ///< at the base, since the clock's zero
+    Vec3f base;
+    /// Of the flights; a ball: of the two that led to it. A ball on a light: its normal.
+    std::array<Vec3f, 4> directions;
+    Rgb power;   ///< leaving the base, of one path; a ball: colliding there, before a direction is drawn
+    float reach; ///< of the first flight: to the next surface
+    std::array<uint16_t, 2> random; ///< places samples, at a different place on each ray
+    /// A ball: of the two flights that led to it. A ball on a light: its uv.
+    std::array<float, 2> lengths;
+    uint16_t bounce; ///< interactions from the light up to and including the base
+    int16_t medium;  ///< index of the medium the flights cross
+    int16_t emitter; ///< a ball on a light: its index; otherwise -1
+    FlightShape shape;
+    bool shared; ///< balls and volumes make the same paths: weighed by multiple importance sampling
+
+    [[nodiscard]] int flights() const { return std::max(int(shape), 1); }
+    /// A ball on a light.
+    [[nodiscard]] SurfaceSample lightPoint() const {
+        return {base, directions[0], {lengths[0], lengths[1]}, directions[1].x};
+    }
+};
+static_assert(sizeof(CollapsedFlights) == 104, "many are stored: no padding");
+
+} // namespace tungsten::photon

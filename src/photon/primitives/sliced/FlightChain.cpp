@@ -1,0 +1,129 @@
+#include "photon/primitives/sliced/FlightChain.h"
+
+#include "tungsten/emitter/Emitter.h"
+
+namespace tungsten::photon {
+
+void FlightChain::beginAt(const Scene& scene, const Emitter& emitter, float probability, const Vec2f& u) {
+    flights_ = 0;
+    emitter_ = -1;
+    if (emitter.isDelta() || emitter.isInfinite()) return;
+    const ptrdiff_t index = &emitter - scene.emitters.data();
+    if (index > std::numeric_limits<int16_t>::max()) return;
+    emitter_ = int(index);
+    inverseProbability_ = 1.0f / probability;
+    light_ = sampleEmissionPoint(emitter, u);
+}
+
+void FlightChain::fly(const Rules& rules, const ChainVertex& vertex, int medium, Sampler& sampler,
+                      DepositList<CollapsedFlights>& list) {
+    medium_ = medium;
+    vertices_[size_t(flights_ % Most)] = vertex;
+    directions_[size_t(flights_ % Most)] = vertex.direction;
+    ++flights_;
+    if (flights_ == 1) {
+        if (emitter_ >= 0 && rules.classes.lights)
+            depositLight(rules, sampler, list);
+        else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1))
+            list.records.push_back(record(vertex, FlightShape::Beam, sampler));
+    }
+    complete(rules, flights_ - 1, sampler, list);
+}
+
+void FlightChain::depositLight(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const {
+    ChainVertex start = at(0);
+    start.position = light_.position;
+    start.power = Rgb(inverseProbability_);
+    if (!counts(rules, start, medium_, 0, 1)) return;
+    CollapsedFlights ball = record(start, FlightShape::Ball, sampler);
+    ball.emitter = int16_t(emitter_);
+    ball.directions[0] = light_.normal;
+    ball.directions[1].x = light_.error;
+    ball.lengths = {light_.uv.x, light_.uv.y};
+    thin(rules, ball, sampler, list);
+}
+
+void FlightChain::scatter(const Rules& rules, const ChainVertex& vertex, Sampler& sampler,
+                          DepositList<CollapsedFlights>& list) {
+    const int centre = flights_; // that many flights led here
+    if (centre < rules.classes.firstBall || centre > rules.classes.lastBall) return;
+    if (!counts(rules, vertex, medium_, centre, 1)) return;
+    CollapsedFlights ball = record(vertex, FlightShape::Ball, sampler);
+    ball.directions[1] = direction(centre - 1);
+    if (centre >= 2) {
+        const Vec3f& before = at(centre - 1).position;
+        ball.directions[0] = direction(centre - 2);
+        ball.lengths = {(before - at(centre - 2).position).length(), (vertex.position - before).length()};
+        ball.shared = rules.classes.shared;
+    }
+    thin(rules, ball, sampler, list);
+}
+
+void FlightChain::complete(const Rules& rules, int last, Sampler& sampler, DepositList<CollapsedFlights>& list) const {
+    using Bases = SliceClasses::Bases;
+    for (int k = 2; k <= Most; ++k) {
+        const Bases bases = rules.classes.flights[size_t(k)];
+        const int first = last - k + 1;
+        if (bases == Bases::None || first < 0 || first >= flights_ || (bases == Bases::First && first > 0)) continue;
+        if (!counts(rules, at(first), medium_, first, k)) continue;
+        CollapsedFlights flights = record(at(first), FlightShape(k), sampler);
+        for (int i = 0; i < k; ++i) flights.directions[size_t(i)] = direction(first + i);
+        flights.shared = k == 3 && rules.classes.shared;
+        thin(rules, flights, sampler, list);
+    }
+}
+
+void FlightChain::end(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) {
+    if (flights_ > 0) {
+        int most = 0;
+        for (int k = 2; k <= Most; ++k)
+            if (rules.classes.flights[size_t(k)] != SliceClasses::Bases::None) most = k;
+        const PhaseFunction& phase = rules.scene.media[size_t(medium_)].phase;
+        for (int ghost = flights_; ghost < flights_ + most - 1; ++ghost) {
+            // Each relative to the one before it.
+            directions_[size_t(ghost % Most)] = phase.sample(direction(ghost - 1), sampler.next2D());
+            complete(rules, ghost, sampler, list);
+        }
+    }
+    flights_ = 0;
+    emitter_ = -1;
+}
+
+void FlightChain::thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
+                       DepositList<CollapsedFlights>& list) {
+    const float share = rules.classes.share;
+    if (share < 1.0f) {
+        if (sampler.next1D() >= share) return;
+        flights.power = flights.power / share;
+    }
+    list.records.push_back(flights);
+}
+
+/// `chain`: the base's index among the chain's vertices.
+bool FlightChain::counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights) {
+    if (!isFinite(base.power) || isBlack(base.power)) return false;
+    const TransportSettings& transport = rules.scene.transport;
+    if (base.bounce + flights >= transport.maxBounces) return false;
+    // Without surfaces sensor paths add no interactions.
+    if (rules.scene.primitives.empty() && base.bounce + flights < transport.minBounces) return false;
+    if (chain + flights > rules.scene.media[size_t(medium)].maxBounces) return false;
+    return rules.arrival.mayContinue(base.position, base.time);
+}
+
+CollapsedFlights FlightChain::record(const ChainVertex& base, FlightShape shape, Sampler& sampler) const {
+    CollapsedFlights flights{};
+    flights.time = base.time;
+    flights.base = base.position;
+    flights.directions[0] = base.direction;
+    flights.power = base.power;
+    flights.reach = base.reach;
+    const uint32_t bits = sampler.nextBits();
+    flights.random = {uint16_t(bits >> 16), uint16_t(bits)};
+    flights.bounce = uint16_t(base.bounce);
+    flights.medium = int16_t(medium_);
+    flights.emitter = -1;
+    flights.shape = shape;
+    return flights;
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,62 @@
+#pragma once
+// The flights of a light path since its last surface or light, as they come, and what they leave.
+
+#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/store/ArrivalCulling.h"
+
+#include "tungsten/scene/Scene.h"
+
+namespace tungsten::photon {
+
+/// Where a flight begins.
+struct ChainVertex {
+    Vec3f position, direction; ///< of the flight
+    Rgb power;                 ///< leaving along it
+    double time;
+    float reach; ///< to the next surface
+    int bounce;
+};
+
+class FlightChain {
+  public:
+    struct Rules {
+        const Scene& scene;
+        const ArrivalCulling& arrival;
+        SliceClasses classes;
+    };
+
+    /// The path begins at an emitter; `probability` is that of its choice.
+    void beginAt(const Scene& scene, const Emitter& emitter, float probability, const Vec2f& u);
+    /// A flight through a medium.
+    void fly(const Rules& rules, const ChainVertex& vertex, int medium, Sampler& sampler,
+             DepositList<CollapsedFlights>& list);
+    /// A scattering with the power that collides, reached by the last flight.
+    void scatter(const Rules& rules, const ChainVertex& vertex, Sampler& sampler, DepositList<CollapsedFlights>& list);
+    /// The path leaves the medium, or ends. Bases that still lack directions get ghosts: whether a record is made must
+    /// not depend on the lengths that it integrates over.
+    void end(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list);
+
+  private:
+    static constexpr int Most = 4; ///< flights of a record
+
+    /// Records whose last direction is that of flight `last`.
+    void complete(const Rules& rules, int last, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
+    void depositLight(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
+    [[nodiscard]] static bool counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights);
+    /// Leaves a share of them.
+    static void thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
+                     DepositList<CollapsedFlights>& list);
+    [[nodiscard]] CollapsedFlights record(const ChainVertex& base, FlightShape shape, Sampler& sampler) const;
+    [[nodiscard]] const ChainVertex& at(int flight) const { return vertices_[size_t(flight % Most)]; }
+    [[nodiscard]] const Vec3f& direction(int flight) const { return directions_[size_t(flight % Most)]; }
+
+    std::array<ChainVertex, Most> vertices_;
+    std::array<Vec3f, Most> directions_;
+    int flights_ = 0; ///< so far, and real
+    int medium_ = -1;
+    int emitter_ = -1; ///< of the first flight, if it can be seen in more than one direction
+    float inverseProbability_ = 0.0f;
+    SurfaceSample light_;
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,152 @@
+#include "photon/primitives/sliced/SliceEstimate.h"
+
+#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
+#include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/SliceMeeting.h"
+#include "photon/primitives/volumes/VolumeSlice.h"
+
+namespace tungsten::photon {
+
+SliceEstimate::SliceEstimate(const Scene& scene, const transport::Sensor& sensor)
+    : scene_(scene), sensor_(sensor), warped_(!scene.transport.cameraUnwarped), occluders_(!scene.primitives.empty()) {}
+
+bool SliceEstimate::add(const CollapsedFlights& flights, const CameraSegment& segment, FrameSums& sums) const {
+    const TransportSettings& transport = scene_.transport;
+    if (flights.medium != segment.medium) return false;
+    const int interactions = segment.interactions + flights.bounce + flights.flights();
+    if (interactions < transport.minBounces || interactions >= transport.maxBounces) return false;
+    const SightLine<double> sight{inDouble(segment.origin), inDouble(segment.direction), 0.0, double(segment.length),
+                                  warped_};
+    const SliceMeeting m{flights,
+                         segment,
+                         scene_.media[size_t(segment.medium)],
+                         sight,
+                         inDouble(flights.base),
+                         1.0 / segment.inverseSpeed,
+                         flights.time + (warped_ ? segment.time : 0.0)};
+    switch (flights.shape) {
+    case FlightShape::Plane:
+        return addPlane(m, sums);
+    case FlightShape::Volume:
+        return addVolume(m, sums);
+    case FlightShape::Hypervolume:
+        return eachSlice(
+            m, [&](int frame, double time, double width) { return addHypervolume(m, frame, time, width, sums); });
+    case FlightShape::Ball:
+        return addBall(m, sums);
+    case FlightShape::Beam:
+        break;
+    }
+    return false;
+}
+
+bool SliceEstimate::deposit(const Vec3d& value, const Rgb& power, double factor, int frame, FrameSums& sums) {
+    const Vec3d added = value * Vec3d(double(power.x), double(power.y), double(power.z)) * factor;
+    if (!(added.x + added.y + added.z > 0.0)) return false;
+    sums[size_t(frame)] += added;
+    return true;
+}
+
+bool SliceEstimate::unoccluded(const CollapsedFlights& flights, const double* lengths, int count) const {
+    if (!occluders_) return true;
+    if (lengths[0] >= double(flights.reach)) return false;
+    Vec3d point = inDouble(flights.base) + inDouble(flights.directions[0]) * lengths[0];
+    for (int i = 1; i < count; ++i) {
+        const Vec3f& direction = flights.directions[size_t(i)];
+        if (scene_.geometry->occluded(Ray{inFloat(point), direction, 0.0f, float(lengths[i])})) return false;
+        point += inDouble(direction) * lengths[i];
+    }
+    return true;
+}
+
+bool SliceEstimate::addPlane(const SliceMeeting& m, FrameSums& sums) const {
+    const auto met = crossPlane(m.base, m.directions<2>(), m.sight);
+    if (!met) return false;
+    int frame = 0;
+    double factor = m.phase(m.flights.directions[1]);
+    if (!sensor_.gate.steadyState) {
+        const double arrival = m.arrival(met->flightLength() + m.sight.warp() * met->alongRay);
+        frame = sensor_.gate.frameOf(arrival);
+        if (frame < 0) return false;
+        factor *= double(sensor_.weight(arrival));
+    }
+    if (!unoccluded(m.flights, met->lengths.data(), 2)) return false;
+    const Vec3d value = m.perChannel([&](const auto& medium) { return met->weight(medium); });
+    return deposit(value, m.flights.power, factor, frame, sums);
+}
+
+bool SliceEstimate::addVolume(const SliceMeeting& m, FrameSums& sums) const {
+    if (!m.flights.shared && !scene_.transport.gate.delta) return addVolumeChord(m, sums);
+    return eachSlice(m,
+                     [&](int frame, double time, double width) { return addVolumeSlice(m, frame, time, width, sums); });
+}
+
+bool SliceEstimate::addVolumeChord(const SliceMeeting& m, FrameSums& sums) const {
+    const auto whole = volumeChord(m.base, m.directions<3>(), m.sight);
+    if (!whole) return false;
+    const double factor = m.phase(m.flights.directions[2]);
+    if (sensor_.gate.steadyState) return addChord(m, *whole, 0, m.random(0, 0), factor, nullptr, sums);
+    const TimeGate& gate = sensor_.gate;
+    const double slope = whole->slopeSum() + m.sight.warp(), offset = whole->offsetSum();
+    const double a = m.arrival(offset + slope * whole->start);
+    const double b = std::isinf(whole->end) ? gate.end() : m.arrival(offset + slope * whole->end);
+    bool any = false;
+    for (int frame = gate.nearestFrame(std::min(a, b)); frame <= gate.nearestFrame(std::max(a, b)); ++frame) {
+        auto chord = *whole;
+        chord.keepGate({m.residual(gate.frameStart(frame)), m.residual(gate.frameStart(frame + 1))}, m.sight.warp());
+        const ArrivalLine arrival{m.arrival(offset), slope / m.speed};
+        any = addChord(m, chord, frame, m.random(0, frame), factor, &arrival, sums) || any;
+    }
+    return any;
+}
+
+template <size_t K>
+bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
+                             const ArrivalLine* arrival, FrameSums& sums) const {
+    if (chord.empty()) return false;
+    if (occluders_ || (sensor_.response && arrival)) {
+        // Drawn by the integrand of the mean coefficient; colours are weighed below.
+        const double sigma = double(meanComponent(m.medium.sigmaT())), fall = sigma * (chord.slopeSum() + 1.0);
+        const double length = chord.end - chord.start, z = fall * length;
+        const double along = std::abs(z) < 1e-8 ? u * length : -std::log1p(u * std::expm1(-z)) / fall;
+        const double t = std::min(chord.start + along, chord.end);
+        std::array<double, K> lengths;
+        for (size_t i = 0; i < K; ++i) lengths[i] = std::max(chord.length(i, t), 0.0);
+        if (!unoccluded(m.flights, lengths.data(), int(K))) return false;
+        if (arrival) factor *= double(sensor_.weight(arrival->offset + arrival->slope * t));
+        if (!m.medium.isGrey()) {
+            const double exponent = chord.offsetSum() + (chord.slopeSum() + 1.0) * t;
+            const double drawn = chordWeight(chord, Coefficients<double>{1.0, sigma}) * std::exp(sigma * exponent);
+            const Vec3d value = m.perChannel(
+                [&](const auto& c) { return collisions(c.sigmaS, int(K)) * drawn * std::exp(-c.sigmaT * exponent); });
+            return deposit(value, m.flights.power, factor, frame, sums);
+        }
+    }
+    const Vec3d value = m.perChannel([&](const auto& medium) { return chordWeight(chord, medium); });
+    return deposit(value, m.flights.power, factor, frame, sums);
+}
+
+bool SliceEstimate::addVolumeSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
+    const auto w = m.directions<3>();
+    const auto slice = sliceVolume(m.base, w, m.sight, m.residual(time));
+    if (!slice || !unoccluded(m.flights, slice->lengths.data(), 3)) return false;
+    double factor = m.phase(m.flights.directions[2]) * m.speed * width;
+    if (m.flights.shared) {
+        const auto& t = slice->lengths;
+        const double pdfs = double(pdfFlight(m.medium, float(t[0]))) * double(pdfFlight(m.medium, float(t[1])));
+        const double phasePdf = double(m.medium.phase.pdf(m.flights.directions[1], m.flights.directions[2]));
+        factor *= volumeShare(SharedPath<double>{w, t[2], phasePdf, pdfs}.ratio(m.sight.direction, warped_));
+    }
+    const Vec3d value = m.perChannel([&](const auto& medium) { return slice->weight(medium); });
+    return deposit(value, m.flights.power, factor, frame, sums);
+}
+
+bool SliceEstimate::addHypervolume(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
+    const auto chord = sliceHypervolume(m.base, m.directions<4>(), m.sight, m.residual(time));
+    if (!chord) return false;
+    const double factor = m.phase(m.flights.directions[3]) * m.speed * width;
+    return addChord(m, *chord, frame, m.random(1, frame), factor, nullptr, sums);
+}
+
+} // namespace tungsten::photon

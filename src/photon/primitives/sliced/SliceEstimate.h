@@ -1,0 +1,66 @@
+#pragma once
+// What one record of collapsed flights brings to one camera segment.
+
+#include "photon/primitives/balls/BallSlice.h"
+#include "photon/primitives/sliced/SliceMeeting.h"
+#include "transport/Sensor.h"
+
+#include "tungsten/scene/Scene.h"
+
+namespace tungsten::photon {
+
+/// Evaluates planes, volumes, balls and hypervolumes, in double; beams have a gather of their own. What it adds is
+/// integrated over the gate, or multiplied by its width: the image is divided by that later. At a delta gate slices are
+/// those of the gate itself; only planes see it through the sensor's temporal kernel.
+class SliceEstimate {
+  public:
+    SliceEstimate(const Scene& scene, const transport::Sensor& sensor);
+
+    /// Returns whether it added anything.
+    bool add(const CollapsedFlights& flights, const CameraSegment& segment, FrameSums& sums) const;
+
+    /// Nothing lies on the first `count` flights of these lengths.
+    [[nodiscard]] bool unoccluded(const CollapsedFlights& flights, const double* lengths, int count) const;
+    /// Nothing lies between a ball's centre and this point.
+    [[nodiscard]] bool unoccluded(const CollapsedFlights& ball, const Vec3f& end) const;
+
+  private:
+    /// Time of arrival along a ray.
+    struct ArrivalLine {
+        double offset, slope;
+    };
+
+    bool addPlane(const SliceMeeting& m, FrameSums& sums) const;
+    bool addVolume(const SliceMeeting& m, FrameSums& sums) const;
+    bool addVolumeChord(const SliceMeeting& m, FrameSums& sums) const;
+    bool addVolumeSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
+    bool addHypervolume(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
+    bool addBall(const SliceMeeting& m, FrameSums& sums) const;
+    bool addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
+    bool addBallGate(const SliceMeeting& m, int frame, FrameSums& sums) const;
+    /// Where something may be in the way, or weigh times (`arrival`; may be null): at a point drawn by the integrand.
+    template <size_t K>
+    bool addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
+                  const ArrivalLine* arrival, FrameSums& sums) const;
+    /// Power that leaves a ball's centre along `last`, per steradian; 0 where something is in the way.
+    [[nodiscard]] Rgb leavingBall(const SliceMeeting& m, const BallReach<double>& reach, const Vec3f& last) const;
+    /// At the delta gate, or at a random time of every frame: slice(frame, time, width).
+    template <typename Slice>
+    bool eachSlice(const SliceMeeting& m, const Slice& slice) const {
+        const TimeGate& gate = sensor_.gate;
+        if (scene_.transport.gate.delta) return slice(0, scene_.transport.gate.start, gate.frameWidth);
+        bool any = false;
+        for (int frame = gate.nearestFrame(m.start); frame < gate.frames; ++frame) {
+            const double time = gate.frameStart(frame) + m.random(0, frame) * gate.frameWidth;
+            any = slice(frame, time, gate.frameWidth * double(sensor_.weight(time))) || any;
+        }
+        return any;
+    }
+    static bool deposit(const Vec3d& value, const Rgb& power, double factor, int frame, FrameSums& sums);
+
+    const Scene& scene_;
+    transport::Sensor sensor_;
+    bool warped_, occluders_;
+};
+
+} // namespace tungsten::photon

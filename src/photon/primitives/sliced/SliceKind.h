@@ -1,0 +1,42 @@
+#pragma once
+// Which primitive makes which paths, by the chain index m: medium scatterings since the last surface or light, the one
+// on the camera ray included (docs/photon-primitives.md, section 3).
+
+#include "photon/primitives/sliced/CollapsedFlights.h"
+
+namespace tungsten::photon {
+
+enum class SliceKind { Planes, Volumes, Balls, VolumesBalls, MisVolumesBalls, Hypervolumes };
+
+struct SliceName {
+    const char* type; ///< of volume_photon_type
+    SliceKind kind;
+    bool steadyState; ///< also without a time gate
+};
+inline constexpr std::array SliceNames{SliceName{"planes", SliceKind::Planes, true},
+                                       SliceName{"volumes", SliceKind::Volumes, true},
+                                       SliceName{"balls", SliceKind::Balls, false},
+                                       SliceName{"volumes_balls", SliceKind::VolumesBalls, false},
+                                       SliceName{"mis_volumes_balls", SliceKind::MisVolumesBalls, false},
+                                       SliceName{"hypervolumes", SliceKind::Hypervolumes, false}};
+
+constexpr const SliceName& sliceName(SliceKind kind) {
+    return SliceNames[size_t(kind)];
+}
+
+/// Every class m has one shape, but for those that balls and volumes share.
+struct SliceClasses {
+    enum class Bases : uint8_t { None, First, All };
+
+    bool lights = false;              ///< m = 1: balls on lights that shine in more than one direction
+    bool beams = false;               ///< m = 1: elsewhere
+    std::array<Bases, 5> flights{};   ///< by number of flights, 2 to 4: First: m is that number, All: or more
+    int firstBall = 0, lastBall = -1; ///< medium vertices of the chain with a ball: m = vertex + 1
+    float share = 1.0f;  ///< of what is not a beam that is left, at random; its power makes up for the rest
+    bool shared = false; ///< m >= 3: balls and volumes together
+
+    /// `lowOrders`: with m = 1. `onlyShared`: m >= 3 alone, which balls and volumes both make.
+    static SliceClasses of(SliceKind kind, bool steadyState, bool lowOrders, bool onlyShared);
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,70 @@
+#pragma once
+// A record of collapsed flights and a camera segment.
+
+#include "photon/primitives/sliced/Chord.h"
+#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/view/CameraSegment.h"
+
+#include "tungsten/medium/Medium.h"
+
+#include <bit>
+
+namespace tungsten::photon {
+
+inline Vec3d inDouble(const Vec3f& v) {
+    return {double(v.x), double(v.y), double(v.z)};
+}
+inline Vec3f inFloat(const Vec3d& v) {
+    return {float(v.x), float(v.y), float(v.z)};
+}
+
+/// In [0, 1), different for every ray and frame.
+inline double rayRotation(const CameraSegment& segment, int frame) {
+    uint32_t hash = 0x9e3779b9u * uint32_t(frame + 1);
+    const Vec3f &o = segment.origin, &d = segment.direction;
+    for (const float f : {o.x, o.y, o.z, d.x, d.y, d.z}) {
+        hash ^= std::bit_cast<uint32_t>(f);
+        hash *= 0x85ebca6bu;
+        hash ^= hash >> 15;
+        hash *= 0xc2b2ae35u;
+        hash ^= hash >> 13;
+    }
+    return double(hash) * 0x1p-32;
+}
+
+/// Sees both in double, and times as path lengths.
+struct SliceMeeting {
+    const CollapsedFlights& flights;
+    const CameraSegment& segment;
+    const Medium& medium;
+    SightLine<double> sight;
+    Vec3d base;
+    double speed, start; ///< start: time of what leaves the base and takes no time
+
+    template <size_t K>
+    [[nodiscard]] std::array<Vec3d, K> directions() const {
+        std::array<Vec3d, K> w;
+        for (size_t i = 0; i < K; ++i) w[i] = inDouble(flights.directions[i]);
+        return w;
+    }
+    [[nodiscard]] double residual(double time) const { return (time - start) * speed; }
+    [[nodiscard]] double arrival(double length) const { return start + length / speed; }
+    /// In [0, 1), one of two numbers of the record, turned by ray and frame.
+    [[nodiscard]] double random(size_t which, int frame) const {
+        const double u = (double(flights.random[which]) + 0.5) * 0x1p-16 + rayRotation(segment, frame);
+        return u < 1.0 ? u : u - 1.0;
+    }
+    [[nodiscard]] double phase(const Vec3f& last) const { return double(medium.phase.eval(last, -segment.direction)); }
+    /// weight(coefficients) of every channel.
+    template <typename Weight>
+    [[nodiscard]] Vec3d perChannel(const Weight& weight) const {
+        const Rgb sigmaT = medium.sigmaT();
+        const auto channel = [&](int c) {
+            return weight(Coefficients<double>{double(medium.sigmaS()[c]), double(sigmaT[c])});
+        };
+        const double first = channel(0);
+        return medium.isGrey() ? Vec3d(first) : Vec3d(first, channel(1), channel(2));
+    }
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,16 @@
+#pragma once
+// Sliced primitives drawn into the image along straight sensor rays, a register of rays at a time.
+
+#include "photon/primitives/Radii.h"
+#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/view/SensorRecord.h"
+#include "transport/Sensor.h"
+
+namespace tungsten::photon {
+
+/// Adds what the recorded rays see of the records, times `scale`, to the pass image; returns how many meetings brought
+/// something. `radius`: of the beams among them. One frame.
+uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                     const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film);
+
+} // namespace tungsten::photon

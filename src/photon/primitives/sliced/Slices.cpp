@@ -1,0 +1,21 @@
+#include "photon/primitives/sliced/Slices.h"
+
+#include "photon/PhotonSettings.h"
+#include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/sliced/SliceSplat.h"
+
+namespace tungsten::photon {
+
+Radii Slices::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&,
+                    uint32_t step) {
+    // Of the beams among them.
+    return settings.volumeRadius *
+           (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
+}
+
+uint64_t Slices::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                       const Selection<CollapsedFlights>& slices, double scale, Film& film) {
+    return splatSlices(scene, sensor, record, slices.records, slices.radii, scale, film);
+}
+
+} // namespace tungsten::photon

@@ -1,0 +1,47 @@
+#pragma once
+// Planes, volumes, balls and hypervolumes: flights that are integrated over instead of blurred by a kernel. One type of
+// the set for all of them, since each brings others for the paths that it cannot make.
+
+#include "photon/primitives/Radii.h"
+#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/store/ArrivalCulling.h"
+
+#include <optional>
+
+namespace tungsten {
+class Film;
+}
+
+namespace tungsten::photon {
+
+struct PhotonSettings;
+struct SensorRecord;
+class SliceGather;
+
+struct Slices {
+    using Record = CollapsedFlights;
+    using Gather = SliceGather;
+    static constexpr bool AtVertices = false;
+    static constexpr const char* Effect = "sliced primitives";
+    static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
+    static constexpr const char* Stored = "sliced primitives"; ///< counters
+    static constexpr const char* Gathered = "gathered slices";
+
+    SliceKind kind = SliceKind::Planes;
+    SliceClasses classes{};
+
+    static float reach(const PhotonSettings&) { return Infinity; }
+    static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
+                       uint32_t step);
+    /// All.
+    static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,
+                                                               const std::vector<CollapsedFlights>&, const Radii&) {
+        return std::nullopt;
+    }
+    static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
+    /// One frame, any camera.
+    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                          const Selection<CollapsedFlights>& slices, double scale, Film& film);
+};
+
+} // namespace tungsten::photon
