@@ -6,7 +6,7 @@
 namespace tungsten::photon {
 
 bool SliceEstimate::addBall(const SliceMeeting& m, FrameSums& sums) const {
-    if (m.flights.shared || scene_.transport.gate.delta)
+    if (m.flights.shared || (scene_.transport.gate.delta && !m.flights.blurredInTime()))
         return eachSlice(
             m, [&](int frame, double time, double width) { return addBallSlice(m, frame, time, width, sums); });
     bool any = false;

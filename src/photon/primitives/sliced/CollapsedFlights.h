@@ -31,6 +31,14 @@ struct CollapsedFlights {
     bool shared; ///< balls and volumes make the same paths: weighed by multiple importance sampling
 
     [[nodiscard]] int flights() const { return std::max(int(shape), 1); }
+    [[nodiscard]] double randomNumber(size_t which) const { return (double(random[which]) + 0.5) * 0x1p-16; }
+    /// At a delta gate it is seen through the temporal kernel. Balls that nothing shares their paths with have infinite
+    /// variance at one length, and hardly more than a finite one over a box (docs/photon-primitives.md, section 2.5);
+    /// lights rarely lie on rays.
+    [[nodiscard]] bool blurredInTime() const {
+        return shape == FlightShape::Plane || shape == FlightShape::Beam ||
+               (shape == FlightShape::Ball && !shared && emitter < 0);
+    }
     /// A ball on a light.
     [[nodiscard]] SurfaceSample lightPoint() const {
         return {base, directions[0], {lengths[0], lengths[1]}, directions[1].x};

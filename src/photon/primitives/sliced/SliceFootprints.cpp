@@ -14,7 +14,8 @@ SliceFootprints::SliceFootprints(const Scene& scene, const TimeGate& gate, doubl
 std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& flights) const {
     const Medium& medium = scene_.media[size_t(flights.medium)];
     const TimeGate& gate = gate_;
-    const double until = delta_ ? scene_.transport.gate.start : gate.end();
+    const bool blurred = delta_ && flights.blurredInTime();
+    const double until = delta_ && !blurred ? scene_.transport.gate.start : gate.end();
     const double left = gate.steadyState ? std::numeric_limits<double>::infinity()
                                          : (until - flights.time) * double(medium.speedOfLight);
     const float length = float(std::min(left, double(visibleReach(medium))));
@@ -30,6 +31,7 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
                  *area,
                  float(left),
                  flights.power,
+                 blurred ? float(gate.frameWidth * double(medium.speedOfLight)) : 0.0f,
                  ball,
                  false};
     s.inLanes = delta_ && (ball || flights.shape == FlightShape::Volume) && (flights.emitter < 0 || light) &&

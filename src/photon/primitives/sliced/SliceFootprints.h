@@ -14,6 +14,7 @@ struct ImageSlice {
     PixelArea area;
     float residual;     ///< path length left at the base, at the delta gate
     Rgb power;          ///< with the collapsed collisions
+    float width;        ///< of the temporal kernel, as a length: 0 for what meets the gate itself
     bool ball, inLanes; ///< inLanes: evaluated a register at a time; otherwise ray by ray
 };
 

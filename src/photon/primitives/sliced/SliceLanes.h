@@ -132,4 +132,41 @@ struct BallLanes {
     }
 };
 
+/// A point of a narrow gate for every ray of a register, as BallGate draws it; the piece of the ray that counts is left
+/// to the caller to test.
+struct BallGateLanes {
+    Batch length, alongRay;
+    Batch density; ///< angles over distance from the ray
+    LaneMask met;
+
+    /// `rays.residual`: at the gate's end; `width`: of the gate, a length; u in [0, 1).
+    BallGateLanes(const LaneRays& rays, float width, const Batch& u, bool warped) {
+        const Lanes3 e = -rays.toOrigin, off = e.cross(rays.direction);
+        const Batch foot = e.dot(rays.direction), h = xsimd::sqrt(off.dot(off));
+        const Batch late = rays.residual, soon = late - width;
+        Batch from, to, drawn = u;
+        if (warped) {
+            const Batch distance = xsimd::sqrt(e.dot(e));
+            const auto turn = [&](const Batch& s) {
+                return xsimd::select(s > distance, (s - distance) * (s + distance) / (2.0f * (s - foot)), Batch(0.0f));
+            };
+            from = turn(soon) - foot;
+            to = turn(late) - foot;
+        } else {
+            // Both halves of the chord alike.
+            const auto half = [&](const Batch& s) { return xsimd::sqrt(xsimd::max((s - h) * (s + h), Batch(0.0f))); };
+            from = half(xsimd::max(soon, Batch(0.0f)));
+            to = half(late);
+            drawn = xsimd::abs(2.0f * u - 1.0f); // from the chord's near end to its far one
+        }
+        const Batch angle = xsimd::atan2(h * (to - from), h * h + from * to), slope = xsimd::tan(drawn * angle);
+        const Batch beside = h * (from + h * slope) / (h - from * slope);
+        met = late > 0.0f && to > from && h > 0.0f;
+        if (!warped) met = met && late > h;
+        length = xsimd::sqrt(h * h + beside * beside);
+        alongRay = foot + (warped ? beside : xsimd::select(u < 0.5f, -beside, beside));
+        density = (warped ? angle : 2.0f * angle) / h;
+    }
+};
+
 } // namespace tungsten::photon

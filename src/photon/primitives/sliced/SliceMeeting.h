@@ -19,10 +19,9 @@ inline Vec3f inFloat(const Vec3d& v) {
 }
 
 /// In [0, 1), different for every ray and frame.
-inline double rayRotation(const CameraSegment& segment, int frame) {
+inline double rayRotation(const Vec3f& d, int frame) {
     uint32_t hash = 0x9e3779b9u * uint32_t(frame + 1);
-    const Vec3f &o = segment.origin, &d = segment.direction;
-    for (const float f : {o.x, o.y, o.z, d.x, d.y, d.z}) {
+    for (const float f : {d.x, d.y, d.z}) {
         hash ^= std::bit_cast<uint32_t>(f);
         hash *= 0x85ebca6bu;
         hash ^= hash >> 15;
@@ -51,7 +50,7 @@ struct SliceMeeting {
     [[nodiscard]] double arrival(double length) const { return start + length / speed; }
     /// In [0, 1), one of two numbers of the record, turned by ray and frame.
     [[nodiscard]] double random(size_t which, int frame) const {
-        const double u = (double(flights.random[which]) + 0.5) * 0x1p-16 + rayRotation(segment, frame);
+        const double u = flights.randomNumber(which) + rayRotation(segment.direction, frame);
         return u < 1.0 ? u : u - 1.0;
     }
     [[nodiscard]] double phase(const Vec3f& last) const { return double(medium.phase.eval(last, -segment.direction)); }

@@ -14,7 +14,8 @@ namespace {
 
 /// What a band's rays have besides the band.
 struct BandRays {
-    std::vector<float> x, y, z; ///< origins; empty: all the record's
+    std::vector<float> x, y, z;  ///< origins; empty: all the record's
+    std::vector<float> rotation; ///< of random numbers
     /// With occluders: what is drawn is looked at in doses, each of them tested once.
     std::vector<float> dose, filled;
     bool dosed = false;
@@ -68,6 +69,13 @@ class Splatter {
             if (!xsimd::any(met.met)) return 0;
             const Batch weight = volumeWeight(slice.record, rays, met, warped_);
             return collect(slice, band, origins, met.met, {{met.t1, met.t2, met.t3}, met.alongRay}, weight, x, y);
+        }
+        if (slice.width > 0.0f) {
+            const Batch sum = load(origins.rotation) + float(slice.record.flights->randomNumber(0));
+            const BallGateLanes met(rays, slice.width, sum - xsimd::floor(sum), warped_);
+            if (!xsimd::any(met.met)) return 0;
+            return collect(slice, band, origins, met.met, {{met.length, met.length, met.length}, met.alongRay},
+                           ballGateWeight(slice.record, rays, met, slice.width), x, y);
         }
         const BallLanes met(rays, warped_);
         if (!xsimd::any(met.met)) return 0;
@@ -208,6 +216,9 @@ class Splatter {
     }
     [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
         BandRays rays;
+        rays.rotation.resize(band.x.size());
+        for (size_t i = 0; i < rays.rotation.size(); ++i)
+            rays.rotation[i] = float(rayRotation(Vec3f(band.x[i], band.y[i], band.z[i]), 0));
         if (record_.origins.empty()) return rays;
         for (auto* v : {&rays.x, &rays.y, &rays.z}) v->resize(band.x.size());
         for (int row = band.firstRow; row <= band.lastRow; ++row)

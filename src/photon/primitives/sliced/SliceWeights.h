@@ -41,14 +41,29 @@ inline Batch volumeWeight(const LaneRecord& record, const LaneRays& rays, const 
     return weight;
 }
 
+/// Of a ball that reaches points of a ray, without jacobian or density.
+inline Batch ballScattering(const LaneRecord& record, const LaneRays& rays, const Batch& length, const Batch& alongRay,
+                            const Lanes3& last, const Batch& first) {
+    return first * henyeyGreenstein(record.g, last, -rays.direction) * xsimd::exp(-record.sigmaT * (length + alongRay));
+}
+inline Batch leavingBall(const LaneRecord& record, const Lanes3& last) {
+    return record.isotropic ? Batch(1.0f) : henyeyGreenstein(record.g, Lanes3(record.flights->directions[1]), last);
+}
+
+/// At a point drawn in a gate of this width, averaged over it. As below.
+inline Batch ballGateWeight(const LaneRecord& record, const LaneRays& rays, const BallGateLanes& met, float width) {
+    const Lanes3 last = (rays.toOrigin + rays.direction * met.alongRay) * (1.0f / met.length);
+    return ballScattering(record, rays, met.length, met.alongRay, last, leavingBall(record, last)) * met.density *
+           (1.0f / width);
+}
+
 /// At one of its reaches. Without the power (light of its own included) and the collision.
 inline Batch ballWeight(const LaneRecord& record, const LaneRays& rays, const BallLanes& met, const Batch& alongRay,
                         bool warped) {
     const auto& w = record.flights->directions;
     const Lanes3 last = (rays.toOrigin + rays.direction * alongRay) * (1.0f / met.length);
-    const Batch first = record.isotropic ? Batch(1.0f) : henyeyGreenstein(record.g, Lanes3(w[1]), last);
-    Batch weight = first * henyeyGreenstein(record.g, last, -rays.direction) / met.jacobian *
-                   xsimd::exp(-record.sigmaT * (met.length + alongRay));
+    const Batch first = leavingBall(record, last);
+    Batch weight = ballScattering(record, rays, met.length, alongRay, last, first) / met.jacobian;
     if (record.flights->shared) {
         const Lanes3 a(w[0]), b(w[1]);
         const Lanes3& c = rays.direction;
