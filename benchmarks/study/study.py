@@ -68,14 +68,19 @@ def narrowed(study, options):
     return dataclasses.replace(study, **changes)
 
 
+def _state(record):
+    if record is None:
+        return "to do"
+    return "FAILED" if record["error"] else "skipped" if record.get("skipped") else "done"
+
+
 def perform(options):
     study = narrowed(load_study(options.study, options.root), options)
     work = (options.work or ROOT / "build/study" / study.name).resolve()
     runs = plan(study, work)
     if options.action == "list":
         for run in runs:
-            record = run.record()
-            print(f"{'to do ' if record is None else 'FAILED' if record['error'] else 'done  '}  {run.label}")
+            print(f"{_state(run.record()):7}  {run.label}")
         return EXIT_DONE
     if options.action in ("run", "check") and not options.tungsten.is_file():
         raise StudyError(f"there is no renderer {options.tungsten}: build it (scripts/setup.sh) or name it with --tungsten")
