@@ -33,6 +33,7 @@ class Scene:
     files: dict = field(default_factory=dict)  # method name -> scene file, where it is not `path`
     overrides: dict = field(default_factory=dict)  # method name, or "*" for all -> list of --set values
     skip: dict = field(default_factory=dict)  # method name -> why it has no result here
+    reference_by: "Method | None" = None  # renders the reference
     published: PublishedFigures | None = None
 
 
@@ -78,7 +79,7 @@ def reason_to_skip(scene, method):
 STUDY_KEYS = {"title", "include", "scenes", "methods", "sweeps", "baseline", "seconds", "threads", "seeds", "block",
               "limit_seconds", "definitions"}
 SCENE_KEYS = {"name", "base", "path", "resolution", "gate", "reference", "reference_block_variance", "files", "set",
-              "published", "skip"}
+              "published", "skip", "reference_by"}
 METHOD_KEYS = {"name", "base", "set", "published", "scenes", "may_refuse"}
 SWEEP_KEYS = {"parameter", "set", "methods", "values"}
 FIGURE_KEYS = {"method", "passes", "std", "bias", "bias_below", "mean_ratio", "memory_mb"}
@@ -156,7 +157,7 @@ def _published(block, where):
     return PublishedFigures(block["source"], float(block["seconds"]), int(block["threads"]), block["rows"])
 
 
-def _scene(entry, known, root, where):
+def _scene(entry, known, methods, root, where):
     merged = {}
     for link in reversed(_chain(entry, known, where)):
         merged.update(link)
@@ -174,8 +175,11 @@ def _scene(entry, known, root, where):
     skip = merged.get("skip", {})
     _require(isinstance(skip, dict) and all(isinstance(reason, str) and reason for reason in skip.values()), where,
              "'skip' maps method names to reasons")
+    by = merged.get("reference_by")
+    _require(by is None or by in methods, where, f"'{by}' (reference_by) is not defined")
     return Scene(merged["name"], path, tuple(merged["resolution"]), reference, tuple(gate) if gate else None,
-                 merged.get("reference_block_variance"), files, overrides, skip, _published(merged.get("published"), where))
+                 merged.get("reference_block_variance"), files, overrides, skip,
+                 _method(methods[by], methods, where) if by else None, _published(merged.get("published"), where))
 
 
 def _method(entry, known, where):
@@ -234,11 +238,11 @@ def _methods(study, known, scenes, where):
 def require_references(study):
     """Not needed to list or check a study: those of our own are rendered once (references.sh)."""
     for scene in study.scenes:
-        folder, own = scene.reference.parent, ""
-        if folder.name == "reference" and scene.reference.suffix == ".exr":
+        own = ""
+        if scene.reference_by:
+            own = "; the action 'references' renders it"
+        elif scene.reference.parent.name == "reference" and scene.reference.suffix == ".exr":
             own = "; benchmarks/study/references.sh renders it"
-        elif folder.parent.name == "reference":
-            own = f"; benchmarks/study/references-{folder.name}.sh renders it"
         _require(scene.reference.is_file(), f"scene '{scene.name}'", f"there is no reference {scene.reference}{own}")
 
 
@@ -248,7 +252,7 @@ def load_study(path, root):
     study = _load(path)
     _check_keys(study, STUDY_KEYS, where)
     known = _definitions(study, path)
-    scenes = [_scene(entry, known["scenes"], Path(root), where)
+    scenes = [_scene(entry, known["scenes"], known["methods"], Path(root), where)
               for entry in _select(study.get("scenes", []), known["scenes"], SCENE_KEYS, where)]
     methods = _methods(study, known["methods"], scenes, where)
     baseline = study.get("baseline", methods[0].name)

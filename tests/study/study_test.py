@@ -115,6 +115,28 @@ class TinyStudy(unittest.TestCase):
         self.assertEqual(self.call("report").returncode, 1)
         self.assertEqual(self.call("report", "--methods", "points; paths").returncode, 0)
 
+    def test_references(self):
+        """Rendered by the method that the scene names: their mean, with the variance of its block means from their spread."""
+        scene, paths = {**self.study["scenes"][0], "reference": str(self.folder / "own/fog.pfm")}, self.study["methods"][1]
+        study = {**self.study, "scenes": [scene], "methods": [paths], "baseline": "paths", "definitions": {"methods": [paths]}}
+        file, work = self.folder / "own.json", self.folder / "own-work"
+
+        def call(action, *options):
+            file.write_text(json.dumps(study))
+            return subprocess.run([sys.executable, STUDY, file, action, "--work", work, "--tungsten", TUNGSTEN, *options],
+                                  capture_output=True, text=True)
+
+        self.assertIn("(reference_by)", call("references").stderr)
+        scene["reference_by"] = "paths"
+        self.assertIn("the action 'references' renders it", call("report").stderr)
+        rendered = call("references", "--seconds", "0.2", "--seeds", "3")
+        self.assertEqual(rendered.returncode, 0, rendered.stderr)
+        images = [read_exr(image)[""] for image in sorted(work.glob("references/runs/fog/paths/*/image.exr"))]
+        self.assertEqual(len(images), 3)
+        np.testing.assert_allclose(read_pfm(self.folder / "own/fog.pfm"), np.mean(images, axis=0), rtol=1e-6)
+        self.assertGreater(float((self.folder / "own/fog.blockvar").read_text()), 0)
+        self.assertIn("3 of 3 runs are already there", call("references", "--seconds", "0.2", "--seeds", "3").stdout)
+
     def test_interrupted_runs_leave_no_result(self):
         work = self.folder / "interrupted"
         process = subprocess.Popen([sys.executable, STUDY, self.folder / "tiny.json", "--seconds", "600", "--methods", "points",
@@ -250,12 +272,16 @@ class StudyFiles(unittest.TestCase):
             require_references(seen(Path("reference/none.exr")))
 
     def test_studies_that_ship(self):
-        if not (PROJECT / "../shared/scenes").is_dir():
-            self.skipTest("the scenes by others are not there")
+        """Those of scenes by others only where these are."""
+        others, own = (PROJECT / "../shared/scenes").is_dir(), []
         for file in sorted((STUDY.parent / "studies").glob("*.json")):
+            if not others and ("../shared" in (text := file.read_text()) or '"include"' in text):
+                continue
             study = load_study(file, PROJECT)
             self.assertGreaterEqual(study.seeds, 3)
             plan(study, Path("work"))
+            own.append(study.name)
+        self.assertLessEqual({"bodies", "liu-primitives"}, set(own))
 
 
 if __name__ == "__main__":
