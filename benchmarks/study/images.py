@@ -35,6 +35,12 @@ def read_pfm(path):
     return np.repeat(image, 3, axis=2) if channels == 1 else image
 
 
+def write_pfm(path, image):
+    """An image (height, width, 3), row 0 at the top, as a PFM of 32-bit floats."""
+    header = f"PF\n{image.shape[1]} {image.shape[0]}\n-1.0\n".encode()
+    Path(path).write_bytes(header + image[::-1].astype("<f4").tobytes())
+
+
 def _exr_header(data, path):
     if len(data) < 8 or struct.unpack_from("<i", data)[0] != EXR_MAGIC:
         raise ImageError(f"{path}: not an EXR image")

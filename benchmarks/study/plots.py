@@ -9,7 +9,9 @@ from matplotlib.ticker import FuncFormatter  # noqa: E402
 
 from tables import baseline_of  # noqa: E402
 
-PRIMITIVE_COLOURS = {"points": "tab:blue", "beams": "tab:orange", "paths": "tab:green"}
+PRIMITIVE_COLOURS = {"points": "tab:blue", "beams": "tab:orange", "paths": "tab:green", "planes": "tab:red",
+                     "volumes": "tab:purple", "balls": "tab:brown", "volumes_balls": "tab:pink", "mis_volumes_balls": "tab:cyan",
+                     "hypervolumes": "tab:olive"}
 VARIANT_STYLES = {"plain": (":", "o"), "published": ("--", "s"), "best": ("-", "^")}
 
 

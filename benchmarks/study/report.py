@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pictures
 import plots
-from tables import accuracy_table, cost_table, published_table
+from tables import accuracy_table, cost_table, left_out_table, overview_table, published_table
 
 SHARE_OF_A_QUIET_MACHINE = 0.85
 
@@ -24,6 +24,7 @@ def _legend(study):
   method's, after bringing the baseline's variance to the method's wall time, since the last pass ends late by different amounts.
   **gain per CPU s**: the same at equal CPU time, which is firmer on a shared machine. **over published**: the same at equal CPU
   time over the published implementation's figures, measured elsewhere: a yardstick only.
+- **MSE × CPU s**: of the passes; without bias it is the same for any time.
 - **wall s, CPU s**: of the passes, without loading and preparation. **processor share**: CPU time over wall time and threads.
 """
 
@@ -55,6 +56,15 @@ def _failures(everything):
     return f"## Failed runs ({len(failures)})\n\n" + "\n".join(blocks)
 
 
+def _overview(study, summaries):
+    parts = []
+    if len(study.scenes) > 1:
+        parts.append(f"## MSE × CPU seconds, {study.seconds[-1]:g} s\n\n{overview_table(study, summaries)}")
+    if left_out := left_out_table(study, summaries):
+        parts.append(f"## Not compared\n\n{left_out}")
+    return "\n".join(parts)
+
+
 def _scene_section(study, scene, by_seconds, reference, folder):
     width, height = scene.resolution
     gate = f", gate [{scene.gate[0]:g}, {scene.gate[1]:g})" if scene.gate else ""
@@ -75,7 +85,8 @@ def _scene_section(study, scene, by_seconds, reference, folder):
 def write_report(study, summaries, references, work: Path):
     """Writes report.md and its images into the work folder; returns its path."""
     everything = [s for by_seconds in summaries.values() for group in by_seconds.values() for s in group.values()]
-    parts = [f"# {study.title}\n", _conditions(study, everything), _failures(everything), _legend(study)]
+    parts = [f"# {study.title}\n", _conditions(study, everything), _failures(everything), _legend(study),
+             _overview(study, summaries)]
     for scene in study.scenes:
         parts.append(_scene_section(study, scene, summaries[scene.name], references[scene.name], work))
     report = work / "report.md"

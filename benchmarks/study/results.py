@@ -77,6 +77,7 @@ class Summary:
     average: np.ndarray | None = None  # over the seeds, at the reference's resolution
     failures: list = field(default_factory=list)
     missing: int = 0
+    skipped: str | None = None  # why the renderer cannot
 
     @property
     def noise(self):
@@ -90,6 +91,11 @@ class Summary:
     @property
     def mse(self):
         return None if self.noise is None else measures.mean_squared_error(self.noise, self.bias_squared)
+
+    @property
+    def cost(self):
+        """MSE × CPU seconds: where there is no bias, the same for any time."""
+        return None if self.mse is None else self.mse * self.cpu
 
     def gain_over(self, other, at_equal_cpu=False):
         """How many times smaller the MSE is than another summary's, whose variance is brought to this one's time: passes
@@ -135,6 +141,8 @@ def summarise(runs, reference, study: Study):
         record = run.record()
         if record is None:
             summary.missing += 1
+        elif record.get("skipped"):
+            summary.skipped = record["skipped"]
         elif record["error"]:
             summary.failures.append((run.label, record["error"]))
         else:

@@ -14,6 +14,7 @@ from pathlib import Path
 from study_file import Method, Scene, Study, StudyError
 
 MOST_SAMPLES = 10**12  # the time-out ends a render, never the number of samples
+BAD_INPUT = 1  # exit code
 
 
 @dataclass(frozen=True)
@@ -108,6 +109,19 @@ def refused_warning(messages, overrides):
     return None
 
 
+def impossible(code, messages, method):
+    """Why the renderer cannot do what the method asks for, where that is no mistake: all that it refuses are fields that
+    the method says may be refused. None otherwise."""
+    errors = [line for line in messages.splitlines() if line.startswith("error:")]
+    reasons = []
+    for line in errors if code == BAD_INPUT else []:
+        field = next((name for name in method.may_refuse if f": {name}: " in line), None)
+        if field is None:
+            return None
+        reasons.append(f"`{field}`: {line.partition(f': {field}: ')[2]}")
+    return "; ".join(reasons) or None
+
+
 def call(command, limit):
     """Exit code (None: stopped after `limit` seconds) and messages. The renderer ends when this program is interrupted."""
     # The shell forks: a child that Python starts itself would report Python's own peak memory as the least of its own.
@@ -136,9 +150,12 @@ def execute(run: Run, tungsten: Path, build: str, limit: float, accept_warnings:
     start, load = time.time(), os.getloadavg()[0]
     code, messages = call(command, limit)
     record = {"fingerprint": run.fingerprint(), "build": build, "label": run.label, "command": command,
-              "messages": messages.strip(), "error": None, "wall seconds": time.time() - start, "load before": load}
+              "messages": messages.strip(), "error": None, "skipped": impossible(code, messages, run.method),
+              "wall seconds": time.time() - start, "load before": load}
     refused = None if accept_warnings else refused_warning(messages, run.overrides)
-    if code != 0:
+    if record["skipped"]:
+        pass
+    elif code != 0:
         record["error"] = f"exit code {code}: {messages.strip()}"
     elif refused:
         record["error"] = f"refused, the renderer does not do what the method sets: {refused}"
@@ -172,7 +189,8 @@ def run_all(study: Study, runs, tungsten: Path, retry_failed=False, accept_warni
         limit = study.limit_seconds or 10 * run.seconds + 600
         say(f"[{number}/{len(due)}] {run.label}{'' if state == 'new' else f' ({state})'} ...", end=" ", flush=True)
         record = execute(run, tungsten, build, limit, accept_warnings)
-        say(f"FAILED: {record['error']}" if record["error"] else f"{record['wall seconds']:.1f} s", flush=True)
+        say(f"FAILED: {record['error']}" if record["error"] else f"skipped: {record['skipped']}" if record["skipped"]
+            else f"{record['wall seconds']:.1f} s", flush=True)
 
 
 def check(runs, tungsten: Path, say=print):
@@ -180,6 +198,9 @@ def check(runs, tungsten: Path, say=print):
     problems = []
     for run in (run for run in runs if run.seed == 1):
         code, messages = call([str(tungsten), "--explain", *run.arguments()], 600)
+        if skipped := impossible(code, messages, run.method):
+            say(f"skipped  {run.scene.name}, {run.method.name}: {skipped}")
+            continue
         refused = refused_warning(messages, run.overrides)
         problem = messages.strip() if code != 0 else refused
         say(f"{'refused' if problem else 'good   '}  {run.scene.name}, {run.method.name}")

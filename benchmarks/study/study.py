@@ -9,6 +9,7 @@ from pathlib import Path
 from images import ImageError
 from results import collect
 from report import write_report
+from references import SECONDS, SEEDS, render_references
 from runs import check, plan, run_all
 from study_file import StudyError, load_study, require_references
 
@@ -24,9 +25,10 @@ def parse_arguments(arguments):
     parser = argparse.ArgumentParser(prog="study.py", description=__doc__, epilog="An interrupted study goes on where it was: "
                                      "give the same command again. Exit codes: 0 done, 1 some runs failed, 2 bad input.")
     parser.add_argument("study", type=Path, help="study file, such as benchmarks/study/studies/cbox-128.json")
-    parser.add_argument("action", nargs="?", choices=["run", "report", "check", "list"], default="run",
+    parser.add_argument("action", nargs="?", choices=["run", "report", "check", "list", "references"], default="run",
                         help="run: render what is missing, then report (default); report: from the results so far; "
-                        "check: have the renderer read every scene with every method's settings; list: show the runs")
+                        "check: have the renderer read every scene with every method's settings; list: show the runs; "
+                        f"references: render those of the study's own, {SEEDS} seeds of {SECONDS} s each unless told otherwise")
     parser.add_argument("--tungsten", type=Path, default=ROOT / "build/bin/tungsten", help="the renderer (default: %(default)s)")
     parser.add_argument("--work", type=Path, help="folder of results (default: build/study/STUDY)")
     parser.add_argument("--root", type=Path, default=ROOT, help="what paths in the study are relative to (default: the project)")
@@ -68,21 +70,30 @@ def narrowed(study, options):
     return dataclasses.replace(study, **changes)
 
 
+def _state(record):
+    if record is None:
+        return "to do"
+    return "FAILED" if record["error"] else "skipped" if record.get("skipped") else "done"
+
+
 def perform(options):
     study = narrowed(load_study(options.study, options.root), options)
     work = (options.work or ROOT / "build/study" / study.name).resolve()
     runs = plan(study, work)
     if options.action == "list":
         for run in runs:
-            record = run.record()
-            print(f"{'to do ' if record is None else 'FAILED' if record['error'] else 'done  '}  {run.label}")
+            print(f"{_state(run.record()):7}  {run.label}")
         return EXIT_DONE
-    if options.action in ("run", "check") and not options.tungsten.is_file():
+    if options.action in ("run", "check", "references") and not options.tungsten.is_file():
         raise StudyError(f"there is no renderer {options.tungsten}: build it (scripts/setup.sh) or name it with --tungsten")
     if options.action == "check":
         problems = check(runs, options.tungsten)
         print("".join(f"\n{problem}\n" for problem in problems), end="")
         return EXIT_FAILED_RUNS if problems else EXIT_DONE
+    if options.action == "references":
+        study = dataclasses.replace(study, seconds=[max(options.seconds or [SECONDS])], seeds=options.seeds or SEEDS)
+        failed = render_references(study, work, options.tungsten.resolve(), options.retry_failed, options.accept_warnings)
+        return EXIT_FAILED_RUNS if failed else EXIT_DONE
     require_references(study)
     work.mkdir(parents=True, exist_ok=True)
     if options.action == "run":

@@ -32,6 +32,8 @@ class Scene:
     reference_block_variance: float | None = None  # None: from NAME.blockvar, or from an EXR's stderr layer
     files: dict = field(default_factory=dict)  # method name -> scene file, where it is not `path`
     overrides: dict = field(default_factory=dict)  # method name, or "*" for all -> list of --set values
+    skip: dict = field(default_factory=dict)  # method name -> why it has no result here
+    reference_by: "Method | None" = None  # renders the reference
     published: PublishedFigures | None = None
 
 
@@ -43,6 +45,7 @@ class Method:
     published: str | None = None  # row of the scene's published figures it is compared with
     scenes: tuple | None = None  # None: all
     swept: tuple | None = None  # parameter's name, value and the method swept
+    may_refuse: tuple = ()  # fields: where the renderer refuses one of them the method is impossible, not failed
 
 
 @dataclass(frozen=True)
@@ -59,14 +62,25 @@ class Study:
     limit_seconds: float | None
 
     def methods_of(self, scene):
-        return [method for method in self.methods if method.scenes is None or scene.name in method.scenes]
+        return [method for method in self.methods
+                if (method.scenes is None or scene.name in method.scenes) and reason_to_skip(scene, method) is None]
+
+    def left_out(self):
+        """(scene, method, reason) of what the study itself does not ask for."""
+        return [(scene, method, reason) for scene in self.scenes for method in self.methods
+                if (reason := reason_to_skip(scene, method)) is not None]
+
+
+def reason_to_skip(scene, method):
+    """Why the scene does not ask for the method, given for it or one of its bases; None if it does."""
+    return next((scene.skip[name] for name in method.lineage if name in scene.skip), None)
 
 
 STUDY_KEYS = {"title", "include", "scenes", "methods", "sweeps", "baseline", "seconds", "threads", "seeds", "block",
               "limit_seconds", "definitions"}
 SCENE_KEYS = {"name", "base", "path", "resolution", "gate", "reference", "reference_block_variance", "files", "set",
-              "published"}
-METHOD_KEYS = {"name", "base", "set", "published", "scenes"}
+              "published", "skip", "reference_by"}
+METHOD_KEYS = {"name", "base", "set", "published", "scenes", "may_refuse"}
 SWEEP_KEYS = {"parameter", "set", "methods", "values"}
 FIGURE_KEYS = {"method", "passes", "std", "bias", "bias_below", "mean_ratio", "memory_mb"}
 
@@ -143,7 +157,7 @@ def _published(block, where):
     return PublishedFigures(block["source"], float(block["seconds"]), int(block["threads"]), block["rows"])
 
 
-def _scene(entry, known, root, where):
+def _scene(entry, known, methods, root, where):
     merged = {}
     for link in reversed(_chain(entry, known, where)):
         merged.update(link)
@@ -158,8 +172,14 @@ def _scene(entry, known, root, where):
         _require(file.is_file(), where, f"there is no file {file}")
     overrides = merged.get("set", {})
     _require(isinstance(overrides, dict), where, "'set' maps method names, or \"*\" for all, to lists of overrides")
+    skip = merged.get("skip", {})
+    _require(isinstance(skip, dict) and all(isinstance(reason, str) and reason for reason in skip.values()), where,
+             "'skip' maps method names to reasons")
+    by = merged.get("reference_by")
+    _require(by is None or by in methods, where, f"'{by}' (reference_by) is not defined")
     return Scene(merged["name"], path, tuple(merged["resolution"]), reference, tuple(gate) if gate else None,
-                 merged.get("reference_block_variance"), files, overrides, _published(merged.get("published"), where))
+                 merged.get("reference_block_variance"), files, overrides, skip,
+                 _method(methods[by], methods, where) if by else None, _published(merged.get("published"), where))
 
 
 def _method(entry, known, where):
@@ -168,7 +188,10 @@ def _method(entry, known, where):
     lineage = tuple(link["name"] for link in chain)
     published = next((link["published"] for link in chain if "published" in link), lineage[-1])
     scenes = entry.get("scenes")
-    return Method(entry["name"], tuple(overrides), lineage, published, tuple(scenes) if scenes else None)
+    fields = next((link["may_refuse"] for link in chain if "may_refuse" in link), [])
+    _require(isinstance(fields, list), f"{where}: method '{entry['name']}'", "'may_refuse' is a list of fields")
+    return Method(entry["name"], tuple(overrides), lineage, published, tuple(scenes) if scenes else None,
+                  may_refuse=tuple(fields))
 
 
 def _sweep(sweep, methods, where):
@@ -182,7 +205,7 @@ def _sweep(sweep, methods, where):
                 name = f"{method.name}, {sweep['parameter']} {parts[0]:g}"
                 overrides = method.overrides + tuple(text.format(*parts) for text in sweep["set"])
                 swept.append(Method(name, overrides, (name, *method.lineage), method.published, (scene,),
-                                    (sweep["parameter"], float(parts[0]), method.name)))
+                                    (sweep["parameter"], float(parts[0]), method.name), method.may_refuse))
     return swept
 
 
@@ -205,14 +228,21 @@ def _methods(study, known, scenes, where):
     names = {scene.name for scene in scenes}
     for method in methods:
         _require(set(method.scenes or ()) <= names, where, f"method '{method.name}' names a scene that is not compared")
+    known_names = {name for method in methods for name in method.lineage}
+    for scene in scenes:
+        unknown = sorted(set(scene.skip) - known_names)
+        _require(not unknown, where, f"scene '{scene.name}' skips '{', '.join(unknown)}', which is not compared")
     return methods
 
 
 def require_references(study):
     """Not needed to list or check a study: those of our own are rendered once (references.sh)."""
     for scene in study.scenes:
-        own = "; benchmarks/study/references.sh renders it" if scene.reference.parent.name == "reference" and \
-            scene.reference.suffix == ".exr" else ""
+        own = ""
+        if scene.reference_by:
+            own = "; the action 'references' renders it"
+        elif scene.reference.parent.name == "reference" and scene.reference.suffix == ".exr":
+            own = "; benchmarks/study/references.sh renders it"
         _require(scene.reference.is_file(), f"scene '{scene.name}'", f"there is no reference {scene.reference}{own}")
 
 
@@ -222,7 +252,7 @@ def load_study(path, root):
     study = _load(path)
     _check_keys(study, STUDY_KEYS, where)
     known = _definitions(study, path)
-    scenes = [_scene(entry, known["scenes"], Path(root), where)
+    scenes = [_scene(entry, known["scenes"], known["methods"], Path(root), where)
               for entry in _select(study.get("scenes", []), known["scenes"], SCENE_KEYS, where)]
     methods = _methods(study, known["methods"], scenes, where)
     baseline = study.get("baseline", methods[0].name)

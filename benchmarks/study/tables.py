@@ -44,8 +44,11 @@ def _ratio(summary):
 
 
 def baseline_of(study, summaries):
-    """The study's baseline, or the first method where a scene lacks it."""
-    return summaries.get(study.baseline) or next(iter(summaries.values()))
+    """The study's baseline, or the first method with a result where a scene lacks it."""
+    baseline = summaries.get(study.baseline)
+    if baseline is None or not baseline.seeds:
+        baseline = next((s for s in summaries.values() if s.seeds), next(iter(summaries.values())))
+    return baseline
 
 
 def accuracy_table(study, summaries):
@@ -55,16 +58,45 @@ def accuracy_table(study, summaries):
     published = any(s.gain_over_published() is not None for s in done)
     header = ["method", "seeds", "passes", "wall s", "CPU s", "rel. std (range)", "std over seeds"]
     header += ["std, averaged down"] if averaged else []
-    header += ["block bias", "mean ratio", "MSE", "gain", "gain per CPU s"] + (["over published"] if published else [])
+    header += ["block bias", "mean ratio", "MSE", "MSE × CPU s", "gain", "gain per CPU s"] + (["over published"] if published else [])
     rows = []
     for s in done:
         row = [s.method.name, s.seeds, number(s.passes), number(s.wall), number(s.cpu), _range(s), number(s.std_spread)]
         row += [number(s.std_averaged)] if averaged else []
-        row += [bias_text(s.bias), _ratio(s), number(s.mse), _times(s.gain_over(baseline)),
-                _times(s.gain_over(baseline, at_equal_cpu=True))]
+        row += [bias_text(s.bias), _ratio(s), number(s.mse), number(s.cost),
+                _times(s.gain_over(baseline)), _times(s.gain_over(baseline, at_equal_cpu=True))]
         row += [_times(s.gain_over_published())] if published else []
         rows.append(row)
     return table(header, rows)
+
+
+def overview_table(study, summaries):
+    """MSE × CPU seconds of every method in every scene, at the longest time; the least of a scene is bold."""
+    rows = []
+    for scene in study.scenes:
+        costs = {name: s.cost for name, s in list(summaries[scene.name].values())[-1].items() if s.seeds}
+        least = min((cost for cost in costs.values() if cost is not None), default=None)
+        cells = [costs.get(method.name) for method in study.methods]
+        rows.append([scene.name] + [f"**{number(cost)}**" if cost is not None and cost == least else number(cost)
+                                    for cost in cells])
+    return table(["scene", *(method.name for method in study.methods)], rows)
+
+
+def left_out_table(study, summaries):
+    """What has no result, and why: left out by the study, or impossible to the renderer. Empty if there is nothing."""
+    found = {}
+    for scene, method, reason in study.left_out():
+        found.setdefault((method.name, reason), []).append(scene.name)
+    for by_seconds in summaries.values():
+        for s in list(by_seconds.values())[-1].values():
+            if s.skipped:
+                found.setdefault((s.method.name, s.skipped), []).append(s.scene.name)
+    if not found:
+        return ""
+    order = [method.name for method in study.methods]
+    lines = [f"| {method} | {', '.join(scenes)} | {reason} |"
+             for (method, reason), scenes in sorted(found.items(), key=lambda entry: order.index(entry[0][0]))]
+    return "\n".join(["| method | scenes | why |", "| --- | --- | --- |", *lines]) + "\n"
 
 
 def cost_table(summaries):

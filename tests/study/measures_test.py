@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks/study")
 
 import images  # noqa: E402
 import measures  # noqa: E402
+import references  # noqa: E402
 
 SIZE, BLOCK, SEEDS, STUDIES = 48, 8, 3, 1500
 PIXEL_NOISE, SHARED_NOISE, REFERENCE_NOISE = 0.5, 0.2, 0.3  # absolute; shared: one value for each 4x4 pixels
@@ -108,6 +109,14 @@ class Measures(unittest.TestCase):
         known = measures.block_variance_of_independent_pixels(error, BLOCK)
         noise = [measures.block_means(error[..., 0] * rng.normal(size=(SIZE, SIZE)), BLOCK) for _ in range(2000)]
         self.assert_mean([np.mean(blocks**2) for blocks in noise], known, "block variance")
+
+    def test_block_variance_of_averages(self):
+        """References made of renders whose neighbouring pixels vary together, as those of photons do."""
+        studies, seeds = SyntheticStudies(0.1, 19), 4
+        known = (PIXEL_NOISE**2 / BLOCK**2 + SHARED_NOISE**2 / (BLOCK / 4) ** 2) / seeds
+        found = [references.average([np.repeat(studies.render()[..., None], 3, axis=2) for _ in range(seeds)], BLOCK)[1]
+                 for _ in range(300)]
+        self.assert_mean(found, known, "block variance")
 
     def test_gain(self):
         self.assertAlmostEqual(measures.mean_squared_error(0.3, 0.16), 0.25)

@@ -23,7 +23,8 @@ import measures  # noqa: E402
 from images import read_exr, read_pfm  # noqa: E402
 from results import Summary  # noqa: E402
 from runs import call, plan  # noqa: E402
-from study_file import Method, PublishedFigures, Scene, StudyError, load_study, require_references  # noqa: E402
+from study_file import Method, PublishedFigures, Scene, Study, StudyError, load_study, require_references  # noqa: E402
+from tables import baseline_of, left_out_table, overview_table  # noqa: E402
 
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
 SIZE = 32
@@ -50,7 +51,11 @@ class TinyStudy(unittest.TestCase):
                         "published": {"source": "invented", "seconds": 1, "threads": 1, "rows": [{"method": "paths", "std": 2.0}]}}],
             "methods": [{"name": "points", "set": []}, {"name": "paths", "set": ["integrator.type=path_tracer"]},
                         {"name": "wrong", "set": ["integrator.photon_count=-1"]},
-                        {"name": "unknown", "set": ["integrator.no_such_field=1"]}]}
+                        {"name": "unknown", "set": ["integrator.no_such_field=1"]},
+                        {"name": "moment", "base": "delta"},
+                        {"name": "two mistakes", "base": "delta", "set": ["integrator.max_bounces=-1"]}],
+            "definitions": {"methods": [{"name": "delta", "may_refuse": ["integrator.delta_time_gate"],
+                                         "set": ["integrator.type=path_tracer", "integrator.delta_time_gate=true"]}]}}
         cls.first = cls.call()
         cls.report = (cls.folder / "work/report.md").read_text()
 
@@ -68,14 +73,16 @@ class TinyStudy(unittest.TestCase):
         return self.folder / "work/runs/fog" / method / f"0.3s-seed{seed}"
 
     def test_report(self):
-        self.assertEqual(self.first.returncode, 1, self.first.stderr)  # two methods fail
+        self.assertEqual(self.first.returncode, 1, self.first.stderr)  # three methods fail
         report = self.report
-        self.assertIn("## Failed runs (6)", report)
+        self.assertIn("## Failed runs (9)", report)
         self.assertIn("integrator.photon_count", report)  # the renderer's own message
         self.assertIn("no_such_field", report)
         for method in ("points", "paths"):
             self.assertIn(f"| {method} | 3 |", report)
         self.assertNotIn("| wrong |", report)
+        self.assertIn("| moment | fog | `integrator.delta_time_gate`: plain paths meet a delta gate", report)
+        self.assertIn("fog, moment, 0.3 s, seed 1 ... skipped: `integrator.delta_time_gate`", self.first.stdout)
         self.assertNotIn("nan", report.replace("non-finite", ""))
         for image in ("fog-pictures-1.png", "fog-gain-0.3s.png"):
             self.assertIn(f"({image})", report)
@@ -108,6 +115,28 @@ class TinyStudy(unittest.TestCase):
         self.assertEqual(self.call("report").returncode, 1)
         self.assertEqual(self.call("report", "--methods", "points; paths").returncode, 0)
 
+    def test_references(self):
+        """Rendered by the method that the scene names: their mean, with the variance of its block means from their spread."""
+        scene, paths = {**self.study["scenes"][0], "reference": str(self.folder / "own/fog.pfm")}, self.study["methods"][1]
+        study = {**self.study, "scenes": [scene], "methods": [paths], "baseline": "paths", "definitions": {"methods": [paths]}}
+        file, work = self.folder / "own.json", self.folder / "own-work"
+
+        def call(action, *options):
+            file.write_text(json.dumps(study))
+            return subprocess.run([sys.executable, STUDY, file, action, "--work", work, "--tungsten", TUNGSTEN, *options],
+                                  capture_output=True, text=True)
+
+        self.assertIn("(reference_by)", call("references").stderr)
+        scene["reference_by"] = "paths"
+        self.assertIn("the action 'references' renders it", call("report").stderr)
+        rendered = call("references", "--seconds", "0.2", "--seeds", "3")
+        self.assertEqual(rendered.returncode, 0, rendered.stderr)
+        images = [read_exr(image)[""] for image in sorted(work.glob("references/runs/fog/paths/*/image.exr"))]
+        self.assertEqual(len(images), 3)
+        np.testing.assert_allclose(read_pfm(self.folder / "own/fog.pfm"), np.mean(images, axis=0), rtol=1e-6)
+        self.assertGreater(float((self.folder / "own/fog.blockvar").read_text()), 0)
+        self.assertIn("3 of 3 runs are already there", call("references", "--seconds", "0.2", "--seeds", "3").stdout)
+
     def test_interrupted_runs_leave_no_result(self):
         work = self.folder / "interrupted"
         process = subprocess.Popen([sys.executable, STUDY, self.folder / "tiny.json", "--seconds", "600", "--methods", "points",
@@ -133,6 +162,11 @@ class TinyStudy(unittest.TestCase):
         self.assertIn("good     fog, points", checked.stdout)
         self.assertIn("refused  fog, wrong", checked.stdout)
         self.assertIn("refused  fog, unknown", checked.stdout)
+        self.assertIn("skipped  fog, moment: `integrator.delta_time_gate`", checked.stdout)
+        self.assertIn("refused  fog, two mistakes", checked.stdout)
+        listed = self.call("list").stdout
+        self.assertIn("skipped  fog, moment", listed)
+        self.assertIn("FAILED   fog, two mistakes", listed)
 
     def test_exr_holds_what_pfm_does(self):
         render(self.folder, "two.exr", "--spp", "2")
@@ -153,6 +187,22 @@ class Summaries(unittest.TestCase):
         self.assertIsNone(short.gain_over_published())
         short.std, short.std_spread = None, 2.0  # one pass only: the seeds' spread stands in
         self.assertAlmostEqual(long.gain_over(short), 4)
+
+
+    def test_overview_marks_the_least_cost(self):
+        scenes = [Scene(name, Path(), (1, 1), Path()) for name in ("s", "t")]
+        methods = [Method(name, lineage=(name,)) for name in ("m", "n", "o")]
+        study = Study("x", "X", scenes, methods, "m", [1], 1, 3, 8, None)
+
+        def row(scene, noises):
+            return {1: {method.name: Summary(scene, method, 1, seeds=3 if noise else 0, cpu=2.0, wall=1.0, std=noise)
+                        for method, noise in zip(methods, noises)}}
+
+        table = overview_table(study, {"s": row(scenes[0], (1.0, 0.5, None)), "t": row(scenes[1], (None, 3.0, 2.0))})
+        self.assertIn("| s | 2 | **0.5** | – |", table)
+        self.assertIn("| t | – | 18 | **8** |", table)
+        summaries = row(scenes[1], (None, 3.0, 2.0))[1]
+        self.assertIs(baseline_of(study, summaries), summaries["n"])
 
 
 class StudyFiles(unittest.TestCase):
@@ -185,6 +235,23 @@ class StudyFiles(unittest.TestCase):
         self.assertEqual((swept.overrides, swept.published, swept.swept), (("x=1", "x=2", "s=3", "t=4"), "p", ("size", 3, "derived")))
         self.assertEqual([len(study.methods_of(scene)) for scene in study.scenes], [3, 1])
 
+    def test_scenes_leave_methods_out(self):
+        """By their name or a base's: no runs, and the reason is reported; a name that is not compared is a mistake."""
+        methods = [{"name": "m"}, {"name": "n", "base": "m"}, {"name": "o"}]
+        study = self.study(methods=methods, definitions={"methods": methods})
+        study["scenes"][1]["skip"] = {"m": "nothing to see"}
+        loaded = self.load(study)
+        self.assertEqual([[method.name for method in loaded.methods_of(scene)] for scene in loaded.scenes],
+                         [["m", "n", "o"], ["o"]])
+        self.assertEqual([(scene.name, method.name, why) for scene, method, why in loaded.left_out()],
+                         [("b", "m", "nothing to see"), ("b", "n", "nothing to see")])
+        self.assertEqual(len(plan(loaded, Path("work"))), 3 * 4)
+        table = left_out_table(loaded, {})
+        self.assertIn("| m | b | nothing to see |", table)
+        study["scenes"][1]["skip"] = {"z": "nothing to see"}
+        with self.assertRaisesRegex(StudyError, "skips 'z', which is not compared"):
+            self.load(study)
+
     def test_mistakes_are_named(self):
         for change, message in (({"methods": ["nobody"]}, "'nobody' is not defined"), ({"sceens": []}, "unknown field 'sceens'"),
                                 ({"seeds": 0}, "'seeds' is a whole number"), ({"baseline": "z"}, "baseline 'z'"),
@@ -205,12 +272,16 @@ class StudyFiles(unittest.TestCase):
             require_references(seen(Path("reference/none.exr")))
 
     def test_studies_that_ship(self):
-        if not (PROJECT / "../shared/scenes").is_dir():
-            self.skipTest("the scenes by others are not there")
+        """Those of scenes by others only where these are."""
+        others, own = (PROJECT / "../shared/scenes").is_dir(), []
         for file in sorted((STUDY.parent / "studies").glob("*.json")):
+            if not others and ("../shared" in (text := file.read_text()) or '"include"' in text):
+                continue
             study = load_study(file, PROJECT)
             self.assertGreaterEqual(study.seeds, 3)
             plan(study, Path("work"))
+            own.append(study.name)
+        self.assertLessEqual({"bodies", "liu-primitives"}, set(own))
 
 
 if __name__ == "__main__":
