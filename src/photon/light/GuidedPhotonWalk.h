@@ -50,8 +50,7 @@ class GuidedPhotonWalk {
     /// From a vertex in the medium, reached in the direction `before`.
     bool leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before);
     bool meetSurface(const SurfaceHit& hit);
-    template <typename Scattering>
-    void connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering);
+    void connectToSurfaces(const transport::Vertex& vertex, float meanScattering);
 
     // What is left for a primitive.
     /// Points: the control vertex.
@@ -72,7 +71,7 @@ class GuidedPhotonWalk {
     [[nodiscard]] bool storesVertices() const {
         return path_.context.storeVolume && std::holds_alternative<DepositList<Photon>>(path_.deposits.volume);
     }
-    void store(DepositList<Photon>& points, const ArrivalCulling& arrival, const Vec3f& position, const Rgb& power);
+    void store(DepositList<Photon>& points, const ArrivalCulling& culling, const Vec3f& position, const Rgb& power);
 
     LightPath path_;
     const Scene& scene_;

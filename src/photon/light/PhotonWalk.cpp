@@ -51,7 +51,7 @@ void PhotonWalk::depositVertex(DepositList<Photon>& points, const Vec3f& positio
 void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
 
 FlightChain::Rules PhotonWalk::chainRules() const {
-    return {scene_, *path_.arrival, std::get<Slices>(path_.context.settings.primitive).classes};
+    return {scene_, *path_.culling, std::get<Slices>(path_.context.settings.primitive).classes};
 }
 
 void PhotonWalk::depositFlight(DepositList<CollapsedFlights>& flights, const Medium&, float reach) {
@@ -77,7 +77,7 @@ bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     path_.collide(path_.ray.at(distance), double(distance));
     const Vec3f position = path_.ray.origin;
-    if (!path_.arrival->mayContinue(position, path_.time)) return false;
+    if (!path_.culling->mayContinue(position, path_.time)) return false;
     if (path_.context.storeVolume)
         std::visit([&](auto& list) { depositVertex(list, position); }, path_.deposits.volume);
     path_.ray.direction = medium.phase.sample(path_.ray.direction, path_.sampler.next2D());
