@@ -1,6 +1,8 @@
 #pragma once
 // Points that light has reached, a few of which are tried at once for arrival at a place within a range of lengths.
 
+#include "path/Tuning.h"
+
 #include "transport/GateBounds.h"
 
 #include <array>
@@ -13,7 +15,7 @@ namespace tungsten::path {
 class ArrivalWindow {
   public:
     /// How many points a vertex tries, neighbours in the list from a random place on.
-    static constexpr size_t Size = 64;
+    static constexpr size_t Size = tuning::Tried;
 
     struct Choice {
         size_t index = 0;
