@@ -1,8 +1,8 @@
 #pragma once
-// The inner loop of DistanceSampler: candidates, target and choice, written once for one candidate at a time (float)
-// and for a register of them (xsimd::batch).
+// The inner loop of DistanceSampler: candidates, usefulness and choice, written once for one candidate at a time
+// (float) and for a register of them (xsimd::batch).
 
-#include "darts/CandidateTarget.h"
+#include "darts/CandidateUsefulness.h"
 #include "darts/DistanceSampler.h"
 
 namespace darts {
@@ -51,9 +51,9 @@ struct Proposal {
             slowRate = 0.25f * mean(sigmaT);
             slowDrop = -std::expm1(-slowRate * draw.bound);
         }
-        if (kind == Proposals::Equiangular) aimAtTarget();
+        if (kind == Proposals::Equiangular) aimEquiangularly();
     }
-    void aimAtTarget() {
+    void aimEquiangularly() {
         const Ellipse<float>& e = draw.latest;
         centre = e.C * (1.0f - e.h);
         spread = std::max(e.C * std::sqrt(e.h * (2.0f - e.h)), 1e-3f * e.length());
@@ -118,11 +118,11 @@ struct Proposal {
     }
 };
 
-/// N candidates and their weights target / density; the target is relative to the largest exponent among them.
+/// N candidates and their weights usefulness / density; usefulness is relative to the largest exponent among them.
 template <typename Batch, Shape G, int N, int Channels>
 struct Candidates {
     static constexpr int Width = lanes::Width<Batch>, Registers = N / Width;
-    alignas(64) std::array<float, size_t(N)> distance, target, weight;
+    alignas(64) std::array<float, size_t(N)> distance, usefulness, weight;
     alignas(64) std::array<float, size_t(N)> transmittance; ///< in grey media
 
     Candidates(const CandidateDraw& draw, const DistanceRandom& random) {
@@ -145,8 +145,8 @@ struct Candidates {
             const PlaceOf<G, Batch> at(draw, d);
             reachable[r] = at.reachable;
             for (int i = 0; i < Channels; ++i) {
-                const Target<G> target_(draw, i, Channels == 1);
-                exponents[i][r] = target_.exponent(d, at, factors[i][r]);
+                const Usefulness<G> channel(draw, i, Channels == 1);
+                exponents[i][r] = channel.exponent(d, at, factors[i][r]);
                 highest = max(highest, select(at.reachable > 0.0f, exponents[i][r], highest));
             }
         }
@@ -161,7 +161,7 @@ struct Candidates {
         const float lift = draw.floor > 0 ? draw.floor * lanes::sum(total) / float(N) : 0.0f;
         for (int r = 0; r < Registers; ++r) {
             const Batch lifted = select(reachable[r] > 0.0f, factors[0][r] + lift, Batch(0.0f));
-            lanes::put(target.data() + r * Width, lifted);
+            lanes::put(usefulness.data() + r * Width, lifted);
             lanes::put(weight.data() + r * Width, Batch(lifted / density[r]));
         }
     }
@@ -176,7 +176,7 @@ float resample(const CandidateDraw& draw, const DistanceRandom& random, Vec3& tr
     const size_t chosen = lanes::choose<N>(candidates.weight.data(), random.choice, sum);
     if (!(candidates.weight[chosen] > 0.0f)) return 0.0f;
     const float d = candidates.distance[chosen];
-    const float inversePdf = sum / (float(N) * candidates.target[chosen] * draw.probability);
+    const float inversePdf = sum / (float(N) * candidates.usefulness[chosen] * draw.probability);
     const Vec3 sigmaT = draw.medium->sigmaT();
     if constexpr (Channels == 1) {
         // The register's exponential ends at e^-87.

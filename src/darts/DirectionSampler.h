@@ -204,7 +204,7 @@ class DirectionSampler {
         const float pdf = share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         return {direction, h, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
-    /// Target: scatterer's density x usefulness.
+    /// Weighed by scatterer's density x usefulness.
     template <typename Scatterer, typename Guided, typename Random>
     [[nodiscard]] DirectionSample resample(const Residual& residual, float excess, const Scatterer& scatterer,
                                            const Guided& guided, Random& random) const {
@@ -223,10 +223,10 @@ class DirectionSampler {
             const Vec3 onward = residual.axis * residual.C - c.direction * e.firstLeg();
             const HenyeyGreenstein phase{c.direction, g_};
             const float last = phase.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
-            const float target = own * guided.usefulness(c, guide, last);
+            const float wanted = own * guided.usefulness(c, guide, last);
             const float mixture = ownShare * own + (1.0f - ownShare) * guide;
-            weights[size_t(i)] = mixture > 0 ? target / mixture : 0.0f;
-            c.inversePdf = target > 0 ? 1.0f / target : 0.0f;
+            weights[size_t(i)] = mixture > 0 ? wanted / mixture : 0.0f;
+            c.inversePdf = wanted > 0 ? 1.0f / wanted : 0.0f;
             sum += weights[size_t(i)];
         }
         if (!(sum > 0)) return {residual.axis, 0, 0};

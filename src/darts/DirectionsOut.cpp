@@ -7,7 +7,7 @@ namespace {
 // Bench: study bodies, layered tissue, paths.
 constexpr float MostConnectionShare = 0.3f;
 /// Of a connection, relative to the first passage: the diffusing light's forward peak is a rougher guess.
-constexpr float MostConnectionWorth = 1.0f;
+constexpr float MostFromConnection = 1.0f;
 /// The displacement is known, so less remains unknown: FirstPassage's allowance.
 constexpr float Allowance = 0.5f;
 constexpr float MostLog = 20.0f;
@@ -51,10 +51,10 @@ float DirectionsOut::pdf(const Vec3& direction, float h) const {
 float DirectionsOut::usefulness(const Heading& ray, float, float last) const {
     const FirstPassage passage(medium_, residual_.exit, Allowance);
     const float onward = passage.log(departure(residual_, passage.meanFreePath(), ray));
-    return std::exp(std::min(onward - here_, MostLog)) + connectionWorth(ray, last);
+    return std::exp(std::min(onward - here_, MostLog)) + connectionUsefulness(ray, last);
 }
 
-float DirectionsOut::connectionWorth(const Heading& ray, float last) const {
+float DirectionsOut::connectionUsefulness(const Heading& ray, float last) const {
     const Exit& exit = residual_.exit;
     const Exit::Face& face = exit.faces[0];
     const auto legs = Ellipse<float>{residual_.C, excess_, ray.h}.legs();
@@ -62,7 +62,7 @@ float DirectionsOut::connectionWorth(const Heading& ray, float last) const {
     if (!exit.connects || !(depth > 0.0f)) return 0.0f;
     const float inside = legs.first + depth * exit.slant;
     const float transmittance = std::exp(std::min(-sigmaT_ * inside - here_, MostLog));
-    return std::min(gate_ * legs.firstPerLength * 4.0f * Pi * last * transmittance, MostConnectionWorth);
+    return std::min(gate_ * legs.firstPerLength * 4.0f * Pi * last * transmittance, MostFromConnection);
 }
 
 } // namespace darts

@@ -23,7 +23,7 @@ class DirectionsOut {
     [[nodiscard]] float usefulness(const Heading& ray, float pdf, float last) const;
 
   private:
-    [[nodiscard]] float connectionWorth(const Heading& ray, float last) const;
+    [[nodiscard]] float connectionUsefulness(const Heading& ray, float last) const;
 
     const Residual& residual_;
     const Medium& medium_;

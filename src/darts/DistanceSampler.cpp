@@ -44,7 +44,7 @@ Kernel kernelFor(Shape shape, int candidates, bool grey, bool scalar) {
     case Shape::FirstPassage:
         return kernelFor<Shape::FirstPassage>(candidates, grey, scalar);
     }
-    throw std::invalid_argument("unknown shape of the target");
+    throw std::invalid_argument("unknown shape of usefulness");
 }
 
 Shape shapeOf(Greens greens) {

@@ -23,12 +23,12 @@ struct DistanceSample {
     Vec3 transmittanceOverPdf;
 };
 
-/// Resampled importance sampling (Talbot et al. 2005) of N candidates with the target
+/// Resampled importance sampling (Talbot et al. 2005) of N candidates by usefulness
 ///   p(d) = e^{-sigmaT d} Phi(|x + d w - q|, S_hi - d) o(d),
 /// Phi a Green's function, or the first passage out of the body (FirstPassage.h) where the target lies outside, o(d)
 /// the length of the gate still reachable. All causality is tested at S_hi, which does not change from vertex to
-/// vertex: a target length redrawn per vertex would be biased. Any positive target is exact. The transmittances that
-/// the estimate needs are computed to float precision, the target to about 1e-3.
+/// vertex: a length redrawn per vertex would be biased. Any positive usefulness is exact. The transmittances that
+/// the estimate needs are computed to float precision, usefulness to about 1e-3.
 class DistanceSampler {
   public:
     /// Candidates in SIMD registers; `scalar` takes one by one (for comparison).

@@ -1,5 +1,6 @@
 #pragma once
-// Light that diffuses in a body and must leave it in time: the probability that it does, as a target of sampling.
+// Light that diffuses in a body and must leave it in time: the probability that it does, as the usefulness of
+// candidates.
 
 #include "darts/Ellipse.h"
 #include "darts/Exit.h"
@@ -14,7 +15,7 @@ template <typename Batch>
 struct Departure {
     const Exit& exit;
     Vec3 direction;
-    float persistence;    ///< 0: light leaves in all directions alike
+    float persistence;    ///< 0: light leaves evenly in all directions
     Batch d;              ///< along the flight
     Batch rho;            ///< from the target
     Batch excess;         ///< longest connection in time, over rho

@@ -95,7 +95,7 @@ class Guide {
         return ControlVertex{legs.first, legs.second, legs.firstPerLength * connection.inversePdf};
     }
 
-    /// The probability with which a control vertex is worth tracing: what it brings, about, relative to all that is
+    /// The probability with which a control vertex is traced: its usefulness, about, relative to all that is
     /// still to come from the vertex it was drawn at, but never below a tenth, since light may leave through nearer
     /// parts of the boundary than the one known. What diffuses in a body has most of its connections end deep under it.
     /// `last` is the density of its turn to the target per solid angle.
@@ -106,8 +106,8 @@ class Guide {
         const float depth = std::max(face.depth - vertex.distance * dot(direction, face.normal), 0.0f);
         const float inside = vertex.distance + depth * residual.exit.slant;
         const float logged = -mean(medium_.sigmaT()) * inside - logWayOut(residual);
-        const float worth = meanSigmaS_ * vertex.inversePdf * 4.0f * Pi * last * std::exp(std::min(logged, 20.0f));
-        return std::clamp(worth / WorthTracing, LeastChance, 1.0f);
+        const float useful = meanSigmaS_ * vertex.inversePdf * 4.0f * Pi * last * std::exp(std::min(logged, 20.0f));
+        return std::clamp(useful / AlwaysTraced, LeastChance, 1.0f);
     }
     /// How often a walk that must leave a body, with so much length left for it, has been split: see Splits.
     [[nodiscard]] int splits(const Residual& residual) const {
@@ -190,7 +190,7 @@ class Guide {
     // Bench: study bodies, paths.
     static constexpr float OutsideRate = 0.5f;
     static constexpr float LeastPeak = 0.5f;
-    static constexpr float WorthTracing = 0.01f, LeastChance = 0.1f;
+    static constexpr float AlwaysTraced = 0.01f, LeastChance = 0.1f;
     static constexpr float FirstSplit = 16.0f; ///< transport mean free paths
     static constexpr int MostSplits = 5;
     /// Logarithm of the first passage from the vertex.

@@ -1,5 +1,5 @@
 #pragma once
-// The few operations that the candidates' loop needs of a register of floats (xsimd::batch) and of one float alike.
+// The few operations that the candidates' loop needs of a register of floats (xsimd::batch) and of one float.
 
 #include "darts/Stratification.h"
 

@@ -63,8 +63,8 @@ struct Settings {
     Greens greens = Greens::Causal;
     Proposals proposals = Proposals::MixedUniform;
     int candidates = 8;        ///< 1, 4, 8 or 16
-    bool overlap = true;       ///< the target includes the part of the gate that is still reachable
-    float floor = 0.0f;        ///< added to the target, relative to the candidates' mean; at most 0.05
+    bool overlap = true;       ///< usefulness includes the part of the gate that is still reachable
+    float floor = 0.0f;        ///< added to usefulness, relative to the candidates' mean; at most 0.05
     bool mixDenseOnly = false; ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
 
     bool elliptical = true;     ///< control vertices at all
@@ -92,7 +92,7 @@ inline Settings published(Mode mode) {
     return s;
 }
 
-/// What the study of sampling targets found best, for a phase function of mean cosine g; candidates, roulette and the
+/// What the study of sampling found best, for a phase function of mean cosine g; candidates, roulette and the
 /// camera's share as benchmarks/infinite_medium found them better still.
 inline Settings best(Mode mode, float g) {
     const bool peaked = std::abs(g) >= 0.5f;
@@ -116,7 +116,7 @@ inline Settings best(Mode mode, float g) {
     return s;
 }
 
-/// The same with plain free flights: one exponential candidate without a target.
+/// The same with plain free flights: one exponential candidate.
 inline Settings plainFlights(Settings s) {
     s.greens = Greens::None;
     s.proposals = Proposals::Exponential;

@@ -29,7 +29,7 @@ struct GuidedContext {
     const transport::Sensor& sensor;
     const PathGuides& guides;
     const LightPaths& lightPaths;
-    const ArrivalBound& arrival;
+    const ArrivalBound& bound;
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite
     bool forwardBoundaries;            ///< connections must look through index-matched surfaces
 };
@@ -37,19 +37,19 @@ struct GuidedContext {
 /// The vertex at which the present straight way starts, as the densities of what may be found along it need it.
 struct LastVertex {
     enum class Kind { Specular, Surface, Medium };
-    /// What besides the straight way could have found its end.
-    enum class Tried { Nothing, LightVertices, ReflectedLightToo };
+    /// Caches it connected to: they could have found the end of the straight way too.
+    enum class Caches { None, LightVertices, ReflectedLightToo };
 
     Kind kind = Kind::Specular;
     Vec3f position{0.0f}; ///< on a surface
     float pdf = 0.0f;     ///< of its own sampling, for the present direction, per solid angle
-    Tried tried = Tried::Nothing;
+    Caches caches = Caches::None;
 
-    [[nodiscard]] bool triedReflectedLight() const { return tried == Tried::ReflectedLightToo; }
+    [[nodiscard]] bool usesReflectedLight() const { return caches == Caches::ReflectedLightToo; }
 };
 
-/// How the walk came to the ray's origin, if reflected light was tried at the vertex before and may end here.
-struct Arrival {
+/// How the walk came to the ray's origin, if the vertex before was connected to reflected light and may end here.
+struct Approach {
     float pdf;    ///< by the walk's own sampling, per area or volume
     Vec3f normal; ///< of the surface here, on the side of the vertex before; 0 in media
 };
@@ -95,7 +95,7 @@ struct GuidedPath {
     [[nodiscard]] Scattering scatteringTowards(const Vec3f& direction, const SurfaceInteraction* surface) const;
 
     [[nodiscard]] bool mayConnect(double time, float distance) const {
-        return distance > 0.0f && context.arrival.mayConnect(time, distance, target->start);
+        return distance > 0.0f && context.bound.mayConnect(time, distance, target->start);
     }
     /// Of what arrives at the ray's origin inside the gate, from the target.
     [[nodiscard]] LengthsInGate lengthsInGate() const;
@@ -127,7 +127,7 @@ struct GuidedPath {
     CameraPath state;
     transport::GuidedStep step; ///< looks from the ray's origin
     LastVertex last;
-    std::optional<Arrival> arrival;
+    std::optional<Approach> approach;
 };
 
 } // namespace tungsten::path

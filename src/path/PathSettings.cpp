@@ -33,10 +33,10 @@ void warnAboutUnguided(const ObjectReader& block, const EffectPlan& facts, const
 
 /// A camera path meets such light with probability zero; it is found from the first vertex on.
 void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene) {
-    const auto beam = std::find_if(scene.emitters.begin(), scene.emitters.end(),
-                                   [](const Emitter& emitter) { return emitter.isDelta(); });
-    if (beam == scene.emitters.end()) return;
-    const std::string name = beam->name.empty() ? "" : " of '" + beam->name + "'";
+    const auto laser = std::find_if(scene.emitters.begin(), scene.emitters.end(),
+                                    [](const Emitter& emitter) { return emitter.isDelta(); });
+    if (laser == scene.emitters.end()) return;
+    const std::string name = laser->name.empty() ? "" : " of '" + laser->name + "'";
     block.diagnostics()->warnings.push_back(
         {block.diagnostics()->file, "primitives",
          "paths miss what the camera sees of the light" + name +

@@ -17,7 +17,7 @@ struct PathSettings {
     transport::Policy policy; ///< what is asked for; PathPlan says what is done
 };
 
-/// What all integrators of this plugin read alike: max_bounces and its like are the scene's already.
+/// What all integrators of this plugin read: max_bounces and its like are the scene's already.
 transport::BounceLimits readBounceLimits(const ObjectReader& block, const Scene& scene);
 bool readRussianRoulette(const ObjectReader& block, bool timeResolved);
 /// Settings of the photon integrators: a scene may switch between them and this plugin's by its type alone.

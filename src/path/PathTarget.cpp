@@ -49,7 +49,7 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
     target.emitter = &emitter;
     target.probability = chosen.probability;
     target.start = emitter.emissionTime;
-    if (emitter.isDelta()) return scatterBeam(std::move(target), sampler, counters);
+    if (emitter.isDelta()) return scatterLaser(std::move(target), sampler, counters);
     target.index = int(chosen.index);
     target.point = sampleEmissionPoint(emitter, sampler.next2D());
     target.surrounding = emitter.medium;
@@ -58,39 +58,40 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
 }
 
 /// Light on its straight or specular way from the emitter to its first scattering vertex.
-struct TargetChoice::Beam {
+struct TargetChoice::Laser {
     Ray ray;
     Region region;
 };
 
-std::optional<PathTarget> TargetChoice::scatterBeam(PathTarget target, Sampler& sampler, PathCounters& counters) const {
+std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, Sampler& sampler,
+                                                     PathCounters& counters) const {
     const EmissionSample emission = sampleEmission(*target.emitter, sampler.next2D(), Vec2f(0.5f, 0.5f));
     target.power = emission.power / target.probability;
-    Beam beam{emission.ray, scene_.regionOf(*target.emitter)};
+    Laser laser{emission.ray, scene_.regionOf(*target.emitter)};
     while (target.interactions + 1 < scene_.transport.maxBounces && !isBlack(target.power)) {
-        const Medium* medium = scene_.medium(beam.region);
+        const Medium* medium = scene_.medium(laser.region);
         FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
         if (medium) flight = sampleFlight(*medium, Infinity, sampler);
-        beam.ray.tMax = flight.distance;
+        laser.ray.tMax = flight.distance;
         ++counters.rays;
-        const auto hit = scene_.geometry->intersect(beam.ray);
+        const auto hit = scene_.geometry->intersect(laser.ray);
         if (!hit && flight.exited) return std::nullopt;
         const float length = hit ? hit->t : flight.distance;
-        target.start += double(length) / double(beam.region.speed);
+        target.start += double(length) / double(laser.region.speed);
         ++target.interactions;
         if (!hit) {
             target.power = target.power * flight.weight;
-            target.point = {beam.ray.at(length), beam.ray.direction, {0.0f, 0.0f}};
-            target.source.emplace(*medium, target.point.position, beam.ray.direction, beam.region);
-            target.surrounding = beam.region.medium;
+            target.point = {laser.ray.at(length), laser.ray.direction, {0.0f, 0.0f}};
+            target.source.emplace(*medium, target.point.position, laser.ray.direction, laser.region);
+            target.surrounding = laser.region.medium;
             ++target.mediumScatters;
             return target;
         }
         if (medium)
             target.power = target.power * (medium->transmittance(length) / probabilityFlightExits(*medium, length));
-        if (!meetSurface(target, beam, *hit, sampler)) return std::nullopt;
+        if (!meetSurface(target, laser, *hit, sampler)) return std::nullopt;
         if (target.source) {
-            target.surrounding = beam.region.medium;
+            target.surrounding = laser.region.medium;
             return target;
         }
     }
@@ -98,23 +99,23 @@ std::optional<PathTarget> TargetChoice::scatterBeam(PathTarget target, Sampler& 
 }
 
 /// Becomes a virtual source or goes on along a specular or forward lobe, by chance where both can be; false: absorbed.
-bool TargetChoice::meetSurface(PathTarget& target, Beam& beam, const SurfaceHit& hit, Sampler& sampler) const {
-    const SurfaceInteraction surface = makeInteraction(scene_, hit, beam.ray.direction);
+bool TargetChoice::meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const {
+    const SurfaceInteraction surface = makeInteraction(scene_, hit, laser.ray.direction);
     const LobeMask lobes = surface.bsdf->lobes(), onward = lobes & (lobe::Specular | lobe::Forward);
     const float scatters = (lobes & lobe::Smooth) == 0 ? 0.0f : onward == 0 ? 1.0f : 0.5f;
     if (sampler.next1D() < scatters) {
         target.power = target.power / scatters;
         target.point = {hit.position, hit.ng, hit.uv, hit.error};
-        target.source.emplace(scene_, surface, TransportMode::Photons, beam.region);
+        target.source.emplace(scene_, surface, TransportMode::Photons, laser.region);
         return true;
     }
     if (onward == 0) return false;
     const auto exit = sampleExit(surface, surface.query(TransportMode::Photons, onward), false, sampler);
     if (!exit) return false;
-    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-beam.ray.direction, exit->direction);
+    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-laser.ray.direction, exit->direction);
     target.power = target.power * exit->weight * (shading / (1.0f - scatters));
-    beam.region = regionBeyond(surface, exit->direction, beam.region);
-    beam.ray = hit.leave(exit->direction);
+    laser.region = regionBeyond(surface, exit->direction, laser.region);
+    laser.ray = hit.leave(exit->direction);
     return true;
 }
 

@@ -49,9 +49,9 @@ class TargetChoice {
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, PathCounters& counters) const;
 
   private:
-    struct Beam;
-    std::optional<PathTarget> scatterBeam(PathTarget target, Sampler& sampler, PathCounters& counters) const;
-    bool meetSurface(PathTarget& target, Beam& beam, const SurfaceHit& hit, Sampler& sampler) const;
+    struct Laser;
+    std::optional<PathTarget> scatterLaser(PathTarget target, Sampler& sampler, PathCounters& counters) const;
+    bool meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const;
 
     const Scene& scene_;
     Distribution1D distribution_;

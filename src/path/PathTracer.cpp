@@ -75,7 +75,7 @@ void PathTracer::plan(EffectPlan& plan) const {
 
 void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
     plan_ = PathPlan::of(*scene_, settings_, plan);
-    arrival_.emplace(*scene_, plan);
+    bound_.emplace(*scene_, plan);
     using Emitters = TargetChoice::Emitters;
     targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections);
     if (!plan_.guidance.on) return;
@@ -109,7 +109,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
         PixelSink sink(film, sensor_, x, y, pass.samples, counters);
         const uint64_t pixel = size_t(y) * width + size_t(x);
         // Consecutive samples of a pixel take the targets in turn.
-        const float rotation = targets_->several() ? Sampler(pass.seed, RandomStream::Target, 0, pixel).next1D() : 0.0f;
+        const float rotation =
+            targets_->several() ? Sampler(pass.seed, RandomStream::Emitter, 0, pixel).next1D() : 0.0f;
         for (uint32_t s = 0; s < pass.samples; ++s) {
             // Keyed by the absolute sample: but for light vertices, each pass's own, the image does not depend on how
             // samples are cut into passes.
@@ -132,20 +133,20 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{*scene_, settings_, lights_, *arrival_, plan_.forwardBoundaries};
-    const bool beams = targets_->any();
+    const WalkContext context{*scene_, settings_, lights_, *bound_, plan_.forwardBoundaries};
+    const bool lasers = targets_->any();
     renderTiles(
         pass, film, statistics,
         [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
             std::optional<PathTarget> source;
-            if (beams) source = targets_->sample(u, sampler, counters);
+            if (lasers) source = targets_->sample(u, sampler, counters);
             PathWalk<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr).run(ray);
         });
 }
 
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
     const GuidedContext context{*scene_,     settings_, sensor_,        guides_,
-                                lightPaths_, *arrival_, waysOut_.get(), plan_.forwardBoundaries};
+                                lightPaths_, *bound_,   waysOut_.get(), plan_.forwardBoundaries};
     renderTiles(pass, film, statistics,
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
                     const std::optional<PathTarget> target = targets_->sample(u, sampler, counters);

@@ -31,7 +31,7 @@ class PathTracer : public Integrator {
     PathPlan plan_;
     std::optional<TargetChoice>
         targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
-    std::optional<ArrivalBound> arrival_;
+    std::optional<ArrivalBound> bound_;
     PathGuides guides_;
     std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
     LightPaths lightPaths_;                             ///< of the pass

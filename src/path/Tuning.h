@@ -1,5 +1,5 @@
 #pragma once
-// Constants of path tracing that were tuned by measurement. To see what one is worth, change
+// Constants of path tracing that were tuned by measurement. To see what one brings, change
 // it, build, and compare before and after by the bench named:
 //   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
 //   infinite_medium   build/bin/infinite_medium
@@ -28,8 +28,8 @@ inline constexpr float ViewSurfaceOdds = 4.0f;
 inline constexpr size_t FewestPaths = 4096, MostPaths = 32768;
 /// Scenes with more lights have none of these: each would be reached by few.
 inline constexpr size_t MostEmitters = 64;
-/// How many light vertices, or ends of reflected light, a vertex tries. Bench: study cbox-128
-inline constexpr size_t Tried = 64;
+/// Candidates of a vertex among light vertices, and among ends of reflected light. Bench: study cbox-128
+inline constexpr size_t Candidates = 64;
 /// Light paths that tell how many of an emitter's reflect. Bench: study dragon-160
 inline constexpr size_t PilotPaths = 32768;
 

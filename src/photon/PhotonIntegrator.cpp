@@ -2,14 +2,14 @@
 
 #include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
-#include "photon/surface/SharedArrivals.h"
+#include "photon/surface/SharedLight.h"
 
 namespace tungsten::photon {
 
 namespace {
 
 /// Camera paths per pixel that look for surface points. One leaves the noise of lines that a narrow gate lights; more
-/// cost little in small images alone, and in large ones there are more points than can be listed.
+/// cost little in small images alone, and in large ones there are more points than clusters can keep.
 uint32_t surfaceSamples(const Vec2i& resolution) {
     const size_t pixels = size_t(resolution.x) * size_t(resolution.y);
     return pixels > SensorClusters::MostPoints
@@ -55,7 +55,7 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;
         Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass));
-        structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->arrival(),
+        structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->culling(),
                                                                     std::move(store), std::move(radii), rays);
     };
     std::visit(build, settings_.primitive);
@@ -115,10 +115,10 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
     }
     if (plan_.connections.on) {
-        const StageTimer timer(statistics, "share arrivals");
-        const auto kernel = SharingKernel::of(first->points.size() / first->samples, maps.arrivals.size(),
+        const StageTimer timer(statistics, "share light");
+        const auto kernel = SharingKernel::of(first->points.size() / first->samples, maps.received.size(),
                                               settings_.gatherRadius, surfaceFactor);
-        shareArrivals(*scene_, sensor, *first, maps.arrivals, kernel, 1.0 / double(maps.paths), film, statistics);
+        shareLight(*scene_, sensor, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics);
     }
     look(structures, first ? &*first : nullptr, pass, film, statistics);
     for (uint32_t s = 1; first && s < pass.samples; ++s) {

@@ -178,7 +178,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
             const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
             counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
         };
-        const Sampler lights(pass.seed, RandomStream::Target, sample, pixel);
+        const Sampler lights(pass.seed, RandomStream::Emitter, sample, pixel);
         const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
         SensorGather gather(scene, structures, lights, oversampled, workspace, counters);
         if (record) {

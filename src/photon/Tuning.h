@@ -1,5 +1,5 @@
 #pragma once
-// Constants of photon maps that were tuned by measurement. To see what one is worth, change
+// Constants of photon maps that were tuned by measurement. To see what one brings, change
 // it, build, and compare before and after by the bench named:
 //   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
 //   infinite_medium   build/bin/infinite_medium
@@ -52,10 +52,10 @@ inline constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
 /// 0.25, 0.076 at 0.5 and at 1. Bench: study cbox-128
 inline constexpr float SpreadPixels = 0.5f;
 
-/// Arrivals that neighbouring pixels share, and the radius of sharing in pixels. cbox at 128 x 128 without a bound on
-/// the distance, MSE x CPU: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08 with 2.5; then time grows. But without the
-/// bound a small image's blocks are off by 4 % (cornell-fog, 64 x 64). Bench: study cbox-128
-inline constexpr float SharedArrivals = 100.0f, LeastShared = 2.5f, MostShared = 4.0f;
+/// Connections whose light neighbouring pixels share, and the radius of sharing in pixels. cbox at 128 x 128 without a
+/// bound on the distance, MSE x CPU: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08 with 2.5; then time grows. But
+/// without the bound a small image's blocks are off by 4 % (cornell-fog, 64 x 64). Bench: study cbox-128
+inline constexpr float SharedConnections = 100.0f, LeastShared = 2.5f, MostShared = 4.0f;
 
 // --- Stores and structures -------------------------------------------------------------------------------------------
 

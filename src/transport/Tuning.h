@@ -1,5 +1,5 @@
 #pragma once
-// Constants that integrators share and that were tuned by measurement. To see what one is worth, change it,
+// Constants that integrators share and that were tuned by measurement. To see what one brings, change it,
 // build, and compare before and after by the bench named:
 //   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
 //   infinite_medium   build/bin/infinite_medium

@@ -1,4 +1,4 @@
-// Reflected light: what its vertices are worth, and that paths that use it find as much light as paths that do not.
+// Reflected light: what its vertices bring, and that paths that use it find as much light as paths that do not.
 
 #include "path/techniques/ReflectedLight.h"
 

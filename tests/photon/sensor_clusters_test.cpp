@@ -1,7 +1,7 @@
 // Drawing sensor points in time: as often as expectation() says, nothing in time left out, sums unbiased.
 
 #include "photon/surface/SensorClusters.h"
-#include "photon/surface/SpreadArrival.h"
+#include "photon/surface/SpreadLight.h"
 #include "photon/surface/SurfaceConnections.h"
 
 #include "support/ChiSquare.h"
@@ -130,7 +130,7 @@ TEST(SensorClusters, BringAboutTheTargetWithEachDraw) {
         ASSERT_GT(draws.size(), 10u);
         for (const PointDraw& draw : draws) {
             const ClusterPoint& point = corner.points[draw.point];
-            const SpreadArrival seen = spreadArrival(-draw.direction * draw.distance, point.normal, point.spread);
+            const SpreadLight seen = spreadLight(-draw.direction * draw.distance, point.normal, point.spread);
             const double cosine = double(std::max(seen.from.dot(point.normal), 0.05f));
             const double brought = cosine * double(seen.weight) * double(draw.inverseExpectation);
             EXPECT_NEAR(brought, 20.0, 0.1);
@@ -152,14 +152,14 @@ TEST(SensorClusters, ListARandomPartOfVeryManyPoints) {
 }
 
 TEST(CommonTarget, SharesDrawsButNotForOneVertexAlone) {
-    EXPECT_FLOAT_EQ(commonTarget({1.0f, 2.0f, 3.0f}, 12.0), 0.5f);
+    EXPECT_FLOAT_EQ(lightPerConnection({1.0f, 2.0f, 3.0f}, 12.0), 0.5f);
     // 64 for the greatest, 36 for the rest, worth 9.
-    EXPECT_FLOAT_EQ(commonTarget({4.0f, 1e6f, 5.0f}, 100.0), 0.25f);
-    EXPECT_FLOAT_EQ(commonTarget({1e6f, 2e6f}, 50.0), 3e6f / 50.0f);
-    EXPECT_EQ(commonTarget({0.0f, 0.0f}, 50.0), 0.0f);
-    EXPECT_EQ(commonTarget({}, 50.0), 0.0f);
+    EXPECT_FLOAT_EQ(lightPerConnection({4.0f, 1e6f, 5.0f}, 100.0), 0.25f);
+    EXPECT_FLOAT_EQ(lightPerConnection({1e6f, 2e6f}, 50.0), 3e6f / 50.0f);
+    EXPECT_EQ(lightPerConnection({0.0f, 0.0f}, 50.0), 0.0f);
+    EXPECT_EQ(lightPerConnection({}, 50.0), 0.0f);
     // More than all can do together: each as often as it may.
-    EXPECT_FLOAT_EQ(commonTarget({64.0f, 128.0f}, 1000.0), 1.0f);
+    EXPECT_FLOAT_EQ(lightPerConnection({64.0f, 128.0f}, 1000.0), 1.0f);
 }
 
 } // namespace

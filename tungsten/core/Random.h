@@ -29,7 +29,7 @@ enum class RandomStream : uint32_t {
     Photon = 2,
     Resample = 3,
     Test = 4,
-    Target = 5,
+    Emitter = 5, ///< which of them, and which of its points
     LightVertex = 6,
     SensorPoint = 7,
     Pilot = 8,

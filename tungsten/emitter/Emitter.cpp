@@ -58,11 +58,11 @@ EmissionCone emissionCone(const Emitter& emitter, const SurfaceSample& start) {
                                  [&](const AreaEmitter& area) {
                                      return EmissionCone{start.normal, 1.0f - area.cosCone(), true};
                                  },
-                                 [](const DirectionalPointEmitter& beam) {
-                                     return EmissionCone{beam.direction, 0.0f, false};
+                                 [](const DirectionalPointEmitter& laser) {
+                                     return EmissionCone{laser.direction, 0.0f, false};
                                  },
-                                 [](const CollimatedEmitter& beam) {
-                                     return EmissionCone{beam.frame.n, 0.0f, false};
+                                 [](const CollimatedEmitter& laser) {
+                                     return EmissionCone{laser.frame.n, 0.0f, false};
                                  }},
                       emitter.model);
 }
@@ -93,8 +93,8 @@ BoundingSphere boundingSphere(const Emitter& emitter) {
     return std::visit(Overloaded{[](const OneOf<PointEmitter, SpotEmitter, DirectionalPointEmitter> auto& point) {
                                      return BoundingSphere{point.position, 0.0f};
                                  },
-                                 [](const CollimatedEmitter& beam) {
-                                     return BoundingSphere{beam.position, beam.radius};
+                                 [](const CollimatedEmitter& laser) {
+                                     return BoundingSphere{laser.position, laser.radius};
                                  },
                                  [](const AreaEmitter& area) { return boundingSphere(*area.shape); },
                                  [](const InfiniteSphereEmitter& sky) {
@@ -171,7 +171,7 @@ Rgb emitterPower(const Emitter& emitter) {
         Overloaded{
             [](const PointEmitter& point) { return point.intensity * (4.0f * Pi); },
             [](const SpotEmitter& spot) { return spot.intensity * spotSolidAngle(spot.cosInner, spot.cosOuter); },
-            [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto& beam) { return beam.power; },
+            [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto& laser) { return laser.power; },
             [](const AreaEmitter& area) { return area.radiance.average() * area.extent(); },
             [](const InfiniteSphereEmitter& sky) {
                 return sky.radiance.average() * (4.0f * Pi * Pi * sqr(sky.sceneRadius));

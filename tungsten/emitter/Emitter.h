@@ -18,15 +18,15 @@ struct PointEmitter {
     Vec3f position;
     Rgb intensity{0.0f};
 };
-/// An ideal beam from a point; carries `power` in one direction.
+/// A laser: carries `power` in one direction.
 struct DirectionalPointEmitter {
     Vec3f position, direction;
     Rgb power{0.0f};
 };
-/// A parallel beam from a disc of `radius` (0: a line) carrying `power`.
+/// A wide laser: parallel light from a disc of `radius` (0: a line), carries `power`.
 struct CollimatedEmitter {
     Vec3f position;
-    Frame frame; ///< n is the beam direction
+    Frame frame; ///< n is its direction
     float radius = 0.0f;
     Rgb power{0.0f};
 };

@@ -25,14 +25,14 @@ EmissionSample sampleEmission(const SpotEmitter& spot, const Vec2f&, const Vec2f
     return {{spot.position, direction}, spot.intensity * (spot.falloff(local.z) / pdf), pdf, direction};
 }
 
-EmissionSample sampleEmission(const DirectionalPointEmitter& beam, const Vec2f&, const Vec2f&) {
-    return {{beam.position, beam.direction}, beam.power, 0.0f, beam.direction};
+EmissionSample sampleEmission(const DirectionalPointEmitter& laser, const Vec2f&, const Vec2f&) {
+    return {{laser.position, laser.direction}, laser.power, 0.0f, laser.direction};
 }
 
-EmissionSample sampleEmission(const CollimatedEmitter& beam, const Vec2f& uPosition, const Vec2f&) {
-    const Vec2f disk = warp::squareToDisk(uPosition) * beam.radius;
-    const Vec3f origin = beam.position + beam.frame.s * disk.x + beam.frame.t * disk.y;
-    return {{origin, beam.frame.n}, beam.power, 0.0f, beam.frame.n};
+EmissionSample sampleEmission(const CollimatedEmitter& laser, const Vec2f& uPosition, const Vec2f&) {
+    const Vec2f disk = warp::squareToDisk(uPosition) * laser.radius;
+    const Vec3f origin = laser.position + laser.frame.s * disk.x + laser.frame.t * disk.y;
+    return {{origin, laser.frame.n}, laser.power, 0.0f, laser.frame.n};
 }
 
 namespace {

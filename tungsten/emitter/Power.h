@@ -11,9 +11,9 @@ Rgb pointIntensityFromPower(const Rgb& power);
 Rgb spotIntensityFromPower(const Rgb& power, float cosInner, float cosOuter);
 /// A directional_point with emission E carries 4 pi E.
 Rgb directionalPointPower(const Rgb& emission);
-/// A collimated beam's emission is its irradiance if it has a radius, else its power.
+/// A collimated laser's emission is its irradiance if it has a radius, else its power.
 Rgb collimatedPowerFromEmission(const Rgb& emission, float radius);
-/// The format divides a collimated beam's power by 4 pi on the way to its emission.
+/// The format divides a collimated laser's power by 4 pi on the way to its emission.
 Rgb collimatedPowerFromPower(const Rgb& power, float radius);
 /// P / (pi A).
 Texture areaRadianceFromPower(const Texture& power, float area);

@@ -8,8 +8,8 @@ namespace tungsten {
 
 EmissionSample sampleEmission(const PointEmitter& point, const Vec2f& uPosition, const Vec2f& uDirection);
 EmissionSample sampleEmission(const SpotEmitter& spot, const Vec2f& uPosition, const Vec2f& uDirection);
-EmissionSample sampleEmission(const DirectionalPointEmitter& beam, const Vec2f& uPosition, const Vec2f& uDirection);
-EmissionSample sampleEmission(const CollimatedEmitter& beam, const Vec2f& uPosition, const Vec2f& uDirection);
+EmissionSample sampleEmission(const DirectionalPointEmitter& laser, const Vec2f& uPosition, const Vec2f& uDirection);
+EmissionSample sampleEmission(const CollimatedEmitter& laser, const Vec2f& uPosition, const Vec2f& uDirection);
 EmissionSample sampleEmission(const AreaEmitter& area, const Vec2f& uPosition, const Vec2f& uDirection);
 EmissionSample sampleEmission(const InfiniteSphereEmitter& sky, const Vec2f& uPosition, const Vec2f& uDirection);
 

@@ -6,11 +6,13 @@
 
 namespace tungsten {
 
-AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)), temporary_(target_) {
+AtomicFile::AtomicFile(std::filesystem::path destination)
+    : destination_(std::move(destination)), temporary_(destination_) {
     std::error_code error;
-    const std::filesystem::path folder = target_.parent_path().empty() ? "." : target_.parent_path();
+    const std::filesystem::path folder = destination_.parent_path().empty() ? "." : destination_.parent_path();
     if (!std::filesystem::is_directory(folder, error))
-        throw InputError(target_.string(), "cannot be written: the folder '" + folder.string() + "' does not exist");
+        throw InputError(destination_.string(),
+                         "cannot be written: the folder '" + folder.string() + "' does not exist");
     temporary_ += ".tmp" + std::to_string(::getpid());
 }
 
@@ -21,8 +23,8 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
     std::error_code error;
-    std::filesystem::rename(temporary_, target_, error);
-    if (error) throw InputError(target_.string(), "cannot be written: " + error.message());
+    std::filesystem::rename(temporary_, destination_, error);
+    if (error) throw InputError(destination_.string(), "cannot be written: " + error.message());
     committed_ = true;
 }
 

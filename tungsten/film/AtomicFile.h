@@ -5,12 +5,12 @@
 
 namespace tungsten {
 
-/// A temporary file beside its target: write to path(), then commit() renames it over the target. Removed if never
-/// committed.
+/// A temporary file beside its destination: write to path(), then commit() renames it over the destination. Removed if
+/// never committed.
 class AtomicFile {
   public:
-    /// Throws InputError naming the target when its folder does not exist.
-    explicit AtomicFile(std::filesystem::path target);
+    /// Throws InputError naming the destination when its folder does not exist.
+    explicit AtomicFile(std::filesystem::path destination);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
@@ -19,7 +19,7 @@ class AtomicFile {
     void commit();
 
   private:
-    std::filesystem::path target_, temporary_;
+    std::filesystem::path destination_, temporary_;
     bool committed_ = false;
 };
 

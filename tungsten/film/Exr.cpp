@@ -52,11 +52,11 @@ Imf::Header headerOf(const ExrPart& part, bool multiPart) {
 } // namespace
 
 void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
-    AtomicFile target(file);
+    AtomicFile destination(file);
     try {
         std::vector<Imf::Header> headers;
         for (const ExrPart& part : parts) headers.push_back(headerOf(part, parts.size() > 1));
-        Imf::MultiPartOutputFile out(target.path().c_str(), headers.data(), int(headers.size()));
+        Imf::MultiPartOutputFile out(destination.path().c_str(), headers.data(), int(headers.size()));
         for (size_t i = 0; i < parts.size(); ++i) {
             Imf::FrameBuffer buffer;
             insertLayer(buffer, "", parts[i].colour);
@@ -68,7 +68,7 @@ void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& par
     } catch (const std::exception& error) {
         throw InputError(file.string(), std::string("cannot be written: ") + error.what());
     }
-    target.commit();
+    destination.commit();
 }
 
 int exrPartCount(const std::filesystem::path& file) {

@@ -25,20 +25,20 @@ namespace {
 
 constexpr int LargestSide = 1 << 20;
 
-void requireGood(const std::ostream& out, const std::filesystem::path& target) {
-    if (!out) throw InputError(target.string(), "cannot be written (no permission, or the disk is full)");
+void requireGood(const std::ostream& out, const std::filesystem::path& destination) {
+    if (!out) throw InputError(destination.string(), "cannot be written (no permission, or the disk is full)");
 }
 
 /// Opens, writes through `body`, checks and renames.
 template <typename Body>
 void writeStream(const std::filesystem::path& file, Body body) {
-    AtomicFile target(file);
-    std::ofstream out(target.path(), std::ios::binary);
+    AtomicFile destination(file);
+    std::ofstream out(destination.path(), std::ios::binary);
     requireGood(out, file);
     body(out);
     out.close();
     requireGood(out, file);
-    target.commit();
+    destination.commit();
 }
 
 void writeRow(std::ostream& out, const Image& image, int y) {
@@ -52,10 +52,10 @@ void writePng(const std::filesystem::path& file, const Image& image, ToneMap ton
     bytes.reserve(image.pixels.size() * 3);
     for (const Rgb& pixel : image.pixels)
         for (const uint8_t byte : toLdr(applyToneMap(toneMap, pixel))) bytes.push_back(byte);
-    AtomicFile target(file);
-    if (!stbi_write_png(target.path().c_str(), image.width, image.height, 3, bytes.data(), image.width * 3))
+    AtomicFile destination(file);
+    if (!stbi_write_png(destination.path().c_str(), image.width, image.height, 3, bytes.data(), image.width * 3))
         throw InputError(file.string(), "cannot be written (no permission, or the disk is full)");
-    target.commit();
+    destination.commit();
 }
 
 void writePfm(const std::filesystem::path& file, const Image& image) {

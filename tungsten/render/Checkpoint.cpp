@@ -23,8 +23,8 @@ struct Header {
 
 void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
                      const Film& film) {
-    AtomicFile target(file);
-    std::ofstream out(target.path(), std::ios::binary);
+    AtomicFile destination(file);
+    std::ofstream out(destination.path(), std::ios::binary);
     Header header{{}, identity.sceneHash, identity.seed, identity.sppStep, point.samples};
     std::memcpy(header.magic, Magic, sizeof Magic);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
@@ -32,7 +32,7 @@ void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& id
     out.close();
     if (!out)
         throw InputError(file.string(), "the resume state cannot be written (no permission, or the disk is full)");
-    target.commit();
+    destination.commit();
 }
 
 std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,

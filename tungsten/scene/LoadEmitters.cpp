@@ -96,9 +96,9 @@ void readDirectionalPoint(LoadContext& context, const ObjectReader& reader, cons
 
 void readCollimated(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
     const float radius = float(reader.number(
-        "radius", 0.0, {"length", "of the beam of parallel light along +z; 0: a single ray"}, Range::nonNegative()));
+        "radius", 0.0, {"length", "of the parallel light along +z; 0: a single ray"}, Range::nonNegative()));
     const Strength strength =
-        readStrength(context, reader, {"power/length^2", "irradiance of the beam; of a single ray its power"},
+        readStrength(context, reader, {"power/length^2", "irradiance of the light; of a single ray its power"},
                      {"power", "instead of `emission`, which is it divided by 4 pi", "none"});
     const Rgb power = strength.isPower ? collimatedPowerFromPower(strength.value, radius)
                                        : collimatedPowerFromEmission(strength.value, radius);

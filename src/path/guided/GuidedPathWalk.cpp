@@ -36,7 +36,7 @@ void GuidedPathWalk::lookAhead(const Vec3f& position) {
     const float speed = path_.state.region.speed;
     const darts::TimeGate open{gate.start - target.start, gate.end() - target.start};
     const auto range = darts::ResidualRange::of(open, path_.state.time, double(speed));
-    const float faster = context_.arrival.oneSpeed() ? 0.0f : context_.arrival.highestSpeed() / speed - 1.0f;
+    const float faster = context_.bound.oneSpeed() ? 0.0f : context_.bound.highestSpeed() / speed - 1.0f;
     path_.step.lookAhead(darts::Residual::of(darts::vec3(target.point.position - position), range),
                          target.reach + faster * std::max(float(range.high), 0.0f));
 }

@@ -56,7 +56,7 @@ class GuidedPathWalk {
     bool leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide);
     void passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight);
     /// To a vertex that the walk came to with this density, per area or volume; `normal` as in Arrival. What has been
-    /// tried along the way is over.
+    /// connected to along the way is over.
     void arrive(float pdf, const Vec3f& normal);
     /// By light vertices and reflected light, from the ray's origin: on `surface`, or in the medium if there is none.
     void connectToLightPaths(const SurfaceInteraction* surface);

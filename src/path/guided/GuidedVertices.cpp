@@ -54,9 +54,9 @@ void GuidedPathWalk::split(const darts::Guide& guide, GoOn&& goOn) {
 }
 
 void GuidedPathWalk::arrive(float pdf, const Vec3f& normal) {
-    path_.arrival.reset();
-    if (path_.last.triedReflectedLight() && pdf > 0.0f) path_.arrival = Arrival{pdf, normal};
-    path_.last.tried = LastVertex::Tried::Nothing;
+    path_.approach.reset();
+    if (path_.last.usesReflectedLight() && pdf > 0.0f) path_.approach = Approach{pdf, normal};
+    path_.last.caches = LastVertex::Caches::None;
 }
 
 void GuidedPathWalk::connectToLightPaths(const SurfaceInteraction* surface) {
@@ -64,12 +64,12 @@ void GuidedPathWalk::connectToLightPaths(const SurfaceInteraction* surface) {
     const LightPaths& lightPaths = context_.lightPaths;
     const LightVertexCache* vertices = lightPaths.vertices(path_.target->index);
     if (!vertices || !path_.mayFly(medium)) return;
-    path_.last.tried = LastVertex::Tried::LightVertices;
+    path_.last.caches = LastVertex::Caches::LightVertices;
     LightVertexConnections::connect(path_, surface, *vertices);
-    // Wherever reflected light ends, light vertices would be tried.
+    // Wherever reflected light ends, a walk would connect to light vertices.
     const ReflectedLightCache* reflected = lightPaths.reflected(path_.target->index);
     if (!reflected || !medium || path_.state.flights + 1 >= medium->maxBounces) return;
-    path_.last.tried = LastVertex::Tried::ReflectedLightToo;
+    path_.last.caches = LastVertex::Caches::ReflectedLightToo;
     ReflectedConnections::connect(path_, surface, *reflected);
 }
 
@@ -85,7 +85,7 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
     const bool elliptical = path_.guideOf(state.region).settings().elliptical;
     const float controlShare = elliptical ? ControlVertices::share(path_, medium, distance) : 0.0f;
     state.ray = Ray{state.ray.at(distance), before};
-    const float flight = path_.last.triedReflectedLight() ? context_.lightPaths.flights().pdf(distance) : 0.0f;
+    const float flight = path_.last.usesReflectedLight() ? context_.lightPaths.flights().pdf(distance) : 0.0f;
     arrive(path_.last.pdf * flight / sqr(distance), Vec3f(0.0f));
     lookAhead(state.ray.origin);
     if (!path_.step.reachable().alive()) return false;

@@ -60,9 +60,9 @@ bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
     // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
     if constexpr (TimeResolved)
         if (path_.timed()) {
-            if (arrival_.mayArrive(position, path_.time)) return false;
+            if (bound_.mayArrive(position, path_.time)) return false;
             return !source_ ||
-                   !arrival_.beforeEnd(path_.time, (source_->point.position - position).length(), source_->start);
+                   !bound_.beforeEnd(path_.time, (source_->point.position - position).length(), source_->start);
         }
     return false;
 }
@@ -158,7 +158,7 @@ auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::o
     if (!direct) return std::nullopt;
     ++path_.counters.connections;
     if constexpr (TimeResolved)
-        if (!arrival_.mayConnect(path_.time, direct->distance, choice->emitter->emissionTime)) return std::nullopt;
+        if (!bound_.mayConnect(path_.time, direct->distance, choice->emitter->emissionTime)) return std::nullopt;
     return LightSample{*choice->emitter, *direct, choice->probability};
 }
 
@@ -184,7 +184,7 @@ void PathWalk<TimeResolved, Media>::connectToSource(const Vertex& vertex) {
     if (!end) return;
     ++path_.counters.connections;
     if constexpr (TimeResolved)
-        if (!arrival_.mayConnect(path_.time, end->distance, source_->start)) return;
+        if (!bound_.mayConnect(path_.time, end->distance, source_->start)) return;
     const auto connection = connector_.connect(vertex, path_.throughput, *end, path_.counters.shadowRays);
     if (!connection || !rendered(path_.interactions + connection->crossings + source_->interactions)) return;
     path_.sink.add(connection->throughput, path_.time + connection->time + source_->start);

@@ -15,7 +15,7 @@ struct WalkContext {
     const Scene& scene;
     const PathSettings& settings;
     const LightChoice& lights;
-    const ArrivalBound& arrival;
+    const ArrivalBound& bound;
     bool forwardBoundaries; ///< connections must look through index-matched surfaces
 };
 
@@ -28,7 +28,7 @@ class PathWalk {
     PathWalk(const WalkContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
              const PathTarget* source)
         : path_(context.scene, sink, counters, sampler), scene_(context.scene), settings_(context.settings),
-          lights_(context.lights), arrival_(context.arrival), connector_(context.scene, context.forwardBoundaries),
+          lights_(context.lights), bound_(context.bound), connector_(context.scene, context.forwardBoundaries),
           source_(source) {}
 
     void run(Ray ray);
@@ -71,7 +71,7 @@ class PathWalk {
     const Scene& scene_;
     const PathSettings& settings_;
     const LightChoice& lights_;
-    const ArrivalBound& arrival_;
+    const ArrivalBound& bound_;
     transport::Connector connector_;
     const PathTarget* source_;
     /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while

@@ -1,5 +1,6 @@
 #pragma once
-// Points that light has reached, a few of which are tried at once for arrival at a place within a range of lengths.
+// Points that light has reached, a few of which at once are candidates for arrival at a place within a range of
+// lengths.
 
 #include "path/Tuning.h"
 
@@ -14,18 +15,18 @@ namespace tungsten::path {
 
 class ArrivalWindow {
   public:
-    /// How many points a vertex tries, neighbours in the list from a random place on.
-    static constexpr size_t Size = tuning::Tried;
+    /// Candidates of a vertex: neighbours in the list from a random place on.
+    static constexpr size_t Size = tuning::Candidates;
 
     struct Choice {
         size_t index = 0;
-        float inverseProbability = 0.0f; ///< of its choice among those tried
+        float inverseProbability = 0.0f; ///< of its choice among the candidates
     };
 
     /// `point(i)` is the pair of the i-th of `count` points and light's length so far.
     template <typename Point>
     void fill(size_t count, const Point& point);
-    /// One of those tried whose light, going on straight to `position`, arrives there after a length in [low, high), in
+    /// A candidate whose light, going on straight to `position`, arrives there after a length in [low, high), in
     /// proportion to `importance(index, squared distance)`; none if all of these are 0.
     template <typename Importance>
     [[nodiscard]] std::optional<Choice> choose(const Vec3f& position, float low, float high, const Vec2f& u,

@@ -13,7 +13,7 @@ namespace {
 /// light.
 float shareOfWalk(const GuidedPath& path, const SurfaceInteraction& surface, const Straight& way) {
     const Vec3f toVertex = -path.state.ray.direction;
-    if (path.last.tried == LastVertex::Tried::Nothing || !mayBeLightVertex(surface, toVertex, way.direction))
+    if (path.last.caches == LastVertex::Caches::None || !mayBeLightVertex(surface, toVertex, way.direction))
         return 1.0f;
     const PathTarget& target = *path.target;
     const float lightCosine = std::abs(way.direction.dot(surface.hit.ng));
@@ -29,7 +29,7 @@ float shareOfWalk(const GuidedPath& path, const SurfaceInteraction& surface, con
 void ConnectionsFromMedia::connect(GuidedPath& path, const Medium& medium, float controlShare) {
     CameraPath& state = path.state;
     if (path.step.residual().exit.sealed) return;
-    if (controlShare == 1.0f && path.context.arrival.oneSpeed()) return; // control vertices find it
+    if (controlShare == 1.0f && path.context.bound.oneSpeed()) return; // control vertices find it
     const Straight way = path.straightFrom(state.ray.origin);
     ++state.counters.connections;
     if (!path.mayConnect(state.time, way.distance)) return;

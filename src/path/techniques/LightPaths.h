@@ -10,7 +10,7 @@ class LightPaths {
   public:
     /// Few enough emitters, and one among them that shines in more than one direction.
     [[nodiscard]] static bool helpWith(const Scene& scene);
-    /// Light worth following beyond the first surface.
+    /// Light is followed beyond the first surface.
     [[nodiscard]] static bool reflectedIn(const Scene& scene);
 
     void prepare(const Scene& scene, const TargetChoice& targets, Statistics& statistics);

@@ -1,5 +1,5 @@
 #pragma once
-// Light by way of surface points that it reaches first (LightVertices.h), tried from vertices of the walk.
+// Light by way of surface points that it reaches first (LightVertices.h), connected to vertices of the walk.
 
 #include "path/GuidedPath.h"
 #include "path/techniques/LightVertices.h"
@@ -10,7 +10,7 @@ struct LightVertexConnections {
     /// From the ray's origin: on `surface`, or in the medium if there is none.
     static void connect(GuidedPath& path, const SurfaceInteraction* surface, const LightVertexCache& cache);
     /// Per area, of a surface point that light reaches with density `areaPdf`.
-    [[nodiscard]] static float density(float areaPdf) { return triedDensity(areaPdf); }
+    [[nodiscard]] static float density(float areaPdf) { return candidateDensity(areaPdf); }
 };
 
 } // namespace tungsten::path

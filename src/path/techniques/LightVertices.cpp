@@ -72,12 +72,12 @@ auto LightVertexCache::choose(const Vec3f& position, float low, float high, cons
         const LightVertex& vertex = vertices_[i];
         const Vec3f offset = position - vertex.surface.hit.position;
         const float cosine = std::abs(offset.dot(vertex.surface.hit.ng)) / std::sqrt(squared);
-        const float walkPdf = 0.25f * InvPi * cosine / squared, tried = triedDensity(vertex.areaPdf);
-        return maxComponent(vertex.power) * walkPdf * tried / (tried + walkPdf);
+        const float walkPdf = 0.25f * InvPi * cosine / squared, candidates = candidateDensity(vertex.areaPdf);
+        return maxComponent(vertex.power) * walkPdf * candidates / (candidates + walkPdf);
     };
     const auto choice = window_.choose(position, low, high, u, importance);
     if (!choice) return {};
-    const float each = float(vertices_.size()) / (float(paths_) * float(Tried));
+    const float each = float(vertices_.size()) / (float(paths_) * float(Candidates));
     return {&vertices_[choice->index], each * choice->inverseProbability};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Surface points that light reaches first, shared by all paths of a pass. Few surfaces lie where a path of given length
-// can end; of these points a vertex tries many, by distance alone, before it traces a single ray. (cbox, 128 x 128: a
-// tenth of the variance at equal time.)
+// can end; of these points a vertex has many candidates, by distance alone, before it traces a single ray. (cbox, 128 x
+// 128: a tenth of the variance at equal time.)
 
 #include "path/PathTarget.h"
 #include "path/techniques/ArrivalWindow.h"
@@ -38,13 +38,13 @@ std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& e
 class LightVertexCache {
   public:
     /// How many a vertex tries.
-    static constexpr size_t Tried = ArrivalWindow::Size;
+    static constexpr size_t Candidates = ArrivalWindow::Size;
 
     struct Choice {
         const LightVertex* vertex = nullptr;
         float weight = 0.0f; ///< 1 / (probability x number of light paths)
     };
-    /// One of the Tried vertices from a random place in the cache whose light, going on to `position` by a straight
+    /// One of Candidates vertices from a random place in the cache whose light, going on to `position` by a straight
     /// line, arrives there after a length in [low, high) from the emitter, if there is any.
     [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
 
@@ -57,9 +57,9 @@ class LightVertexCache {
     size_t paths_ = 0;
 };
 
-/// Density per area at `vertex` of the light vertices tried there.
-inline float triedDensity(float areaPdf) {
-    return float(LightVertexCache::Tried) * areaPdf;
+/// Density per area at `vertex` of the candidates there.
+inline float candidateDensity(float areaPdf) {
+    return float(LightVertexCache::Candidates) * areaPdf;
 }
 
 } // namespace tungsten::path

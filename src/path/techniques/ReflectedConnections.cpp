@@ -12,11 +12,11 @@ namespace {
 /// Where the reflected light ends, as a walk would meet it.
 struct End {
     Scattering scattering; ///< towards the glossy surface
-    float arrival = 0.0f;  ///< of scattering at the ray's origin towards it: per area or volume, over per solid angle
+    float jacobian = 0.0f; ///< from densities per solid angle at the ray's origin to per area or volume here
     Region region;         ///< through which its light came
 };
 
-/// None where a walk would not go on alike.
+/// None where a walk would not go on like this.
 std::optional<End> endOf(const GuidedPath& path, const ReflectedVertex& vertex, const Vec3f& direction,
                          float distance) {
     const Region& region = path.state.region;
@@ -75,27 +75,28 @@ void ReflectedConnections::connect(GuidedPath& path, const SurfaceInteraction* s
     const float flight = vertex.surface ? 1.0f : path.context.lightPaths.flights().pdf(distance);
     // Of the walk and of light vertices one vertex on, together.
     const float walk =
-        scattering.pdf * end->arrival * flight *
+        scattering.pdf * end->jacobian * flight *
         (end->scattering.pdf * vertex.walkGeometry + LightVertexConnections::density(vertex.glossy.areaPdf));
-    const float share = transport::balance(cache.tried() * vertex.density, walk);
+    const float share = transport::balance(cache.candidates() * vertex.density, walk);
     const Rgb transmittance = transmittanceOf(path, vertex, *end, distance);
     const double length = double(distance) + double(vertex.length), elapsed = state.time + path.target->start;
     state.sink.add(state.throughput * scattering.value * end->scattering.value * transmittance * vertex.power *
-                       (end->arrival * choice.weight * share),
+                       (end->jacobian * choice.weight * share),
                    elapsed + length / double(state.region.speed));
 }
 
 float ReflectedConnections::density(const GuidedPath& path, const SurfaceInteraction& glossy, const Vec3f& direction,
                                     float flight, const Vec3f& toLight, float areaPdf) {
-    if (!path.arrival || !reflectsSharply(*glossy.bsdf)) return 0.0f;
-    const bool inMedium = isBlack(path.arrival->normal);
-    const float cosine = -direction.dot(path.arrival->normal);
+    if (!path.approach || !reflectsSharply(*glossy.bsdf)) return 0.0f;
+    const bool inMedium = isBlack(path.approach->normal);
+    const float cosine = -direction.dot(path.approach->normal);
     if (!inMedium && !(cosine > 0.0f)) return 0.0f;
     const float pdf = glossy.bsdf->pdf(glossy.query(TransportMode::Radiance), glossy.frame.toLocal(toLight),
                                        glossy.frame.toLocal(direction));
     const LightPaths& lightPaths = path.context.lightPaths;
     const float end = inMedium ? lightPaths.flights().pdf(flight) : cosine;
-    return lightPaths.reflected(path.target->index)->tried() * areaPdf * pdf * end / sqr(flight) / path.arrival->pdf;
+    return lightPaths.reflected(path.target->index)->candidates() * areaPdf * pdf * end / sqr(flight) /
+           path.approach->pdf;
 }
 
 } // namespace tungsten::path

@@ -71,7 +71,7 @@ bool endsReflectedLight(const Bsdf& bsdf) {
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights) {
     trace(scene, emitter, 1.0f, tuning::PilotPaths, PassInfo{.index = PilotPass}, flights);
-    tried_ =
+    candidates_ =
         vertices_.empty() ? 0.0f : float(ArrivalWindow::Size) * float(tuning::PilotPaths) / float(vertices_.size());
 }
 
@@ -95,12 +95,12 @@ auto ReflectedLightCache::choose(const Vec3f& position, float low, float high, c
     // Rough contributions, beside walks with even directions.
     const auto importance = [&](size_t i, float squared) {
         const ReflectedVertex& vertex = vertices_[i];
-        float arrival = 0.25f * InvPi / squared;
+        float walkPdf = 0.25f * InvPi / squared;
         if (vertex.surface)
-            arrival *= std::abs((position - vertex.position).dot(vertex.surface->hit.ng)) / std::sqrt(squared);
-        const float found = arrival * (0.25f * InvPi * vertex.walkGeometry + triedDensity(vertex.glossy.areaPdf));
-        const float tried = tried_ * vertex.density;
-        return maxComponent(vertex.power) * arrival * tried / (tried + found);
+            walkPdf *= std::abs((position - vertex.position).dot(vertex.surface->hit.ng)) / std::sqrt(squared);
+        const float found = walkPdf * (0.25f * InvPi * vertex.walkGeometry + candidateDensity(vertex.glossy.areaPdf));
+        const float candidates = candidates_ * vertex.density;
+        return maxComponent(vertex.power) * walkPdf * candidates / (candidates + found);
     };
     const auto choice = window_.choose(position, low, high, u, importance);
     if (!choice) return {};

@@ -1,6 +1,6 @@
 #pragma once
 // Light one reflection beyond a light vertex: where it goes from glossy surfaces. Paths from the camera seldom come
-// upon the bright spots that a glossy surface throws on what is close by; light's own paths go there. (Dragon: a
+// upon the caustics that a glossy surface throws on what is close by; light's own paths go there. (Dragon: a
 // quarter of the MSE at equal time.)
 
 #include "path/techniques/LightVertices.h"
@@ -28,7 +28,7 @@ struct Flights {
     [[nodiscard]] float pdf(float distance) const { return rate * std::exp(-rate * distance); }
 };
 
-/// Surfaces that are worth following light from.
+/// Surfaces from which light is followed.
 bool reflectsSharply(const Bsdf& bsdf);
 /// Surfaces that light may be followed to: all lobes smooth, none transmits.
 bool endsReflectedLight(const Bsdf& bsdf);
@@ -44,13 +44,13 @@ class ReflectedLightCache {
     /// Learns from light paths of its own how many of them reflect.
     void prepare(const Scene& scene, const Emitter& emitter, const Flights& flights);
     /// No glossy surface in the light, none seen, or an emitter of a single direction.
-    [[nodiscard]] bool empty() const { return !(tried_ > 0.0f); }
-    /// How many light paths a vertex tries, on the average.
-    [[nodiscard]] float tried() const { return tried_; }
+    [[nodiscard]] bool empty() const { return !(candidates_ > 0.0f); }
+    /// How many light paths are a vertex's candidates, on the average.
+    [[nodiscard]] float candidates() const { return candidates_; }
 
     void trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths, const PassInfo& pass,
                const Flights& flights);
-    /// One of those tried whose light, going on straight to `position`, arrives after a length in [low, high).
+    /// A candidate whose light, going on straight to `position`, arrives after a length in [low, high).
     [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
     [[nodiscard]] const std::vector<ReflectedVertex>& vertices() const { return vertices_; }
 
@@ -58,7 +58,7 @@ class ReflectedLightCache {
     std::vector<ReflectedVertex> vertices_;
     ArrivalWindow window_;
     size_t paths_ = 0;
-    float tried_ = 0.0f;
+    float candidates_ = 0.0f;
 };
 
 } // namespace tungsten::path

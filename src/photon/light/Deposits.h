@@ -2,7 +2,7 @@
 // What consecutive light paths leave behind, with each path's share.
 
 #include "photon/primitives/VolumePrimitive.h"
-#include "photon/surface/SurfaceArrival.h"
+#include "photon/surface/ReceivedLight.h"
 
 namespace tungsten::photon {
 
@@ -11,8 +11,9 @@ struct Deposits {
 
     DepositList<Photon> surface;
     VolumeDeposits volume;
-    std::vector<SurfaceArrival> arrivals;
-    std::vector<float> worths; ///< of the vertices' connections, where these have no target yet
+    std::vector<ReceivedLight> received;
+    std::vector<float>
+        expectedLight; ///< light of each vertex's connections, where nobody knows yet what one is to bring
 
     void endPath() {
         surface.endPath();

@@ -14,7 +14,7 @@ double distanceBetween(const Vec3f& a, const Vec3f& b) {
     return d.length();
 }
 
-/// Of light that goes everywhere alike, per solid angle.
+/// Of light that goes everywhere evenly, per solid angle.
 constexpr float InSphere = 0.25f * InvPi;
 
 /// Density per length, for weights, of an ordinary photon at this distance along a flight.
@@ -35,7 +35,7 @@ GuidedPhotonWalk::GuidedPhotonWalk(const WalkContext& context, const PhotonGuida
 void GuidedPhotonWalk::aimAtFrame(uint64_t path) {
     const int frame = guidance_.frames().stratified(path, path_.context.frameShift);
     gate_ = guidance_.frames().frame(frame);
-    path_.arrival = &path_.context.frameArrivals[size_t(frame)];
+    path_.culling = &path_.context.frameCullings[size_t(frame)];
 }
 
 void GuidedPhotonWalk::run() {
@@ -79,7 +79,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     const SurfaceSample start = sampleEmissionPoint(emitter, path_.sampler.next2D());
     path_.ray = Ray{start.position, Vec3f(0.0f)};
     path_.connectable = true;
-    if (!path_.arrival->mayContinue(path_.ray.origin, path_.time)) return false;
+    if (!path_.culling->mayContinue(path_.ray.origin, path_.time)) return false;
     connectToSurfaces(start.margin(), InSphere * meanComponent(emitterPower(emitter)),
                       [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
     // What is guided aims at the camera itself.
@@ -100,14 +100,16 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
 }
 
 template <typename Scattering>
-void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering) {
+void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float meanScattering,
+                                         const Scattering& scattering) {
     if (!connections_ || !path_.bears(path_.power)) return;
-    const LightVertex vertex{path_.ray.origin, margin, path_.time, path_.bounce, path_.region, path_.power, usual};
-    if (connections_->hasTarget())
-        connections_->connect(vertex, gate_, scattering, path_.sampler, draws_, path_.deposits.arrivals,
+    const LightVertex vertex{path_.ray.origin, margin,      path_.time,    path_.bounce,
+                             path_.region,     path_.power, meanScattering};
+    if (connections_->knowsLightPerConnection())
+        connections_->connect(vertex, gate_, scattering, path_.sampler, draws_, path_.deposits.received,
                               path_.counters.rays);
     else
-        path_.deposits.worths.push_back(connections_->worth(vertex, gate_));
+        path_.deposits.expectedLight.push_back(connections_->expectedLight(vertex, gate_));
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
@@ -230,7 +232,7 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points
     if (storesPhotons())
         power = power * transport::balance(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance));
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
-    store(points, path_.context.arrival, path_.ray.at(vertex.distance), power);
+    store(points, path_.context.culling, path_.ray.at(vertex.distance), power);
 }
 
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<PhotonBeam>& beams) {
@@ -241,7 +243,7 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<PhotonBeam>& be
     const FlightPart seen = guidance_.view().seenPart(ray.origin, ray.direction, path_.context.settings.volumeReach());
     const float end = std::min(flight.surface, float(seen.end));
     if (!(float(seen.start) < end)) return;
-    storeBeam(beams, *path_.arrival, medium,
+    storeBeam(beams, *path_.culling, medium,
               {path_.time, ray.origin, ray.direction, path_.power, float(seen.start), end, uint16_t(path_.bounce),
                int16_t(path_.region.medium)});
 }
@@ -252,19 +254,19 @@ void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList
     float share = 0.0f;
     if (elliptical)
         share = transport::balance(step_.controlVertexPdf(distance).value_or(0.0f), pdfPhoton(flight.medium, distance));
-    store(points, *path_.arrival, path_.ray.at(distance), path_.power * (1.0f - share));
+    store(points, *path_.culling, path_.ray.at(distance), path_.power * (1.0f - share));
 }
 
 void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {}
 
-void GuidedPhotonWalk::store(DepositList<Photon>& points, const ArrivalCulling& arrival, const Vec3f& position,
+void GuidedPhotonWalk::store(DepositList<Photon>& points, const ArrivalCulling& culling, const Vec3f& position,
                              const Rgb& power) {
     const int bounce = path_.bounce + 1;
     if (!path_.bears(power) || bounce > MostPhotonBounces) return;
     if (guidance_.directView() && !guidance_.view().sees(position, path_.context.settings.volumeReach())) return;
     ++path_.counters.volumeDeposits;
     const double time = path_.time + distanceBetween(path_.ray.origin, position) / double(path_.region.speed);
-    if (!arrival.mayCount(position, time)) return;
+    if (!culling.mayCount(position, time)) return;
     ++path_.counters.countingDeposits;
     points.records.push_back(
         {time, position, path_.ray.direction, power, uint16_t(bounce), int16_t(path_.region.medium)});

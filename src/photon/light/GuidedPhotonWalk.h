@@ -51,7 +51,7 @@ class GuidedPhotonWalk {
     bool leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before);
     bool meetSurface(const SurfaceHit& hit);
     template <typename Scattering>
-    void connectToSurfaces(const SurfaceMargin& margin, float usual, const Scattering& scattering);
+    void connectToSurfaces(const SurfaceMargin& margin, float meanScattering, const Scattering& scattering);
 
     // What is left for a primitive.
     /// Points: the control vertex.
@@ -69,7 +69,7 @@ class GuidedPhotonWalk {
     [[nodiscard]] bool storesVertices() const {
         return path_.context.storeVolume && std::holds_alternative<DepositList<Photon>>(path_.deposits.volume);
     }
-    void store(DepositList<Photon>& points, const ArrivalCulling& arrival, const Vec3f& position, const Rgb& power);
+    void store(DepositList<Photon>& points, const ArrivalCulling& culling, const Vec3f& position, const Rgb& power);
 
     LightPath path_;
     const Scene& scene_;

@@ -11,7 +11,7 @@ bool LightPath::emitFrom(const Emitter& emitter, float probability) {
     time = emitter.emissionTime;
     region = context.scene.regionOf(emitter);
     ray = emission.ray;
-    return !isBlack(power) && arrival->mayContinue(ray.origin, time);
+    return !isBlack(power) && culling->mayContinue(ray.origin, time);
 }
 
 void LightPath::collide(const Vec3f& position, double length) {
@@ -30,14 +30,14 @@ bool LightPath::bears(const Rgb& carried) {
 }
 
 bool LightPath::deposit(DepositList<Photon>& list, const Vec3f& position, const Rgb& carried, int medium) {
-    if (!arrival->mayCount(position, time)) return false;
+    if (!culling->mayCount(position, time)) return false;
     list.records.push_back({time, position, ray.direction, carried, uint16_t(bounce), int16_t(medium)});
     return true;
 }
 
 void LightPath::depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium, float reach) {
     if (!bears(power) || !orderCounts(1)) return;
-    storeBeam(beams, *arrival, medium,
+    storeBeam(beams, *culling, medium,
               {time, ray.origin, ray.direction, power, 0.0f, reach, uint16_t(bounce), int16_t(region.medium)});
 }
 
@@ -46,7 +46,7 @@ bool LightPath::arriveOnSurface(const SurfaceHit& hit) {
     ++bounce;
     flights = 0;
     consecutiveMedium = 0;
-    if (!arrival->mayContinue(hit.position, time)) return false;
+    if (!culling->mayContinue(hit.position, time)) return false;
     surface = makeInteraction(context.scene, hit, ray.direction);
     if (!context.storeSurface || (surface.bsdf->lobes() & lobe::Smooth) == 0) return true;
     const float shading = std::abs(ray.direction.dot(surface.frame.n)), geometric = std::abs(ray.direction.dot(hit.ng));

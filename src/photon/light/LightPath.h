@@ -22,8 +22,8 @@ struct WalkCounters {
 struct WalkContext {
     const Scene& scene;
     const PhotonSettings& settings;
-    const ArrivalCulling& arrival;
-    std::span<const ArrivalCulling> frameArrivals; ///< for paths that aim at single frames
+    const ArrivalCulling& culling;
+    std::span<const ArrivalCulling> frameCullings; ///< for paths that aim at single frames
     float frameShift; ///< of the order of frames: over passes, each is aimed at equally often
     const Distribution1D& emitters;
     bool storeSurface, storeVolume;
@@ -37,7 +37,7 @@ struct WalkContext {
 struct LightPath {
     LightPath(const WalkContext& walkContext, const Sampler& ownSampler, Deposits& ownDeposits,
               WalkCounters& ownCounters)
-        : context(walkContext), arrival(&walkContext.arrival), sampler(ownSampler), deposits(ownDeposits),
+        : context(walkContext), culling(&walkContext.culling), sampler(ownSampler), deposits(ownDeposits),
           counters(ownCounters) {}
 
     /// By the emitter's own distribution; `probability` is that of its choice. False ends the path.
@@ -65,7 +65,7 @@ struct LightPath {
     }
 
     const WalkContext& context;
-    const ArrivalCulling* arrival;
+    const ArrivalCulling* culling;
     Sampler sampler;
     Deposits& deposits;
     WalkCounters& counters;

@@ -56,7 +56,7 @@ void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings,
     appendPaths(maps.surface, d.surface, settings.photonCount, sampler);
     withVolume(maps.volume, d.volume,
                [&](auto& store, const auto& list) { appendPaths(store, list, settings.volumePhotonCount, sampler); });
-    maps.arrivals.insert(maps.arrivals.end(), d.arrivals.begin(), d.arrivals.end());
+    maps.received.insert(maps.received.end(), d.received.begin(), d.received.end());
 }
 
 /// Room for what the first wave lets expect, so that growing does not hold the photons twice.
@@ -77,24 +77,25 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 } // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan)
-    : scene_(scene), settings_(settings), arrival_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
+    : scene_(scene), settings_(settings), culling_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
       guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan) : nullptr),
       emitters_(powerDistribution(scene)), storeVolume_(plan.volume.on), storeSurface_(plan.surfacePhotons.on),
       glossySensorPaths_(plan.glossyPaths.on),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
-    for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameArrivals_.push_back(arrival_.ofFrame(frame));
+    for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameCullings_.push_back(culling_.ofFrame(frame));
 }
 
 void PhotonPass::setGate(const TimeGate& gate) {
-    arrival_.setGate(gate);
+    culling_.setGate(gate);
     if (guidance_) guidance_->setGate(gate);
 }
 
-void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const {
-    // Paths of their own: the target must not depend on the paths that it is for.
+void PhotonPass::setLightPerConnection(const PassInfo& pass, SurfaceConnections& connections,
+                                       Statistics& statistics) const {
+    // Paths of their own: it must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings_, arrival_, frameArrivals_, 0.0f, emitters_, false, storeVolume_};
+    const WalkContext context{scene_, settings_, culling_, frameCullings_, 0.0f, emitters_, false, storeVolume_};
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths, Batch(settings_.primitive));
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
@@ -103,10 +104,11 @@ void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections
         const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
         GuidedPhotonWalk(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters).run();
     });
-    std::vector<float> worths;
+    std::vector<float> expectedLight;
     uint64_t deposits = 0;
     for (const Batch& pilot : pilots) {
-        worths.insert(worths.end(), pilot.deposits.worths.begin(), pilot.deposits.worths.end());
+        expectedLight.insert(expectedLight.end(), pilot.deposits.expectedLight.begin(),
+                             pilot.deposits.expectedLight.end());
         deposits += countOf(pilot.deposits.volume);
         statistics.add("rays", pilot.counters.rays);
     }
@@ -115,11 +117,11 @@ void PhotonPass::setTarget(const PassInfo& pass, SurfaceConnections& connections
     const double expected = std::min(double(settings_.volumePhotonCount) * perDeposit, double(settings_.photonCount));
     const double perPath =
         std::clamp(tuning::ConnectionsPerPass / std::max(expected, 1.0), tuning::LeastPerPath, tuning::MostPerPath);
-    connections.setTarget(commonTarget(std::move(worths), perPath * double(paths)));
+    connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
 }
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
-    if (connections) setTarget(pass, *connections, statistics);
+    if (connections) setLightPerConnection(pass, *connections, statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);
@@ -139,8 +141,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                    Batch(settings_.primitive));
         const WalkContext context{scene_,
                                   settings_,
-                                  arrival_,
-                                  frameArrivals_,
+                                  culling_,
+                                  frameCullings_,
                                   frameShift,
                                   emitters_,
                                   !maps.surface.full,
@@ -174,7 +176,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
         traced += wave;
     }
     maps.paths = traced;
-    statistics.add("surface connections", maps.arrivals.size());
+    statistics.add("surface connections", maps.received.size());
     statistics.add("photons", traced);
     statistics.add("stored surface photons", maps.surface.records.size());
     forEachPrimitive(settings_.primitive, [&](const auto& p) {

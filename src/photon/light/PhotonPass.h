@@ -16,7 +16,7 @@ struct PhotonMaps {
     Store<Photon> surface;
     VolumeStore volume;
     /// What vertices sent to sensor points, by all paths of the pass.
-    std::vector<SurfaceArrival> arrivals;
+    std::vector<ReceivedLight> received;
     uint64_t paths = 0;
 };
 
@@ -31,19 +31,19 @@ class PhotonPass {
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);
-    [[nodiscard]] const ArrivalCulling& arrival() const { return arrival_; }
+    [[nodiscard]] const ArrivalCulling& culling() const { return culling_; }
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
 
   private:
     /// Tells connections what each of them is to bring, from what a few paths find.
-    void setTarget(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const;
+    void setLightPerConnection(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;
-    ArrivalCulling arrival_;
+    ArrivalCulling culling_;
     std::unique_ptr<PhotonGuidance> guidance_;
-    std::vector<ArrivalCulling> frameArrivals_; ///< when light paths aim at single frames
+    std::vector<ArrivalCulling> frameCullings_; ///< when light paths aim at single frames
     Distribution1D emitters_;                   ///< proportional to power
     bool storeVolume_, storeSurface_, glossySensorPaths_, densityPhotons_;
 };

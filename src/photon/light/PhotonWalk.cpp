@@ -45,7 +45,7 @@ void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     path_.collide(path_.ray.at(distance), double(distance));
     const Vec3f position = path_.ray.origin;
-    if (!path_.arrival->mayContinue(position, path_.time)) return false;
+    if (!path_.culling->mayContinue(position, path_.time)) return false;
     if (path_.context.storeVolume)
         std::visit([&](auto& list) { depositVertex(list, position); }, path_.deposits.volume);
     path_.ray.direction = medium.phase.sample(path_.ray.direction, path_.sampler.next2D());

@@ -200,20 +200,20 @@ float SensorClusters::weight(const ClusterQuery& query) const {
     return weighClusters(query).total();
 }
 
-void SensorClusters::draw(const ClusterQuery& query, float target, Sampler& sampler,
+void SensorClusters::draw(const ClusterQuery& query, float weightPerDraw, Sampler& sampler,
                           std::vector<PointDraw>& draws) const {
     draws.clear();
     const ClusterWeights clusters = weighClusters(query);
     if (!(clusters.total() > 0.0f)) return;
-    if (!(target > 0.0f)) target = clusters.total() / DrawsWithoutTarget;
-    const int visits = visitsFor(clusters.total() / target);
+    if (!(weightPerDraw > 0.0f)) weightPerDraw = clusters.total() / DefaultDraws;
+    const int visits = visitsFor(clusters.total() / weightPerDraw);
     for (int i = 0; i < visits; ++i) {
         const float part = (float(i) + sampler.next1D()) / float(visits), u = sampler.next1D();
         const auto cluster = clusters.choose(part * clusters.total());
         const PointWeights points = weighPoints(query, cluster.member);
         if (!(points.total() > 0.0f)) continue;
         const float inverseVisits = clusters.total() / (cluster.weight * float(visits));
-        const float expected = std::min(points.total() * inverseVisits / target, MostPerVisit);
+        const float expected = std::min(points.total() * inverseVisits / weightPerDraw, MostPerVisit);
         const int count = int(expected + u);
         for (int k = 0; k < count; ++k) {
             const auto point = points.choose((float(k) + sampler.next1D()) / float(count) * points.total());
@@ -227,16 +227,16 @@ void SensorClusters::draw(const ClusterQuery& query, float target, Sampler& samp
     }
 }
 
-float SensorClusters::expectation(const ClusterQuery& query, float target, size_t rank) const {
+float SensorClusters::expectation(const ClusterQuery& query, float weightPerDraw, size_t rank) const {
     const ClusterWeights clusters = weighClusters(query);
     const size_t cluster = size_t(std::upper_bound(begin_.begin(), begin_.end(), uint32_t(rank)) - begin_.begin()) - 1;
     const float chosen = clusters.weightOf(cluster);
     if (!(chosen > 0.0f)) return 0.0f;
-    if (!(target > 0.0f)) target = clusters.total() / DrawsWithoutTarget;
-    const float visits = float(visitsFor(clusters.total() / target)) * chosen / clusters.total();
+    if (!(weightPerDraw > 0.0f)) weightPerDraw = clusters.total() / DefaultDraws;
+    const float visits = float(visitsFor(clusters.total() / weightPerDraw)) * chosen / clusters.total();
     const PointWeights points = weighPoints(query, cluster);
     if (!(points.total() > 0.0f)) return 0.0f;
-    return visits * std::min(points.total() / (visits * target), MostPerVisit) *
+    return visits * std::min(points.total() / (visits * weightPerDraw), MostPerVisit) *
            points.weightOf(rank - begin_[cluster]) / points.total();
 }
 

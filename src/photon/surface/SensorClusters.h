@@ -11,7 +11,7 @@
 namespace tungsten::photon {
 
 /// A point that the camera sees; `cameraLength` is what it adds to the length of a flight, `spread` that of
-/// spreadArrival().
+/// spreadLight().
 struct ClusterPoint {
     Vec3f position, normal;
     float cameraLength, spread;
@@ -36,7 +36,7 @@ struct PointDraw {
     float inverseExpectation;
 };
 
-/// At most MostPoints of the points are listed, at random; each stands for (points) / (points listed).
+/// At most MostPoints of the points are kept, at random; each stands for (points) / (points kept).
 class SensorClusters {
   public:
     static constexpr size_t MostPoints = size_t(1) << 18;
@@ -46,18 +46,18 @@ class SensorClusters {
     /// About the sum over the points in time of 1 / (d^2 + spread^2), whatever their cosines.
     [[nodiscard]] float weight(const ClusterQuery& query) const;
     /// Draws points in time, with probability about proportional to cosine / d^2 from the vertex lifted by the spread
-    /// (spreadArrival), so many that each stands for `target` of the sum of that: first clusters by an estimate, then
-    /// points in them by their true weights. With a target of 0 about DrawsWithoutTarget.
-    void draw(const ClusterQuery& query, float target, Sampler& sampler, std::vector<PointDraw>& draws) const;
-    /// How often draw() is expected to draw a listed point (by its rank in order()).
-    [[nodiscard]] float expectation(const ClusterQuery& query, float target, size_t rank) const;
-    /// Listed points, cluster by cluster.
+    /// (spreadLight), so many that each stands for `weightPerDraw` of the sum of that: first clusters by an estimate,
+    /// then points in them by their true weights. With 0 about DefaultDraws.
+    void draw(const ClusterQuery& query, float weightPerDraw, Sampler& sampler, std::vector<PointDraw>& draws) const;
+    /// How often draw() is expected to draw a kept point (by its rank in order()).
+    [[nodiscard]] float expectation(const ClusterQuery& query, float weightPerDraw, size_t rank) const;
+    /// Kept points, cluster by cluster.
     [[nodiscard]] const std::vector<uint32_t>& order() const { return order_; }
 
   private:
     static constexpr size_t MostClusters = 1024, LeastSize = 8, MostSize = MostPoints / MostClusters + 8;
     static constexpr float MostVisits = 32.0f, MostPerVisit = 64.0f; ///< of clusters, of points in one
-    static constexpr float DrawsWithoutTarget = 8.0f;
+    static constexpr float DefaultDraws = 8.0f;
 
     template <size_t Capacity>
     struct Weights;

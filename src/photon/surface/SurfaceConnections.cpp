@@ -9,8 +9,8 @@ namespace tungsten::photon {
 
 namespace {
 
-float usualIntensity(const LightVertex& vertex) {
-    return meanComponent(vertex.power) * vertex.usualScattering;
+float meanIntensity(const LightVertex& vertex) {
+    return meanComponent(vertex.power) * vertex.meanScattering;
 }
 
 } // namespace
@@ -32,7 +32,7 @@ SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::Sens
             {point.hit.position, point.hit.ng, scene.transport.cameraUnwarped ? 0.0f : float(length), spread_.back()});
     }
     clusters_ = std::make_unique<SensorClusters>(points, Sampler(pass.seed, RandomStream::Resample, pass.index, 0));
-    perListed_ = float(double(points_.size()) / double(clusters_->order().size()));
+    perKept_ = float(double(points_.size()) / double(clusters_->order().size()));
 }
 
 SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& vertex,
@@ -40,7 +40,7 @@ SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& ver
     Ranges ranges;
     const double low = speed_ * (gate.begin - vertex.time), high = speed_ * (gate.end - vertex.time);
     if (!clusters_ || !(high > 0.0)) return ranges;
-    // arrive() tests exactly.
+    // receive() tests exactly.
     constexpr auto Slack = float(transport::FlightSlack); // a few times: clusters add lengths in float
     const float slack = 4.0f * Slack * float(high) + 10.0f * Slack * float(high - low);
     const auto open = [&](const darts::TimeGate& times) {
@@ -57,23 +57,23 @@ SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& ver
     return ranges;
 }
 
-float SurfaceConnections::worth(const LightVertex& vertex, const darts::TimeGate& gate) const {
+float SurfaceConnections::expectedLight(const LightVertex& vertex, const darts::TimeGate& gate) const {
     const Ranges ranges = openRanges(vertex, gate);
     if (ranges.count == 0) return 0.0f;
-    return usualIntensity(vertex) * clusters_->weight({vertex.position, {ranges.list.data(), ranges.count}});
+    return meanIntensity(vertex) * clusters_->weight({vertex.position, {ranges.list.data(), ranges.count}});
 }
 
 void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
                               std::vector<PointDraw>& draws) const {
     draws.clear();
     const Ranges ranges = openRanges(vertex, gate);
-    const float each = usualIntensity(vertex);
+    const float each = meanIntensity(vertex);
     if (ranges.count == 0 || !(each > 0.0f)) return;
-    clusters_->draw({vertex.position, {ranges.list.data(), ranges.count}}, *target_ / each, sampler, draws);
+    clusters_->draw({vertex.position, {ranges.list.data(), ranges.count}}, *lightPerConnection_ / each, sampler, draws);
 }
 
-void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw,
-                                SurfaceArrival arrival, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
+void SurfaceConnections::receive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw,
+                                 ReceivedLight light, std::vector<ReceivedLight>& received, uint64_t& rays) const {
     const SensorPoint& point = points_[draw.point];
     const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
     const Vec3f toVertex = -draw.direction;
@@ -93,27 +93,27 @@ void SurfaceConnections::arrive(const LightVertex& vertex, const darts::TimeGate
     if (!transport::BounceLimits(scene_.transport).renders(interactions)) return;
     const double time = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
     if (!(time >= gate.begin && time < gate.end)) return;
-    arrival.frame = sensor_.gate.frameOf(time);
-    if (arrival.frame < 0) return;
-    arrival.light = arrival.light * visibility.transmittance * sensor_.weight(time);
-    arrivals.push_back(arrival);
+    light.frame = sensor_.gate.frameOf(time);
+    if (light.frame < 0) return;
+    light.light = light.light * visibility.transmittance * sensor_.weight(time);
+    received.push_back(light);
 }
 
-float commonTarget(std::vector<float> worths, double wanted) {
+float lightPerConnection(std::vector<float> expected, double wanted) {
     constexpr double MostOfOne = 64.0;
-    std::erase_if(worths, [](float worth) { return !(worth > 0.0f); });
-    std::sort(worths.begin(), worths.end(), std::greater<>());
+    std::erase_if(expected, [](float light) { return !(light > 0.0f); });
+    std::sort(expected.begin(), expected.end(), std::greater<>());
     double rest = 0.0;
-    for (const float worth : worths) rest += double(worth);
+    for (const float light : expected) rest += double(light);
     // While the greatest connect as often as they may, the others share what is left.
-    for (size_t greatest = 0; greatest < worths.size(); ++greatest) {
+    for (size_t greatest = 0; greatest < expected.size(); ++greatest) {
         const double left = wanted - MostOfOne * double(greatest);
         if (left <= 0.0) break;
-        const double target = rest / left;
-        if (double(worths[greatest]) <= MostOfOne * target) return float(target);
-        rest -= double(worths[greatest]);
+        const double each = rest / left;
+        if (double(expected[greatest]) <= MostOfOne * each) return float(each);
+        rest -= double(expected[greatest]);
     }
-    return worths.empty() ? 0.0f : worths.back() / float(MostOfOne);
+    return expected.empty() ? 0.0f : expected.back() / float(MostOfOne);
 }
 
 } // namespace tungsten::photon

@@ -3,9 +3,9 @@
 // just in time, vertices look for surface points that the camera sees at the right time.
 
 #include "photon/Tuning.h"
+#include "photon/surface/ReceivedLight.h"
 #include "photon/surface/SensorClusters.h"
-#include "photon/surface/SpreadArrival.h"
-#include "photon/surface/SurfaceArrival.h"
+#include "photon/surface/SpreadLight.h"
 #include "photon/view/SensorRecord.h"
 #include "transport/Sensor.h"
 
@@ -23,10 +23,10 @@ struct LightVertex {
     int bounce; ///< interactions up to and including the vertex
     Region region;
     Rgb power;
-    float usualScattering; ///< above 0: what scattering (below) is about, whatever the direction
+    float meanScattering; ///< above 0: what scattering (below) is about, whatever the direction
 };
 
-/// How far light from close by is spread about sensor points (SpreadArrival.h): `pixels` square roots of the area that
+/// How far light from close by is spread about sensor points (SpreadLight.h): `pixels` square roots of the area that
 /// a pixel covers on the surface, `most` (a length) at most.
 struct Spread {
     float pixels, most;
@@ -41,7 +41,7 @@ struct Spread {
 /// connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
 /// Such connections have a weak singularity where vertex and point are closer than points are to each other: light from
-/// close by is spread over the surface about the point (SpreadArrival.h), a blur that shrinks with gather radii.
+/// close by is spread over the surface about the point (SpreadLight.h), a blur that shrinks with gather radii.
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
@@ -53,21 +53,21 @@ class SurfaceConnections {
     /// times cosine, or an emitter's intensity. Adds the rays traced to `rays`.
     template <typename Scattering>
     void connect(const LightVertex& vertex, const darts::TimeGate& gate, const Scattering& scattering, Sampler& sampler,
-                 std::vector<PointDraw>& draws, std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const {
+                 std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received, uint64_t& rays) const {
         find(vertex, gate, sampler, draws);
         for (const PointDraw& draw : draws) {
             if (vertex.margin.onSurface() && isBlack(scattering(draw.direction))) continue; // not on this side
-            const SpreadArrival spread = seenFrom(draw);
-            const Rgb light = vertex.power * spread.light(scattering) * (draw.inverseExpectation * perListed_);
-            if (!isBlack(light)) arrive(vertex, gate, draw, {draw.point, 0, spread.from, light}, arrivals, rays);
+            const SpreadLight spread = seenFrom(draw);
+            const Rgb power = vertex.power * spread.light(scattering) * (draw.inverseExpectation * perKept_);
+            if (!isBlack(power)) receive(vertex, gate, draw, {draw.point, 0, spread.from, power}, received, rays);
         }
     }
     /// About what connect() would bring in all.
-    [[nodiscard]] float worth(const LightVertex& vertex, const darts::TimeGate& gate) const;
+    [[nodiscard]] float expectedLight(const LightVertex& vertex, const darts::TimeGate& gate) const;
     /// About what each connection is to bring; 0: nobody knows, vertices connect a few times each. Needed before
     /// connect().
-    void setTarget(float target) { target_ = target; }
-    [[nodiscard]] bool hasTarget() const { return target_.has_value(); }
+    void setLightPerConnection(float light) { lightPerConnection_ = light; }
+    [[nodiscard]] bool knowsLightPerConnection() const { return lightPerConnection_.has_value(); }
 
   private:
     static constexpr size_t MostRanges = 8;
@@ -80,25 +80,25 @@ class SurfaceConnections {
     [[nodiscard]] Ranges openRanges(const LightVertex& vertex, const darts::TimeGate& gate) const;
     void find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
               std::vector<PointDraw>& draws) const;
-    [[nodiscard]] SpreadArrival seenFrom(const PointDraw& draw) const {
-        return spreadArrival(-draw.direction * draw.distance, points_[draw.point].hit.ng, spread_[draw.point]);
+    [[nodiscard]] SpreadLight seenFrom(const PointDraw& draw) const {
+        return spreadLight(-draw.direction * draw.distance, points_[draw.point].hit.ng, spread_[draw.point]);
     }
-    /// If it does, in time and not occluded: `arrival` lacks frame, transmittance and the sensor's weight.
-    void arrive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw, SurfaceArrival arrival,
-                std::vector<SurfaceArrival>& arrivals, uint64_t& rays) const;
+    /// If it does, in time and not occluded: `light` lacks frame, transmittance and the sensor's weight.
+    void receive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw, ReceivedLight light,
+                 std::vector<ReceivedLight>& received, uint64_t& rays) const;
 
     const Scene& scene_;
     transport::Sensor sensor_;
     const std::vector<SensorPoint>& points_;
     double speed_;
-    float perListed_ = 0.0f;
+    float perKept_ = 0.0f;
     std::vector<float> spread_; ///< of points
-    std::optional<float> target_;
+    std::optional<float> lightPerConnection_;
     std::unique_ptr<SensorClusters> clusters_;
 };
 
-/// The target with which vertices of such worths connect `wanted` times in all, counting none more often than 64 times:
-/// a single one must not set it. 0 where nothing is worth anything.
-float commonTarget(std::vector<float> worths, double wanted);
+/// What each connection is to bring, so that vertices of which so much light is expected connect `wanted` times in all,
+/// counting none more often than 64 times: a single one must not set it. 0 where nothing is expected.
+float lightPerConnection(std::vector<float> expected, double wanted);
 
 } // namespace tungsten::photon

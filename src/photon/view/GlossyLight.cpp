@@ -15,7 +15,7 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
     std::vector<uint8_t> centres(size_t(width) * size_t(height)), near(centres.size());
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
-            Sampler sampler(0, RandomStream::Target, 0, size_t(y) * size_t(width) + size_t(x));
+            Sampler sampler(0, RandomStream::Emitter, 0, size_t(y) * size_t(width) + size_t(x));
             bool glossy = false;
             const Ray ray = scene.camera.generateRay({x, y}, Vec2f(0.5f), Vec2f(0.5f));
             // The last surface of a straight path counts.

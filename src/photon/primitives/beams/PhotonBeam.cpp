@@ -15,21 +15,21 @@ float visibleReach(const Medium& medium) {
 
 } // namespace
 
-void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight) {
+void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight) {
     flight.tEnd = std::min(flight.tEnd, visibleReach(medium));
     const FlightPart part =
-        arrival.countingPart(flight.base, flight.direction, flight.time, double(medium.speedOfLight));
+        culling.countingPart(flight.base, flight.direction, flight.time, double(medium.speedOfLight));
     flight.tStart = std::max(flight.tStart, float(part.start));
     flight.tEnd = std::min(flight.tEnd, float(part.end));
     if (flight.tStart < flight.tEnd) list.records.push_back(flight);
 }
 
-std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& arrival,
+std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<PhotonBeam>& beams) {
     std::vector<PhotonBeam> parts;
     for (PhotonBeam beam : beams) {
         const double speed = double(scene.media[size_t(beam.medium)].speedOfLight);
-        const FlightPart part = arrival.straightPart(beam.base, beam.direction, beam.time, speed);
+        const FlightPart part = culling.straightPart(beam.base, beam.direction, beam.time, speed);
         beam.tStart = std::max(beam.tStart, float(part.start));
         beam.tEnd = std::min(beam.tEnd, float(part.end));
         if (beam.tStart < beam.tEnd) parts.push_back(beam);

@@ -22,11 +22,11 @@ static_assert(sizeof(PhotonBeam) == 56, "millions are stored: no padding");
 
 /// Appends the part of a flight that sensor paths can see inside the gate; nothing if there is none. `flight` runs from
 /// tStart 0 to tEnd, the next surface (Infinity if there is none).
-void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& arrival, const Medium& medium, PhotonBeam flight);
+void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight);
 
 /// The parts of the beams that sensor paths without mirror or refraction can see inside the gate; needs
-/// arrival.straightTimesKnown().
-std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& arrival,
+/// culling.straightTimesKnown().
+std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<PhotonBeam>& beams);
 
 } // namespace tungsten::photon

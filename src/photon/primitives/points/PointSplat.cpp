@@ -25,30 +25,30 @@ struct MediumTerms {
 };
 
 /// A photon as the camera sees it: all that drawing needs.
-struct alignas(64) Spot {
+struct alignas(64) Disc {
     int frame; ///< -1: not to be seen
     int medium, bounce;
     Vec3f offset{0.0f}, direction{0.0f};
     Rgb power{0.0f}; ///< with the kernel's constant and the sensor's weight
     float inverseSquaredRadius;
-    ImageDisc disc;
+    ImageDisc image;
 };
 
-/// A register of rays near a spot.
+/// A register of rays near a disc.
 struct Meeting {
     Batch dx, dy, dz, start;
     Batch t;    ///< along the rays
     Batch part; ///< 1 - squared distance over squared radius
     Batch::batch_bool_type inside;
 
-    Meeting(const Spot& spot, const BandPiece& piece, const ImageBand& band, size_t i)
+    Meeting(const Disc& disc, const BandPiece& piece, const ImageBand& band, size_t i)
         : dx(Batch::load_unaligned(band.x.data() + i)), dy(Batch::load_unaligned(band.y.data() + i)),
           dz(Batch::load_unaligned(band.z.data() + i)), start(Batch::load_unaligned(piece.start.data() + i)) {
-        const Vec3f& o = spot.offset;
+        const Vec3f& o = disc.offset;
         t = dx * o.x + dy * o.y + dz * o.z;
         // Distance by the part of the offset across the ray: no difference of squares.
         const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
-        part = 1.0f - (px * px + py * py + pz * pz) * spot.inverseSquaredRadius;
+        part = 1.0f - (px * px + py * py + pz * pz) * disc.inverseSquaredRadius;
         inside = part > 0.0f && t > start && t <= Batch::load_unaligned(piece.end.data() + i);
     }
 };
@@ -59,19 +59,19 @@ class Splatter {
         : scene_(scene), sensor_(sensor), record_(record), scale_(float(scale)), footprint_(scene.camera),
           media_(scene.media.begin(), scene.media.end()) {}
 
-    [[nodiscard]] Spot spot(const Photon& photon, float radius) const {
-        Spot spot{};
-        spot.frame = -1;
+    [[nodiscard]] Disc disc(const Photon& photon, float radius) const {
+        Disc unseen{};
+        unseen.frame = -1;
         float weight = scale_;
         int frame = 0;
         if (!sensor_.gate.steadyState) {
             const double arrival = photon.time + cameraTime(photon.position);
             frame = sensor_.gate.frameOf(arrival);
-            if (frame < 0) return spot;
+            if (frame < 0) return unseen;
             weight *= sensor_.weight(arrival);
         }
-        const auto disc = footprint_.disc(photon.position, radius);
-        if (!disc) return spot;
+        const auto image = footprint_.disc(photon.position, radius);
+        if (!image) return unseen;
         const float inverse = 1.0f / (radius * radius);
         return {frame,
                 photon.medium,
@@ -80,25 +80,25 @@ class Splatter {
                 photon.direction,
                 photon.power * (weight * 3.0f * InvPi * inverse),
                 inverse,
-                *disc};
+                *image};
     }
 
     /// Returns how many rays gather the photon.
-    uint64_t draw(const Spot& spot, ImageBand& band) const {
-        const int top = std::max(spot.disc.area.top, band.firstRow),
-                  bottom = std::min(spot.disc.area.bottom, band.lastRow);
-        const auto [left, right] = footprint_.columns(spot.disc, top);
-        const auto [least, most] = transport::BounceLimits(scene_.transport).remaining(spot.bounce);
+    uint64_t draw(const Disc& disc, ImageBand& band) const {
+        const int top = std::max(disc.image.area.top, band.firstRow),
+                  bottom = std::min(disc.image.area.bottom, band.lastRow);
+        const auto [left, right] = footprint_.columns(disc.image, top);
+        const auto [least, most] = transport::BounceLimits(scene_.transport).remaining(disc.bounce);
         Batch gathered(0.0f);
         for (BandPiece& piece : band.pieces) {
             if (!piece.mixed &&
-                (piece.medium != spot.medium || piece.interactions < least || piece.interactions > most))
+                (piece.medium != disc.medium || piece.interactions < least || piece.interactions > most))
                 continue;
-            const auto even = piece.mixed ? std::nullopt : evenTerms(spot, piece);
+            const auto even = piece.mixed ? std::nullopt : evenTerms(disc, piece);
             for (int row = top; row <= bottom; ++row) {
                 const size_t first = band.at(left[row - top], row), end = band.at(right[row - top], row) + 1;
-                gathered += even ? drawEvenly(spot, *even, piece, band, first, end)
-                                 : drawRow(spot, piece, band, first, end, least, most);
+                gathered += even ? drawEvenly(disc, *even, piece, band, first, end)
+                                 : drawRow(disc, piece, band, first, end, least, most);
             }
         }
         return uint64_t(darts::lanes::sum(gathered));
@@ -116,29 +116,29 @@ class Splatter {
     /// For exponents (start - t) sigmaT that differ little from their middle.
     struct EvenTerms {
         float sigmaT, middle;
-        Rgb power; ///< the spot's, times phase function and e^middle
+        Rgb power; ///< the disc's, times phase function and e^middle
     };
-    /// If the medium is grey and isotropic and the rays that meet the spot have so even exponents that a cubic about
+    /// If the medium is grey and isotropic and the rays that meet the disc have so even exponents that a cubic about
     /// their middle is exact to rounding.
-    [[nodiscard]] std::optional<EvenTerms> evenTerms(const Spot& spot, const BandPiece& piece) const {
+    [[nodiscard]] std::optional<EvenTerms> evenTerms(const Disc& disc, const BandPiece& piece) const {
         constexpr float MostDifference = 0.03f;
         const MediumTerms& medium = media_[size_t(piece.medium)];
         if (!medium.grey || !medium.isotropic) return std::nullopt;
-        const float squared = spot.offset.length2(), farthest = std::sqrt(squared),
-                    nearest = std::sqrt(std::max(squared - 1.0f / spot.inverseSquaredRadius, 0.0f));
+        const float squared = disc.offset.length2(), farthest = std::sqrt(squared),
+                    nearest = std::sqrt(std::max(squared - 1.0f / disc.inverseSquaredRadius, 0.0f));
         const float low = (piece.leastStart - farthest) * medium.sigmaT.x,
                     high = (piece.mostStart - nearest) * medium.sigmaT.x;
         if (!(high - low < 2.0f * MostDifference)) return std::nullopt;
         const float middle = 0.5f * (low + high);
-        return EvenTerms{medium.sigmaT.x, middle, spot.power * (0.25f * InvPi * std::exp(middle))};
+        return EvenTerms{medium.sigmaT.x, middle, disc.power * (0.25f * InvPi * std::exp(middle))};
     }
 
     /// Of the rays at [first, end); returns how many gather the photon, lane by lane.
-    static Batch drawEvenly(const Spot& spot, const EvenTerms& terms, BandPiece& piece, const ImageBand& band,
+    static Batch drawEvenly(const Disc& disc, const EvenTerms& terms, BandPiece& piece, const ImageBand& band,
                             size_t first, size_t end) {
         Batch gathered(0.0f);
         for (size_t i = first; i < end; i += size_t(Lanes)) {
-            const Meeting met(spot, piece, band, i);
+            const Meeting met(disc, piece, band, i);
             if (!xsimd::any(met.inside)) continue;
             gathered += select(met.inside, Batch(1.0f), Batch(0.0f));
             const Batch e = (met.start - met.t) * terms.sigmaT - terms.middle;
@@ -150,20 +150,20 @@ class Splatter {
     }
 
     /// The same for any medium.
-    Batch drawRow(const Spot& spot, BandPiece& piece, const ImageBand& band, size_t first, size_t end, int least,
+    Batch drawRow(const Disc& disc, BandPiece& piece, const ImageBand& band, size_t first, size_t end, int least,
                   int most) const {
-        const MediumTerms& medium = media_[size_t(spot.medium)];
+        const MediumTerms& medium = media_[size_t(disc.medium)];
         Batch gathered(0.0f);
         for (size_t i = first; i < end; i += size_t(Lanes)) {
-            const Meeting met(spot, piece, band, i);
-            const auto inside = piece.mixed ? piece.select(met.inside, i, spot.medium, least, most) : met.inside;
+            const Meeting met(disc, piece, band, i);
+            const auto inside = piece.mixed ? piece.select(met.inside, i, disc.medium, least, most) : met.inside;
             if (!xsimd::any(inside)) continue;
             gathered += select(inside, Batch(1.0f), Batch(0.0f));
-            const Batch value = met.part * met.part * phase(medium, spot.direction, met), length = met.start - met.t;
+            const Batch value = met.part * met.part * phase(medium, disc.direction, met), length = met.start - met.t;
             Batch weight = select(inside, value * exp(length * medium.sigmaT.x), Batch(0.0f));
             for (int k = 0; k < 3; ++k) {
                 if (k > 0 && !medium.grey) weight = select(inside, value * exp(length * medium.sigmaT[k]), Batch(0.0f));
-                piece.add(i, weight, k, spot.power[k]);
+                piece.add(i, weight, k, disc.power[k]);
             }
         }
         return gathered;
@@ -190,14 +190,14 @@ class Splatter {
     std::vector<MediumTerms> media_;
 };
 
-/// Visible spots frame by frame, as bands hold one frame's sums; then from left to right, as neighbours share the
+/// Visible discs frame by frame, as bands hold one frame's sums; then from left to right, as neighbours share the
 /// cache.
-std::vector<uint32_t> drawingOrder(const std::vector<Spot>& spots, int width) {
+std::vector<uint32_t> drawingOrder(const std::vector<Disc>& discs, int width) {
     std::vector<std::pair<uint64_t, uint32_t>> places;
-    places.reserve(spots.size());
-    for (size_t i = 0; i < spots.size(); ++i)
-        if (spots[i].frame >= 0)
-            places.emplace_back(uint64_t(spots[i].frame) * uint64_t(width) + uint64_t(spots[i].disc.area.left), i);
+    places.reserve(discs.size());
+    for (size_t i = 0; i < discs.size(); ++i)
+        if (discs[i].frame >= 0)
+            places.emplace_back(uint64_t(discs[i].frame) * uint64_t(width) + uint64_t(discs[i].image.area.left), i);
     tbb::parallel_sort(places);
     std::vector<uint32_t> order;
     order.reserve(places.size());
@@ -206,10 +206,10 @@ std::vector<uint32_t> drawingOrder(const std::vector<Spot>& spots, int width) {
 }
 
 /// In drawing order: the sums do not depend on the threads.
-std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, const SensorRecord& record) {
+std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, const SensorRecord& record) {
     std::vector<std::vector<uint32_t>> byBand(ImageBand::count(record.height));
-    for (const uint32_t i : drawingOrder(spots, record.width)) {
-        const PixelArea& area = spots[i].disc.area;
+    for (const uint32_t i : drawingOrder(discs, record.width)) {
+        const PixelArea& area = discs[i].image.area;
         for (int band = area.top / ImageBand::Rows; band <= area.bottom / ImageBand::Rows; ++band)
             byBand[size_t(band)].push_back(i);
     }
@@ -221,9 +221,9 @@ std::vector<std::vector<uint32_t>> spotsByBand(const std::vector<Spot>& spots, c
 uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, scale);
-    std::vector<Spot> spots(photons.size());
-    tbb::parallel_for(size_t(0), spots.size(), [&](size_t i) { spots[i] = splatter.spot(photons[i], radii[i]); });
-    const auto byBand = spotsByBand(spots, record);
+    std::vector<Disc> discs(photons.size());
+    tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) { discs[i] = splatter.disc(photons[i], radii[i]); });
+    const auto byBand = discsByBand(discs, record);
     std::atomic<uint64_t> total = 0;
     tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {
         const auto& drawn = byBand[number];
@@ -231,10 +231,10 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
         ImageBand band(record, number);
         uint64_t gathered = 0;
         for (size_t i = 0; i < drawn.size(); ++i) {
-            prefetch(spots[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
-            const int frame = spots[drawn[i]].frame;
-            gathered += splatter.draw(spots[drawn[i]], band);
-            if (i + 1 == drawn.size() || spots[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
+            prefetch(discs[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
+            const int frame = discs[drawn[i]].frame;
+            gathered += splatter.draw(discs[drawn[i]], band);
+            if (i + 1 == drawn.size() || discs[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
         }
         total += gathered;
     });

@@ -1,6 +1,6 @@
 // Light from close by, spread over the surface: how much of it there is, and where.
 
-#include "photon/surface/SpreadArrival.h"
+#include "photon/surface/SpreadLight.h"
 #include "photon/surface/SurfaceConnections.h"
 
 #include "tungsten/core/Warp.h"
@@ -15,9 +15,9 @@ constexpr float Length = 0.1f;
 /// Of a vertex at height `h`, `rho` aside, on a floor.
 template <typename Intensity>
 double irradiance(float h, float rho, float spread, const Intensity& intensity) {
-    const SpreadArrival arrival = spreadArrival({rho, h, 0.0f}, {0.0f, 1.0f, 0.0f}, spread);
-    EXPECT_NEAR(arrival.from.length(), 1.0f, 1e-5f);
-    return double(arrival.light(intensity)) * double(arrival.from.y);
+    const SpreadLight seen = spreadLight({rho, h, 0.0f}, {0.0f, 1.0f, 0.0f}, spread);
+    EXPECT_NEAR(seen.from.length(), 1.0f, 1e-5f);
+    return double(seen.light(intensity)) * double(seen.from.y);
 }
 float even(const Vec3f& /*direction*/) {
     return 1.0f;
@@ -50,7 +50,7 @@ void expectAllLight(const Intensity& intensity) {
     }
 }
 
-TEST(SpreadArrival, KeepsTheLight) {
+TEST(SpreadLight, KeepsTheLight) {
     expectAllLight(even);
     expectAllLight([](const Vec3f& direction) { return std::max(-direction.y, 0.0f); }); // a ceiling
     for (const float g : {-0.5f, 0.5f, 0.9f})
@@ -61,7 +61,7 @@ TEST(SpreadArrival, KeepsTheLight) {
 }
 
 /// Sharp lobes too: within what the vertex brings from one place at a distance of at least the spread.
-TEST(SpreadArrival, IsNeverNegativeAndBounded) {
+TEST(SpreadLight, IsNeverNegativeAndBounded) {
     Sampler sampler(1, RandomStream::Test, 0, 0);
     for (const float g : {-0.9f, 0.0f, 0.9f, 0.99f})
         for (int i = 0; i < 20000; ++i) {
@@ -69,8 +69,8 @@ TEST(SpreadArrival, IsNeverNegativeAndBounded) {
             const float reach = 3.0f * Length * sampler.next1D();
             const Vec3f toVertex = warp::squareToSphere(sampler.next2D()) * reach;
             float sent = 0.0f;
-            const SpreadArrival arrival = spreadArrival(toVertex, {0.0f, 1.0f, 0.0f}, Length);
-            const float light = arrival.light([&](const Vec3f& direction) {
+            const SpreadLight seen = spreadLight(toVertex, {0.0f, 1.0f, 0.0f}, Length);
+            const float light = seen.light([&](const Vec3f& direction) {
                 const float squared = (direction - axis * g).length2();
                 return sent = std::max(sent, (1.0f - g * g) / (squared * std::sqrt(squared)));
             });
@@ -79,7 +79,7 @@ TEST(SpreadArrival, IsNeverNegativeAndBounded) {
         }
 }
 
-TEST(SpreadArrival, LeavesLightFromFurtherAboveAlone) {
+TEST(SpreadLight, LeavesLightFromFurtherAboveAlone) {
     for (const float h : {1.0f, 1.5f, 20.0f})
         for (const float rho : {0.0f, 0.1f, 3.0f}) {
             const double height = double(h * Length), squared = height * height + double(rho) * double(rho);
@@ -89,7 +89,7 @@ TEST(SpreadArrival, LeavesLightFromFurtherAboveAlone) {
 }
 
 /// Of vertices at all heights from 0 to 1, 2 aside.
-TEST(SpreadArrival, HasAnErrorOfSecondOrder) {
+TEST(SpreadLight, HasAnErrorOfSecondOrder) {
     const auto error = [](float spread) {
         constexpr int Steps = 100000;
         double sum = 0.0;
@@ -105,18 +105,18 @@ TEST(SpreadArrival, HasAnErrorOfSecondOrder) {
     }
 }
 
-TEST(SpreadArrival, OfNothingIsTheInverseSquare) {
+TEST(SpreadLight, OfNothingIsTheInverseSquare) {
     const Vec3f toVertex(0.3f, 0.2f, -0.1f), normal(0.0f, 0.6f, 0.8f);
-    const SpreadArrival light = spreadArrival(toVertex, normal, 0.0f);
+    const SpreadLight light = spreadLight(toVertex, normal, 0.0f);
     EXPECT_FLOAT_EQ(light.light(even), 1.0f / toVertex.length2());
     EXPECT_NEAR((light.from - toVertex.normalized()).length(), 0.0f, 1e-6f);
-    EXPECT_EQ(spreadArrival(Vec3f(0.0f), normal, 0.0f).light(even), 0.0f);
+    EXPECT_EQ(spreadLight(Vec3f(0.0f), normal, 0.0f).light(even), 0.0f);
 }
 
-TEST(SpreadArrival, DoesNotCareForTheNormalsSide) {
+TEST(SpreadLight, DoesNotCareForTheNormalsSide) {
     for (const float h : {-0.2f, 0.2f}) {
         const Vec3f toVertex(0.1f, h, 0.05f), up(0.0f, 1.0f, 0.0f);
-        const SpreadArrival a = spreadArrival(toVertex, up, Length), b = spreadArrival(toVertex, -up, Length);
+        const SpreadLight a = spreadLight(toVertex, up, Length), b = spreadLight(toVertex, -up, Length);
         EXPECT_EQ(a.light(even), b.light(even));
         EXPECT_NEAR((a.from - b.from).length(), 0.0f, 1e-6f);
         EXPECT_GT(a.from.y * h, 0.0f); // light stays on its side

@@ -1,6 +1,6 @@
 // Connections' light shared among neighbouring sensor points.
 
-#include "photon/surface/SharedArrivals.h"
+#include "photon/surface/SharedLight.h"
 
 #include "support/Render.h"
 
@@ -19,30 +19,30 @@ const std::string Table = R"({
                 "transform": {"position": [0, 20, 0], "look_at": [0, 0, 0], "up": [0, 0, 1]}},
      "integrator": {"type": "progressive_transient_photon_map", "transient_time_center": 10, "transient_time_width": 2}})";
 
-class SharedArrivals : public testing::Test {
+class SharedLight : public testing::Test {
   protected:
     test::SceneFile file_{Table};
     LoadedScene loaded_ = loadScene(file_.path(), {});
     Statistics statistics_;
     SensorRecord record_ = recordSensorPaths(*loaded_.scene, {true, false}, 1, 0, {.points = true}, statistics_);
 
-    [[nodiscard]] Image share(const std::vector<SurfaceArrival>& arrivals, float radius, float distance = 100.0f) {
+    [[nodiscard]] Image share(const std::vector<ReceivedLight>& received, float radius, float distance = 100.0f) {
         Film film(24, 20, 1);
-        shareArrivals(*loaded_.scene, transport::Sensor(loaded_.scene->transport.gate), record_, arrivals,
-                      {radius, distance}, 3.0, film, statistics_);
+        shareLight(*loaded_.scene, transport::Sensor(loaded_.scene->transport.gate), record_, received,
+                   {radius, distance}, 3.0, film, statistics_);
         Image image(24, 20);
         for (int y = 0; y < 20; ++y)
             for (int x = 0; x < 24; ++x) image.at(x, y) = film.passPixel(0, x, y);
         return image;
     }
-    [[nodiscard]] SurfaceArrival straightDown(uint32_t point) const {
+    [[nodiscard]] ReceivedLight straightDown(uint32_t point) const {
         return {point, 0, Vec3f(0.0f, 1.0f, 0.0f), Rgb(0.0f, 2.0f, 0.0f)};
     }
     /// Scale 3, light 2, albedo 0.5, gate of width 2.
     static constexpr float Reflected = 3.0f * 2.0f * 0.5f * InvPi / 2.0f;
 };
 
-TEST_F(SharedArrivals, BelowOnePixelEachPointKeepsItsOwn) {
+TEST_F(SharedLight, BelowOnePixelEachPointKeepsItsOwn) {
     ASSERT_EQ(record_.points.size(), 480u);
     const Image image = share({straightDown(30), straightDown(30), straightDown(200)}, 0.9f);
     for (size_t i = 0; i < 480; ++i)
@@ -50,15 +50,16 @@ TEST_F(SharedArrivals, BelowOnePixelEachPointKeepsItsOwn) {
 }
 
 /// A constant stays what it is, also at edges, where fewer neighbours share.
-TEST_F(SharedArrivals, KeepWhatIsTheSameEverywhere) {
-    std::vector<SurfaceArrival> arrivals;
-    for (uint32_t point = 0; point < 480; ++point) arrivals.push_back(straightDown(point));
+TEST_F(SharedLight, KeepWhatIsTheSameEverywhere) {
+    std::vector<ReceivedLight> received;
+    for (uint32_t point = 0; point < 480; ++point) received.push_back(straightDown(point));
     for (const float radius : {1.0f, 2.5f, 4.0f})
-        for (const Rgb& pixel : share(arrivals, radius).pixels) EXPECT_NEAR(pixel.y, Reflected, 1e-5f);
+        for (const Rgb& pixel : share(received, radius).pixels) EXPECT_NEAR(pixel.y, Reflected, 1e-5f);
 }
 
-/// One arrival spreads over the disc, keeps its sum, and does not pass from the floor to the parallel lid.
-TEST_F(SharedArrivals, StayOnTheirSurface) {
+/// Light received at one point spreads over the disc, keeps its sum, and does not pass from the floor to the parallel
+/// lid.
+TEST_F(SharedLight, StayOnTheirSurface) {
     const auto height = [&](size_t pixel) { return record_.points[pixel].hit.position.y; };
     size_t atEdge = 10 * 24;
     while (std::abs(height(atEdge) - height(atEdge + 1)) < 1.0f) ++atEdge;
@@ -84,7 +85,7 @@ TEST_F(SharedArrivals, StayOnTheirSurface) {
     }
 }
 
-TEST_F(SharedArrivals, GoNoFartherThanTheDistance) {
+TEST_F(SharedLight, GoNoFartherThanTheDistance) {
     const uint32_t point = 10 * 24 + 5;
     const Image image = share({straightDown(point)}, 4.0f, 1.0f);
     size_t lit = 0;

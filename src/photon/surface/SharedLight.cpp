@@ -1,4 +1,4 @@
-#include "photon/surface/SharedArrivals.h"
+#include "photon/surface/SharedLight.h"
 
 #include "photon/Tuning.h"
 
@@ -17,8 +17,8 @@ std::vector<uint32_t> beginnings(size_t groups, size_t elements, const Group& gr
     return begin;
 }
 
-/// Points about whose light the other has something to say: near each other on one smooth surface, seen alike.
-bool alike(const SensorPoint& a, const SensorPoint& b, float distance) {
+/// Points about whose light the other has something to say: near each other on one smooth surface, seen equally.
+bool mayShare(const SensorPoint& a, const SensorPoint& b, float distance) {
     constexpr float LeastCosine = 0.95f, MostSlope = 0.2f;
     if (a.interactions != b.interactions || a.region.medium != b.region.medium) return false;
     const Vec3f offset = b.hit.position - a.hit.position;
@@ -29,17 +29,16 @@ bool alike(const SensorPoint& a, const SensorPoint& b, float distance) {
 
 class Sharing {
   public:
-    Sharing(const Scene& scene, const SensorRecord& record, const std::vector<SurfaceArrival>& arrivals,
+    Sharing(const Scene& scene, const SensorRecord& record, const std::vector<ReceivedLight>& received,
             const SharingKernel& kernel, double scale, Film& film)
         : scene_(scene), record_(record), kernel_(kernel), scale_(scale), film_(film),
           reach_(int(std::floor(kernel.pixels))),
           firstPoint_(
               beginnings(record.x.size(), record.points.size(), [&](size_t i) { return record.points[i].pixel; })),
-          firstArrival_(
-              beginnings(record.points.size(), arrivals.size(), [&](size_t i) { return arrivals[i].point; })) {
-        std::vector<uint32_t> next(firstArrival_.begin(), firstArrival_.end() - 1);
-        sorted_.resize(arrivals.size());
-        for (const SurfaceArrival& arrival : arrivals) sorted_[next[arrival.point]++] = &arrival;
+          first_(beginnings(record.points.size(), received.size(), [&](size_t i) { return received[i].point; })) {
+        std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+        sorted_.resize(received.size());
+        for (const ReceivedLight& one : received) sorted_[next[one.point]++] = &one;
     }
 
     /// Returns how many values were not finite.
@@ -80,9 +79,9 @@ class Sharing {
             const uint32_t first = firstPoint_[start + size_t(std::max(x - half, 0))],
                            last = firstPoint_[start + size_t(std::min(x + half, record_.width - 1)) + 1];
             for (uint32_t q = first; q < last; ++q) {
-                if (q != p && !alike(point, record_.points[q], kernel_.distance)) continue;
+                if (q != p && !mayShare(point, record_.points[q], kernel_.distance)) continue;
                 ++among;
-                if (firstArrival_[q + 1] > firstArrival_[q]) found.push_back(q);
+                if (first_[q + 1] > first_[q]) found.push_back(q);
             }
         }
         return among;
@@ -92,12 +91,12 @@ class Sharing {
         const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
         const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
         for (const uint32_t q : neighbours)
-            for (uint32_t i = firstArrival_[q]; i < firstArrival_[q + 1]; ++i) {
-                const SurfaceArrival& arrival = *sorted_[i];
-                if (!surface.consistent(arrival.from, scene_.transport.consistencyChecks)) continue;
-                const Rgb radiance = surface.bsdf->eval(query, surface.wi, surface.frame.toLocal(arrival.from)) *
-                                     arrival.light * point.throughput;
-                sums[size_t(arrival.frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
+            for (uint32_t i = first_[q]; i < first_[q + 1]; ++i) {
+                const ReceivedLight& one = *sorted_[i];
+                if (!surface.consistent(one.from, scene_.transport.consistencyChecks)) continue;
+                const Rgb radiance = surface.bsdf->eval(query, surface.wi, surface.frame.toLocal(one.from)) *
+                                     one.light * point.throughput;
+                sums[size_t(one.frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
             }
     }
 
@@ -107,25 +106,25 @@ class Sharing {
     double scale_;
     Film& film_;
     int reach_;
-    std::vector<uint32_t> firstPoint_;   ///< of a pixel
-    std::vector<uint32_t> firstArrival_; ///< of a point, in sorted_
-    std::vector<const SurfaceArrival*> sorted_;
+    std::vector<uint32_t> firstPoint_; ///< of a pixel
+    std::vector<uint32_t> first_;      ///< of a point, in sorted_
+    std::vector<const ReceivedLight*> sorted_;
 };
 
 } // namespace
 
-SharingKernel SharingKernel::of(size_t points, size_t arrivals, float gatherRadius, float factor) {
-    const float each = float(arrivals) / float(std::max<size_t>(points, 1));
-    const float pixels = std::clamp(std::sqrt(tuning::SharedArrivals * InvPi / std::max(each, 1e-3f)),
+SharingKernel SharingKernel::of(size_t points, size_t received, float gatherRadius, float factor) {
+    const float each = float(received) / float(std::max<size_t>(points, 1));
+    const float pixels = std::clamp(std::sqrt(tuning::SharedConnections * InvPi / std::max(each, 1e-3f)),
                                     tuning::LeastShared, tuning::MostShared);
     return {pixels * factor, gatherRadius * factor};
 }
 
-void shareArrivals(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                   const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
-                   Statistics& statistics) {
-    if (arrivals.empty()) return;
-    const Sharing sharing(scene, record, arrivals, kernel, scale / sensor.gate.frameWidth, film);
+void shareLight(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                const std::vector<ReceivedLight>& received, const SharingKernel& kernel, double scale, Film& film,
+                Statistics& statistics) {
+    if (received.empty()) return;
+    const Sharing sharing(scene, record, received, kernel, scale / sensor.gate.frameWidth, film);
     tbb::parallel_for(0, record.height, [&](int y) { statistics.add("non-finite samples", sharing.row(y)); });
 }
 

@@ -2,7 +2,7 @@
 // Light that connections brought to sensor points, shared among neighbouring ones: a density estimate on what the
 // camera sees, as gathering photons is, but of connections that arrive in time.
 
-#include "photon/surface/SurfaceArrival.h"
+#include "photon/surface/ReceivedLight.h"
 #include "photon/view/SensorRecord.h"
 #include "transport/Sensor.h"
 
@@ -17,13 +17,13 @@ struct SharingKernel {
 
     /// Wide in the image where few connections arrive, as wide in the scene as surface photons are gathered; shrinking
     /// from pass to pass as `factor` (of gather radii) does.
-    static SharingKernel of(size_t points, size_t arrivals, float gatherRadius, float factor);
+    static SharingKernel of(size_t points, size_t received, float gatherRadius, float factor);
 };
 
 /// Adds to the pass image, for every sensor point, the mean over the points in its kernel of what arrived there,
 /// reflected by its own BSDF, times `scale`.
-void shareArrivals(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                   const std::vector<SurfaceArrival>& arrivals, const SharingKernel& kernel, double scale, Film& film,
-                   Statistics& statistics);
+void shareLight(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                const std::vector<ReceivedLight>& received, const SharingKernel& kernel, double scale, Film& film,
+                Statistics& statistics);
 
 } // namespace tungsten::photon

@@ -8,7 +8,7 @@
 namespace tungsten::photon {
 
 /// Light that a connection brought to a sensor point.
-struct SurfaceArrival {
+struct ReceivedLight {
     uint32_t point; ///< index in the SensorRecord
     int32_t frame;
     Vec3f from; ///< unit direction it came from

@@ -6,7 +6,7 @@
 namespace tungsten::photon {
 
 /// A flight from a vertex as a sensor point sees it.
-struct SpreadArrival {
+struct SpreadLight {
     Vec3f from;   ///< unit direction towards the vertex, where it is seen
     float weight; ///< instead of 1 / squared distance; at most 1 / spread^2
 
@@ -24,7 +24,7 @@ struct SpreadArrival {
 /// On a plane, a vertex leaves the same flux at any height, whatever it sends where. The others stay where they are, so
 /// that the error is of second order in the spread, where vertices are near surfaces as often as elsewhere; and light
 /// is never negative, nor more than the one place brings.
-inline SpreadArrival spreadArrival(const Vec3f& toVertex, const Vec3f& normal, float spread) {
+inline SpreadLight spreadLight(const Vec3f& toVertex, const Vec3f& normal, float spread) {
     const float height = toVertex.dot(normal), lift = std::max(spread - std::abs(height), 0.0f);
     const Vec3f seen = toVertex + normal * std::copysign(lift, height);
     const float squared = seen.length2();

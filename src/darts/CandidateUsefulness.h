@@ -9,7 +9,7 @@
 
 namespace darts {
 
-/// What shapes the target: nothing but the bound in time, a Green's function of an infinite medium, or the way out of a
+/// What shapes usefulness: nothing but the bound in time, a Green's function of an infinite medium, or the way out of a
 /// body.
 enum class Shape { TimeBound, Diffusion, Causal, FirstPassage };
 
@@ -75,13 +75,13 @@ struct Ahead {
     }
 };
 
-/// The target in one channel as a product of an exponential, whose exponent is kept apart, and a moderate factor; up to
-/// a constant that all candidates share in grey media.
+/// Usefulness in one channel, as a product of an exponential, whose exponent is kept apart, and a moderate factor; up
+/// to a constant that all candidates share in grey media.
 template <Shape G>
-struct Target {
+struct Usefulness {
     float sigmaS, sigmaT, reducedS, fourthInverseD, constant = 0, length;
 
-    Target(const CandidateDraw& draw, int index, bool grey) {
+    Usefulness(const CandidateDraw& draw, int index, bool grey) {
         const Medium& medium = *draw.medium;
         const float sigmaA = channel(medium.sigmaA, index);
         length = draw.latest.length();
@@ -116,11 +116,11 @@ struct Target {
 
 /// The same where light must leave the body (FirstPassage.h).
 template <>
-struct Target<Shape::FirstPassage> {
+struct Usefulness<Shape::FirstPassage> {
     FirstPassage passage;
     float sigmaT, constant = 0;
 
-    Target(const CandidateDraw& draw, int index, bool grey)
+    Usefulness(const CandidateDraw& draw, int index, bool grey)
         : passage(channel(draw.medium->sigmaA, index),
                   std::max(channel(draw.medium->sigmaS, index) * (1.0f - draw.medium->g), 1e-20f), *draw.exit),
           sigmaT(channel(draw.medium->sigmaT(), index)) {
