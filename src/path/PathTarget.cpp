@@ -1,11 +1,15 @@
 #include "path/PathTarget.h"
 
+#include "tungsten/scene/LightChoice.h"
+
 namespace tungsten::path {
 
 namespace {
 
-bool chosenFrom(const Emitter& emitter, TargetChoice::Emitters emitters) {
-    return !emitter.isInfinite() && (emitters == TargetChoice::Emitters::All || emitter.isDelta());
+Distribution1D targetDistribution(const Scene& scene, TargetChoice::Emitters emitters) {
+    if (emitters == TargetChoice::Emitters::SingleDirections)
+        return emitterDistribution(scene, [](const Emitter& emitter) { return emitter.isDelta(); });
+    return emitterDistribution(scene, [](const Emitter& emitter) { return !emitter.isInfinite(); });
 }
 
 } // namespace
@@ -26,19 +30,10 @@ std::optional<transport::ConnectionEnd> PathTarget::seenFrom(const Vec3f& positi
     return transport::ConnectionEnd{direction, distance, intensity(-direction) / sqr(distance), point.margin()};
 }
 
-TargetChoice::TargetChoice(const Scene& scene, Emitters emitters) : scene_(scene) {
-    std::vector<float> powers;
-    float total = 0.0f;
-    for (const Emitter& emitter : scene.emitters) {
-        const float power = chosenFrom(emitter, emitters) ? meanComponent(emitterPower(emitter)) : 0.0f;
-        powers.push_back(power);
-        total += power;
-        count_ += power > 0.0f ? 1 : 0;
-        radii_.push_back(2.0f * boundingSphere(emitter).radius);
-    }
-    for (float& power : powers)
-        if (power > 0.0f) power = 0.5f * power / total + 0.5f / float(count_);
-    distribution_ = Distribution1D(powers);
+TargetChoice::TargetChoice(const Scene& scene, Emitters emitters)
+    : scene_(scene), distribution_(targetDistribution(scene, emitters)) {
+    for (const Emitter& emitter : scene.emitters) radii_.push_back(2.0f * boundingSphere(emitter).radius);
+    for (size_t i = 0; any() && i < radii_.size(); ++i) count_ += probability(i) > 0.0f ? 1 : 0;
 }
 
 std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCounters& counters) const {

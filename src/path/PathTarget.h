@@ -35,7 +35,7 @@ struct PathTarget {
     }
 };
 
-/// Chooses targets: half by power and half uniformly among the emitters it is made for.
+/// Chooses targets among the emitters it is made for (emitterDistribution).
 class TargetChoice {
   public:
     enum class Emitters { All, SingleDirections };
@@ -43,7 +43,7 @@ class TargetChoice {
 
     /// Several emitters to choose from.
     [[nodiscard]] bool several() const { return count_ > 1; }
-    [[nodiscard]] bool any() const { return count_ > 0; }
+    [[nodiscard]] bool any() const { return distribution_.total() > 0.0; }
     [[nodiscard]] float probability(size_t emitter) const { return distribution_.probability(emitter); }
     /// `u` chooses the emitter. None when light that starts in a single direction is absorbed or escapes.
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, PathCounters& counters) const;

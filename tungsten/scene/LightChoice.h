@@ -1,5 +1,5 @@
 #pragma once
-// Which emitter a vertex connects to.
+// Which emitter a path starts at, or a vertex connects to.
 
 #include "tungsten/scene/Scene.h"
 
@@ -7,7 +7,11 @@
 
 namespace tungsten {
 
-/// Emitters that can be connected to, chosen half by power and half uniformly.
+/// Emitters that shine and for which `takesPart`, half by power and half uniformly: few paths are lost on weak ones,
+/// and none is left out. A total of 0: there are no such emitters.
+Distribution1D emitterDistribution(const Scene& scene, bool (*takesPart)(const Emitter&));
+
+/// Emitters that can be connected to.
 class LightChoice {
   public:
     explicit LightChoice(const Scene& scene);
@@ -19,13 +23,13 @@ class LightChoice {
     /// None when no emitter can be connected to.
     [[nodiscard]] std::optional<Choice> sample(float u) const;
     /// Probability of choosing the emitter with this index (0 for those that cannot be connected to).
-    [[nodiscard]] float probability(int emitter) const { return probabilities_[size_t(emitter)]; }
+    [[nodiscard]] float probability(int emitter) const {
+        return distribution_.total() > 0.0 ? distribution_.probability(size_t(emitter)) : 0.0f;
+    }
 
   private:
     const Scene& scene_;
     Distribution1D distribution_;
-    std::vector<float> probabilities_;
-    bool any_ = false;
 };
 
 } // namespace tungsten

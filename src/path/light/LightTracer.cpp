@@ -2,6 +2,8 @@
 
 #include "path/PathSettings.h"
 
+#include "tungsten/scene/LightChoice.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::path {
@@ -10,19 +12,6 @@ namespace {
 
 constexpr uint64_t PathsPerBatch = 1024;
 constexpr uint64_t BatchesPerWave = 64; ///< traced in parallel before they are added in order
-
-Distribution1D emitterChoice(const Scene& scene) {
-    std::vector<float> powers;
-    float total = 0.0f, shining = 0.0f;
-    for (const Emitter& emitter : scene.emitters) {
-        powers.push_back(meanComponent(emitterPower(emitter)));
-        total += powers.back();
-        shining += powers.back() > 0.0f ? 1.0f : 0.0f;
-    }
-    for (float& power : powers)
-        if (power > 0.0f) power = 0.5f * power / total + 0.5f / shining;
-    return Distribution1D(powers);
-}
 
 /// Of the first surface that mirrors or refracts; none if there is no such.
 const Primitive* firstSpecular(const Scene& scene) {
@@ -69,7 +58,8 @@ void report(const LightWalkCounters& counters, Statistics& statistics) {
 LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
     : scene_(std::move(scene)), limits_(readBounceLimits(settings, *scene_)),
       russianRoulette_(readRussianRoulette(settings, !scene_->transport.gate.steadyState)),
-      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)), emitters_(emitterChoice(*scene_)) {
+      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)),
+      emitters_(emitterDistribution(*scene_, [](const Emitter&) { return true; })) {
     readRest(settings, *scene_);
 }
 

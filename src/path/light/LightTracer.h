@@ -21,7 +21,7 @@ class LightTracer : public Integrator {
     bool russianRoulette_, forwardBoundaries_ = true;
     transport::Sensor sensor_;
     transport::GateBounds bounds_;
-    Distribution1D emitters_; ///< half by power and half evenly
+    Distribution1D emitters_;
 };
 
 } // namespace tungsten::path
