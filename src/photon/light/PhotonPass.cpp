@@ -74,6 +74,25 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
     std::visit([&](auto& store) { store.records.reserve(room); }, maps.volume);
 }
 
+void report(const WalkCounters& counters, Statistics& statistics) {
+    statistics.add("rays", counters.rays);
+    statistics.add("control vertices", counters.controlVertices);
+    statistics.add("non-finite samples", counters.nonFinite);
+    statistics.add("volume deposits", counters.volumeDeposits);
+    statistics.add("volume deposits that may count", counters.countingDeposits);
+}
+
+void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Statistics& statistics) {
+    statistics.add("surface connections", maps.received.size());
+    statistics.add("photons", maps.paths);
+    statistics.add("stored surface photons", maps.surface.records.size());
+    forEachPrimitive(primitive, [&](const auto& p) {
+        using Record = typename std::decay_t<decltype(p)>::Record;
+        const auto* store = std::get_if<Store<Record>>(&maps.volume);
+        statistics.add(p.Stored, store ? store->records.size() : 0);
+    });
+}
+
 } // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan)
@@ -167,23 +186,12 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
         if (traced == 0) reserveStores(maps, batches, settings_);
         for (const Batch& batch : batches) {
             append(maps, batch.deposits, settings_, thinning);
-            statistics.add("rays", batch.counters.rays);
-            statistics.add("control vertices", batch.counters.controlVertices);
-            statistics.add("non-finite samples", batch.counters.nonFinite);
-            statistics.add("volume deposits", batch.counters.volumeDeposits);
-            statistics.add("volume deposits that may count", batch.counters.countingDeposits);
+            report(batch.counters, statistics);
         }
         traced += wave;
     }
     maps.paths = traced;
-    statistics.add("surface connections", maps.received.size());
-    statistics.add("photons", traced);
-    statistics.add("stored surface photons", maps.surface.records.size());
-    forEachPrimitive(settings_.primitive, [&](const auto& p) {
-        using Record = typename std::decay_t<decltype(p)>::Record;
-        const auto* store = std::get_if<Store<Record>>(&maps.volume);
-        statistics.add(p.Stored, store ? store->records.size() : 0);
-    });
+    reportStored(maps, settings_.primitive, statistics);
     return maps;
 }
 

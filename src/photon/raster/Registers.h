@@ -13,7 +13,9 @@ static_assert(Lanes <= 16);
 alignas(64) inline constexpr float LaneNumbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 /// Henyey-Greenstein from the direction `before` to the way back along rays (dx, dy, dz), about its peak as
-/// PhaseFunction has it.
+/// PhaseFunction has it. The formula stands in three places on purpose: tungsten/medium for one pair of directions,
+/// here for a register of rays, where a call for each would cost most of a splat, and in src/darts, which knows no
+/// renderer. Tests hold them to the same values.
 inline Batch henyeyGreenstein(float g, const Vec3f& before, const Batch& dx, const Batch& dy, const Batch& dz) {
     if (g == 0.0f) return Batch(0.25f * InvPi);
     const float strength = std::abs(g);
