@@ -5,7 +5,6 @@
 #include "path/ArrivalBound.h"
 #include "path/CameraPath.h"
 #include "path/PathTarget.h"
-#include "path/techniques/Connection.h"
 
 #include "transport/GuidedStep.h"
 
@@ -86,8 +85,8 @@ struct GuidedPath {
     /// Along a ray from `region`, on the part on which something may be in the way.
     [[nodiscard]] Visibility traceToTarget(Ray ray, const Straight& way, const Region& region) {
         ray.tMax = target->point.margin().before(way.direction, way.distance);
-        return traceConnection(context.scene, context.forwardBoundaries, ray, way.distance, region,
-                               state.counters.shadowRays);
+        const transport::Connector connector(context.scene, context.forwardBoundaries);
+        return connector.visibility(ray, way.distance, region, state.counters.shadowRays);
     }
     /// From the ray's origin, on `surface` if there is one, up to `reach`.
     [[nodiscard]] Ray leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const;

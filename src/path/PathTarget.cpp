@@ -101,7 +101,7 @@ bool TargetChoice::meetSurface(PathTarget& target, Laser& laser, const SurfaceHi
     if (sampler.next1D() < scatters) {
         target.power = target.power / scatters;
         target.point = {hit.position, hit.ng, hit.uv, hit.error};
-        target.source.emplace(scene_, surface, TransportMode::Photons, laser.region);
+        target.source.emplace(scene_, surface, laser.ray.direction, TransportMode::Photons, laser.region);
         return true;
     }
     if (onward == 0) return false;

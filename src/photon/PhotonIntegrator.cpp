@@ -29,6 +29,7 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
 
 void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     plan_ = PhotonPlan::of(*scene_, settings_, plan);
+    forwardBoundaries_ = plan.forwardBoundaries;
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_);
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
@@ -98,7 +99,7 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     std::unique_ptr<SurfaceConnections> connections;
     if (plan_.connections.on) {
         const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
-        connections = std::make_unique<SurfaceConnections>(*scene_, sensor, *first, pass, spread);
+        connections = std::make_unique<SurfaceConnections>(*scene_, sensor, *first, pass, spread, forwardBoundaries_);
     }
     PhotonMaps maps;
     {

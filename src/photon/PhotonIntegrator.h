@@ -38,6 +38,7 @@ class PhotonIntegrator : public Integrator {
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     PhotonPlan plan_;
+    bool forwardBoundaries_ = true; ///< connections must look through index-matched surfaces
     std::unique_ptr<PhotonPass> photonPass_;
     SensorPathRules rules_;
     std::unique_ptr<GlossyLight> glossy_; ///< with rules_.glossy

@@ -35,7 +35,7 @@ Rgb Vertex::scattering(const Vec3f& direction) const {
                        const Rgb value = surface.bsdf->eval(surface.query(at.mode, lobe::Smooth), surface.wi,
                                                             surface.frame.toLocal(direction));
                        if (at.mode == TransportMode::Radiance) return value;
-                       return value * surface.photonShadingFactor(surface.frame.toWorld(surface.wi), direction);
+                       return value * surface.photonShadingFactor(-at.before, direction);
                    },
                    [&](const MediumPoint& at) { return Rgb(at.medium->phase.eval(at.before, direction)); }},
         point_);

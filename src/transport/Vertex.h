@@ -15,6 +15,7 @@ struct LightPoint {
 /// A surface that a path has met.
 struct SurfacePoint {
     SurfaceInteraction surface;
+    Vec3f before;           ///< direction of propagation up to here
     TransportMode mode;     ///< Photons: of a path from the light
     bool consistencyChecks; ///< drops directions on the wrong side of the geometric normal
 };
@@ -29,9 +30,10 @@ class Vertex {
   public:
     Vertex(const Scene& scene, const Emitter& emitter, const SurfaceSample& point)
         : point_(LightPoint{&emitter, point}), region_(scene.regionOf(emitter)) {}
-    /// The region is the one that the path came through.
-    Vertex(const Scene& scene, const SurfaceInteraction& surface, TransportMode mode, const Region& region)
-        : point_(SurfacePoint{surface, mode, scene.transport.consistencyChecks}), region_(region) {}
+    /// `before` is the direction of propagation up to here, the region the one that the path came through.
+    Vertex(const Scene& scene, const SurfaceInteraction& surface, const Vec3f& before, TransportMode mode,
+           const Region& region)
+        : point_(SurfacePoint{surface, before, mode, scene.transport.consistencyChecks}), region_(region) {}
     Vertex(const Medium& medium, const Vec3f& position, const Vec3f& before, const Region& region)
         : point_(MediumPoint{position, before, &medium}), region_(region) {}
 
@@ -50,6 +52,8 @@ class Vertex {
     [[nodiscard]] float areaDensity(float pdfSolidAngle, const Vec3f& direction, float distance) const;
     /// A ray that does not meet the surface here.
     [[nodiscard]] Ray leave(const Vec3f& direction) const;
+    /// The one that the path came through, or the light's.
+    [[nodiscard]] const Region& region() const { return region_; }
     /// The region along `direction`.
     [[nodiscard]] Region regionTowards(const Vec3f& direction) const;
 

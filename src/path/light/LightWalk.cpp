@@ -79,7 +79,7 @@ bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
     flights_ = 0;
     if (!arrive(hit.position, hit.t)) return false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
-    connect({scene_, surface, TransportMode::Photons, region_}, power_ * throughput_);
+    connect({scene_, surface, ray_.direction, TransportMode::Photons, region_}, power_ * throughput_);
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Photons), scene_.transport.consistencyChecks, sampler_);
     if (!exit) return false;

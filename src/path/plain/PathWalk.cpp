@@ -103,7 +103,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     const SurfaceInteraction surface = makeInteraction(scene_, hit, path_.ray.direction);
     const LobeMask lobes = surface.bsdf->lobes();
     if (settings_.lightSampling && (lobes & lobe::Smooth) != 0)
-        connect({scene_, surface, TransportMode::Radiance, path_.region});
+        connect({scene_, surface, path_.ray.direction, TransportMode::Radiance, path_.region});
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, path_.sampler);
     if (!exit) return false;

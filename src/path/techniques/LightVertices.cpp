@@ -1,7 +1,5 @@
 #include "path/techniques/LightVertices.h"
 
-#include "path/techniques/Connection.h"
-
 #include "transport/Balance.h"
 
 #include <tbb/parallel_for.h>

@@ -80,8 +80,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     path_.ray = Ray{start.position, Vec3f(0.0f)};
     path_.connectable = true;
     if (!path_.culling->mayContinue(path_.ray.origin, path_.time)) return false;
-    connectToSurfaces(start.margin(), InSphere * meanComponent(emitterPower(emitter)),
-                      [&](const Vec3f& direction) { return emittedIntensity(emitter, start, direction); });
+    connectToSurfaces({scene_, emitter, start}, InSphere * meanComponent(emitterPower(emitter)));
     // What is guided aims at the camera itself.
     const EmissionDirections own(emitter, start, guide ? std::span<const transport::BodySphere>() : guidance_.bodies());
     float inversePdf = 0.0f;
@@ -99,35 +98,20 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide*
     return !isBlack(path_.power);
 }
 
-template <typename Scattering>
-void GuidedPhotonWalk::connectToSurfaces(const SurfaceMargin& margin, float meanScattering,
-                                         const Scattering& scattering) {
+void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float meanScattering) {
     if (!connections_ || !path_.bears(path_.power)) return;
-    const LightVertex vertex{path_.ray.origin, margin,      path_.time,    path_.bounce,
-                             path_.region,     path_.power, meanScattering};
+    const SendingVertex from{vertex, path_.time, path_.bounce, path_.power, meanScattering};
     if (connections_->knowsLightPerConnection())
-        connections_->connect(vertex, gate_, scattering, path_.sampler, draws_, path_.deposits.received,
-                              path_.counters.rays);
+        connections_->connect(from, gate_, path_.sampler, draws_, path_.deposits.received, path_.counters.rays);
     else
-        path_.deposits.expectedLight.push_back(connections_->expectedLight(vertex, gate_));
+        path_.deposits.expectedLight.push_back(connections_->expectedLight(from, gate_));
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
     if (!path_.arriveOnSurface(hit)) return false;
-    if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0) {
-        const Vec3f before = path_.ray.direction;
-        const Region behind = path_.region;
-        path_.ray.origin = hit.position;
-        // Light leaves to the side of the direction; a boundary's other side is another region.
-        connectToSurfaces(hit.margin(), 2.0f * InSphere, [&](const Vec3f& direction) {
-            if (!path_.surface.consistent(direction, scene_.transport.consistencyChecks)) return Rgb(0.0f);
-            const Region ahead = regionBeyond(path_.surface, direction, behind);
-            if (ahead.medium != behind.medium || ahead.speed != behind.speed) return Rgb(0.0f);
-            return path_.surface.bsdf->eval(path_.surface.query(TransportMode::Photons, lobe::Smooth), path_.surface.wi,
-                                            path_.surface.frame.toLocal(direction)) *
-                   path_.surface.photonShadingFactor(-before, direction);
-        });
-    }
+    if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0)
+        connectToSurfaces({scene_, path_.surface, path_.ray.direction, TransportMode::Photons, path_.region},
+                          2.0f * InSphere);
     return path_.leaveSurface();
 }
 
@@ -197,8 +181,7 @@ bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, 
     path_.collide(position, distanceBetween(path_.ray.origin, position));
     if (!look(guide, {position}) || !survives(guide)) return false;
     if (path_.flights < medium.maxBounces) // else no flight would leave here
-        connectToSurfaces({}, InSphere,
-                          [&](const Vec3f& direction) { return Rgb(medium.phase.eval(before, direction)); });
+        connectToSurfaces({medium, position, before, path_.region}, InSphere);
     split(guide, medium, before);
     return leave(medium, guide, before);
 }

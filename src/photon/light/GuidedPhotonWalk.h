@@ -50,8 +50,7 @@ class GuidedPhotonWalk {
     /// From a vertex in the medium, reached in the direction `before`.
     bool leave(const Medium& medium, const darts::Guide& guide, const Vec3f& before);
     bool meetSurface(const SurfaceHit& hit);
-    template <typename Scattering>
-    void connectToSurfaces(const SurfaceMargin& margin, float meanScattering, const Scattering& scattering);
+    void connectToSurfaces(const transport::Vertex& vertex, float meanScattering);
 
     // What is left for a primitive.
     /// Points: the control vertex.

@@ -9,15 +9,23 @@ namespace tungsten::photon {
 
 namespace {
 
-float meanIntensity(const LightVertex& vertex) {
-    return meanComponent(vertex.power) * vertex.meanScattering;
+float meanIntensity(const SendingVertex& from) {
+    return meanComponent(from.power) * from.meanScattering;
+}
+
+/// Towards the side of the direction alone: a boundary's other side is another region, where connections do not go.
+Rgb scatteringHere(const transport::Vertex& vertex, const Vec3f& direction) {
+    const Region &here = vertex.region(), ahead = vertex.regionTowards(direction);
+    if (ahead.medium != here.medium || ahead.speed != here.speed) return Rgb(0.0f);
+    return vertex.scattering(direction);
 }
 
 } // namespace
 
 SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                                       const PassInfo& pass, const Spread& spread)
-    : scene_(scene), sensor_(sensor), points_(record.points), speed_(double(scene.cameraRegion.speed)) {
+                                       const PassInfo& pass, const Spread& spread, bool forwardBoundaries)
+    : scene_(scene), sensor_(sensor), connector_(scene, forwardBoundaries), points_(record.points),
+      speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
     const double pixelArea =
         4.0 / (double(record.width) * double(record.width)); // at the distance where the image is 2 wide
@@ -35,17 +43,17 @@ SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::Sens
     perKept_ = float(double(points_.size()) / double(clusters_->order().size()));
 }
 
-SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& vertex,
+SurfaceConnections::Ranges SurfaceConnections::openRanges(const SendingVertex& from,
                                                           const darts::TimeGate& gate) const {
     Ranges ranges;
-    const double low = speed_ * (gate.begin - vertex.time), high = speed_ * (gate.end - vertex.time);
+    const double low = speed_ * (gate.begin - from.time), high = speed_ * (gate.end - from.time);
     if (!clusters_ || !(high > 0.0)) return ranges;
     // receive() tests exactly.
     constexpr auto Slack = float(transport::FlightSlack); // a few times: clusters add lengths in float
     const float slack = 4.0f * Slack * float(high) + 10.0f * Slack * float(high - low);
     const auto open = [&](const darts::TimeGate& times) {
-        const LengthRange range{float(speed_ * (times.begin - vertex.time)) - slack,
-                                float(speed_ * (times.end - vertex.time)) + slack};
+        const LengthRange range{float(speed_ * (times.begin - from.time)) - slack,
+                                float(speed_ * (times.end - from.time)) + slack};
         if (ranges.count == MostRanges)
             ranges.list[MostRanges - 1].most = range.most;
         else
@@ -53,45 +61,61 @@ SurfaceConnections::Ranges SurfaceConnections::openRanges(const LightVertex& ver
     };
     if (!sensor_.response) open(gate);
     for (const darts::TimeGate& times : sensor_.openTimes)
-        if (times.end > vertex.time) open(times);
+        if (times.end > from.time) open(times);
     return ranges;
 }
 
-float SurfaceConnections::expectedLight(const LightVertex& vertex, const darts::TimeGate& gate) const {
-    const Ranges ranges = openRanges(vertex, gate);
+float SurfaceConnections::expectedLight(const SendingVertex& from, const darts::TimeGate& gate) const {
+    const Ranges ranges = openRanges(from, gate);
     if (ranges.count == 0) return 0.0f;
-    return meanIntensity(vertex) * clusters_->weight({vertex.position, {ranges.list.data(), ranges.count}});
+    return meanIntensity(from) * clusters_->weight({from.vertex.position(), {ranges.list.data(), ranges.count}});
 }
 
-void SurfaceConnections::find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
+void SurfaceConnections::find(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
                               std::vector<PointDraw>& draws) const {
     draws.clear();
-    const Ranges ranges = openRanges(vertex, gate);
-    const float each = meanIntensity(vertex);
+    const Ranges ranges = openRanges(from, gate);
+    const float each = meanIntensity(from);
     if (ranges.count == 0 || !(each > 0.0f)) return;
-    clusters_->draw({vertex.position, {ranges.list.data(), ranges.count}}, *lightPerConnection_ / each, sampler, draws);
+    clusters_->draw({from.vertex.position(), {ranges.list.data(), ranges.count}}, *lightPerConnection_ / each, sampler,
+                    draws);
 }
 
-void SurfaceConnections::receive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw,
+void SurfaceConnections::connect(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
+                                 std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received,
+                                 uint64_t& rays) const {
+    find(from, gate, sampler, draws);
+    const bool onSurface = from.vertex.margin().onSurface();
+    const auto scattering = [&](const Vec3f& direction) { return scatteringHere(from.vertex, direction); };
+    for (const PointDraw& draw : draws) {
+        if (onSurface && isBlack(scattering(draw.direction))) continue; // not on this side
+        const SpreadLight seen = spreadAt(draw);
+        const Rgb light = from.power * seen.light(scattering) * (draw.inverseExpectation * perKept_);
+        if (!isBlack(light)) receive(from, gate, draw, {draw.point, 0, seen.from, light}, received, rays);
+    }
+}
+
+void SurfaceConnections::receive(const SendingVertex& from, const darts::TimeGate& gate, const PointDraw& draw,
                                  ReceivedLight light, std::vector<ReceivedLight>& received, uint64_t& rays) const {
     const SensorPoint& point = points_[draw.point];
     const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
+    const SurfaceMargin margin = from.vertex.margin();
     const Vec3f toVertex = -draw.direction;
     // The other side of a thin wall: rounding tells neither side from the other, and spreading would lift light
     // through.
     const float height = std::abs(toVertex.dot(point.hit.ng)) * draw.distance;
-    if (vertex.margin.onSurface() && height < 4.0f * (vertex.margin.error + point.hit.error)) return;
+    if (margin.onSurface() && height < 4.0f * (margin.error + point.hit.error)) return;
     // Not by the value of the BSDF: neighbours whose texture is not black here may share what arrives.
     if (!surface.consistent(toVertex, scene_.transport.consistencyChecks) ||
         ((surface.bsdf->lobes() & lobe::Transmissive) == 0 && surface.frame.toLocal(toVertex).z * surface.wi.z <= 0.0f))
         return;
-    const Ray ray{vertex.position, draw.direction, vertex.margin.beyond(draw.direction),
+    const Ray ray{from.vertex.position(), draw.direction, margin.beyond(draw.direction),
                   point.hit.margin().before(draw.direction, draw.distance)};
-    const Visibility visibility = traceVisibility(scene_, ray, draw.distance, vertex.region, rays);
+    const Visibility visibility = connector_.visibility(ray, draw.distance, from.vertex.region(), rays);
     if (isBlack(visibility.transmittance)) return;
-    const int interactions = point.interactions + vertex.bounce + 1 + visibility.crossings;
+    const int interactions = point.interactions + from.bounce + 1 + visibility.crossings;
     if (!transport::BounceLimits(scene_.transport).renders(interactions)) return;
-    const double time = vertex.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
+    const double time = from.time + visibility.time + (scene_.transport.cameraUnwarped ? 0.0 : point.time);
     if (!(time >= gate.begin && time < gate.end)) return;
     light.frame = sensor_.gate.frameOf(time);
     if (light.frame < 0) return;

@@ -7,6 +7,7 @@
 #include "photon/surface/SensorClusters.h"
 #include "photon/surface/SpreadLight.h"
 #include "photon/view/SensorRecord.h"
+#include "transport/Connection.h"
 #include "transport/Sensor.h"
 
 #include "darts/ResidualRange.h"
@@ -15,15 +16,13 @@
 
 namespace tungsten::photon {
 
-/// A vertex of a light path that can be connected to.
-struct LightVertex {
-    Vec3f position;
-    SurfaceMargin margin; ///< of the surface it is on, if any
+/// A vertex of a light path that is connected to sensor points.
+struct SendingVertex {
+    transport::Vertex vertex;
     double time;
     int bounce; ///< interactions up to and including the vertex
-    Region region;
     Rgb power;
-    float meanScattering; ///< above 0: what scattering (below) is about, whatever the direction
+    float meanScattering; ///< above 0: over the directions into which it scatters, or of the intensity
 };
 
 /// How far light from close by is spread about sensor points (SpreadLight.h): `pixels` square roots of the area that
@@ -46,24 +45,14 @@ class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
     SurfaceConnections(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                       const PassInfo& pass, const Spread& spread);
+                       const PassInfo& pass, const Spread& spread, bool forwardBoundaries);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
-    /// Appends what a vertex sends to sensor points. `scattering(direction)` is the vertex's BSDF or phase function
-    /// times cosine, or an emitter's intensity. Adds the rays traced to `rays`.
-    template <typename Scattering>
-    void connect(const LightVertex& vertex, const darts::TimeGate& gate, const Scattering& scattering, Sampler& sampler,
-                 std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received, uint64_t& rays) const {
-        find(vertex, gate, sampler, draws);
-        for (const PointDraw& draw : draws) {
-            if (vertex.margin.onSurface() && isBlack(scattering(draw.direction))) continue; // not on this side
-            const SpreadLight spread = seenFrom(draw);
-            const Rgb power = vertex.power * spread.light(scattering) * (draw.inverseExpectation * perKept_);
-            if (!isBlack(power)) receive(vertex, gate, draw, {draw.point, 0, spread.from, power}, received, rays);
-        }
-    }
+    /// Appends what a vertex sends to sensor points. Adds the rays traced to `rays`.
+    void connect(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
+                 std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received, uint64_t& rays) const;
     /// About what connect() would bring in all.
-    [[nodiscard]] float expectedLight(const LightVertex& vertex, const darts::TimeGate& gate) const;
+    [[nodiscard]] float expectedLight(const SendingVertex& from, const darts::TimeGate& gate) const;
     /// About what each connection is to bring; 0: nobody knows, vertices connect a few times each. Needed before
     /// connect().
     void setLightPerConnection(float light) { lightPerConnection_ = light; }
@@ -77,18 +66,19 @@ class SurfaceConnections {
         size_t count = 0;
     };
     /// When flights from the vertex end in time, as lengths; a little wide.
-    [[nodiscard]] Ranges openRanges(const LightVertex& vertex, const darts::TimeGate& gate) const;
-    void find(const LightVertex& vertex, const darts::TimeGate& gate, Sampler& sampler,
+    [[nodiscard]] Ranges openRanges(const SendingVertex& from, const darts::TimeGate& gate) const;
+    void find(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
               std::vector<PointDraw>& draws) const;
-    [[nodiscard]] SpreadLight seenFrom(const PointDraw& draw) const {
+    [[nodiscard]] SpreadLight spreadAt(const PointDraw& draw) const {
         return spreadLight(-draw.direction * draw.distance, points_[draw.point].hit.ng, spread_[draw.point]);
     }
     /// If it does, in time and not occluded: `light` lacks frame, transmittance and the sensor's weight.
-    void receive(const LightVertex& vertex, const darts::TimeGate& gate, const PointDraw& draw, ReceivedLight light,
+    void receive(const SendingVertex& from, const darts::TimeGate& gate, const PointDraw& draw, ReceivedLight light,
                  std::vector<ReceivedLight>& received, uint64_t& rays) const;
 
     const Scene& scene_;
     transport::Sensor sensor_;
+    transport::Connector connector_;
     const std::vector<SensorPoint>& points_;
     double speed_;
     float perKept_ = 0.0f;

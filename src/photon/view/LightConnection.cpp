@@ -19,7 +19,7 @@ std::optional<LightConnection> LightConnector::connect(const transport::Sensor& 
     const double cameraTime = state.time + double(surface.hit.t) / double(state.region.speed);
     const double start = emitter.emissionTime + (settings.cameraUnwarped ? 0.0 : cameraTime);
     if (!bounds_.during(sensor.gate).mayArrive(start, double(direct->distance))) return std::nullopt;
-    const transport::Vertex vertex(scene_, surface, TransportMode::Radiance, state.region);
+    const transport::Vertex vertex(scene_, surface, state.ray.direction, TransportMode::Radiance, state.region);
     const auto connection = connector_.connect(vertex, state.throughput, transport::connectionEnd(*direct), rays);
     if (!connection) return std::nullopt;
     if (!transport::BounceLimits(settings).renders(state.interactions + 1 + connection->crossings)) return std::nullopt;
