@@ -34,7 +34,7 @@ class Lamp : public testing::Test {
     [[nodiscard]] Vertex floorAt(float x, float z, const Vec3f& direction, TransportMode mode) const {
         const Vec3f from = Vec3f(x, 0.0f, z) - direction;
         const auto hit = scene_->geometry->intersect({from, direction});
-        return {*scene_, makeInteraction(*scene_, *hit, direction), mode, Region{-1, 1.0f}};
+        return {*scene_, makeInteraction(*scene_, *hit, direction), direction, mode, Region{-1, 1.0f}};
     }
     [[nodiscard]] const Emitter& lamp() const { return scene_->emitters[0]; }
     [[nodiscard]] Vertex lampPoint() const { return {*scene_, lamp(), sampleEmissionPoint(lamp(), {0.5f, 0.5f})}; }
