@@ -30,10 +30,6 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
         block.problem("volume_photon_type", "'" + type +
                                                 "' needs a time gate; in steady state there are points, beams, planes "
                                                 "and volumes");
-    if (settings.policy.guides())
-        block.problem("volume_photon_type", "'" + type +
-                                                "' has no guided light paths yet: it needs \"darts\": false; points "
-                                                "and beams have them");
     slices.classes = SliceClasses::of(slices.kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
     const auto fromBeams = [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); };
     const bool beams = slices.classes.beams && (!slices.classes.lights || !scene.primitives.empty() ||
