@@ -21,8 +21,7 @@ Scene fogAtDeltaGate(const SplatCase& c) {
     Scene scene;
     for (int i = 0; i < 3; ++i) {
         Medium fog;
-        fog.sigmaA = Rgb(0.2f);
-        fog.sigmaS = i == 2 ? Rgb(0.5f, 1.0f, 2.0f) : Rgb(0.7f);
+        fog.model = Homogeneous{Rgb(0.2f), i == 2 ? Rgb(0.5f, 1.0f, 2.0f) : Rgb(0.7f)};
         if (i != 1) fog.phase.model = HenyeyGreenstein{i == 0 ? 0.4f : -0.6f};
         scene.media.push_back(fog);
     }
@@ -37,7 +36,7 @@ Scene fogAtDeltaGate(const SplatCase& c) {
     scene.camera.toWorld = {frame.s, frame.t, frame.n, Vec3f(1.0f, 2.0f, 3.0f)};
     return scene;
 }
-Sensor kernelOf(const Scene& scene) {
+transport::Sensor kernelOf(const Scene& scene) {
     return TimeGate{false, false, scene.transport.gate.start - 0.05, 0.1, 1};
 }
 
@@ -92,7 +91,7 @@ SensorRecord randomView(const Scene& scene) {
 }
 
 /// Every piece of every ray by SliceGather.
-std::vector<Vec3d> gathered(const Scene& scene, const Sensor& sensor, const SensorRecord& record,
+std::vector<Vec3d> gathered(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                             const std::vector<CollapsedFlights>& records, float radius) {
     const SliceGather gather(scene, sensor, records, radius);
     std::vector<Vec3d> image(record.x.size(), Vec3d(0.0));
@@ -115,7 +114,7 @@ std::vector<Vec3d> gathered(const Scene& scene, const Sensor& sensor, const Sens
 class SliceSplat : public testing::TestWithParam<SplatCase> {};
 
 void expectSame(const Scene& scene, const std::vector<CollapsedFlights>& records, const SensorRecord& view) {
-    const Sensor sensor = kernelOf(scene);
+    const transport::Sensor sensor = kernelOf(scene);
     constexpr float Radius = 0.05f;
     const auto expected = gathered(scene, sensor, view, records, Radius);
     Film film(view.width, view.height, 1);
@@ -180,7 +179,7 @@ TEST(SliceEdges, EverythingStaysFinite) {
         for (const bool delta : {false, true}) {
             Scene scene = fogAtDeltaGate({"", unwarped, false});
             if (!delta) scene.transport.gate = {false, false, 2.0, 0.25, 4};
-            const Sensor sensor = delta ? kernelOf(scene) : Sensor(scene.transport.gate);
+            const transport::Sensor sensor = delta ? kernelOf(scene) : transport::Sensor(scene.transport.gate);
             auto records = randomRecords(scene, 3000);
             const Vec3f eye = scene.camera.position(), axis = scene.camera.forward();
             for (size_t i = 0; i < records.size(); ++i) {
