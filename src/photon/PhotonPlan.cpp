@@ -1,5 +1,8 @@
 #include "photon/PhotonPlan.h"
 
+#include "photon/AutoPrimitive.h"
+#include "photon/Tuning.h"
+
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
@@ -22,6 +25,10 @@ std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings,
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!facts.mediumScattering) return "no medium scatters";
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
+    if (slices && facts.speedsDiffer && !scene.transport.cameraUnwarped)
+        return "with several speeds of light guided slices take longer than they gain";
+    if (slices && !scene.transport.cameraUnwarped && largestPeak(scene) > tuning::MostGuidedPeak)
+        return "the phase function's forward peak: guided slices are noisier than plain ones";
     // Slices without camera time are aimed at nothing: only bounded in time.
     if (scene.camera.hasParallelRays() && !(slices && scene.transport.cameraUnwarped))
         return "an orthographic camera has no position to aim at";
@@ -97,7 +104,9 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
     volume.reason = !facts.mediumScattering ? "no medium scatters: no volume photon is stored or gathered"
                     : !volume.on            ? facts.heterogeneity()
-                                            : std::visit([](const auto& p) { return p.Reason; }, settings.primitive);
+                    : !settings.primitiveReason.empty()
+                        ? settings.primitiveReason
+                        : std::visit([](const auto& p) { return std::string(p.Reason); }, settings.primitive);
     const bool delta = scene.transport.gate.delta;
     const std::string kernel = "delta gate: a box about it that narrows with the radius";
     temporalKernel = {delta, !delta                         ? "the gate has a width, or none"
