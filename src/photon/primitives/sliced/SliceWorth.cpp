@@ -27,8 +27,8 @@ float SliceWorth::expected(const CollapsedFlights& record) const {
 }
 
 /// Radiance that it adds to a ray, about, without what all of its shape share: the power that gets to the gate, a
-/// ball's spread over its sphere. Balls that volumes share with fade where they are smaller than a mean free path (eq.
-/// 16).
+/// ball's spread over its sphere. Balls that share their paths with volumes fade below a mean free path
+/// (docs/photon-primitives.md, eq. 16).
 float SliceWorth::worth(const CollapsedFlights& record) const {
     const Medium& medium = scene_.media[size_t(record.medium)];
     const float sigmaT = std::max(meanComponent(medium.sigmaT()), 1e-20f), power = meanComponent(record.power);
