@@ -1,5 +1,8 @@
 #include "photon/PhotonPlan.h"
 
+#include "photon/AutoPrimitive.h"
+#include "photon/Tuning.h"
+
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
@@ -16,12 +19,19 @@ bool anyGlossyOnly(const Scene& scene) {
     });
 }
 
-std::string guidanceObstacle(const Scene& scene, const transport::Policy& policy, const EffectPlan& facts) {
-    if (!policy.guides()) return "the scene does not ask for it";
+std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+    const bool slices = std::holds_alternative<Slices>(settings.primitive);
+    if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!facts.mediumScattering) return "no medium scatters";
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
-    if (scene.camera.hasParallelRays()) return "an orthographic camera has no position to aim at";
+    if (slices && facts.speedsDiffer && !scene.transport.cameraUnwarped)
+        return "with several speeds of light guided slices take longer than they gain";
+    if (slices && !scene.transport.cameraUnwarped && largestPeak(scene) > tuning::MostGuidedPeak)
+        return "the phase function's forward peak: guided slices are noisier than plain ones";
+    // Slices without camera time are aimed at nothing: only bounded in time.
+    if (scene.camera.hasParallelRays() && !(slices && scene.transport.cameraUnwarped))
+        return "an orthographic camera has no position to aim at";
     return {};
 }
 
@@ -40,7 +50,7 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     plan.oneSpeed = !facts.speedsDiffer;
     plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
-    const std::string obstacle = guidanceObstacle(scene, settings.policy, facts);
+    const std::string obstacle = guidanceObstacle(scene, settings, facts);
     plan.guidance = {obstacle.empty(), obstacle.empty() ? "the scene asks for DARTS" : obstacle};
     plan.chooseSensorPaths(scene, settings, facts);
     plan.chooseGuidance(scene, settings, facts);
@@ -70,9 +80,11 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
         policy.directView == transport::DirectView::Auto ? straight : policy.directView == transport::DirectView::On;
     const bool pointLike = scene.transport.cameraUnwarped || scene.camera.aperture() == 0.0f;
     const bool exact = guidance.on && directView && straight && pointLike;
-    framesOneByOne.on = exact && gate.frames > 1 && policy.aimsAtSingleFrames();
-    framesOneByOne.reason =
-        framesOneByOne.on ? "each light path aims at one frame" : "light paths aim at the whole sequence as one gate";
+    const bool slices = std::holds_alternative<Slices>(settings.primitive);
+    framesOneByOne.on = exact && gate.frames > 1 && policy.aimsAtSingleFrames() && !slices;
+    framesOneByOne.reason = slices              ? "a sliced primitive shows in many frames"
+                            : framesOneByOne.on ? "each light path aims at one frame"
+                                                : "light paths aim at the whole sequence as one gate";
     drawsByResponse = exact && !scene.transport.response.empty();
     meetsDeltaGate = exact && gate.delta && policy.sampling.elliptical;
     ordinaryPhotons = {!directView, directView ? "direct view: control vertices alone are complete"
@@ -92,7 +104,9 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
     volume.reason = !facts.mediumScattering ? "no medium scatters: no volume photon is stored or gathered"
                     : !volume.on            ? facts.heterogeneity()
-                                            : std::visit([](const auto& p) { return p.Reason; }, settings.primitive);
+                    : !settings.primitiveReason.empty()
+                        ? settings.primitiveReason
+                        : std::visit([](const auto& p) { return std::string(p.Reason); }, settings.primitive);
     const bool delta = scene.transport.gate.delta;
     const std::string kernel = "delta gate: a box about it that narrows with the radius";
     temporalKernel = {delta, !delta                         ? "the gate has a width, or none"

@@ -1,5 +1,7 @@
 #include "photon/PhotonSettings.h"
 
+#include "photon/AutoPrimitive.h"
+
 namespace tungsten::photon {
 
 namespace {
@@ -7,12 +9,15 @@ namespace {
 constexpr double MostPhotons = 1e9;
 constexpr float Unbounded = 1e30f;
 
-VolumePrimitive readPrimitive(const ObjectReader& block) {
-    constexpr Meaning meaning{"none", "what the light that scatters in media is stored as"};
+/// None: the scene leaves the choice to its plan.
+std::optional<VolumePrimitive> readPrimitive(const ObjectReader& block) {
+    constexpr Meaning meaning{"none", "what the light that scatters in media is stored as; auto: as suits the scene"};
     std::string all = std::string(Points::Type) + " or " + Beams::Type;
     for (const SliceName& name : SliceNames) all += std::string(" or ") + name.type;
+    all += " or auto";
     block.declare("volume_photon_type", all, Points::Type, meaning);
     const std::string type = block.text("volume_photon_type", Points::Type, meaning);
+    if (type == "auto") return std::nullopt;
     if (type == Points::Type) return Points{};
     if (type == Beams::Type) return Beams{};
     for (const SliceName& name : SliceNames)
@@ -30,14 +35,8 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
         block.problem("volume_photon_type", "'" + type +
                                                 "' needs a time gate; in steady state there are points, beams, planes "
                                                 "and volumes");
-    if (settings.policy.guides())
-        block.problem("volume_photon_type", "'" + type +
-                                                "' has no guided light paths yet: it needs \"darts\": false; points "
-                                                "and beams have them");
     slices.classes = SliceClasses::of(slices.kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
-    const auto fromBeams = [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); };
-    const bool beams = slices.classes.beams && (!slices.classes.lights || !scene.primitives.empty() ||
-                                                std::any_of(scene.emitters.begin(), scene.emitters.end(), fromBeams));
+    const bool beams = slicesNeedBeams(scene, slices.classes);
     // What beams make wants many light paths, and they are cheap. volumetric-caustic at 160x88: variance / mean^2 x CPU
     // seconds 0.6 with all slices, 0.3 with a tenth of them; simple-volumetric 0.0024 and 0.0019.
     if (beams) slices.classes.share = 0.1f;
@@ -47,13 +46,21 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
                           "': they need a volume_gather_radius or gather_radius");
 }
 
-/// Radius and temporal kernel of the volume store.
+/// The primitive, radius and temporal kernel of the volume store.
 void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
-    const bool beams = std::holds_alternative<Beams>(settings.primitive);
+    const auto primitive = readPrimitive(block);
     settings.volumeRadius = float(
         block.number("volume_gather_radius", settings.gatherRadius,
                      {"length", "radius in media: of beams, and of points with fixed_volume_radius", "gather_radius"},
                      Range::positive()));
+    if (primitive) {
+        settings.primitive = *primitive;
+    } else {
+        const auto chosen = AutoPrimitive::of(scene, settings.volumeRadius < Unbounded);
+        settings.primitive = chosen.primitive;
+        settings.primitiveReason = chosen.reason;
+    }
+    const bool beams = std::holds_alternative<Beams>(settings.primitive);
     settings.fixedVolumeRadius = block.flag(
         "fixed_volume_radius", false, {"none", "points: one radius, instead of one that follows the photons' density"});
     if (beams && settings.volumeRadius >= Unbounded)
@@ -75,7 +82,6 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
 
 PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene, bool progressive) {
     PhotonSettings settings;
-    settings.primitive = readPrimitive(block);
     settings.progressive = progressive;
     settings.photonCount = uint64_t(
         block.integer("photon_count", 1000000,

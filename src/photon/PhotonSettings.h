@@ -12,6 +12,7 @@ namespace tungsten::photon {
 
 struct PhotonSettings {
     VolumePrimitive primitive;
+    std::string primitiveReason;          ///< of its choice, where the scene leaves it open
     uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
     uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store, points or beams
     uint32_t gatherCount = 20;            ///< nearest surface photons used

@@ -72,15 +72,16 @@ bool GuidedPhotonWalk::emit() {
     path_.region = scene_.regionOf(emitter);
     path_.power = Rgb(frames / chosen.probability);
     const darts::Guide* guide = guidance_.guide(path_.region);
-    return emitFromPoint(emitter, guide && guide->settings().guideEmission ? guide : nullptr);
+    return emitFromPoint(emitter, chosen.probability, guide && guide->settings().guideEmission ? guide : nullptr);
 }
 
-bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, const darts::Guide* guide) {
+bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, float probability, const darts::Guide* guide) {
     const SurfaceSample start = sampleEmissionPoint(emitter, path_.sampler.next2D());
     path_.ray = Ray{start.position, Vec3f(0.0f)};
     path_.connectable = true;
     if (!path_.culling->mayContinue(path_.ray.origin, path_.time)) return false;
     connectToSurfaces({scene_, emitter, start}, InSphere * meanComponent(emitterPower(emitter)));
+    leaveLight(emitter, probability, start);
     // What is guided aims at the camera itself.
     const EmissionDirections own(emitter, start, guide ? std::span<const transport::BodySphere>() : guidance_.bodies());
     float inversePdf = 0.0f;
@@ -108,6 +109,7 @@ void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float 
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
+    chain_.end();
     if (!path_.arriveOnSurface(hit)) return false;
     if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0)
         connectToSurfaces({scene_, path_.surface, path_.ray.direction, TransportMode::Photons, path_.region},
@@ -241,6 +243,32 @@ void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList
 }
 
 void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {}
+
+FlightChain::Rules GuidedPhotonWalk::chainRules() const {
+    return {scene_, *path_.culling, std::get<Slices>(path_.context.settings.primitive).classes,
+            path_.context.sliceWorth};
+}
+
+void GuidedPhotonWalk::leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start) {
+    auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
+    if (!flights || !path_.context.storeVolume || !guidance_.guide(path_.region) || !path_.mayBounce()) return;
+    chain_.leaveLight(chainRules(), emitter, probability, start,
+                      {start.position, Vec3f(0.0f), path_.power, path_.time, Infinity, path_.bounce},
+                      path_.region.medium, path_.sampler, *flights);
+}
+
+void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<CollapsedFlights>& flights) {
+    const Ray& ray = path_.ray;
+    chain_.fly(chainRules(), {ray.origin, ray.direction, path_.power, path_.time, flight.surface, path_.bounce},
+               path_.region.medium, path_.sampler, flights);
+}
+
+void GuidedPhotonWalk::leaveAt(float distance, const Flight&, DepositList<CollapsedFlights>& flights) {
+    const Vec3f position = path_.ray.at(distance);
+    const double time = path_.time + distanceBetween(path_.ray.origin, position) / double(path_.region.speed);
+    chain_.scatter(chainRules(), {position, path_.ray.direction, path_.power, time, Infinity, path_.bounce + 1},
+                   path_.sampler, flights);
+}
 
 void GuidedPhotonWalk::store(DepositList<Photon>& points, const ArrivalCulling& culling, const Vec3f& position,
                              const Rgb& power) {

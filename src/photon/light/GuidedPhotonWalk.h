@@ -4,6 +4,7 @@
 
 #include "photon/light/LightPath.h"
 #include "photon/light/PhotonGuidance.h"
+#include "photon/primitives/sliced/FlightChain.h"
 #include "photon/surface/SurfaceConnections.h"
 
 #include "transport/GuidedStep.h"
@@ -29,7 +30,7 @@ class GuidedPhotonWalk {
     void aimAtFrame(uint64_t path);
     bool emit();
     /// From a point of an emitter that shines in more than one direction; `guide` null: by the emitter's distribution.
-    bool emitFromPoint(const Emitter& emitter, const darts::Guide* guide);
+    bool emitFromPoint(const Emitter& emitter, float probability, const darts::Guide* guide);
     void goOn();
 
     // The stages of a step (transport::GuidedStep). False ends the path.
@@ -57,12 +58,14 @@ class GuidedPhotonWalk {
     void leaveOn(const Flight& flight, DepositList<Photon>& points);
     /// Beams: in direct view only what the camera's image shows; the store's room is for what can count.
     void leaveOn(const Flight& flight, DepositList<PhotonBeam>& beams);
-    /// Slices have plain paths.
-    void leaveOn(const Flight&, DepositList<CollapsedFlights>&) {}
+    void leaveOn(const Flight& flight, DepositList<CollapsedFlights>& flights);
     /// Points: ordinary photons share with control vertices where sensor paths can fold.
     void leaveAt(float distance, const Flight& flight, DepositList<Photon>& points);
     void leaveAt(float distance, const Flight& flight, DepositList<PhotonBeam>& beams);
-    void leaveAt(float, const Flight&, DepositList<CollapsedFlights>&) {}
+    void leaveAt(float distance, const Flight& flight, DepositList<CollapsedFlights>& flights);
+    [[nodiscard]] FlightChain::Rules chainRules() const;
+    /// Slices: what is seen of a light in this medium, in whatever direction the path goes on.
+    void leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start);
     /// Ordinary photons share with the control vertices of this flight, by the balance heuristic: where these alone are
     /// not complete, and in bodies that light must leave, whose directions do not follow the connections so closely.
     [[nodiscard]] bool storesPhotons() const {
@@ -80,6 +83,7 @@ class GuidedPhotonWalk {
     std::vector<PointDraw> draws_; ///< of the vertex at hand
     darts::TimeGate gate_;
     transport::GuidedStep step_;
+    FlightChain chain_; ///< of the flights since the last light or surface, for slices
 };
 
 } // namespace tungsten::photon

@@ -3,6 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
+#include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include "tungsten/scene/Interaction.h"
@@ -31,7 +32,8 @@ struct WalkContext {
     /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
     /// photons are, not from how dense those few are that bring what connections cannot.
     bool densityPhotons = false;
-    bool glossySensorPaths = false; ///< SensorPathRules::glossy
+    bool glossySensorPaths = false;         ///< SensorPathRules::glossy
+    const SliceWorth* sliceWorth = nullptr; ///< of guided paths
 };
 
 struct LightPath {

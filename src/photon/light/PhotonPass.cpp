@@ -139,8 +139,27 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, SurfaceConnections&
     connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
 }
 
+std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, Statistics& statistics) const {
+    const auto* slices = std::get_if<Slices>(&settings_.primitive);
+    if (!slices || !guidance_ || !storeVolume_) return nullptr;
+    auto worth = std::make_unique<SliceWorth>(scene_, culling_.gate());
+    // Paths of their own: the numbers must not depend on the paths that they are for.
+    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
+    const WalkContext context{scene_, settings_, culling_, {},    0.0f,  emitters_,
+                              false,  true,      false,    false, false, worth.get()};
+    Batch pilot(settings_.primitive);
+    for (uint64_t path = 0; path < paths; ++path) {
+        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
+        GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
+    }
+    statistics.add("rays", pilot.counters.rays);
+    worth->setTargets(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes.share);
+    return worth;
+}
+
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
     if (connections) setLightPerConnection(pass, *connections, statistics);
+    const auto worth = sliceWorth(pass, statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);
@@ -168,7 +187,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   !volumeFull(),
                                   connections != nullptr,
                                   densityPhotons_,
-                                  glossySensorPaths_};
+                                  glossySensorPaths_,
+                                  worth.get()};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * tuning::PathsPerBatch,
                            last = std::min(first + tuning::PathsPerBatch, traced + wave);

@@ -4,6 +4,7 @@
 #include "photon/PhotonSettings.h"
 #include "photon/light/PhotonGuidance.h"
 #include "photon/primitives/VolumePrimitive.h"
+#include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
 
@@ -38,6 +39,9 @@ class PhotonPass {
   private:
     /// Tells connections what each of them is to bring, from what a few paths find.
     void setLightPerConnection(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const;
+
+    /// Guided slices: how many records a base leaves, from what a few paths find.
+    [[nodiscard]] std::unique_ptr<SliceWorth> sliceWorth(const PassInfo& pass, Statistics& statistics) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;

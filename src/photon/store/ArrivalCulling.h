@@ -43,6 +43,7 @@ class ArrivalCulling {
                                           double speed) const;
     /// Tests against this gate from now on instead of the scene's.
     void setGate(const TimeGate& gate);
+    [[nodiscard]] const TimeGate& gate() const { return sensor_.gate; }
     /// The same test against one frame of the gate, for paths that aim at it alone: with directView every deposit
     /// counts for one frame, whatever rounding makes of its arrival later.
     [[nodiscard]] ArrivalCulling ofFrame(int frame) const;

@@ -22,16 +22,32 @@ void FlightChain::fly(const Rules& rules, const ChainVertex& vertex, int medium,
     directions_[size_t(flights_ % Most)] = vertex.direction;
     ++flights_;
     if (flights_ == 1) {
-        if (emitter_ >= 0 && rules.classes.lights)
-            depositLight(rules, sampler, list);
-        else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1))
+        if (emitter_ >= 0 && rules.classes.lights) {
+            if (!rules.worth) depositLight(rules, vertex, sampler, list);
+        } else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1))
             list.records.push_back(record(vertex, FlightShape::Beam, sampler));
     }
-    complete(rules, flights_ - 1, sampler, list);
+    if (rules.worth)
+        branch(rules, sampler, list);
+    else
+        complete(rules, flights_ - 1, sampler, list);
 }
 
-void FlightChain::depositLight(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const {
-    ChainVertex start = at(0);
+void FlightChain::leaveLight(const Rules& rules, const Emitter& emitter, float probability, const SurfaceSample& light,
+                             const ChainVertex& start, int medium, Sampler& sampler,
+                             DepositList<CollapsedFlights>& list) {
+    end();
+    const ptrdiff_t index = &emitter - rules.scene.emitters.data();
+    if (!rules.classes.lights || index > std::numeric_limits<int16_t>::max()) return;
+    emitter_ = int(index);
+    inverseProbability_ = 1.0f / probability;
+    light_ = light;
+    medium_ = medium;
+    depositLight(rules, start, sampler, list);
+}
+
+void FlightChain::depositLight(const Rules& rules, ChainVertex start, Sampler& sampler,
+                               DepositList<CollapsedFlights>& list) const {
     start.position = light_.position;
     start.power = Rgb(inverseProbability_);
     if (!counts(rules, start, medium_, 0, 1)) return;
@@ -73,6 +89,30 @@ void FlightChain::complete(const Rules& rules, int last, Sampler& sampler, Depos
     }
 }
 
+void FlightChain::branch(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const {
+    using Bases = SliceClasses::Bases;
+    const int base = flights_ - 1;
+    const PhaseFunction& phase = rules.scene.media[size_t(medium_)].phase;
+    for (int k = 2; k <= Most; ++k) {
+        const Bases bases = rules.classes.flights[size_t(k)];
+        if (bases == Bases::None || (bases == Bases::First && base > 0)) continue;
+        if (!counts(rules, at(base), medium_, base, k)) continue;
+        CollapsedFlights flights = record(at(base), FlightShape(k), sampler);
+        flights.shared = k == 3 && rules.classes.shared;
+        const float expected = rules.worth->expected(flights);
+        flights.power = flights.power / expected;
+        const int count = int(expected + sampler.next1D());
+        for (int i = 0; i < count; ++i) {
+            // Each relative to the one before it, and numbers of its own.
+            for (size_t j = 1; j < size_t(k); ++j)
+                flights.directions[j] = phase.sample(flights.directions[j - 1], sampler.next2D());
+            const uint32_t bits = sampler.nextBits();
+            flights.random = {uint16_t(bits >> 16), uint16_t(bits)};
+            list.records.push_back(flights);
+        }
+    }
+}
+
 void FlightChain::end(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) {
     if (flights_ > 0) {
         int most = 0;
@@ -91,7 +131,7 @@ void FlightChain::end(const Rules& rules, Sampler& sampler, DepositList<Collapse
 
 void FlightChain::thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
                        DepositList<CollapsedFlights>& list) {
-    const float share = rules.classes.share;
+    const float share = rules.worth ? rules.worth->expected(flights) : rules.classes.share;
     if (share < 1.0f) {
         if (sampler.next1D() >= share) return;
         flights.power = flights.power / share;

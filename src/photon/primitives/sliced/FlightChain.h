@@ -2,6 +2,7 @@
 // The flights of a light path since its last surface or light, as they come, and what they leave.
 
 #include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include "tungsten/scene/Scene.h"
@@ -23,10 +24,16 @@ class FlightChain {
         const Scene& scene;
         const ArrivalCulling& arrival;
         SliceClasses classes;
+        /// Of guided paths: every base draws directions for as many records as they are worth. Null: those of the path,
+        /// and ghosts.
+        const SliceWorth* worth = nullptr;
     };
 
     /// The path begins at an emitter; `probability` is that of its choice.
     void beginAt(const Scene& scene, const Emitter& emitter, float probability, const Vec2f& u);
+    /// The same at a point that is known, which leaves its ball here: guided paths may go where it does not shine.
+    void leaveLight(const Rules& rules, const Emitter& emitter, float probability, const SurfaceSample& light,
+                    const ChainVertex& start, int medium, Sampler& sampler, DepositList<CollapsedFlights>& list);
     /// A flight through a medium.
     void fly(const Rules& rules, const ChainVertex& vertex, int medium, Sampler& sampler,
              DepositList<CollapsedFlights>& list);
@@ -35,15 +42,23 @@ class FlightChain {
     /// The path leaves the medium, or ends. Bases that still lack directions get ghosts: whether a record is made must
     /// not depend on the lengths that it integrates over.
     void end(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list);
+    /// The same of paths whose bases draw their own directions.
+    void end() {
+        flights_ = 0;
+        emitter_ = -1;
+    }
 
   private:
     static constexpr int Most = 4; ///< flights of a record
 
     /// Records whose last direction is that of flight `last`.
     void complete(const Rules& rules, int last, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
-    void depositLight(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
+    /// Records from the base of the flight at hand, with directions of their own.
+    void branch(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
+    void depositLight(const Rules& rules, ChainVertex start, Sampler& sampler,
+                      DepositList<CollapsedFlights>& list) const;
     [[nodiscard]] static bool counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights);
-    /// Leaves a share of them.
+    /// Leaves a share of them, or as many as they are worth: none or one.
     static void thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
                      DepositList<CollapsedFlights>& list);
     [[nodiscard]] CollapsedFlights record(const ChainVertex& base, FlightShape shape, Sampler& sampler) const;

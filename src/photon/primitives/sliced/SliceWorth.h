@@ -1,0 +1,33 @@
+#pragma once
+// How many records a base leaves, by what one of them brings inside the gate.
+
+#include "photon/primitives/sliced/CollapsedFlights.h"
+
+#include "tungsten/scene/Scene.h"
+
+#include <span>
+
+namespace tungsten::photon {
+
+/// By the base alone, never by lengths that a record integrates over: their expectation is the same for any number
+/// above 0. Where a record is brighter there are more of them, so that all are about equally bright in the image.
+class SliceWorth {
+  public:
+    /// `gate`: the pass's. Every base that counts leaves one record, until there are targets.
+    SliceWorth(const Scene& scene, const TimeGate& gate);
+
+    /// From records of a few paths, one for every base that counts; `share`: how many there are to be for each of
+    /// these.
+    void setTargets(std::span<const CollapsedFlights> records, float share);
+    /// Expected number of records like this one.
+    [[nodiscard]] float expected(const CollapsedFlights& record) const;
+
+  private:
+    [[nodiscard]] float worth(const CollapsedFlights& record) const;
+
+    const Scene& scene_;
+    TimeGate gate_;
+    std::array<double, 5> targets_{}; ///< worth of what leaves one record, by shape
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,102 @@
+// volume_photon_type auto, and where slices have guided light paths: with the reason in the plan.
+
+#include "photon/PhotonPlan.h"
+
+#include "support/SceneFile.h"
+
+#include "tungsten/scene/SceneLoader.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+constexpr const char* DeltaGate = R"("transient_time_center": 3, "transient_time_width": 0.1, "delta_time_gate": true)";
+constexpr const char* BoxGate = R"("transient_time_center": 3, "transient_time_width": 0.1)";
+
+std::string fog(const std::string& gate, const std::string& media = {}, const char* g = "0") {
+    return R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 1,
+                          "phase_function": {"type": "henyey_greenstein", "g": )" +
+           std::string(g) + "}}" + media + R"(],
+        "camera": {"type": "pinhole", "medium": "fog"},
+        "primitives": [{"type": "point", "emission": 1, "ext_medium": "fog"}],
+        "integrator": {"type": "progressive_transient_photon_map", "darts": "best", )" +
+           gate + "}}";
+}
+constexpr const char* SlowGlass = R"(, {"name": "glass", "type": "homogeneous", "speed_of_light": 0.6})";
+
+struct Planned {
+    PhotonSettings settings;
+    PhotonPlan plan;
+    [[nodiscard]] const Slices* slices() const { return std::get_if<Slices>(&settings.primitive); }
+};
+Planned planOf(const std::string& json, std::vector<std::string> overrides) {
+    const test::SceneFile file(json);
+    overrides.insert(overrides.begin(), "integrator.volume_photon_type=auto");
+    const LoadedScene loaded = loadScene(file.path(), {{}, overrides});
+    const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
+    return {settings, PhotonPlan::of(*loaded.scene, settings, analyseScene(*loaded.scene))};
+}
+
+TEST(AutoPrimitive, SharedVolumesAndBallsAtDeltaGates) {
+    const Planned planned = planOf(fog(DeltaGate), {});
+    ASSERT_TRUE(planned.slices());
+    EXPECT_EQ(planned.slices()->kind, SliceKind::MisVolumesBalls);
+    EXPECT_TRUE(planned.slices()->classes.shared);
+    EXPECT_NE(planned.plan.volume.reason.find("delta gate"), std::string::npos) << planned.plan.volume.reason;
+    EXPECT_TRUE(planned.plan.guidance.on) << planned.plan.guidance.reason;
+}
+
+TEST(AutoPrimitive, BeamsInGatesThatLast) {
+    const Planned beams = planOf(fog(BoxGate), {"integrator.volume_gather_radius=0.1"});
+    EXPECT_TRUE(std::holds_alternative<Beams>(beams.settings.primitive)) << beams.plan.volume.reason;
+    const Planned points = planOf(fog(BoxGate), {});
+    EXPECT_TRUE(std::holds_alternative<Points>(points.settings.primitive)) << points.plan.volume.reason;
+    EXPECT_NE(points.plan.volume.reason.find("volume_gather_radius"), std::string::npos) << points.plan.volume.reason;
+}
+
+/// But without the camera's leg light need not turn to the camera in time.
+TEST(AutoPrimitive, ForwardPeaksHavePoints) {
+    EXPECT_TRUE(planOf(fog(DeltaGate, {}, "0.7"), {"integrator.camera_unwarped=true"}).slices());
+    const Planned planned = planOf(fog(DeltaGate, {}, "0.7"), {});
+    EXPECT_TRUE(std::holds_alternative<Points>(planned.settings.primitive)) << planned.plan.volume.reason;
+    EXPECT_NE(planned.plan.volume.reason.find("forward"), std::string::npos) << planned.plan.volume.reason;
+}
+
+std::string inCube(const std::string& json) {
+    std::string scene = json;
+    const std::string first = R"("primitives": [)";
+    scene.insert(scene.find(first) + first.size(), R"({"type": "cube", "bsdf": {"type": "dielectric", "ior": 1.5},
+        "int_medium": "glass", "ext_medium": "fog", "transform": {"position": [0, 0, 3]}}, )");
+    return scene;
+}
+
+TEST(AutoPrimitive, SeveralSpeedsOfLight) {
+    const std::string json = inCube(fog(DeltaGate, SlowGlass));
+    const Planned warped = planOf(json, {"integrator.volume_gather_radius=0.1"});
+    EXPECT_TRUE(std::holds_alternative<Beams>(warped.settings.primitive)) << warped.plan.volume.reason;
+    const Planned unwarped = planOf(json, {"integrator.volume_gather_radius=0.1", "integrator.camera_unwarped=true"});
+    EXPECT_TRUE(unwarped.slices()) << unwarped.plan.volume.reason;
+    EXPECT_TRUE(unwarped.plan.guidance.on) << unwarped.plan.guidance.reason;
+}
+
+TEST(GuidedSlicesPlan, PlainWhereGuidingLoses) {
+    const Planned speeds = planOf(inCube(fog(DeltaGate, SlowGlass)),
+                                  {"integrator.volume_photon_type=volumes", "integrator.volume_gather_radius=0.1"});
+    EXPECT_FALSE(speeds.plan.guidance.on);
+    EXPECT_NE(speeds.plan.guidance.reason.find("speeds of light"), std::string::npos) << speeds.plan.guidance.reason;
+    const Planned forward = planOf(fog(DeltaGate, {}, "0.9"), {"integrator.volume_photon_type=volumes"});
+    EXPECT_FALSE(forward.plan.guidance.on);
+    EXPECT_NE(forward.plan.guidance.reason.find("forward"), std::string::npos) << forward.plan.guidance.reason;
+}
+
+TEST(GuidedSlicesPlan, OrthographicCamerasNeedTimeWithoutTheirLeg) {
+    const std::vector<std::string> mis{"integrator.volume_photon_type=mis_volumes_balls", "camera.type=orthographic"};
+    EXPECT_FALSE(planOf(fog(DeltaGate), mis).plan.guidance.on);
+    auto unwarped = mis;
+    unwarped.emplace_back("integrator.camera_unwarped=true");
+    EXPECT_TRUE(planOf(fog(DeltaGate), unwarped).plan.guidance.on);
+}
+
+} // namespace
+} // namespace tungsten::photon
