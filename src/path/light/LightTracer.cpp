@@ -35,10 +35,12 @@ void readRest(const ObjectReader& block, const Scene& scene) {
         diagnostics.problems.push_back({diagnostics.file, "camera.reconstruction_filter",
                                         "light paths meet single points of the image with probability zero; use "
                                         "\"box\" or another filter that has a width"});
-    if (const Primitive* specular = firstSpecular(scene))
+    if (const Primitive* specular = firstSpecular(scene)) {
+        const std::string which = specular->name.empty() ? "" : "'" + specular->name + "' and other ";
         diagnostics.warnings.push_back({diagnostics.file, "primitives",
-                                        "the light tracer does not show what is seen in or through '" + specular->name +
-                                            "' and other surfaces that mirror or refract; the path tracer does"});
+                                        "the light tracer does not show what is seen in or through " + which +
+                                            "surfaces that mirror or refract; the path tracer does"});
+    }
     if (!scene.infiniteEmitters.empty())
         diagnostics.warnings.push_back({diagnostics.file, "primitives",
                                         "the light tracer does not show the environment itself, only what it lights"});
