@@ -30,8 +30,7 @@ struct Recorder {
     SensorWishes wishes;
     std::vector<std::vector<Piece>> pieces; ///< by number along the ray
     std::vector<SensorPoint> points;
-    std::vector<SensorLeg> legs;
-    std::vector<uint32_t> legEnds;
+    LegRow legs;
     uint32_t pixel = 0;
     size_t next = 0;
     float behind = 0.0f; ///< length of the straight ray so far
@@ -41,9 +40,9 @@ struct Recorder {
         next = 0;
         behind = 0.0f;
     }
-    void end() { legEnds.push_back(uint32_t(legs.size())); }
+    void end() { legs.ends.push_back(uint32_t(legs.legs.size())); }
     void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
-        if (wishes.legs) legs.push_back({state, hit});
+        if (wishes.legs) legs.legs.push_back({state, hit});
         if (state.folded) return;
         const float length = hit ? hit->t : Infinity;
         const Medium* medium = scene.medium(state.region);
@@ -67,11 +66,7 @@ struct Recorder {
 void append(Recorder& row, size_t pixels, SensorRecord& record) {
     record.points.insert(record.points.end(), row.points.begin(), row.points.end());
     std::vector<SensorPoint>().swap(row.points);
-    const auto before = uint32_t(record.legs.size());
-    record.legs.insert(record.legs.end(), row.legs.begin(), row.legs.end());
-    std::vector<SensorLeg>().swap(row.legs);
-    if (row.wishes.legs)
-        for (const uint32_t end : row.legEnds) record.legEnds.push_back(before + end);
+    record.legs.push_back(std::move(row.legs));
     for (size_t k = 0; k < row.pieces.size(); ++k) {
         if (record.pieces.size() <= k) resize(record.pieces.emplace_back(), pixels);
         StraightPiece& piece = record.pieces[k];
@@ -98,7 +93,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
     const size_t pixels = size_t(record.width) * size_t(record.height);
     for (auto* component : {&record.x, &record.y, &record.z}) component->resize(pixels);
     if (!scene.camera.hasSinglePosition()) record.origins.resize(pixels);
-    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, wishes, {}, {}, {}, {}});
+    std::vector<Recorder> rows(size_t(record.height), Recorder{scene, wishes, {}, {}, {}});
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
         uint64_t rays = 0;
         for (int x = 0; x < record.width; ++x) {
@@ -124,6 +119,10 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
         }
         statistics.add("rays", rays);
     });
+    size_t points = 0;
+    for (const Recorder& row : rows) points += row.points.size();
+    record.points.reserve(points);
+    record.legs.reserve(rows.size());
     for (Recorder& row : rows) append(row, pixels, record);
     return record;
 }

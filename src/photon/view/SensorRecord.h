@@ -35,6 +35,12 @@ struct SensorLeg {
     std::optional<SurfaceHit> hit;
 };
 
+/// Those of the paths of a row of pixels, in their order.
+struct LegRow {
+    std::vector<SensorLeg> legs;
+    std::vector<uint32_t> ends; ///< by pixel
+};
+
 /// What to record besides straight pieces.
 struct SensorWishes {
     bool points = false; ///< surface points
@@ -52,16 +58,17 @@ struct SensorRecord {
     std::vector<float> x, y, z;        ///< unit direction of every pixel's ray
     std::vector<StraightPiece> pieces; ///< first, second, ... piece of every ray
     std::vector<SensorPoint> points;   ///< in pixel order
-    std::vector<SensorLeg> legs;       ///< in pixel order
-    std::vector<uint32_t> legEnds;     ///< by pixel
+    std::vector<LegRow> legs;          ///< by row of pixels
 
     /// Shows a visitor the legs of a pixel's path.
     template <typename Visitor>
     void replay(const Scene& scene, size_t pixel, Visitor&& visitor) const {
-        if (legEnds.empty()) return;
-        for (size_t i = pixel > 0 ? legEnds[pixel - 1] : 0; i < legEnds[pixel]; ++i) {
-            SensorState state = legs[i].state;
-            visitLeg(scene, state, legs[i].hit, visitor);
+        const LegRow& row = legs[pixel / size_t(width)];
+        const size_t column = pixel % size_t(width);
+        if (row.ends.empty()) return;
+        for (size_t i = column > 0 ? row.ends[column - 1] : 0; i < row.ends[column]; ++i) {
+            SensorState state = row.legs[i].state;
+            visitLeg(scene, state, row.legs[i].hit, visitor);
         }
     }
 };
