@@ -32,7 +32,7 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
                                                 "and volumes");
     if (settings.policy.guides())
         block.problem("volume_photon_type", "'" + type +
-                                                "' has no guided light paths yet: it needs \"darts\": false; points "
+                                                "' has no guided light paths yet: it needs \"darts\": \"off\"; points "
                                                 "and beams have them");
     slices.classes = SliceClasses::of(slices.kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
     const auto fromBeams = [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); };
