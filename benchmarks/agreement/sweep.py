@@ -2,10 +2,11 @@
 """Renders small scenes unlike the shipped ones by plain and guided points, beams and paths, and copies of them in other units
 or turned and moved as a whole: all must agree.
 
-    sweep.py FOLDER [--fast] [--scenes NAME ...] [--effort FACTOR]
+    sweep.py FOLDER [--slices] [--fast] [--scenes NAME ...] [--effort FACTOR]
 
-Writes FOLDER/SWEEP.md; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the
-same command, and only what changed is rendered again. Seeds are fixed.
+--slices: planes, volumes, balls and hypervolumes, in scenes for them, against paths and beams. Writes FOLDER/SWEEP.md; exits
+with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the same command, and only what
+changed is rendered again. Seeds are fixed.
 """
 
 import argparse
@@ -22,8 +23,10 @@ import numpy as np
 
 from sweep_copies import moved, scaled
 from sweep_measures import Samples, compare, compare_pairs, means, without_kernel
-from sweep_report import report, scene_row
+from sweep_methods import METHODS, SLICE_METHODS
+from sweep_report import INTRODUCTION, SLICES_INTRODUCTION, report, scene_row
 from sweep_scenes import FAST, all_scenes
+from sweep_slices import SLICE_FAST, slice_scenes
 from sweep_vocabulary import write_assets
 
 PROJECT = Path(__file__).resolve().parents[2]
@@ -31,42 +34,29 @@ SEEDS = 8
 LIMIT_SECONDS = 300    # for one render
 COARSE, FINE = 1.0, 0.5  # parts of the scene's kernel radius
 
-
-@dataclass(frozen=True)
-class Method:
-    name: str
-    settings: dict
-    samples: int     # per pixel of a path tracer, passes of a photon map
-    photons: int = 0  # light paths per pass; 0: no kernel
-
-    @property
-    def guided(self):
-        return self.settings["darts"] != "off"
-
-
-def photon_method(name, primitive, darts, passes, photons):
-    settings = {"type": "photons", "volume_photon_type": primitive, "darts": darts, "alpha": 1.0, "volume_alpha": 1.0,
-                "fixed_volume_radius": True, "gather_photon_count": 1000000, "volume_photon_count": 100000000}
-    return Method(name, settings, passes, photons)
-
-
-METHODS = [
-    Method("plain paths", {"type": "path_tracer", "darts": "off"}, 512),
-    Method("best paths", {"type": "path_tracer", "darts": "best"}, 96),
-    photon_method("plain points", "points", "off", 4, 50000),
-    photon_method("best points", "points", "best", 4, 6000),
-    photon_method("plain beams", "beams", "off", 4, 12000),
-    photon_method("best beams", "beams", "best", 4, 3000),
-]
-
 # Copies, and the seeds that they begin after. Scaled copies use the original's random numbers, with which they can be compared
 # closely; moved ones, whose directions differ in any case, their own.
 COPIES = {"original": (lambda scene: scene, 0), "scaled": (lambda scene: scaled(scene, 7.0, 3.0), 0), "moved": (moved, 100)}
 
 
-def methods_of(scene):
-    """Without a gate there is nothing to guide light paths to."""
-    return [m for m in METHODS if m.name not in scene.without and not (scene.steady and m.guided)]
+@dataclass(frozen=True)
+class Sweep:
+    """What is rendered how."""
+    introduction: str
+    scenes: list
+    fast: tuple
+    methods: list
+    copies: tuple = tuple(COPIES)
+
+
+def sweep_of(options):
+    if options.slices:
+        return Sweep(SLICES_INTRODUCTION, slice_scenes(), SLICE_FAST, SLICE_METHODS, ("original",))
+    return Sweep(INTRODUCTION, all_scenes(), FAST, METHODS)
+
+
+def methods_of(scene, methods):
+    return [m for m in methods if m.name not in scene.without and (m.steady or not scene.steady)]
 
 
 def photon_map(scene):
@@ -84,6 +74,8 @@ def scene_json(scene, method, radius, effort=1.0):
     else:
         samples = max(1, int(samples * effort))
     integrator.pop("photon_map", None)
+    if not method.sliced:
+        integrator.pop("delta_time_gate", None)
     if method.photons:
         integrator.pop("enable_rr", None)
     if integrator.pop("single_frames", False) and method.guided:
@@ -126,7 +118,7 @@ class Renderer:
     def _render(self, file, seed, key):
         image = self.folder / "renders" / f"{key}.npy"
         statistics = image.with_suffix(".json")
-        command = [self.tungsten, "--quiet", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png",
+        command = [self.tungsten, "--quiet", "--allow-outside", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png",
                    "-e", image.name, "--stats", statistics, file]
         done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS)
         if done.returncode != 0:
@@ -139,47 +131,52 @@ class Renderer:
         return {"means": means(pixels), "frames": len(pixels), "seconds": seconds, "messages": np.array(messages, str)}
 
 
-def render_scene(scene, effort, renderer, pool):
+def render_scene(scene, sweep, effort, renderer, pool):
     """Samples of every method: all copies together, and copies by name; with the seconds that each method took."""
     jobs = {}
-    for copy, (change, first) in COPIES.items():
+    for copy in sweep.copies:
+        change, first = COPIES[copy]
         changed = change(scene)
-        for method in methods_of(scene):
-            for part in (COARSE, FINE) if method.photons else (FINE,):
+        for method in methods_of(scene, sweep.methods):
+            for part in (COARSE, FINE) if method.blurs(scene) else (FINE,):
                 name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == COARSE else ''}"
                 renderer.store(name, scene_json(changed, method, part * changed.radius, effort))
                 for seed in range(first + 1, first + SEEDS + 1):
                     jobs[copy, method.name, part, seed - first] = pool.submit(renderer.means, name, seed)
-    return {method.name: gathered(method, {key: job.result() for key, job in jobs.items() if key[1] == method.name})
-            for method in methods_of(scene)}
+    return {method.name: gathered(method, scene, {key: job.result() for key, job in jobs.items() if key[1] == method.name})
+            for method in methods_of(scene, sweep.methods)}
 
 
-def gathered(method, results):
+def gathered(method, scene, results):
     """One method's samples by copy, those of all copies with random numbers of their own, and the processor's seconds."""
-    copies = {copy: samples_of(copy, method, results) for copy in COPIES}
-    original, elsewhere = copies["original"], copies["moved"]
-    together = Samples(original.groups + elsewhere.groups, (original.blur + elsewhere.blur) / 2, original.frames)
+    copies = {copy: samples_of(copy, method, scene, results) for copy in dict.fromkeys(key[0] for key in results)}
+    apart = [samples for copy, samples in copies.items() if copy != "scaled"]
+    together = Samples([group for samples in apart for group in samples.groups], sum(samples.blur for samples in apart) / len(apart),
+                       apart[0].frames)
     return copies, together, sum(seconds for _, _, seconds in results.values())
 
 
-def samples_of(copy, method, results):
+def samples_of(copy, method, scene, results):
     def renders(part):
         return np.array([results[copy, method.name, part, seed][0] for seed in range(1, SEEDS + 1)])
 
     frames = results[copy, method.name, FINE, 1][1]
-    if not method.photons:
+    if not method.blurs(scene):
         return Samples([renders(FINE)], np.zeros_like(renders(FINE)[0]), frames)
     return Samples(*without_kernel(renders(FINE), renders(COARSE)), frames)
 
 
-def compare_scene(rendered):
-    """All comparisons: of methods with each other, and of copies with the originals."""
+def compare_scene(rendered, references):
+    """All comparisons: of methods with references, and of copies with the originals."""
     names = list(rendered)
-    methods = {(a, b): compare(rendered[a][1], rendered[b][1]) for i, a in enumerate(names) for b in names[i + 1:]}
+    methods = {(a, b): compare(rendered[a][1], rendered[b][1])
+               for i, a in enumerate(names) if a in references for b in names[i + 1:]}
     copies = {}
     for name, (by_copy, _, _) in rendered.items():
-        copies[name, "scaled"] = compare_pairs(by_copy["original"], by_copy["scaled"])
-        copies[name, "moved"] = compare(by_copy["original"], by_copy["moved"])
+        if "scaled" in by_copy:
+            copies[name, "scaled"] = compare_pairs(by_copy["original"], by_copy["scaled"])
+        if "moved" in by_copy:
+            copies[name, "moved"] = compare(by_copy["original"], by_copy["moved"])
     return methods, copies
 
 
@@ -187,6 +184,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--tungsten", type=Path, default=os.environ.get("TUNGSTEN", PROJECT / "build/bin/tungsten"))
+    parser.add_argument("--slices", action="store_true", help="sliced primitives against paths and beams")
     parser.add_argument("--fast", action="store_true", help="a handful of scenes, for the tests")
     parser.add_argument("--scenes", nargs="+", default=[], metavar="NAME", help="those whose names hold one of these")
     parser.add_argument("--effort", type=float, help="factor on all samples and light paths (1; fast: 0.15)")
@@ -196,35 +194,38 @@ def arguments():
     return options
 
 
-def chosen(options):
-    scenes = all_scenes()
-    if options.fast:
-        scenes = [scene for scene in scenes if scene.name in FAST]
+def chosen(sweep, options):
+    scenes = [scene for scene in sweep.scenes if scene.name in sweep.fast] if options.fast else sweep.scenes
     return [s for s in scenes if not options.scenes or any(part in s.name for part in options.scenes)]
 
 
 def main():
     options = arguments()
+    sweep = sweep_of(options)
     for name in ("scenes", "renders"):
         (options.folder / name).mkdir(parents=True, exist_ok=True)
     write_assets(options.folder / "assets")
     renderer = Renderer(Path(options.tungsten).resolve(), options.folder.resolve())
+    references = [method.name for method in sweep.methods if not method.sliced]
     results, failures = {}, {}
+
+    def write():
+        text, agree = report(sweep.introduction, results, failures, renderer.messages)
+        (options.folder / "SWEEP.md").write_text(text)
+        return agree
+
     with ThreadPoolExecutor(options.jobs) as pool:
-        for scene in chosen(options):
+        for scene in chosen(sweep, options):
             try:
-                rendered = render_scene(scene, options.effort, renderer, pool)
+                rendered = render_scene(scene, sweep, options.effort, renderer, pool)
             except (RuntimeError, subprocess.TimeoutExpired) as error:
                 failures[scene.name] = str(error)
                 print(f"{scene.name}: {error}", flush=True)
                 continue
-            results[scene.name] = (scene, rendered, *compare_scene(rendered))
-            text, agree = report(results, failures, renderer.messages)
-            (options.folder / "SWEEP.md").write_text(text)
+            results[scene.name] = (scene, rendered, *compare_scene(rendered, references))
+            write()
             print(scene_row(*results[scene.name]), flush=True)
-    text, agree = report(results, failures, renderer.messages)
-    (options.folder / "SWEEP.md").write_text(text)
-    return 0 if agree else 1
+    return 0 if write() else 1
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ class SweepScene:
     without: dict = field(default_factory=dict)  # methods left out, and why
     renderer: dict = field(default_factory=dict)  # fields of the renderer block
     unit: float = 1.0                            # length of what is 1 in the unscaled scene
+    blurred: tuple = ()                          # primitives that see it through a kernel; none named: all
 
     @property
     def steady(self):

@@ -11,7 +11,8 @@ from tables import accuracy_table, cost_table, left_out_table, overview_table, p
 SHARE_OF_A_QUIET_MACHINE = 0.85
 
 
-def _legend(study):
+def legend(study):
+    """What the tables' figures are, in Markdown."""
     return f"""All figures are medians over the seeds, of the mean of R, G and B, relative to the mean of the reference.
 
 - **rel. std**: rms over pixels of the renders' own standard error (the EXR's `stderr` layer; smallest and largest seed in
@@ -29,7 +30,8 @@ def _legend(study):
 """
 
 
-def _conditions(study, everything):
+def conditions(study, everything):
+    """How the figures were made, and what is wrong with them, in Markdown."""
     done = [s for s in everything if s.seeds]
     lines = [f"{len(study.methods)} methods, {study.seeds} seeds, {study.threads} threads, "
              f"{', '.join(f'{s:g}' for s in study.seconds)} s of passes; written {time.strftime('%Y-%m-%d %H:%M')}."]
@@ -85,7 +87,7 @@ def _scene_section(study, scene, by_seconds, reference, folder):
 def write_report(study, summaries, references, work: Path):
     """Writes report.md and its images into the work folder; returns its path."""
     everything = [s for by_seconds in summaries.values() for group in by_seconds.values() for s in group.values()]
-    parts = [f"# {study.title}\n", _conditions(study, everything), _failures(everything), _legend(study),
+    parts = [f"# {study.title}\n", conditions(study, everything), _failures(everything), legend(study),
              _overview(study, summaries)]
     for scene in study.scenes:
         parts.append(_scene_section(study, scene, summaries[scene.name], references[scene.name], work))

@@ -73,6 +73,7 @@ class Summary:
     non_finite: int = 0
     share: float = 0.0  # of the threads' time that the machine granted and the renderer used
     builds: set = field(default_factory=set)
+    machines: set = field(default_factory=set)
     image: Path | None = None  # of the first seed
     average: np.ndarray | None = None  # over the seeds, at the reference's resolution
     failures: list = field(default_factory=list)
@@ -151,6 +152,7 @@ def summarise(runs, reference, study: Study):
             images.append(layers[""])
             errors.append(layers.get("stderr") if stats[-1]["passes"] >= 2 else None)
             summary.builds.add(record["build"])
+            summary.machines |= {record["machine"]} if "machine" in record else set()
             summary.image = summary.image or run.folder / "image.exr"
     if not images:
         return summary

@@ -92,6 +92,13 @@ def plan(study: Study, work: Path):
     return runs
 
 
+def machine():
+    """Processor, threads and system of this machine."""
+    models = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), flags=re.M)
+    system = os.uname()
+    return f"{models[0] if models else 'unknown processor'}, {os.cpu_count()} threads, {system.sysname} {system.machine}"
+
+
 def build_of(tungsten: Path):
     """Identity of a build: the command and the plugins beside it."""
     content = hashlib.sha256(tungsten.read_bytes())
@@ -149,7 +156,7 @@ def execute(run: Run, tungsten: Path, build: str, limit: float, accept_warnings:
                str(partial / "stats.json"), *run.arguments()]
     start, load = time.time(), os.getloadavg()[0]
     code, messages = call(command, limit)
-    record = {"fingerprint": run.fingerprint(), "build": build, "label": run.label, "command": command,
+    record = {"fingerprint": run.fingerprint(), "build": build, "machine": machine(), "label": run.label, "command": command,
               "messages": messages.strip(), "error": None, "skipped": impossible(code, messages, run.method),
               "wall seconds": time.time() - start, "load before": load}
     refused = None if accept_warnings else refused_warning(messages, run.overrides)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Compares methods at equal time: renders what a study file asks for, measures the images, writes report.md."""
+"""Compares methods at equal time: renders what a study file asks for, measures the images, writes report.md and report.html."""
 
 import argparse
 import dataclasses
@@ -8,6 +8,7 @@ from pathlib import Path
 
 from images import ImageError
 from results import collect
+from page import write_page
 from report import write_report
 from references import SECONDS, SEEDS, render_references
 from runs import check, plan, run_all
@@ -100,7 +101,7 @@ def perform(options):
         run_all(study, runs, options.tungsten.resolve(), options.retry_failed, options.accept_warnings)
     failed = [run for run in runs if (record := run.record()) and record["error"]]
     summaries, references = collect(study, runs)
-    print(f"{write_report(study, summaries, references, work)}")
+    print(f"{write_report(study, summaries, references, work)}\n{write_page(study, summaries, references, runs, work)}")
     if failed:
         print(f"{len(failed)} of {len(runs)} runs failed; the report has their messages", file=sys.stderr)
     return EXIT_FAILED_RUNS if failed else EXIT_DONE

@@ -4,21 +4,10 @@
 
 namespace tungsten::path {
 
-Ray GuidedPath::leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const {
-    Ray ray = surface ? surface->hit.leave(direction) : Ray{state.ray.origin, direction};
-    ray.tMax = reach;
-    return ray;
-}
-
-Scattering GuidedPath::scatteringTowards(const Vec3f& direction, const SurfaceInteraction* surface) const {
-    if (!surface) {
-        const float phase = scene().medium(state.region)->phase.eval(state.ray.direction, direction);
-        return {Rgb(phase), phase};
-    }
-    if (!surface->consistent(direction, scene().transport.consistencyChecks)) return {};
-    const Vec3f wo = surface->frame.toLocal(direction);
-    const BsdfQuery query = surface->query(TransportMode::Radiance);
-    return {surface->bsdf->eval(query, surface->wi, wo), surface->bsdf->pdf(query, surface->wi, wo)};
+std::optional<transport::Connection> GuidedPath::connectInRegion(const transport::Vertex& here,
+                                                                 const transport::ConnectionEnd& end) {
+    if (!(here.margin().beyond(end.direction) < end.margin.before(end.direction, end.distance))) return std::nullopt;
+    return transport::Connector(scene(), false).connect(here, state.throughput, end, state.counters.shadowRays);
 }
 
 LengthsInGate GuidedPath::lengthsInGate() const {
@@ -27,12 +16,12 @@ LengthsInGate GuidedPath::lengthsInGate() const {
     return {float(speed * (gate.start - elapsed)), float(speed * (gate.end() - elapsed))};
 }
 
-const darts::Guide* GuidedPath::guideFor(const SurfaceInteraction& surface, const Vec3f& back) const {
-    if (!endsReflectedLight(*surface.bsdf)) return nullptr;
-    const Region region = regionBeyond(surface, back, state.region);
+const darts::Guide* GuidedPath::guideFor(const transport::Vertex& vertex, const Vec3f& back) const {
+    if (!endsReflectedLight(vertex.lobes())) return nullptr;
+    const Region region = vertex.regionTowards(back, state.region);
     const Medium* medium = scene().medium(region);
     if (!medium || !medium->scatters()) return nullptr;
-    const bool diffuse = (surface.bsdf->lobes() & lobe::DiffuseReflection) != 0;
+    const bool diffuse = (vertex.lobes() & lobe::DiffuseReflection) != 0;
     const auto& guides = diffuse ? context.guides.surfaces : context.guides.glossy;
     const darts::Guide& guide = guides[size_t(region.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;

@@ -53,18 +53,6 @@ struct Approach {
     Vec3f normal; ///< of the surface here, on the side of the vertex before; 0 in media
 };
 
-/// A vertex's scattering towards a direction (cosine included) and the density of its own sampling, per solid angle.
-struct Scattering {
-    Rgb value{0.0f};
-    float pdf = 0.0f;
-};
-
-/// From a vertex to the target.
-struct Straight {
-    Vec3f direction;
-    float distance;
-};
-
 /// Path lengths, half open.
 struct LengthsInGate {
     float low, high;
@@ -77,25 +65,23 @@ struct GuidedPath {
     [[nodiscard]] const Scene& scene() const { return context.scene; }
     [[nodiscard]] float next() { return state.sampler.next1D(); }
 
-    [[nodiscard]] Straight straightFrom(const Vec3f& position) const {
-        const Vec3f offset = target->point.position - position;
-        const float distance = offset.length();
-        return {distance > 0.0f ? offset / distance : Vec3f(0.0f, 0.0f, 1.0f), distance};
+    /// The straight way from `position` to the target, if there is one and light on it may fall into the gate; `time`
+    /// is the path's up to there.
+    [[nodiscard]] std::optional<transport::Straight> wayInTime(const Vec3f& position, double time) const {
+        const auto way = transport::straightWay(position, target->vertex.position());
+        return way && context.bound.mayConnect(time, way->distance, target->start) ? way : std::nullopt;
     }
-    /// Along a ray from `region`, on the part on which something may be in the way.
-    [[nodiscard]] Visibility traceToTarget(Ray ray, const Straight& way, const Region& region) {
-        ray.tMax = target->point.margin().before(way.direction, way.distance);
-        const transport::Connector connector(context.scene, context.forwardBoundaries);
-        return connector.visibility(ray, way.distance, region, state.counters.shadowRays);
+    /// What connects to the target, through index-matched boundaries.
+    [[nodiscard]] transport::Connector connector() const { return {scene(), context.forwardBoundaries}; }
+    /// From the vertex at the ray's origin, through the present region alone. None, too, where margins leave nothing of
+    /// the way.
+    [[nodiscard]] std::optional<transport::Connection> connectInRegion(const transport::Vertex& here,
+                                                                       const transport::ConnectionEnd& end);
+    /// The last vertex of what the camera sees, as it is met by the ray.
+    [[nodiscard]] transport::Vertex vertexOn(const SurfaceInteraction& surface) const {
+        return {scene(), surface, state.ray.direction, TransportMode::Radiance, state.region};
     }
-    /// From the ray's origin, on `surface` if there is one, up to `reach`.
-    [[nodiscard]] Ray leave(const SurfaceInteraction* surface, const Vec3f& direction, float reach) const;
-    /// At the ray's origin: on `surface`, or in the medium if there is none.
-    [[nodiscard]] Scattering scatteringTowards(const Vec3f& direction, const SurfaceInteraction* surface) const;
 
-    [[nodiscard]] bool mayConnect(double time, float distance) const {
-        return distance > 0.0f && context.bound.mayConnect(time, distance, target->start);
-    }
     /// Of what arrives at the ray's origin inside the gate, from the target.
     [[nodiscard]] LengthsInGate lengthsInGate() const;
     /// Whether a path with this many further interactions and medium scatters counts.
@@ -111,8 +97,8 @@ struct GuidedPath {
         return (connects ? context.guides.media : context.guides.plain)[size_t(region.medium)];
     }
     /// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere. `back` is
-    /// the way there, turned round.
-    [[nodiscard]] const darts::Guide* guideFor(const SurfaceInteraction& surface, const Vec3f& back) const;
+    /// the way there from the present region, turned round.
+    [[nodiscard]] const darts::Guide* guideFor(const transport::Vertex& vertex, const Vec3f& back) const;
     /// Of a connection from a vertex with this residual.
     [[nodiscard]] darts::ConnectionSample drawConnection(const darts::Guide& guide, const darts::Residual& residual);
     /// Ordinary connections share with control vertices: in bodies that light must leave, whose directions do not

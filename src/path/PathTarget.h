@@ -9,26 +9,26 @@
 
 namespace tungsten::path {
 
-/// A point of an emitter; for light that starts in a single direction, the first vertex that scatters it: a virtual
-/// point source.
+/// The last vertex of light's own path: a point of an emitter; for light that starts in a single direction, the first
+/// vertex that scatters it: a virtual point source.
 struct PathTarget {
-    const Emitter* emitter = nullptr;
-    int index = -1; ///< of the emitter; -1 for virtual sources, which cannot be hit
-    SurfaceSample point{Vec3f(0.0f), Vec3f(0.0f), Vec2f(0.0f)};
-    int surrounding = -1;                    ///< medium about the point
-    float reach = 0.0f;                      ///< distance from `point` to the emitter's farthest point
-    double start = 0.0;                      ///< when light leaves the point
-    float probability = 1.0f;                ///< of the emitter's choice
-    int interactions = 0;                    ///< of the light's own path so far, the virtual source included
-    int mediumScatters = 0;                  ///< of these, in media
-    std::optional<transport::Vertex> source; ///< of a virtual source: where light is scattered
-    Rgb power{0.0f};                         ///< that it scatters
+    const Emitter* emitter;
+    int index; ///< of the emitter; -1 for virtual sources, which cannot be hit
+    transport::Vertex vertex;
+    Rgb power;              ///< of light's path up to the vertex, over the probability of the emitter's choice
+    float probability;      ///< of that choice
+    double start;           ///< when light leaves the vertex
+    float reach = 0.0f;     ///< distance from the vertex to the emitter's farthest point
+    int interactions = 0;   ///< of the light's own path so far, the virtual source included
+    int mediumScatters = 0; ///< of these, in media
 
-    /// Power per steradian that leaves the point along the unit `direction` (intensity; radiance times cosine over the
-    /// area density for surfaces), divided by the probability of the emitter's choice.
-    [[nodiscard]] Rgb intensity(const Vec3f& direction) const;
-    /// To connect a vertex at `position` to it; none at its own place.
-    [[nodiscard]] std::optional<transport::ConnectionEnd> seenFrom(const Vec3f& position) const;
+    /// Power per steradian that leaves the vertex along the unit `direction` (intensity; radiance times cosine over the
+    /// area density for surfaces), over the probability of the emitter's choice.
+    [[nodiscard]] Rgb intensity(const Vec3f& direction) const { return power * vertex.scattering(direction); }
+    /// To connect a vertex to it.
+    [[nodiscard]] transport::ConnectionEnd seenAlong(const transport::Straight& way) const {
+        return transport::connectionEnd(way, vertex, power);
+    }
     /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;
@@ -50,8 +50,10 @@ class TargetChoice {
 
   private:
     struct Laser;
-    std::optional<PathTarget> scatterLaser(PathTarget target, Sampler& sampler, PathCounters& counters) const;
-    bool meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const;
+    enum class Meeting { Scattered, WentOn, Absorbed };
+    std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, Sampler& sampler,
+                                           PathCounters& counters) const;
+    Meeting meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const;
 
     const Scene& scene_;
     Distribution1D distribution_;

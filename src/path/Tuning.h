@@ -6,6 +6,7 @@
 //   micro             build/bin/micro
 
 #include <cstddef>
+#include <cstdint>
 
 namespace tungsten::path::tuning {
 
@@ -32,5 +33,11 @@ inline constexpr size_t MostEmitters = 64;
 inline constexpr size_t Candidates = 64;
 /// Light paths that tell how many of an emitter's reflect. Bench: study dragon-160
 inline constexpr size_t PilotPaths = 32768;
+
+// --- Light tracer ----------------------------------------------------------------------------------------------------
+
+/// Light paths traced by one task, and tasks whose splats are then added in order. Not measured: room for about 65 000
+/// paths' splats, and tasks that take milliseconds.
+inline constexpr uint64_t PathsPerBatch = 1024, BatchesPerWave = 64;
 
 } // namespace tungsten::path::tuning

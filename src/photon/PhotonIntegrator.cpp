@@ -35,6 +35,15 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
 }
 
+double PhotonIntegrator::memoryBytes() const {
+    const auto ofRecord = []<typename Primitive>(const Primitive&) { return sizeof(typename Primitive::Record); };
+    const double surface = settings_.includeSurfaces ? double(settings_.photonCount) * double(sizeof(Photon)) : 0.0;
+    const double volume = double(settings_.volumePhotonCount) * double(std::visit(ofRecord, settings_.primitive));
+    const bool scatters =
+        std::any_of(scene_->media.begin(), scene_->media.end(), [](const Medium& medium) { return medium.scatters(); });
+    return surface + (scatters ? volume : 0.0);
+}
+
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
     return settings_.progressive ? pass.index : 0;
 }

@@ -16,6 +16,7 @@ class PhotonIntegrator : public Integrator {
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
     void plan(EffectPlan& plan) const override;
     void prepare(const EffectPlan& plan, Statistics& statistics) override;
+    [[nodiscard]] double memoryBytes() const override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:

@@ -2,7 +2,6 @@
 
 #include "photon/AutoPrimitive.h"
 #include "photon/Tuning.h"
-
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
@@ -98,7 +97,8 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
     const bool slices = std::holds_alternative<Slices>(settings.primitive);
-    slicesSplat = slices && scene.transport.gate.delta && (oneSpeed || scene.transport.cameraUnwarped);
+    const auto* sliced = std::get_if<Slices>(&settings.primitive);
+    slicesSplat = slices && !sliced->classes.shortFlights && (oneSpeed || scene.transport.cameraUnwarped);
     slicesGather = slices && !slicesSplat;
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     volume.on = facts.mediumScattering && (homogeneous || atVertices);

@@ -37,8 +37,8 @@ struct PhotonPlan {
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
-    bool slicesSplat = false;  ///< slices at a delta gate, one speed: along straight rays of any camera
-    bool slicesGather = false; ///< slices at other gates: they have no splat there
+    bool slicesSplat = false;  ///< slices, one speed: along straight rays of any camera
+    bool slicesGather = false; ///< slices at several speeds: they have no splat there
     bool looksAgain = false;   ///< at what sensor paths meet, when the photons are there: splats are not all
 
     [[nodiscard]] bool splats() const {

@@ -1,6 +1,7 @@
 #include "photon/PhotonSettings.h"
 
 #include "photon/AutoPrimitive.h"
+#include "photon/Tuning.h"
 
 namespace tungsten::photon {
 
@@ -12,19 +13,32 @@ constexpr float Unbounded = 1e30f;
 /// None: the scene leaves the choice to its plan.
 std::optional<VolumePrimitive> readPrimitive(const ObjectReader& block) {
     constexpr Meaning meaning{"none", "what the light that scatters in media is stored as; auto: as suits the scene"};
-    std::string all = std::string(Points::Type) + " or " + Beams::Type;
-    for (const SliceName& name : SliceNames) all += std::string(" or ") + name.type;
-    all += " or auto";
+    std::vector<NamedPrimitive> primitives;
+    forEachPrimitive(VolumePrimitive{}, [&](const auto& primitive) {
+        const auto kinds = named(primitive);
+        primitives.insert(primitives.end(), kinds.begin(), kinds.end());
+    });
+    std::string all;
+    for (const NamedPrimitive& primitive : primitives) all += std::string(primitive.type) + " or ";
+    all += "auto";
     block.declare("volume_photon_type", all, Points::Type, meaning);
     const std::string type = block.text("volume_photon_type", Points::Type, meaning);
     if (type == "auto") return std::nullopt;
-    if (type == Points::Type) return Points{};
-    if (type == Beams::Type) return Beams{};
-    for (const SliceName& name : SliceNames)
-        if (type == name.type) return Slices{name.kind, {}};
+    for (const NamedPrimitive& known : primitives)
+        if (type == known.type) return known.primitive;
     block.problem("volume_photon_type", type == "planes_1d" ? "'planes_1d' is not supported; supported: " + all
                                                             : "expected " + all + ", found '" + type + "'");
     return Points{};
+}
+
+bool readShortFlights(const ObjectReader& block) {
+    constexpr Meaning meaning{"none", "planes, volumes, balls, hypervolumes: flights that are weighed by their "
+                                      "transmittance, or end at random lengths"};
+    block.declare("volume_photon_length", "long or short", "long", meaning);
+    const std::string length = block.text("volume_photon_length", "long", meaning);
+    if (length != "long" && length != "short")
+        block.problem("volume_photon_length", "expected long or short, found '" + length + "'");
+    return length == "short";
 }
 
 /// What slices cannot do, and which classes they make.
@@ -36,10 +50,9 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
                                                 "' needs a time gate; in steady state there are points, beams, planes "
                                                 "and volumes");
     slices.classes = SliceClasses::of(slices.kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
+    slices.classes.shortFlights = settings.shortFlights;
     const bool beams = slicesNeedBeams(scene, slices.classes);
-    // What beams make wants many light paths, and they are cheap. volumetric-caustic at 160x88: variance / mean^2 x CPU
-    // seconds 0.6 with all slices, 0.3 with a tenth of them; simple-volumetric 0.0024 and 0.0019.
-    if (beams) slices.classes.share = 0.1f;
+    if (beams) slices.classes.share = tuning::ShareBesideBeams;
     if (beams && settings.volumeRadius >= Unbounded)
         block.problem("volume_gather_radius",
                       "what scatters once after a surface or a beam of light are beams, also with '" + type +
@@ -110,6 +123,7 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
     settings.excludeNonMis =
         block.flag("exclude_non_mis", false,
                    {"none", "volumes and balls: without what scatters once or twice after a light or surface"});
+    settings.shortFlights = readShortFlights(block);
     if (auto* slices = std::get_if<Slices>(&settings.primitive)) readSlices(block, scene, settings, *slices);
     return settings;
 }

@@ -23,6 +23,7 @@ struct PhotonSettings {
     bool lowOrderScattering = true;       ///< false: no photon on the first medium vertex after a light or surface, and
                                           ///< no beam from a light or surface
     bool excludeNonMis = false;           ///< slices: classes alone that volumes and balls both make
+    bool shortFlights = false;            ///< slices: flights end at random lengths
     bool includeSurfaces = true;          ///< false: no surface photons, no visible emission
     bool progressive = true;
     float alpha = 0.3f;       ///< surface radius reduction

@@ -2,12 +2,9 @@
 
 namespace tungsten::transport {
 
-std::optional<ConnectionEnd> connectionEnd(const Vertex& from, const Vertex& to) {
-    const Vec3f offset = to.position() - from.position();
-    const float distance = offset.length();
-    if (!(distance > 0.0f)) return std::nullopt;
-    const Vec3f direction = offset / distance;
-    return ConnectionEnd{direction, distance, to.scattering(-direction) / sqr(distance), to.margin()};
+ConnectionEnd connectionEnd(const Straight& way, const Vertex& vertex, const Rgb& power) {
+    return {way.direction, way.distance, power * vertex.scattering(-way.direction) / sqr(way.distance),
+            vertex.margin()};
 }
 
 std::optional<Connection> Connector::connect(const Vertex& vertex, const Rgb& throughput, const ConnectionEnd& end,

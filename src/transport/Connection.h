@@ -7,6 +7,19 @@
 
 namespace tungsten::transport {
 
+/// From one point to another.
+struct Straight {
+    Vec3f direction; ///< unit
+    float distance;
+};
+/// None if both are at the same place.
+inline std::optional<Straight> straightWay(const Vec3f& from, const Vec3f& to) {
+    const Vec3f offset = to - from;
+    const float distance = offset.length();
+    if (!(distance > 0.0f)) return std::nullopt;
+    return Straight{offset / distance, distance};
+}
+
 /// What a vertex is connected to, as seen from there.
 struct ConnectionEnd {
     Vec3f direction; ///< unit
@@ -22,8 +35,8 @@ inline ConnectionEnd connectionEnd(const DirectSample& light) {
 inline ConnectionEnd connectionEnd(const SensorSample& sensor) {
     return {sensor.direction, sensor.distance, Rgb(sensor.weight), {}};
 }
-/// Another vertex; none if it is at the same place.
-std::optional<ConnectionEnd> connectionEnd(const Vertex& from, const Vertex& to);
+/// The vertex at the end of the way; `power` is what its path has brought there.
+ConnectionEnd connectionEnd(const Straight& way, const Vertex& vertex, const Rgb& power);
 
 struct Connection {
     Rgb throughput;       ///< of the path up to the vertex, times scattering there, the end's weight and transmittance

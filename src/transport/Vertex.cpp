@@ -4,18 +4,9 @@
 
 namespace tungsten::transport {
 
-Vec3f Vertex::position() const {
-    return std::visit(Overloaded{[](const LightPoint& light) { return light.point.position; },
-                                 [](const SurfacePoint& at) { return at.surface.hit.position; },
-                                 [](const MediumPoint& at) { return at.position; }},
-                      point_);
-}
-
-SurfaceMargin Vertex::margin() const {
-    return std::visit(Overloaded{[](const LightPoint& light) { return light.point.margin(); },
-                                 [](const SurfacePoint& at) { return at.surface.hit.margin(); },
-                                 [](const MediumPoint&) { return SurfaceMargin{}; }},
-                      point_);
+const SurfaceInteraction* Vertex::surface() const {
+    const auto* at = std::get_if<SurfacePoint>(&point_);
+    return at ? &at->surface : nullptr;
 }
 
 bool Vertex::isConnectible() const {
@@ -41,8 +32,20 @@ Rgb Vertex::scattering(const Vec3f& direction) const {
         point_);
 }
 
+bool Vertex::reflects(const Vec3f& direction) const {
+    return std::visit(Overloaded{[](const LightPoint&) { return true; },
+                                 [&](const SurfacePoint& at) {
+                                     const Vec3f& ng = at.surface.hit.ng;
+                                     return direction.dot(ng) * at.before.dot(ng) < 0.0f;
+                                 },
+                                 [](const MediumPoint&) { return true; }},
+                      point_);
+}
+
 float Vertex::pdf(const Vec3f& direction) const {
-    return std::visit(Overloaded{[](const LightPoint&) { return 0.0f; },
+    return std::visit(Overloaded{[&](const LightPoint& light) {
+                                     return pdfEmissionDirection(*light.emitter, light.point, direction);
+                                 },
                                  [&](const SurfacePoint& at) {
                                      return at.surface.bsdf->pdf(at.surface.query(at.mode), at.surface.wi,
                                                                  at.surface.frame.toLocal(direction));
@@ -51,27 +54,27 @@ float Vertex::pdf(const Vec3f& direction) const {
                       point_);
 }
 
-float Vertex::areaDensity(float pdfSolidAngle, const Vec3f& direction, float distance) const {
-    const float perArea = pdfSolidAngle / sqr(distance);
-    return std::visit(
-        Overloaded{[&](const LightPoint& light) {
-                       return emittingArea(*light.emitter) > 0.0f
-                                  ? perArea * std::abs(direction.dot(light.point.normal))
-                                  : perArea;
-                   },
-                   [&](const SurfacePoint& at) { return perArea * std::abs(direction.dot(at.surface.hit.ng)); },
-                   [&](const MediumPoint&) { return perArea; }},
-        point_);
+float Vertex::pdfReverse(const Vec3f& direction) const {
+    return std::visit(Overloaded{[](const LightPoint&) { return 0.0f; },
+                                 [&](const SurfacePoint& at) {
+                                     const TransportMode mode = at.mode == TransportMode::Photons
+                                                                    ? TransportMode::Radiance
+                                                                    : TransportMode::Photons;
+                                     return at.surface.bsdf->pdf(at.surface.query(mode),
+                                                                 at.surface.frame.toLocal(direction), at.surface.wi);
+                                 },
+                                 [&](const MediumPoint& at) { return at.medium->phase.pdf(-direction, -at.before); }},
+                      point_);
 }
 
 Ray Vertex::leave(const Vec3f& direction) const {
     return {position(), direction, margin().beyond(direction)};
 }
 
-Region Vertex::regionTowards(const Vec3f& direction) const {
-    return std::visit(Overloaded{[&](const LightPoint&) { return region_; },
-                                 [&](const SurfacePoint& at) { return regionBeyond(at.surface, direction, region_); },
-                                 [&](const MediumPoint&) { return region_; }},
+Region Vertex::regionTowards(const Vec3f& direction, const Region& region) const {
+    return std::visit(Overloaded{[&](const LightPoint&) { return region; },
+                                 [&](const SurfacePoint& at) { return regionBeyond(at.surface, direction, region); },
+                                 [&](const MediumPoint&) { return region; }},
                       point_);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // A point of a light path that others are connected to: on a light, a surface or in a medium.
 
+#include "tungsten/core/Overloaded.h"
 #include "tungsten/scene/Interaction.h"
 
 #include <variant>
@@ -40,13 +41,22 @@ class Vertex {
     [[nodiscard]] Vec3f position() const;
     /// Without extent in space.
     [[nodiscard]] SurfaceMargin margin() const;
+    /// Null in media and on lights.
+    [[nodiscard]] const SurfaceInteraction* surface() const;
+    /// Of the surface; none elsewhere.
+    [[nodiscard]] LobeMask lobes() const { return surface() ? surface()->bsdf->lobes() : lobe::None; }
     /// Light leaves it in more than single directions.
     [[nodiscard]] bool isConnectible() const;
     /// Per steradian along the unit `direction`, away from here: emitted power; BSDF of the smooth lobes with the
     /// cosine (from the light: with the factor of shading normals); phase function.
     [[nodiscard]] Rgb scattering(const Vec3f& direction) const;
-    /// Density per solid angle with which the path itself goes on along `direction`; 0 at lights, which start paths.
+    /// `direction` is on the side of the surface that the path came from; anywhere else true.
+    [[nodiscard]] bool reflects(const Vec3f& direction) const;
+    /// Density per solid angle with which the path itself goes on, at lights starts, along `direction`.
     [[nodiscard]] float pdf(const Vec3f& direction) const;
+    /// Density per solid angle with which a path of the other mode that comes from where `direction` leads goes on to
+    /// where this one came from; 0 at lights, which nothing comes to.
+    [[nodiscard]] float pdfReverse(const Vec3f& direction) const;
     /// Density per area (in media: per volume, collisions left out) at this point of a density per solid angle at a
     /// distance from here, seen along the unit `direction`.
     [[nodiscard]] float areaDensity(float pdfSolidAngle, const Vec3f& direction, float distance) const;
@@ -55,11 +65,42 @@ class Vertex {
     /// The one that the path came through, or the light's.
     [[nodiscard]] const Region& region() const { return region_; }
     /// The region along `direction`.
-    [[nodiscard]] Region regionTowards(const Vec3f& direction) const;
+    [[nodiscard]] Region regionTowards(const Vec3f& direction) const { return regionTowards(direction, region_); }
+    /// The same of a path that came through `region`.
+    [[nodiscard]] Region regionTowards(const Vec3f& direction, const Region& region) const;
 
   private:
     std::variant<LightPoint, SurfacePoint, MediumPoint> point_;
     Region region_;
 };
+
+// Here, since techniques ask for these of every candidate.
+
+inline Vec3f Vertex::position() const {
+    return std::visit(Overloaded{[](const LightPoint& light) { return light.point.position; },
+                                 [](const SurfacePoint& at) { return at.surface.hit.position; },
+                                 [](const MediumPoint& at) { return at.position; }},
+                      point_);
+}
+
+inline SurfaceMargin Vertex::margin() const {
+    return std::visit(Overloaded{[](const LightPoint& light) { return light.point.margin(); },
+                                 [](const SurfacePoint& at) { return at.surface.hit.margin(); },
+                                 [](const MediumPoint&) { return SurfaceMargin{}; }},
+                      point_);
+}
+
+inline float Vertex::areaDensity(float pdfSolidAngle, const Vec3f& direction, float distance) const {
+    const float perArea = pdfSolidAngle / sqr(distance);
+    return std::visit(
+        Overloaded{[&](const LightPoint& light) {
+                       return emittingArea(*light.emitter) > 0.0f
+                                  ? perArea * std::abs(direction.dot(light.point.normal))
+                                  : perArea;
+                   },
+                   [&](const SurfacePoint& at) { return perArea * std::abs(direction.dot(at.surface.hit.ng)); },
+                   [&](const MediumPoint&) { return perArea; }},
+        point_);
+}
 
 } // namespace tungsten::transport

@@ -16,10 +16,12 @@ PROJECT = Path(__file__).resolve().parents[2]
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
 sys.path.insert(0, str(PROJECT / "benchmarks/agreement"))
 
-from sweep import METHODS, Renderer, methods_of, scene_json  # noqa: E402
+from sweep import Renderer, compare_scene, methods_of, scene_json  # noqa: E402
 from sweep_copies import moved, scaled  # noqa: E402
 from sweep_measures import BLOCKS, Samples, compare, compare_pairs, means, normal_sigmas, without_kernel  # noqa: E402
+from sweep_methods import METHODS, SLICE_METHODS  # noqa: E402
 from sweep_scenes import FAST, all_scenes  # noqa: E402
+from sweep_slices import SLICE_FAST, slice_scenes  # noqa: E402
 from sweep_vocabulary import write_assets  # noqa: E402
 
 COUNT = 3 + 3 * BLOCKS * BLOCKS  # means of an image of one frame
@@ -129,10 +131,25 @@ class Copies(unittest.TestCase):
 
 class Scenes(unittest.TestCase):
     def test_names(self):
-        names = [scene.name for scene in all_scenes()]
-        self.assertGreaterEqual(len(names), 30)
-        self.assertEqual(len(names), len(set(names)))
-        self.assertLessEqual(set(FAST), set(names))
+        for scenes, fast in ((all_scenes(), FAST), (slice_scenes(), SLICE_FAST)):
+            names = [scene.name for scene in scenes]
+            self.assertGreaterEqual(len(names), 30)
+            self.assertEqual(len(names), len(set(names)))
+            self.assertLessEqual(set(fast), set(names))
+
+    def test_delta_gates_are_those_of_slices_alone(self):
+        scene = next(s for s in slice_scenes() if s.name.endswith("delta"))
+        for method in SLICE_METHODS:
+            self.assertEqual("delta_time_gate" in scene_json(scene, method, scene.radius)["integrator"], method.sliced)
+
+    def test_slices_are_held_against_references(self):
+        names = [method.name for method in SLICE_METHODS]
+        random = np.random.default_rng(1)
+        rendered = {name: ({}, samples(random, 2.0 if name == "best balls" else 1.0, 0.02), 0.0) for name in names}
+        methods, copies = compare_scene(rendered, names[:3])
+        self.assertEqual({b for (_, b), c in methods.items() if not c.agrees}, {"best balls"})
+        self.assertEqual({a for a, _ in methods}, set(names[:3]))
+        self.assertEqual(copies, {})
 
     def test_the_renderer_accepts_them_without_a_warning(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -140,12 +157,13 @@ class Scenes(unittest.TestCase):
             (Path(folder) / "scenes").mkdir()
             write_assets(Path(folder) / "assets")
             files = []
-            for scene in all_scenes():
-                for method in methods_of(scene):
+            both = [(scene, METHODS) for scene in all_scenes()] + [(scene, SLICE_METHODS) for scene in slice_scenes()]
+            for scene, methods in both:
+                for method in methods_of(scene, methods):
                     name = f"{scene.name}-{method.name}"
                     renderer.store(name, scene_json(scene, method, scene.radius))
                     files.append(Path(folder) / "scenes" / f"{name}.json")
-            done = subprocess.run([TUNGSTEN, "--quiet", "--explain", *files], capture_output=True, text=True)
+            done = subprocess.run([TUNGSTEN, "--quiet", "--allow-outside", "--explain", *files], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual([line for line in done.stderr.splitlines() if line.startswith("warning")], [])
 

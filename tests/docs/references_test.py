@@ -8,6 +8,8 @@ import unittest
 from pathlib import Path
 
 TOOL = Path(__file__).with_name("references.py")
+# Of a document that is not there.
+MISSING = "docs/" + "format.md"
 METHOD = "# Method\n\n## 3. Directions\n\n### 3.1 Lobes\n\n    p = 1 / h      (4)\n"
 
 
@@ -40,7 +42,7 @@ class References(unittest.TestCase):
         self.expect({"src/a.h": "int x; // docs/method.md, section 7\n"}, "docs/method.md has no section 7")
         self.expect({"src/a.h": "// docs/method.md, sections 3 to\n// 5\n"}, "has no section 5")
         self.expect({"src/a.cpp": "// docs/method.md, eq. 5\n"}, "has no equation (5)")
-        self.expect({"src/a.py": "# docs/format.md, section 3\n"}, "no document docs/format.md", "there is no docs/format.md")
+        self.expect({"src/a.py": f"# {MISSING}, section 3\n"}, f"no document {MISSING}", f"there is no {MISSING}")
 
     def test_one_form(self):
         self.expect({"src/a.h": "// (method, section 3)\n"}, "'section 3' of no document")
@@ -48,11 +50,11 @@ class References(unittest.TestCase):
                     "there is no method.md")
 
     def test_documents(self):
-        self.expect({"docs/a.md": "# A\n\nSee [method](method.md), section 4.\n"}, "docs/method.md has no section 4")
-        self.expect({"docs/a.md": "# A\n\nSee section 3.\n"}, "docs/a.md has no section 3")
-        self.expect({"docs/a.md": "[x](b.md)\n"}, "link to b.md")
-        self.expect({"docs/a.md": "[x](method.md#lobes)\n"}, "no such heading")
-        self.expect({"docs/a.md": "`src/none.h`\n"}, "there is no src/none.h")
+        self.expect({"docs/accuracy.md": "# A\n\nSee [method](method.md), section 4.\n"}, "docs/method.md has no section 4")
+        self.expect({"docs/accuracy.md": "# A\n\nSee section 3.\n"}, "docs/accuracy.md has no section 3")
+        self.expect({"docs/accuracy.md": "[x](b.md)\n"}, "link to b.md")
+        self.expect({"docs/accuracy.md": "[x](method.md#lobes)\n"}, "no such heading")
+        self.expect({"docs/accuracy.md": "`src/none.h`\n"}, "there is no src/none.h")
         self.expect({"a.md": "[x](../elsewhere.md)\n"}, "link to ../elsewhere.md")
 
 

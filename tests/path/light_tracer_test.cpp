@@ -199,6 +199,9 @@ TEST(LightTracer, SaysWhatItCannotShow) {
     EXPECT_NE(mirrors.find("mirror or refract"), std::string::npos);
     EXPECT_EQ(mirrors.find("''"), std::string::npos) << "names what has no name: " << mirrors;
     EXPECT_NE(complaints(room(""), "integrator.darts=\"best\"").find("plain"), std::string::npos);
+    for (const char* wrong : {"integrator.darts=5", "integrator.darts=\"nonsense\"", "integrator.darts=[]",
+                              R"(integrator.darts={"alpha": -1})"})
+        EXPECT_NE(complaints(room(""), wrong).find("problem"), std::string::npos) << wrong;
 }
 
 } // namespace

@@ -50,12 +50,10 @@ TEST(LightVertices, FindTheLightOfASurfaceInsideALengthRange) {
                 Sampler sampler(3, RandomStream::Test, pass, uint64_t(i));
                 const auto choice = cache.choose(x, float(low), float(high), sampler.next2D());
                 if (!choice.vertex) continue;
-                const Vec3f offset = choice.vertex->surface.hit.position - x, direction = offset.normalized();
+                const Vec3f offset = choice.vertex->vertex.position() - x, direction = offset.normalized();
                 const double length = double(offset.length() + choice.vertex->distance);
                 if (length < low || length >= high) continue;
-                mean += double(choice.vertex->scattered(-direction).y * choice.weight *
-                               std::abs(direction.dot(choice.vertex->surface.hit.ng)) / offset.length2()) /
-                        Draws;
+                mean += double(choice.vertex->intensity(-direction).y * choice.weight / offset.length2()) / Draws;
             }
             sum += mean / Caches;
             squares += mean * mean / Caches;
@@ -64,6 +62,12 @@ TEST(LightVertices, FindTheLightOfASurfaceInsideALengthRange) {
         EXPECT_NEAR(sum, expected, 4.5 * error + 1e-3 * expected) << low;
         EXPECT_LT(error, 0.02 * expected) << "the test would not see a wrong value";
     }
+}
+
+/// From what the surface was met along.
+Vec3f vertexToLight(const LightVertex& vertex) {
+    const SurfaceInteraction& surface = *vertex.vertex.surface();
+    return surface.frame.toWorld(surface.wi);
 }
 
 TEST(LightVertices, TheirDensityIsWhatWalksWeighAgainst) {
@@ -85,14 +89,15 @@ TEST(LightVertices, TheirDensityIsWhatWalksWeighAgainst) {
             const auto choice = cache.choose({0.5f, 2.0f, 0.5f}, 0.0f, 100.0f, sampler.next2D());
             if (!choice.vertex) continue;
             const LightVertex& vertex = *choice.vertex;
-            const Vec3f origin = vertex.surface.hit.position + vertex.toLight * vertex.distance;
-            Vec3f normal = -vertex.toLight;
+            // The floor is at y = 0, seen from above.
+            const Vec3f toLight = vertexToLight(vertex), origin = vertex.vertex.position() + toLight * vertex.distance;
+            Vec3f normal = -toLight;
             if (std::holds_alternative<AreaEmitter>(emitter.model))
                 normal = light.find("sphere") != std::string::npos ? (origin - Vec3f(0.2f, 1.0f, 0.1f)).normalized()
                                                                    : Vec3f(0.0f, -1.0f, 0.0f);
-            const float pdf = pdfEmissionDirection(emitter, {origin, normal, Vec2f(0.0f)}, -vertex.toLight);
-            const float cosine = std::abs(vertex.toLight.dot(vertex.surface.hit.ng));
-            EXPECT_NEAR(vertex.areaPdf, pdf * cosine / sqr(vertex.distance), 2e-3f * vertex.areaPdf) << light;
+            const float pdf = pdfEmissionDirection(emitter, {origin, normal, Vec2f(0.0f)}, -toLight);
+            EXPECT_NEAR(vertex.areaPdf, pdf * toLight.y / sqr(vertex.distance), 2e-3f * vertex.areaPdf) << light;
+            EXPECT_NEAR(vertex.incidence, toLight.y, 1e-5f);
             ++seen;
         }
         EXPECT_GT(seen, 300) << light;
@@ -100,13 +105,17 @@ TEST(LightVertices, TheirDensityIsWhatWalksWeighAgainst) {
 }
 
 TEST(LightVertices, OnlyOpaqueSmoothSurfacesSeenFromTheLightsSide) {
+    EXPECT_TRUE(holdsLightVertices(lobe::DiffuseReflection));
+    EXPECT_TRUE(holdsLightVertices(lobe::GlossyReflection | lobe::SpecularReflection));
+    EXPECT_FALSE(holdsLightVertices(lobe::SpecularReflection));
+    EXPECT_FALSE(holdsLightVertices(lobe::GlossyReflection | lobe::GlossyTransmission));
+    EXPECT_FALSE(holdsLightVertices(lobe::DiffuseReflection | lobe::Forward));
     const auto scene = floorUnder(Point);
-    const auto hit = scene->geometry->intersect({Vec3f(0.3f, 1.0f, 0.2f), Vec3f(0.0f, -1.0f, 0.0f)});
-    ASSERT_TRUE(hit);
-    const SurfaceInteraction floor = makeInteraction(*scene, *hit, {0.0f, -1.0f, 0.0f});
-    const Vec3f up(0.0f, 1.0f, 0.0f), down(0.0f, -1.0f, 0.0f);
-    EXPECT_TRUE(mayBeLightVertex(floor, up, up));
-    EXPECT_FALSE(mayBeLightVertex(floor, down, up));
+    Sampler sampler(5, RandomStream::Test, 0, 0);
+    std::optional<LightVertex> vertex;
+    while (!vertex) vertex = traceLightVertex(*scene, scene->emitters[0], 1.0f, sampler);
+    EXPECT_GT(vertex->intensity({0.6f, 0.8f, 0.0f}).y, 0.0f);
+    EXPECT_EQ(vertex->intensity({0.6f, -0.8f, 0.0f}).y, 0.0f);
 }
 
 TEST(ShellChord, SamplesItsDensity) {

@@ -75,8 +75,8 @@ TEST(ReflectedLight, ItsDensityIsThatOfWhereItGoes) {
     const Vec3f glossy(-0.3f, 0.0f, 0.0f), wall(-1.2f, 1.35f, -0.3f), fog(-0.6f, 0.45f, -0.1f);
     const double disk = M_PI * 0.3 * 0.3;
     const auto inside = [&](const path::ReflectedVertex& vertex, const Vec3f& centre, float radius) {
-        return (vertex.glossy.surface.hit.position - glossy).length() < 0.3f &&
-               (vertex.position - centre).length() < radius;
+        return (vertex.glossy.vertex.position() - glossy).length() < 0.3f &&
+               (vertex.position() - centre).length() < radius;
     };
     const Estimate areas = overPaths(*scene, [&](const path::ReflectedVertex& vertex) {
         return vertex.surface && inside(vertex, wall, 0.4f) ? 1.0 / double(vertex.density) : 0.0;

@@ -48,6 +48,7 @@ TEST(Command, BadUsageIsExitCodeTwo) {
         {{"-s", "0xZZ", file}, {"--seed"}},
         {{"--resolution", "12", file}, {"--resolution", "320x240"}},
         {{"--resolution", "0x4", file}, {"--resolution"}},
+        {{"--resolution", "4294967297x8", file}, {"--resolution"}},
         {{"--timeout", "soon", file}, {"--timeout", "minutes"}},
         {{"-c", "often", file}, {"--checkpoint"}},
         {{"--target-error", "-1", file}, {"--target-error"}},
@@ -56,6 +57,7 @@ TEST(Command, BadUsageIsExitCodeTwo) {
         {{"--set", "primitives.7.bsdf=3", file}, {"3 elements"}},
         {{"--set", "media.fgo.sigma_s=3", file}, {"did you mean 'fog'?"}},
         {{"--spp"}, {"--spp"}},
+        {{"--html", "page.html", file, file}, {"--html", "one scene"}},
     };
     for (const Mistake& mistake : mistakes) expectMistake(mistake, BadUsage);
 }
@@ -64,7 +66,7 @@ TEST(Command, BadInputIsExitCodeOne) {
     const SceneFile scene(foggyBox(test::Paths));
     const std::string file = scene.path().string();
     const std::vector<Mistake> mistakes{
-        {{"/nowhere/scene.json"}, {"/nowhere/scene.json", "no such scene file"}},
+        {{"/nowhere/scene.json"}, {"/nowhere/scene.json", "no such file"}},
         {{"--set", "integrator.type=path_trace", file},
          {file, "integrator.type", "did you mean 'path_tracer'?", "progressive_photon_map", PLUGIN_DIR}},
         {{"--set", "integrator.max_bounces=\"x\"", file}, {file, "integrator.max_bounces"}},
@@ -72,6 +74,8 @@ TEST(Command, BadInputIsExitCodeOne) {
         {{"--set", "camera.type=pinhol", file}, {"camera.type", "pinhole"}},
         {{"-o", "x.jpg", file}, {"x.jpg", "accepted: .png"}},
         {{"-e", "x.tiff", file}, {"x.tiff", ".exr, .pfm or .npy"}},
+        {{"--html", "x.htlm", file}, {"x.htlm", "accepted: .html or .htm"}},
+        {{"--html", file + "/x.html", file}, {"x.html", "cannot be created or written to"}},
         {{"-d", file, file}, {"cannot be created or written to", "-d DIRECTORY"}},
         {{"--resolution", "1000000x1000000", file}, {"resolution"}},
     };
@@ -103,6 +107,8 @@ TEST(Command, HelpAndVersionAnswerAndStop) {
                                "--resolution",
                                "--stats",
                                "--target-error",
+                               "--memory-limit",
+                               "--allow-outside",
                                "--explain",
                                "--list",
                                "--describe",
@@ -162,6 +168,21 @@ TEST(Command, ASceneRendersAndSaysWhereTheImagesAre) {
     const std::string stats = contentOf(folder / "stats.json");
     for (const char* part : {"\"threads\": 1", "\"rays\"", "\"load\"", "\"integrator\": \"path_tracer\""})
         EXPECT_NE(stats.find(part), std::string::npos) << part;
+}
+
+TEST(Command, APageHoldsFilmCommandAndFigures) {
+    const SceneFile scene(foggyBox(test::PathFrames));
+    const fs::path page = scene.path().parent_path() / "new" / "page.html";
+    const CommandResult result = test::tungsten(
+        {"--html", page.string(), "--quiet", "--set", "primitives.lamp.name=</script> it's", scene.path().string()});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const std::string text = contentOf(page);
+    EXPECT_EQ(text.rfind("<!DOCTYPE html>", 0), 0u);
+    for (const char* line : {"\n@include", "\n@data"}) EXPECT_EQ(text.find(line), std::string::npos) << line;
+    EXPECT_EQ(text.substr(text.size() - 8), "</html>\n");
+    for (const char* part : {"\"frames\": 4", "\"samples per pixel\": 8", "new uPlot(", "Leon Sorokin",
+                             R"('primitives.lamp.name=\u003c/script> it'\\''s')"})
+        EXPECT_NE(text.find(part), std::string::npos) << part;
 }
 
 TEST(Command, QuietIsQuiet) {

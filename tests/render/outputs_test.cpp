@@ -25,7 +25,7 @@ RendererSettings settings(const std::string& ldr, const std::string& hdr = "") {
 
 std::string errorOf(const OutputFiles& outputs) {
     try {
-        checkOutputs(outputs);
+        checkOutputs(outputs, {});
     } catch (const InputError& error) {
         return error.what();
     }
@@ -74,28 +74,29 @@ TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {
 
 TEST(Outputs, UnknownExtensionsNameTheAcceptedOnes) {
     const test::TemporaryFolder folder;
-    EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
-    EXPECT_NE(errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}, {}})
+    EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
+    EXPECT_NE(errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}, {}, {}})
                   .find("accepted: .exr, .pfm or .npy"),
               std::string::npos);
-    EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}, {}}), "");
+    EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}, {}, {}}), "");
 }
 
 TEST(Outputs, MissingFoldersAreCreatedAndImpossibleOnesReported) {
     const test::TemporaryFolder folder;
-    EXPECT_EQ(errorOf({folder.path() / "x" / "y" / "a.png", {}, {}, {}, {}, {}}), "");
+    EXPECT_EQ(errorOf({folder.path() / "x" / "y" / "a.png", {}, {}, {}, {}, {}, {}}), "");
     EXPECT_TRUE(fs::is_directory(folder.path() / "x" / "y"));
     std::ofstream(folder.path() / "file") << "not a folder";
-    const std::string text = errorOf({folder.path() / "file" / "a.png", {}, {}, {}, {}, {}});
+    const std::string text = errorOf({folder.path() / "file" / "a.png", {}, {}, {}, {}, {}, {}});
     EXPECT_NE(text.find("cannot be created or written to"), std::string::npos) << text;
     EXPECT_NE(text.find("-d DIRECTORY"), std::string::npos) << text;
-    EXPECT_NE(errorOf({folder.path() / "x", {}, {}, {}, {}, {}}), "") << "no extension";
+    EXPECT_NE(errorOf({folder.path() / "x", {}, {}, {}, {}, {}, {}}), "") << "no extension";
 }
 
 TEST(Outputs, AFolderInTheWayIsReported) {
     const test::TemporaryFolder folder;
     fs::create_directories(folder.path() / "a.png");
-    EXPECT_NE(errorOf({folder.path() / "a.png", {}, {}, {}, {}, {}}).find("a folder has this name"), std::string::npos);
+    EXPECT_NE(errorOf({folder.path() / "a.png", {}, {}, {}, {}, {}, {}}).find("a folder has this name"),
+              std::string::npos);
 }
 
 TEST(Outputs, ASteadyStateExrHoldsTheImageAndItsStandardError) {

@@ -8,6 +8,8 @@
 
 #include <cstdlib>
 
+#include <sys/stat.h>
+
 namespace tungsten {
 namespace {
 
@@ -70,6 +72,27 @@ TEST(Plugin, ABrokenFileIsNamedAndTheOthersStillLoad) {
     EXPECT_EQ(problems[0].file, garbage.file().string());
     EXPECT_NE(problems[0].message.find("cannot be loaded"), std::string::npos) << problems[0].message;
     EXPECT_EQ(registry.entries().count("path_tracer"), 1u);
+}
+
+/// Mapped and touched beyond its end, it would end the process.
+TEST(Plugin, ATruncatedFileIsNamed) {
+    const fs::path original = fs::path(PLUGIN_DIR) / "libtungsten-path.so";
+    const auto size = fs::file_size(original);
+    for (const std::uintmax_t length : {std::uintmax_t(0), std::uintmax_t(20), std::uintmax_t(64), std::uintmax_t(300),
+                                        size / 4, size / 2, size * 3 / 4}) {
+        const PluginFolder folder(original);
+        fs::resize_file(folder.file(), length);
+        IntegratorRegistry registry;
+        EXPECT_NE(problemsOf(folder.path(), registry).find("cannot be loaded"), std::string::npos) << length;
+        EXPECT_TRUE(registry.entries().empty());
+    }
+}
+
+TEST(Plugin, APipeIsNotWaitedFor) {
+    const test::TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder.path() / "libtungsten-pipe.so").c_str(), 0600), 0);
+    IntegratorRegistry registry;
+    EXPECT_NE(problemsOf(folder.path(), registry).find("not a file"), std::string::npos);
 }
 
 TEST(Plugin, AMissingEntryPointIsNamed) {

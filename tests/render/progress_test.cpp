@@ -35,6 +35,7 @@ TEST(Progress, TheLimitThatComesFirstDecides) {
     state.timeoutSeconds = 40.0;
     EXPECT_DOUBLE_EQ(progressFraction(state), 0.75);
     EXPECT_TRUE(contains(progressLine(state), "0m10s left"));
+    state.errorBound = 0.0213;
     state.targetError = 0.0213; // reached
     EXPECT_DOUBLE_EQ(progressFraction(state), 1.0);
     state.targetError = 0.001;

@@ -189,53 +189,6 @@ TEST(SceneLoader, InlineMediaAndBsdfsWork) {
     EXPECT_TRUE(loaded.scene->emitters[0].primitive().has_value());
 }
 
-std::string warningsOf(const std::string& json) {
-    const SceneFile file(json);
-    std::string text;
-    const LoadedScene loaded = loadScene(file.path());
-    for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text() + "\n";
-    return text;
-}
-
-/// Warnings of a lamp at `height` above a unit cube of fog, seen from outside or from within fog that is everywhere.
-std::string warningsOfLamp(const std::string& lamp, double height, bool everywhere) {
-    return warningsOf(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_s": 1}], "primitives": [
-        {"name": "cloud", "type": "cube", "int_medium": "haze", )" +
-                      std::string(everywhere ? R"("ext_medium": "haze", )" : "") + R"("bsdf": {"type": "forward"}},
-        {"name": "bulb", "emission": 3, )" +
-                      lamp + R"(, "transform": {"position": [0.1, )" + std::to_string(height) +
-                      R"(, 0], "scale": 0.2}}], "camera": {)" + (everywhere ? R"("medium": "haze", )" : "") +
-                      R"("transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}}})");
-}
-
-TEST(SceneLoader, LightsInAMediumTheyDoNotNameAreWarnedAbout) {
-    for (const std::string lamp :
-         {R"("type": "point")", R"("type": "sphere", "bsdf": {"type": "null"})", R"("type": "quad")"}) {
-        SCOPED_TRACE(lamp);
-        const std::string named = lamp + R"(, "ext_medium": "haze")";
-        for (const auto& [height, everywhere] : {std::pair{0.0, false}, {2.0, true}}) {
-            const std::string warning = warningsOfLamp(lamp, height, everywhere);
-            for (const char* part : {"primitives[1].ext_medium", "'bulb'", "'haze'"})
-                EXPECT_NE(warning.find(part), std::string::npos) << part << " in " << warning;
-            EXPECT_EQ(warningsOfLamp(named, height, everywhere), "");
-        }
-        EXPECT_EQ(warningsOfLamp(lamp, 2.0, false), "");
-    }
-}
-
-TEST(SceneLoader, WhatIsNotDoneIsSaid) {
-    const std::string lamp = R"({"primitives": [{"type": "point", "emission": 1}], )";
-    const std::string lens = lamp + R"("camera": {"type": "thinlens", "cateye": )";
-    EXPECT_NE(warningsOf(lens + "0.5}}").find("camera.cateye"), std::string::npos);
-    EXPECT_EQ(warningsOf(lens + "0}}"), "");
-    const std::string gate = lamp + R"("integrator": {"type": "path_tracer", "transient_time_width": 0.5)";
-    EXPECT_NE(warningsOf(gate + R"(, "transient_time_center": -2}})").find("steady state"), std::string::npos);
-    EXPECT_NE(warningsOf(gate + "}}").find("steady state"), std::string::npos);
-    for (const char* more :
-         {R"(, "transient_time_center": 2}})", R"(, "frame_num": 2}})", R"(, "temporal_response": {"type": "box"}}})"})
-        EXPECT_EQ(warningsOf(gate + more).find("steady state"), std::string::npos) << more;
-}
-
 TEST(SceneLoader, BitmapsThatDifferInAScaleFarBelowOneAreTwo) {
     const SceneFile file(R"({"bsdfs": [
         {"name": "a", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "scale": 1e-7}},

@@ -4,6 +4,7 @@
 import dataclasses
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -57,7 +58,7 @@ class TinyStudy(unittest.TestCase):
             "definitions": {"methods": [{"name": "delta", "may_refuse": ["integrator.delta_time_gate"],
                                          "set": ["integrator.type=path_tracer", "integrator.delta_time_gate=true"]}]}}
         cls.first = cls.call()
-        cls.report = (cls.folder / "work/report.md").read_text()
+        cls.report, cls.page = ((cls.folder / f"work/report.{kind}").read_text() for kind in ("md", "html"))
 
     @classmethod
     def tearDownClass(cls):
@@ -103,6 +104,17 @@ class TinyStudy(unittest.TestCase):
         variance = measures.relative_std(reference["stderr"], mean) ** 2 \
             + sum(measures.relative_std(layers["stderr"], mean) ** 2 for layers in renders) / len(seeds) ** 2
         self.assertLess(abs(difference), 5 * np.sqrt(variance / SIZE**2))
+
+    def test_page(self):
+        data = json.loads(re.search(r'id="page-data">(.*?)</script>', self.page, re.S)[1])
+        scene = data["scenes"][0]
+        self.assertEqual([film["name"] for film in scene["films"]], ["reference", "points", "paths"])
+        self.assertEqual([curve["name"] for curve in scene["curves"]["curves"]], ["points", "paths"])
+        self.assertEqual([row[0] for row in scene["tables"][0]["rows"]], ["points", "paths"])
+        for row in scene["tables"][0]["rows"]:
+            self.assertIn("| " + " | ".join(row) + " |", self.report)
+            self.assertEqual([command["command"].split(" -s ")[1][0] for command in scene["commands"][row[0]]], ["1", "2", "3"])
+        self.assertEqual(len([fact for fact in data["facts"] if fact["name"].startswith("failed")]), 9)
 
     def test_goes_on_and_repeats_nothing(self):
         files = [self.folder_of(method, seed) / "run.json" for method in ("points", "wrong") for seed in (1, 2, 3)]

@@ -69,15 +69,33 @@ TEST_F(Lamp, DensitiesPerAreaAreThoseOfThePoint) {
     EXPECT_NEAR(inFog.areaDensity(2.0f, direction, 4.0f), 0.125f, 1e-6f);
 }
 
+TEST_F(Lamp, LightsStartPathsAsTheyEmit) {
+    const Vertex light = lampPoint();
+    const Vec3f oblique(0.6f, -0.8f, 0.0f);
+    EXPECT_NEAR(light.pdf(oblique), 0.8f * InvPi, 1e-6f);
+    EXPECT_EQ(light.pdf(-oblique), 0.0f);
+    EXPECT_EQ(light.pdfReverse(oblique), 0.0f);
+}
+
+TEST_F(Lamp, RegionsAreThoseOfThePathThatComes) {
+    const Vertex floor = floorAt(0, 0, Vec3f(0, -1, 0), TransportMode::Photons);
+    const Region fog{0, 0.5f};
+    EXPECT_EQ(floor.regionTowards({0.0f, 1.0f, 0.0f}).medium, -1);
+    EXPECT_EQ(floor.regionTowards({0.0f, 1.0f, 0.0f}, fog).medium, 0);
+    EXPECT_EQ(lampPoint().regionTowards({0.0f, -1.0f, 0.0f}, fog).speed, 0.5f);
+    EXPECT_TRUE(floor.reflects({0.6f, 0.8f, 0.0f}));
+    EXPECT_FALSE(floor.reflects({0.6f, -0.8f, 0.0f}));
+}
+
 TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
     const Vertex light = lampPoint();
     const Vec3f above = light.position();
     const Vertex floor = floorAt(above.x, above.z, Vec3f(-0.6f, -0.8f, 0.0f), TransportMode::Radiance);
     for (const bool fromLight : {false, true}) {
         const Vertex &from = fromLight ? light : floor, &to = fromLight ? floor : light;
-        const auto end = connectionEnd(from, to);
-        ASSERT_TRUE(end);
-        const auto connection = connector_.connect(from, Rgb(2.0f), *end, rays_);
+        const auto way = straightWay(from.position(), to.position());
+        ASSERT_TRUE(way);
+        const auto connection = connector_.connect(from, Rgb(0.5f), connectionEnd(*way, to, Rgb(4.0f)), rays_);
         ASSERT_TRUE(connection);
         EXPECT_NEAR(connection->throughput.x, 2.0f * 0.5f * InvPi * 12.0f / 16.0f * std::exp(-0.5f), 1e-5f);
         EXPECT_NEAR(connection->time, 5.0, 1e-5); // 3 at speed 1, 1 at 0.5
@@ -86,8 +104,10 @@ TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
     }
     // Behind the lamp there is nothing.
     const Vertex behind(scene_->media[0], Vec3f(0, 5, 0), Vec3f(0, 1, 0), Region{-1, 1.0f});
-    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), *connectionEnd(behind, floor), rays_));
-    EXPECT_FALSE(connectionEnd(floor, floor));
+    const auto down = straightWay(behind.position(), floor.position());
+    ASSERT_TRUE(down);
+    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), connectionEnd(*down, floor, Rgb(1.0f)), rays_));
+    EXPECT_FALSE(straightWay(above, above));
 }
 
 TEST_F(Lamp, OnlySingleDirectionsCannotBeConnected) {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
+#include <cstring>
 #include <iostream>
 
 namespace tungsten {
@@ -26,11 +28,28 @@ double durationOption(const std::string& option, const std::string& text) {
 
 /// "WxH" as a scene override.
 std::string resolutionOverride(const std::string& text) {
-    int width = 0, height = 0, used = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || size_t(used) != text.size() || width < 1 ||
-        height < 1)
+    const char *first = text.data(), *last = first + text.size();
+    int width = 0, height = 0;
+    const auto [cross, widthError] = std::from_chars(first, last, width);
+    const bool crossed = widthError == std::errc() && cross != last && *cross == 'x';
+    const auto [end, heightError] = std::from_chars(crossed ? cross + 1 : last, last, height);
+    if (!crossed || heightError != std::errc() || end != last || width < 1 || height < 1)
         throw UsageError("--resolution " + text + ": expected WIDTHxHEIGHT, such as 320x240");
     return "camera.resolution=[" + std::to_string(width) + "," + std::to_string(height) + "]";
+}
+
+/// "512M", "16G": bytes, in steps of 1024.
+double sizeOption(const std::string& text) {
+    static const std::string units = "KMGT";
+    double bytes = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
+    std::string unit(end, text.data() + text.size());
+    if (unit.ends_with("iB")) unit.erase(unit.size() - 2);
+    const size_t power = unit.empty() ? 0 : units.find(unit) + 1;
+    const bool known = unit.empty() || (unit.size() == 1 && power > 0 && power <= units.size());
+    if (error != std::errc() || !known || !(bytes > 0.0) || bytes > 1e15)
+        throw UsageError("--memory-limit " + text + ": expected a size such as 512M, 16G or 16GiB");
+    return bytes * std::pow(1024.0, double(power));
 }
 
 /// Decimal, or hexadecimal after 0x.
@@ -56,6 +75,21 @@ std::string explainUnknown(const CLI::App& app, const std::string& message) {
     return near.empty() ? message : message + "; did you mean " + near + "?";
 }
 
+/// The command as a shell takes it.
+std::string commandText(int argc, const char* const* argv) {
+    std::string command;
+    for (int i = 0; i < argc; ++i) {
+        std::string word = argv[i];
+        const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-./=,:+@%", c); };
+        if (word.empty() || !std::all_of(word.begin(), word.end(), plain)) {
+            for (size_t at = 0; (at = word.find('\'', at)) != std::string::npos; at += 4) word.replace(at, 1, "'\\''");
+            word = "'" + word + "'";
+        }
+        command += (i > 0 ? " " : "") + word;
+    }
+    return command;
+}
+
 /// The arguments, last first, as the parser takes them; "-t=4" becomes "-t" "4".
 std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
     std::vector<std::string> arguments;
@@ -77,7 +111,8 @@ std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
 
 /// Options as they are written, before they are understood.
 struct OptionTexts {
-    std::string checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre, describe;
+    std::string memoryLimit, checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre,
+        describe, page;
     int64_t spp = 0;
     const CLI::Option* description = nullptr; ///< --describe, which may have no value
 };
@@ -104,9 +139,18 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
         ->allow_extra_args(false);
     app.add_option("--resolution", text.resolution, "WIDTHxHEIGHT in pixels");
     app.add_option("--stats", text.statistics, "write times, counters, memory and standard error to this JSON file");
+    app.add_option("--html", text.page,
+                   "write a page to look at the result with: film, arrival histograms, figures (one file, no network)");
+    app.add_option("--trace", options.trace,
+                   "write means and standard errors whenever the render's time has doubled, and trace.json, to this "
+                   "folder");
     app.add_option("--target-error", options.targetError,
-                   "stop when the relative standard error is at most this (0.01 is 1 %)")
+                   "stop when the relative error is at most this (0.01 is 1 %) with a confidence of 95 %")
         ->check(CLI::PositiveNumber);
+    app.add_option("--memory-limit", text.memoryLimit,
+                   "refuse what needs more than SIZE (512M, 16G), and fail at more (default: what is available)");
+    app.add_flag("--allow-outside", options.outputs.allowOutside,
+                 "let scenes read and write outside their folder and the output folder");
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
     text.description =
@@ -137,6 +181,7 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
 
 void understand(const OptionTexts& text, Options& options) {
     if (!text.seed.empty()) options.seed = seedOption(text.seed);
+    if (!text.memoryLimit.empty()) options.memoryLimit = sizeOption(text.memoryLimit);
     if (!text.checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", text.checkpoint);
     if (!text.timeout.empty()) options.timeoutSeconds = durationOption("--timeout", text.timeout);
     if (text.spp > 0) options.spp = text.spp;
@@ -146,6 +191,7 @@ void understand(const OptionTexts& text, Options& options) {
     if (!text.ldr.empty()) options.outputs.ldr = text.ldr;
     if (!text.hdr.empty()) options.outputs.hdr = text.hdr;
     if (!text.statistics.empty()) options.outputs.statistics = text.statistics;
+    if (!text.page.empty()) options.outputs.page = text.page;
     if (text.description->count() > 0) options.describe = text.describe;
 }
 
@@ -155,12 +201,16 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     Options options;
     OptionTexts text;
     CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
-                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice, or before the first pass.",
+                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice,\n"
+                 "before the first pass, or before the last scene.",
                  "tungsten"};
     declareOptions(app, options, text);
     if (!parse(app, argc, argv)) return std::nullopt;
     understand(text, options);
+    options.command = commandText(argc, argv);
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
+    if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");
+    if (options.outputs.page && options.scenes.size() > 1) throw UsageError("--html: takes one scene at a time");
     if (options.scenes.empty() && !options.list && !options.describe)
         throw UsageError("no scene file given (--help lists the options)");
     return options;

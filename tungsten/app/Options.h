@@ -15,11 +15,14 @@ struct Options {
     std::vector<std::string> overrides; ///< --set, then what other options say about the scene
     std::filesystem::path inputDirectory;
     OutputOverrides outputs;
+    std::string command;         ///< as a shell takes it
+    std::filesystem::path trace; ///< empty: none
     std::optional<double> checkpointSeconds, timeoutSeconds;
     std::optional<int64_t> spp;
     uint64_t seed = 0xBA5EBA11u;
     double targetError = 0.0;
-    int threads = 0; ///< 0: all
+    double memoryLimit = 0.0; ///< bytes; 0: what is available
+    int threads = 0;          ///< 0: all
     bool restart = false, quiet = false;
     bool explain = false, list = false;
     std::optional<std::string> describe; ///< a type or kind; empty: all

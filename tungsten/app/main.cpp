@@ -5,17 +5,23 @@
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/Describe.h"
+#include "tungsten/render/Memory.h"
 #include "tungsten/render/Plugin.h"
+#include "tungsten/render/Progress.h"
 #include "tungsten/render/RenderSession.h"
 
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
+#include <map>
 #include <new>
 #include <optional>
+#include <thread>
 
 #include <unistd.h>
 
@@ -39,8 +45,9 @@ struct Plugins {
     std::vector<Problem> problems = loadPlugins(directories, registry);
 };
 
-void printWarnings(const std::vector<Problem>& warnings) {
+void printWarnings(const std::vector<Problem>& warnings, size_t more = 0) {
     for (const Problem& warning : warnings) std::cerr << "warning: " << warning.text() << '\n';
+    if (more > 0) std::cerr << "warning: and " << more << " more\n";
 }
 
 [[noreturn]] void failUnknownIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
@@ -75,7 +82,10 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.resumeEnabled = renderer.enableResume || options.checkpointSeconds.has_value();
     session.restart = options.restart;
     session.targetError = options.targetError;
+    session.memoryLimit = options.memoryLimit;
     session.quiet = options.quiet;
+    session.trace = options.trace;
+    session.command = options.command;
     session.interrupted = &interrupted;
     return session;
 }
@@ -88,7 +98,7 @@ void printSummary(const SessionResult& result) {
     std::printf("%u passes, %llu samples per pixel in %.1f s (%s)", result.film.passes(),
                 static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str());
     const double error = result.film.relativeStandardError();
-    if (!std::isnan(error)) std::printf(", standard error %.3g %%", 100.0 * error);
+    if (!std::isnan(error)) std::printf(", %s", errorText(error, result.film.relativeErrorBound()).c_str());
     std::printf("\n");
     constexpr size_t MostListed = 12;
     for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)
@@ -101,9 +111,10 @@ void printSummary(const SessionResult& result) {
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
-    const LoadedScene loaded = loadScene(file, {options.inputDirectory, options.overrides});
+    const LoadedScene loaded =
+        loadScene(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside});
     const auto integrator = makeIntegrator(loaded, plugins);
-    printWarnings(loaded.diagnostics->warnings);
+    printWarnings(loaded.diagnostics->warnings, loaded.diagnostics->moreWarnings);
     EffectPlan plan = analyseScene(*loaded.scene);
     integrator->plan(plan);
     loading.reset();
@@ -136,6 +147,39 @@ int tryScene(const std::filesystem::path& file, const Options& options, const Pl
     return ExitBadInput;
 }
 
+/// Throws UsageError if two scenes would write the same file: the later would replace the earlier's, or resume it.
+void requireOutputsOfTheirOwn(const Options& options) {
+    std::map<std::filesystem::path, size_t> writers;
+    for (size_t i = 0; i < options.scenes.size(); ++i) {
+        const std::filesystem::path& scene = options.scenes[i];
+        const RendererSettings renderer = peekRenderer(scene, options.overrides);
+        OutputOverrides anywhere = options.outputs;
+        anywhere.allowOutside = true; // looked at when the scene is rendered
+        const OutputFiles files = resolveOutputs(renderer, scene, anywhere);
+        std::vector<std::filesystem::path> written;
+        if (renderer.overwriteOutputFiles || options.outputs.ldr) written.push_back(files.ldr);
+        if (renderer.overwriteOutputFiles || options.outputs.hdr) written.push_back(files.hdr);
+        if (renderer.enableResume || options.checkpointSeconds) written.push_back(files.state);
+        written.push_back(files.statistics);
+        for (const auto& file : written) {
+            if (file.empty()) continue;
+            const auto [writer, added] = writers.emplace(std::filesystem::weakly_canonical(file), i);
+            if (!added && writer->second != i)
+                throw UsageError(scene.string() + " would write " + file.string() + ", as " +
+                                 options.scenes[writer->second].string() +
+                                 " does; render them one by one, with folders (-d) or names of their own");
+        }
+    }
+}
+
+/// Signals that ask for an end are handled, but those that whoever started the command has set aside (nohup). A reader
+/// of our messages that goes away is no reason to lose a render.
+void handleSignals() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (std::signal(signal, onInterrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
 void printFields(const Options& options, const Plugins& plugins) {
     const auto selected = selectDescriptions(describeAll(plugins.registry), *options.describe);
     options.markdown ? printMarkdown(selected, std::cout) : printDescriptions(selected, std::cout);
@@ -158,14 +202,24 @@ int run(const Options& options) {
     const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
     const global_control threads(global_control::max_allowed_parallelism,
                                  options.threads > 0 ? size_t(options.threads) : all);
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
+    if (options.memoryLimit > 0.0) limitMemory(options.memoryLimit, std::thread::hardware_concurrency());
+    handleSignals();
+    if (!options.explain) requireOutputsOfTheirOwn(options);
     int code = 0;
     for (const auto& scene : options.scenes) {
-        if (interrupted) break;
+        if (interrupted) return ExitInterrupted; // not all were rendered
         code = std::max(code, tryScene(scene, options, plugins));
     }
     return code;
+}
+
+/// The exit code, or 1 if what was printed got lost on a full disk.
+int withWholeOutput(int code) {
+    std::cout.flush();
+    const bool lost = std::fflush(stdout) != 0 || !std::cout || std::ferror(stdout);
+    if (!lost || errno == EPIPE) return code;
+    std::cerr << "error: standard output: cannot be written: " << std::strerror(errno) << '\n';
+    return std::max(code, ExitBadInput);
 }
 
 } // namespace
@@ -176,7 +230,7 @@ int main(int argc, char** argv) {
     using namespace tungsten;
     try {
         const auto options = parseOptions(argc, argv);
-        return options ? run(*options) : 0;
+        return withWholeOutput(options ? run(*options) : 0);
     } catch (const UsageError& error) {
         std::cerr << "error: " << error.what() << '\n';
         return ExitBadUsage;

@@ -2,19 +2,32 @@
 
 #include "tungsten/core/Errors.h"
 
-#include <cstdint>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace tungsten {
 
+uint64_t requireRegularFile(const std::filesystem::path& file) {
+    // A pipe without a writer would keep a blocking open waiting.
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0 && errno == ENOENT) throw InputError(file.string(), "no such file");
+    if (descriptor < 0) throw InputError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+    struct stat status {};
+    const bool known = ::fstat(descriptor, &status) == 0;
+    ::close(descriptor);
+    if (!known || !S_ISREG(status.st_mode))
+        throw InputError(file.string(), "not a file (a folder, a device or a pipe)");
+    return uint64_t(status.st_size);
+}
+
 std::vector<char> readFileBytes(const std::filesystem::path& file) {
     constexpr uint64_t LargestFile = uint64_t(1) << 32;
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) throw InputError(file.string(), "no such file");
-    if (!std::filesystem::is_regular_file(status)) throw InputError(file.string(), "not a file (a folder or a device)");
-    const uint64_t size = std::filesystem::file_size(file, error);
-    if (error) throw InputError(file.string(), "cannot be read: " + error.message());
+    const uint64_t size = requireRegularFile(file);
     if (size > LargestFile) throw InputError(file.string(), "larger than 4 GiB");
     std::vector<char> bytes(size);
     std::ifstream in(file, std::ios::binary);

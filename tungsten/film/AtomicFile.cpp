@@ -2,30 +2,120 @@
 
 #include "tungsten/core/Errors.h"
 
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <ext/stdio_filebuf.h>
+#include <random>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace tungsten {
 
-AtomicFile::AtomicFile(std::filesystem::path destination)
-    : destination_(std::move(destination)), temporary_(destination_) {
-    std::error_code error;
-    const std::filesystem::path folder = destination_.parent_path().empty() ? "." : destination_.parent_path();
-    if (!std::filesystem::is_directory(folder, error))
-        throw InputError(destination_.string(),
-                         "cannot be written: the folder '" + folder.string() + "' does not exist");
-    temporary_ += ".tmp" + std::to_string(::getpid());
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* Prefix = ".tungsten-";
+constexpr const char* Suffix = ".tmp";
+constexpr std::time_t YoungSeconds = 60;
+
+fs::path folderOf(const fs::path& file) {
+    return file.parent_path().empty() ? fs::path(".") : file.parent_path();
 }
 
-AtomicFile::~AtomicFile() {
-    std::error_code ignored;
-    if (!committed_) std::filesystem::remove(temporary_, ignored);
+InputError cannotWrite(const fs::path& file, const std::string& why) {
+    return {file.string(), "cannot be written: " + why};
 }
 
-void AtomicFile::commit() {
+std::string randomName() {
+    std::random_device random;
+    char name[48];
+    std::snprintf(name, sizeof name, "%s%08x%08x%s", Prefix, random(), random(), Suffix);
+    return name;
+}
+
+/// The temporary file; whoever holds its lock is still writing. Removed unless it has been renamed.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(const fs::path& destination) : destination_(destination) {
+        do {
+            path_ = folderOf(destination) / randomName();
+            descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        } while (descriptor_ < 0 && errno == EEXIST);
+        if (descriptor_ < 0) throw cannotWrite(destination, std::strerror(errno));
+        ::flock(descriptor_, LOCK_EX | LOCK_NB);
+    }
+    ~TemporaryFile() {
+        if (!renamed_) ::unlink(path_.c_str());
+        ::close(descriptor_);
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    void fill(const std::function<void(std::ostream&)>& write) const {
+        const int copy = ::dup(descriptor_); // the buffer closes its own
+        if (copy < 0) throw cannotWrite(destination_, std::strerror(errno));
+        __gnu_cxx::stdio_filebuf<char> buffer(copy, std::ios::in | std::ios::out | std::ios::binary);
+        std::ostream out(&buffer);
+        errno = 0;
+        write(out);
+        out.flush();
+        const int reason = errno;
+        if (!out || !buffer.close())
+            throw cannotWrite(destination_, reason ? std::strerror(reason) : "the disk is full, or there is a quota");
+    }
+    void rename() {
+        // A full disk may be noticed no sooner than here.
+        if (::fsync(descriptor_) != 0 && errno != EINVAL) throw cannotWrite(destination_, std::strerror(errno));
+        if (::rename(path_.c_str(), destination_.c_str()) != 0) throw cannotWrite(destination_, std::strerror(errno));
+        renamed_ = true;
+        const int folder = ::open(folderOf(destination_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (folder < 0) return;
+        ::fsync(folder); // the name; the bytes are safe already
+        ::close(folder);
+    }
+
+  private:
+    fs::path destination_, path_;
+    int descriptor_ = -1;
+    bool renamed_ = false;
+};
+
+} // namespace
+
+void requireReplaceable(const fs::path& file) {
     std::error_code error;
-    std::filesystem::rename(temporary_, destination_, error);
-    if (error) throw InputError(destination_.string(), "cannot be written: " + error.message());
-    committed_ = true;
+    const auto status = fs::status(file, error);
+    if (fs::is_directory(status)) throw cannotWrite(file, "a folder has this name; choose another with -d, -o or -e");
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        throw cannotWrite(file, "a device or a pipe has this name, which would be replaced by a file");
+}
+
+void writeAtomically(const fs::path& destination, const std::function<void(std::ostream&)>& write) {
+    requireReplaceable(destination);
+    TemporaryFile temporary(destination);
+    temporary.fill(write);
+    temporary.rename();
+}
+
+void removeAbandonedFiles(const fs::path& folder) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(Prefix) || !name.ends_with(Suffix)) continue;
+        const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
+        if (descriptor < 0) continue;
+        // A writer locks its file right after making it: a young one may not be locked yet.
+        struct stat status {};
+        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &status) == 0 &&
+            std::time(nullptr) - status.st_mtime > YoungSeconds)
+            ::unlink(entry.path().c_str());
+        ::close(descriptor);
+    }
 }
 
 } // namespace tungsten

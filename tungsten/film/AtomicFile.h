@@ -2,25 +2,20 @@
 // Files that appear whole or not at all.
 
 #include <filesystem>
+#include <functional>
+#include <ostream>
 
 namespace tungsten {
 
-/// A temporary file beside its destination: write to path(), then commit() renames it over the destination. Removed if
-/// never committed.
-class AtomicFile {
-  public:
-    /// Throws InputError naming the destination when its folder does not exist.
-    explicit AtomicFile(std::filesystem::path destination);
-    ~AtomicFile();
-    AtomicFile(const AtomicFile&) = delete;
-    AtomicFile& operator=(const AtomicFile&) = delete;
+/// Throws InputError if something that is not a file (a folder, device or pipe) has this name.
+void requireReplaceable(const std::filesystem::path& file);
 
-    [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
-    void commit();
+/// `write` fills a temporary file in the destination's folder, created for this alone under a random name. What it
+/// wrote is checked, brought to the disk and renamed to the destination. On any failure, a full disk among them, the
+/// destination stays as it was, nothing is left behind, and InputError names it. Streams can be sought.
+void writeAtomically(const std::filesystem::path& destination, const std::function<void(std::ostream&)>& write);
 
-  private:
-    std::filesystem::path destination_, temporary_;
-    bool committed_ = false;
-};
+/// Removes temporary files in the folder whose writers are gone (killed while writing).
+void removeAbandonedFiles(const std::filesystem::path& folder);
 
 } // namespace tungsten

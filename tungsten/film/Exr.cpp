@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
@@ -49,14 +50,25 @@ Imf::Header headerOf(const ExrPart& part, bool multiPart) {
     return header;
 }
 
-} // namespace
+/// OpenEXR writes its last rows and the table of lines in destructors that swallow errors; a stream remembers them.
+class ExrStream : public Imf::OStream {
+  public:
+    ExrStream(std::ostream& out, const std::filesystem::path& file) : Imf::OStream(file.c_str()), out_(out) {}
+    void write(const char bytes[], int count) override { out_.write(bytes, count); }
+    // From a failed stream the position would be -1.
+    uint64_t tellp() override { return out_ ? uint64_t(out_.tellp()) : 0; }
+    void seekp(uint64_t position) override { out_.seekp(std::streamoff(position)); }
 
-void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
-    AtomicFile destination(file);
+  private:
+    std::ostream& out_;
+};
+
+void writeParts(std::ostream& stream, const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
     try {
         std::vector<Imf::Header> headers;
         for (const ExrPart& part : parts) headers.push_back(headerOf(part, parts.size() > 1));
-        Imf::MultiPartOutputFile out(destination.path().c_str(), headers.data(), int(headers.size()));
+        ExrStream target(stream, file);
+        Imf::MultiPartOutputFile out(target, headers.data(), int(headers.size()));
         for (size_t i = 0; i < parts.size(); ++i) {
             Imf::FrameBuffer buffer;
             insertLayer(buffer, "", parts[i].colour);
@@ -68,7 +80,12 @@ void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& par
     } catch (const std::exception& error) {
         throw InputError(file.string(), std::string("cannot be written: ") + error.what());
     }
-    destination.commit();
+}
+
+} // namespace
+
+void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
+    writeAtomically(file, [&](std::ostream& out) { writeParts(out, file, parts); });
 }
 
 int exrPartCount(const std::filesystem::path& file) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <istream>
 #include <limits>
+#include <numeric>
 #include <ostream>
 
 namespace tungsten {
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
 constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '1'};
+constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '2'};
 
 struct StateHeader {
     char magic[8];
@@ -25,16 +26,20 @@ struct StateHeader {
     uint64_t nonFinite;
 };
 
-/// West's update of a weighted mean and sum of squared deviations, per channel.
-void fold(float value, double weight, double totalBefore, float& mean, float& moment2) {
+/// West's update of a weighted mean and sum of squared deviations, per channel. Returns what it adds to the sum.
+double fold(float value, double weight, double totalBefore, float& mean, float& moment2) {
     const double delta = double(value) - double(mean);
     const double share = delta * weight / (totalBefore + weight);
+    const double deviation = totalBefore * delta * share;
     mean = float(double(mean) + share);
-    moment2 = float(double(moment2) + totalBefore * delta * share);
+    moment2 = float(double(moment2) + deviation);
+    return deviation;
 }
 
-void fold(const Rgb& value, double weight, double totalBefore, Rgb& mean, Rgb& moment2) {
-    for (int c = 0; c < 3; ++c) fold(value[c], weight, totalBefore, mean[c], moment2[c]);
+double fold(const Rgb& value, double weight, double totalBefore, Rgb& mean, Rgb& moment2) {
+    double deviation = 0.0;
+    for (int c = 0; c < 3; ++c) deviation += fold(value[c], weight, totalBefore, mean[c], moment2[c]);
+    return deviation;
 }
 
 /// Standard error of a weighted mean whose passes have variance inversely proportional to their weight.
@@ -63,7 +68,7 @@ void readArray(std::istream& in, std::vector<Rgb>& values) {
 } // namespace
 
 Film::Film(int width, int height, int frames) : width_(width), height_(height), frames_(frames) {
-    const double bytes = double(width) * double(height) * (double(frames) * 3.0 + 2.0) * double(sizeof(Rgb));
+    const double bytes = memoryFor(width, height, frames);
     if (bytes > LargestFilmBytes)
         throw InputError("film", std::to_string(width) + "x" + std::to_string(height) + " pixels in " +
                                      std::to_string(frames) + " frames would take " +
@@ -79,6 +84,10 @@ Film::Film(int width, int height, int frames) : width_(width), height_(height), 
     }
 }
 
+double Film::memoryFor(int width, int height, int frames) {
+    return double(width) * double(height) * (double(frames) * 3.0 + 2.0) * double(sizeof(Rgb));
+}
+
 void Film::beginPass() {
     std::fill(pass_.begin(), pass_.end(), Rgb(0.0f));
 }
@@ -87,6 +96,7 @@ void Film::endPass(double weight) {
     const size_t pixels = size_t(width_) * size_t(height_);
     const double before = weight_;
     std::vector<uint32_t> rowNonFinite(size_t(height_), 0);
+    std::vector<double> rowDeviation(size_t(height_), 0.0);
     tbb::parallel_for(size_t(0), size_t(height_), [&](size_t row) {
         for (size_t pixel = row * size_t(width_); pixel < (row + 1) * size_t(width_); ++pixel) {
             Rgb sum(0.0f);
@@ -96,13 +106,14 @@ void Film::endPass(double weight) {
                     ++rowNonFinite[row];
                     pass_[i] = Rgb(0.0f);
                 }
-                fold(pass_[i], weight, before, mean_[i], moment2_[i]);
+                rowDeviation[row] += fold(pass_[i], weight, before, mean_[i], moment2_[i]);
                 sum += pass_[i];
             }
             if (frames_ > 1) fold(sum / float(frames_), weight, before, totalMean_[pixel], totalMoment2_[pixel]);
         }
     });
     for (const uint32_t count : rowNonFinite) nonFinite_ += count;
+    if (passes_ > 0) scatter_.add(std::accumulate(rowDeviation.begin(), rowDeviation.end(), 0.0));
     weight_ += weight;
     ++passes_;
 }
@@ -138,7 +149,8 @@ double Film::relativeStandardError() const {
 }
 
 size_t Film::memoryBytes() const {
-    return (mean_.size() + moment2_.size() + pass_.size() + totalMean_.size() + totalMoment2_.size()) * sizeof(Rgb);
+    return (mean_.size() + moment2_.size() + pass_.size() + totalMean_.size() + totalMoment2_.size()) * sizeof(Rgb) +
+           scatter_.memoryBytes();
 }
 
 void Film::write(std::ostream& out) const {
@@ -146,6 +158,7 @@ void Film::write(std::ostream& out) const {
     std::memcpy(header.magic, Magic, sizeof Magic);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
     for (const auto* values : {&mean_, &moment2_, &totalMean_, &totalMoment2_}) writeArray(out, *values);
+    scatter_.write(out);
 }
 
 void Film::read(std::istream& in, const std::string& fileName) {
@@ -161,6 +174,7 @@ void Film::read(std::istream& in, const std::string& fileName) {
     Film loaded(width_, height_, frames_);
     for (auto* values : {&loaded.mean_, &loaded.moment2_, &loaded.totalMean_, &loaded.totalMoment2_})
         readArray(in, *values);
+    loaded.scatter_.read(in);
     if (!in) throw InputError(fileName, "the saved render state is truncated");
     loaded.passes_ = header.passes;
     loaded.weight_ = header.weight;

@@ -3,6 +3,7 @@
 // error.
 
 #include "tungsten/core/Types.h"
+#include "tungsten/film/PassScatter.h"
 
 #include <cstdint>
 #include <iosfwd>
@@ -28,6 +29,8 @@ class Film {
   public:
     Film() = default;
     Film(int width, int height, int frames);
+    /// Bytes that such a film takes.
+    [[nodiscard]] static double memoryFor(int width, int height, int frames);
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
@@ -55,6 +58,9 @@ class Film {
     /// rms over pixels and frames of the standard error, relative to the mean pixel value. NaN while it is unknown:
     /// with fewer than two passes, or black.
     [[nodiscard]] double relativeStandardError() const;
+    /// What the error that was made, as relativeStandardError() counts it, does not exceed with a confidence of 95 %
+    /// (PassScatter). NaN while it is unknown: with fewer than five passes, or black.
+    [[nodiscard]] double relativeErrorBound() const { return relativeStandardError() * scatter_.boundFactor(); }
     [[nodiscard]] size_t memoryBytes() const;
 
     /// Exact binary state for checkpoints. read() throws InputError(file name, ...) on a mismatch or truncation.
@@ -66,6 +72,7 @@ class Film {
     uint32_t passes_ = 0;
     double weight_ = 0.0;
     uint64_t nonFinite_ = 0;
+    PassScatter scatter_;
     std::vector<Rgb> mean_, moment2_, pass_;
     std::vector<Rgb> totalMean_, totalMoment2_; ///< of the mean over frames (frames > 1)
 };

@@ -7,6 +7,7 @@
 
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"
@@ -25,22 +26,6 @@ namespace {
 
 constexpr int LargestSide = 1 << 20;
 
-void requireGood(const std::ostream& out, const std::filesystem::path& destination) {
-    if (!out) throw InputError(destination.string(), "cannot be written (no permission, or the disk is full)");
-}
-
-/// Opens, writes through `body`, checks and renames.
-template <typename Body>
-void writeStream(const std::filesystem::path& file, Body body) {
-    AtomicFile destination(file);
-    std::ofstream out(destination.path(), std::ios::binary);
-    requireGood(out, file);
-    body(out);
-    out.close();
-    requireGood(out, file);
-    destination.commit();
-}
-
 void writeRow(std::ostream& out, const Image& image, int y) {
     out.write(reinterpret_cast<const char*>(&image.at(0, y)), std::streamsize(size_t(image.width) * sizeof(Rgb)));
 }
@@ -52,14 +37,17 @@ void writePng(const std::filesystem::path& file, const Image& image, ToneMap ton
     bytes.reserve(image.pixels.size() * 3);
     for (const Rgb& pixel : image.pixels)
         for (const uint8_t byte : toLdr(applyToneMap(toneMap, pixel))) bytes.push_back(byte);
-    AtomicFile destination(file);
-    if (!stbi_write_png(destination.path().c_str(), image.width, image.height, 3, bytes.data(), image.width * 3))
-        throw InputError(file.string(), "cannot be written (no permission, or the disk is full)");
-    destination.commit();
+    writeAtomically(file, [&](std::ostream& out) {
+        const auto append = [](void* stream, void* data, int size) {
+            static_cast<std::ostream*>(stream)->write(static_cast<const char*>(data), size);
+        };
+        if (!stbi_write_png_to_func(append, &out, image.width, image.height, 3, bytes.data(), image.width * 3))
+            throw InputError(file.string(), "cannot be written: out of memory");
+    });
 }
 
 void writePfm(const std::filesystem::path& file, const Image& image) {
-    writeStream(file, [&](std::ostream& out) {
+    writeAtomically(file, [&](std::ostream& out) {
         out << "PF\n" << image.width << " " << image.height << "\n-1\n";
         for (int y = image.height - 1; y >= 0; --y) writeRow(out, image, y);
     });
@@ -100,7 +88,7 @@ void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frame
     constexpr size_t Preamble = 10, Alignment = 64;
     header.append((Alignment - (Preamble + header.size() + 1) % Alignment) % Alignment, ' ');
     header += '\n';
-    writeStream(file, [&](std::ostream& out) {
+    writeAtomically(file, [&](std::ostream& out) {
         const auto length = uint16_t(header.size());
         out.write("\x93NUMPY\x01\x00", 8);
         out.put(char(length & 255)).put(char(length >> 8));
@@ -111,7 +99,7 @@ void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frame
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {
-    writeStream(file, [&](std::ostream& out) { out << text; });
+    writeAtomically(file, [&](std::ostream& out) { out << text; });
 }
 
 std::filesystem::path framePath(const std::filesystem::path& file, int frame) {

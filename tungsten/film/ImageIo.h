@@ -1,6 +1,6 @@
 #pragma once
-// Image files. Every writer writes to a temporary file beside the destination and renames it: an interrupted write
-// never destroys an earlier result. All throw InputError naming the file.
+// Image files. Every writer goes through writeAtomically(): an interrupted or failed write never destroys an earlier
+// result. All throw InputError naming the file.
 
 #include "tungsten/film/Film.h"
 #include "tungsten/film/ToneMap.h"

@@ -184,8 +184,8 @@ TriangleMesh mergeScene(const tinygltf::Model& model, const std::filesystem::pat
 
 } // namespace
 
-TriangleMesh loadGltf(const std::filesystem::path& file) {
-    const tinygltf::Model model = parseGltf(file);
+TriangleMesh loadGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within) {
+    const tinygltf::Model model = parseGltf(file, within);
     for (const std::string& extension : model.extensionsRequired)
         if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
             failGltf(file, "needs the glTF extension " + extension + ", which is not supported");

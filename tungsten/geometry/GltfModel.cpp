@@ -3,6 +3,7 @@
 #include "tungsten/geometry/GltfModel.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/InsideFolder.h"
 
 #include <string_view>
 
@@ -39,16 +40,23 @@ bool isImage(const std::string& name) {
            extension == ".webp";
 }
 
-/// Buffers only: images are neither read nor decoded.
-tinygltf::FsCallbacks fileAccess() {
+using Folder = std::optional<std::filesystem::path>;
+
+/// Buffers only: images are neither read nor decoded. `within` must outlive the callbacks.
+tinygltf::FsCallbacks fileAccess(const Folder& within) {
     tinygltf::FsCallbacks access{};
+    access.user_data = const_cast<Folder*>(&within);
     access.FileExists = [](const std::string& name, void*) {
         std::error_code error;
         return !isImage(name) && std::filesystem::is_regular_file(name, error);
     };
     access.ExpandFilePath = [](const std::string& name, void*) { return name; };
-    access.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* message, const std::string& name, void*) {
+    access.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* message, const std::string& name,
+                              void* data) {
         try {
+            const Folder& folder = *static_cast<const Folder*>(data);
+            if (folder && !isInside(name, *folder))
+                throw InputError(name, "lies outside the scene's folder; --allow-outside lets a scene read it");
             const std::vector<char> bytes = readFileBytes(name);
             out->assign(bytes.begin(), bytes.end());
             return true;
@@ -70,7 +78,7 @@ void failGltf(const std::filesystem::path& file, const std::string& message) {
     throw InputError(file.string(), message);
 }
 
-tinygltf::Model parseGltf(const std::filesystem::path& file) {
+tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within) {
     const std::vector<char> bytes = readFileBytes(file);
     constexpr size_t JsonStart = 20; // of .glb files: 12 bytes of header, 8 of chunk header
     const bool binary = bytes.size() >= JsonStart && std::string_view(bytes.data(), 4) == "glTF";
@@ -83,7 +91,7 @@ tinygltf::Model parseGltf(const std::filesystem::path& file) {
     }
     requireShallowJson(json, file);
     tinygltf::TinyGLTF reader;
-    reader.SetFsCallbacks(fileAccess());
+    reader.SetFsCallbacks(fileAccess(within));
     reader.SetImageLoader(ignoreImage, nullptr);
     tinygltf::Model model;
     std::string errors, warnings;

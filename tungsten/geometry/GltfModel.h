@@ -20,8 +20,9 @@ namespace tungsten {
 
 [[noreturn]] void failGltf(const std::filesystem::path& file, const std::string& message);
 
-/// Parses .gltf or .glb, with its buffers; images are neither read nor decoded. Throws InputError.
-tinygltf::Model parseGltf(const std::filesystem::path& file);
+/// Parses .gltf or .glb, with its buffers; images are neither read nor decoded. Buffers in files of their own
+/// must lie `within` that folder, if there is one. Throws InputError.
+tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within);
 
 /// The elements of an accessor, checked to lie inside its buffer.
 class AccessorView {

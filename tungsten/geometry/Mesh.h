@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace tungsten {
@@ -35,7 +36,7 @@ struct TriangleMesh {
 /// merged). Throws InputError naming the file for anything missing, truncated, corrupt or out of range (indices, counts
 /// against the file's size, non-finite positions). A file without triangles gives an empty mesh. Normals and uvs that
 /// are not finite become 0 (the face normal is used there).
-TriangleMesh loadMesh(const std::filesystem::path& file);
+TriangleMesh loadMesh(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within = {});
 
 TriangleMesh loadWo3(const std::filesystem::path& file);
 /// Groups, objects and materials are ignored; a corner without a normal gets (0, 1, 0), without uv (0, 0).
@@ -43,8 +44,8 @@ TriangleMesh loadObj(const std::filesystem::path& file);
 /// ASCII and binary, both endians; elements vertex (x y z, nx ny nz, s t or u v) and face (vertex_indices).
 TriangleMesh loadPly(const std::filesystem::path& file);
 /// Triangles of the default scene's nodes; material index = glTF material; v flipped to the convention that 1 is the
-/// top.
-TriangleMesh loadGltf(const std::filesystem::path& file);
+/// top. Buffers in files of their own must lie `within` that folder, if there is one.
+TriangleMesh loadGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within = {});
 
 /// Frees what rendering will not read: the normals of a mesh that is not smooth.
 void dropUnused(TriangleMesh& mesh);

@@ -185,6 +185,15 @@ RTCRay embreeRay(const Ray& ray) {
     return out;
 }
 
+/// Embree ends the process at rays that are no numbers or start beyond its largest coordinate.
+bool canBeTraced(const Ray& ray) {
+    constexpr float Largest = 1.8e18f;
+    const auto inReach = [](const Vec3f& v) {
+        return std::abs(v.x) < Largest && std::abs(v.y) < Largest && std::abs(v.z) < Largest;
+    };
+    return inReach(ray.origin) && inReach(ray.direction) && !std::isnan(ray.tMin) && !std::isnan(ray.tMax);
+}
+
 } // namespace
 
 SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes) : shapes_(shapes) {
@@ -215,6 +224,7 @@ SceneGeometry::~SceneGeometry() {
 }
 
 std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
+    if (!canBeTraced(ray)) return std::nullopt;
     RTCRayHit query{};
     query.ray = embreeRay(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -231,7 +241,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
 }
 
 bool SceneGeometry::occluded(const Ray& ray) const {
-    if (!(ray.tMin < ray.tMax)) return false; // below 0 the end would pass for Embree's answer
+    if (!(ray.tMin < ray.tMax) || !canBeTraced(ray)) return false; // below 0 the end would pass for Embree's answer
     RTCRay query = embreeRay(ray);
     return embree::occluded(scene_, query);
 }

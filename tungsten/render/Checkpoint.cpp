@@ -1,16 +1,21 @@
 #include "tungsten/render/Checkpoint.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/FileBytes.h"
+#include "tungsten/core/Hash.h"
 #include "tungsten/film/AtomicFile.h"
 
 #include <cstring>
 #include <fstream>
+#include <streambuf>
 
 namespace tungsten {
 
 namespace {
 
-constexpr char Magic[8] = {'T', 'S', 'T', 'A', 'T', 'E', '0', '1'};
+/// The last two are the version: 02 ends with the checksum of all before.
+constexpr char Magic[8] = {'T', 'S', 'T', 'A', 'T', 'E', '0', '2'};
+constexpr size_t VersionAt = 6;
 
 struct Header {
     char magic[8];
@@ -19,31 +24,44 @@ struct Header {
     uint64_t samples;
 };
 
-} // namespace
+/// Passes bytes on and takes their checksum.
+class ChecksumBuffer : public std::streambuf {
+  public:
+    explicit ChecksumBuffer(std::streambuf& target) : target_(target) {}
+    [[nodiscard]] uint64_t checksum() const { return hash_.value(); }
 
-void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
-                     const Film& film) {
-    AtomicFile destination(file);
-    std::ofstream out(destination.path(), std::ios::binary);
-    Header header{{}, identity.sceneHash, identity.seed, identity.sppStep, point.samples};
-    std::memcpy(header.magic, Magic, sizeof Magic);
-    out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    film.write(out);
-    out.close();
-    if (!out)
-        throw InputError(file.string(), "the resume state cannot be written (no permission, or the disk is full)");
-    destination.commit();
+  protected:
+    std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+        hash_.addBytes(bytes, size_t(count));
+        return target_.sputn(bytes, count);
+    }
+    int_type overflow(int_type c) override {
+        const char byte = traits_type::to_char_type(c);
+        return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+    }
+
+  private:
+    std::streambuf& target_;
+    Hash hash_;
+};
+
+/// Whether the file ends with the checksum of all its other bytes.
+bool isWhole(std::istream& in, uint64_t size) {
+    constexpr uint64_t ChunkSize = 1 << 16;
+    uint64_t left = size - std::min<uint64_t>(size, sizeof(uint64_t)), stored = 0;
+    std::vector<char> chunk(ChunkSize);
+    Hash hash;
+    while (left > 0 && in) {
+        const uint64_t count = std::min(left, ChunkSize);
+        in.read(chunk.data(), std::streamsize(count));
+        hash.addBytes(chunk.data(), size_t(in.gcount()));
+        left -= count;
+    }
+    in.read(reinterpret_cast<char*>(&stored), sizeof stored);
+    return in && stored == hash.value();
 }
 
-std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,
-                                          Film& film) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) return std::nullopt;
-    std::ifstream in(file, std::ios::binary);
-    Header header{};
-    in.read(reinterpret_cast<char*>(&header), sizeof header);
-    if (!in || std::memcmp(header.magic, Magic, sizeof Magic) != 0)
-        throw InputError(file.string(), "not a resume state, or damaged; -r starts over");
+void requireMine(const Header& header, const RenderIdentity& identity, const std::filesystem::path& file) {
     const auto mismatch = [&](const std::string& what) {
         return InputError(file.string(),
                           "the saved state belongs to a render with another " + what + "; -r starts over");
@@ -51,6 +69,42 @@ std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, con
     if (header.sceneHash != identity.sceneHash) throw mismatch("scene (or a changed file or --set)");
     if (header.seed != identity.seed) throw mismatch("seed");
     if (header.sppStep != identity.sppStep) throw mismatch("spp_step");
+}
+
+} // namespace
+
+void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
+                     const Film& film) {
+    Header header{{}, identity.sceneHash, identity.seed, identity.sppStep, point.samples};
+    std::memcpy(header.magic, Magic, sizeof Magic);
+    writeAtomically(file, [&](std::ostream& out) {
+        ChecksumBuffer buffer(*out.rdbuf());
+        std::ostream summed(&buffer);
+        summed.write(reinterpret_cast<const char*>(&header), sizeof header);
+        film.write(summed);
+        const uint64_t checksum = buffer.checksum();
+        out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+        if (!summed) out.setstate(std::ios::badbit);
+    });
+}
+
+std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,
+                                          Film& film) {
+    std::error_code error;
+    if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) return std::nullopt;
+    const uint64_t size = requireRegularFile(file);
+    std::ifstream in(file, std::ios::binary);
+    Header header{};
+    in.read(reinterpret_cast<char*>(&header), sizeof header);
+    const bool state = in && std::memcmp(header.magic, Magic, VersionAt) == 0;
+    if (!state) throw InputError(file.string(), "not a resume state, or damaged; -r starts over");
+    if (std::memcmp(header.magic, Magic, sizeof Magic) != 0)
+        throw InputError(file.string(), "a resume state of another version of this program; -r starts over");
+    in.seekg(0);
+    if (!isWhole(in, size))
+        throw InputError(file.string(), "the resume state is damaged (its checksum is wrong); -r starts over");
+    requireMine(header, identity, file);
+    in.seekg(sizeof header);
     film.read(in, file.string());
     return ResumePoint{header.samples};
 }

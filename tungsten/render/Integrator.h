@@ -31,6 +31,8 @@ class Integrator {
     virtual void plan(EffectPlan& plan) const = 0;
     /// Called once after plan(): builds what the plan names (tables, distributions).
     virtual void prepare(const EffectPlan& plan, Statistics& statistics) = 0;
+    /// Bytes that prepare() and a pass may take as settings and scene stand; asked after plan(), before prepare().
+    [[nodiscard]] virtual double memoryBytes() const { return 0.0; }
     /// Adds the pass's image to every frame of film.passPixel(): each pixel's mean over the pass's samples, averaged
     /// over the gate.
     virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;

@@ -1,10 +1,13 @@
 #include "tungsten/render/Outputs.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/InsideFolder.h"
+#include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/ImageIo.h"
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include <unistd.h>
 
@@ -31,11 +34,6 @@ fs::path freeName(const fs::path& file) {
     return candidate;
 }
 
-/// -d rebases every name; otherwise relative names are below the scene's output directory.
-fs::path rebase(const std::string& name, const fs::path& base) {
-    return name.empty() ? fs::path() : (base / name).lexically_normal();
-}
-
 /// Lower case, dot included.
 std::string extensionOf(const fs::path& file) {
     std::string extension = file.extension().string();
@@ -43,43 +41,62 @@ std::string extensionOf(const fs::path& file) {
     return extension;
 }
 
+/// One file of a film: the image of the whole gate (formats that hold several frames get all of them), one frame, or
+/// all frames as an array.
+struct PlannedImage {
+    enum class Content { Whole, Frame, Cube };
+    fs::path file;
+    Content content = Content::Whole;
+    int frame = 0;
+    bool linear = false; ///< not tone-mapped, where it is an 8-bit image
+};
+
+using Content = PlannedImage::Content;
+
+/// Every image that is written, with a `suffix` (which goes before the extension: checkpoints) only the main ones.
+std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, const std::string& suffix) {
+    std::vector<PlannedImage> images;
+    const auto add = [&](const fs::path& file, Content content = Content::Whole, int frame = 0, bool linear = false) {
+        if (!file.empty()) images.push_back({file, content, frame, linear});
+    };
+    const auto series = [&](const fs::path& file) {
+        for (int frame = 0; frame < frames && !file.empty(); ++frame)
+            add(framePath(file, frame), Content::Frame, frame);
+    };
+    const fs::path hdr = outputs.hdr.empty() ? fs::path() : withSuffix(outputs.hdr, suffix);
+    add(withSuffix(outputs.ldr, suffix));
+    add(hdr);
+    if (!suffix.empty()) return images;
+    for (const OutputBuffer& buffer : outputs.colors) {
+        add(buffer.ldrFile, Content::Whole, 0, true);
+        add(buffer.hdrFile);
+    }
+    if (frames <= 1) return images;
+    if (!hdr.empty() && extensionOf(hdr) != ".npy") add(fs::path(hdr).replace_extension(".npy"), Content::Cube);
+    if (outputs.series.empty()) {
+        series(outputs.ldr);
+        if (extensionOf(hdr) == ".pfm") series(hdr);
+    }
+    for (const OutputBuffer& buffer : outputs.series) {
+        series(buffer.ldrFile);
+        series(buffer.hdrFile);
+    }
+    return images;
+}
+
 /// Writes what it can: a file that fails does not keep the others from being written.
 class ImageWriter {
   public:
-    ImageWriter(const Film& film, const Scene& scene)
-        : film_(film), scene_(scene), integrals_(scene.transport.integrateOverGate &&
-                                                 !scene.transport.gate.steadyState && !scene.transport.gate.delta) {}
+    ImageWriter(const Film& film, const Scene& scene) : film_(film), scene_(scene) {}
 
-    /// The image of the whole gate; formats that hold several frames get all of them.
-    void whole(const fs::path& file) { whole(file, scene_.toneMap); }
-    void whole(const fs::path& file, ToneMap toneMap) {
-        attempt(file, [&] {
-            const std::string extension = extensionOf(file);
-            if (extension == ".exr")
-                writeExr(file, allFrames());
-            else if (extension == ".npy")
-                writeCube(file);
-            else if (extension == ".pfm")
-                writePfm(file, wholeImage());
-            else
-                writePng(file, wholeImage(), toneMap);
-        });
-    }
-    /// One file per frame.
-    void series(const fs::path& file) {
-        const std::string extension = extensionOf(file);
-        for (int frame = 0; frame < film_.frames(); ++frame)
-            attempt(framePath(file, frame), [&] {
-                if (extension == ".exr")
-                    writeExr(framePath(file, frame), {exrPart(frame)});
-                else if (extension == ".pfm")
-                    writePfm(framePath(file, frame), overFrame(film_.mean(frame)));
-                else
-                    writePng(framePath(file, frame), overFrame(film_.mean(frame)), scene_.toneMap);
-            });
-    }
-    void cube(const fs::path& file) {
-        attempt(file, [&] { writeCube(file); });
+    void write(const PlannedImage& image) {
+        try {
+            makeFolderOf(image.file);
+            writeContent(image);
+            written_.push_back(image.file);
+        } catch (const InputError& error) {
+            problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
+        }
     }
     /// Throws if any file failed.
     [[nodiscard]] std::vector<fs::path> finish() const {
@@ -88,24 +105,21 @@ class ImageWriter {
     }
 
   private:
-    template <typename Write>
-    void attempt(const fs::path& file, Write write) {
-        try {
-            write();
-            written_.push_back(file);
-        } catch (const InputError& error) {
-            problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
-        }
+    void writeContent(const PlannedImage& image) const {
+        const bool frame = image.content == Content::Frame;
+        const std::string extension = extensionOf(image.file);
+        if (image.content == Content::Cube || extension == ".npy")
+            writeCube(image.file);
+        else if (extension == ".exr")
+            writeExr(image.file, frame ? std::vector<ExrPart>{exrPart(image.frame)} : allFrames());
+        else if (extension == ".pfm")
+            writePfm(image.file, frame ? overFrame(film_.mean(image.frame)) : wholeImage());
+        else
+            writePng(image.file, frame ? overFrame(film_.mean(image.frame)) : wholeImage(),
+                     image.linear ? ToneMap::Linear : scene_.toneMap);
     }
-    /// An average over `frames` frames as the output asks for it: as it is, or as their integral.
-    [[nodiscard]] Image overFrames(Image average, int frames) const {
-        if (!integrals_) return average;
-        const float width = float(scene_.transport.gate.frameWidth * frames);
-        for (Rgb& pixel : average.pixels) pixel *= width;
-        return average;
-    }
-    [[nodiscard]] Image overFrame(Image average) const { return overFrames(std::move(average), 1); }
-    [[nodiscard]] Image wholeImage() const { return overFrames(film_.meanOverFrames(), film_.frames()); }
+    [[nodiscard]] Image overFrame(Image average) const { return inOutputUnits(std::move(average), scene_, 1); }
+    [[nodiscard]] Image wholeImage() const { return inOutputUnits(film_.meanOverFrames(), scene_, film_.frames()); }
     [[nodiscard]] ExrPart exrPart(int frame) const {
         const TimeGate& gate = scene_.transport.gate;
         char name[32];
@@ -130,21 +144,9 @@ class ImageWriter {
 
     const Film& film_;
     const Scene& scene_;
-    bool integrals_; ///< integrals over a frame are asked for, not averages
     std::vector<fs::path> written_;
     std::vector<Problem> problems_;
 };
-
-void checkFolder(const fs::path& file) {
-    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (!fs::is_directory(folder, error) || ::access(folder.c_str(), W_OK) != 0)
-        throw InputError(file.string(), "cannot be written: the folder '" + folder.string() +
-                                            "' cannot be created or written to; choose another with -d DIRECTORY");
-    if (fs::is_directory(file, error))
-        throw InputError(file.string(), "cannot be written: a folder has this name; choose another with -d, -o or -e");
-}
 
 void checkExtension(const fs::path& file, const std::vector<std::string>& accepted) {
     if (file.empty() || std::find(accepted.begin(), accepted.end(), extensionOf(file)) != accepted.end()) return;
@@ -152,69 +154,125 @@ void checkExtension(const fs::path& file, const std::vector<std::string>& accept
                      "unknown image type '" + file.extension().string() + "'; accepted: " + listOf(accepted));
 }
 
+/// Names a file whatever links lead to it; it need not exist.
+fs::path identityOf(const fs::path& file) {
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(fs::absolute(file).parent_path(), error);
+    return folder / file.filename();
+}
+
+/// All files of a render.
+std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan& plan) {
+    std::vector<fs::path> files;
+    for (const PlannedImage& image : plannedImages(outputs, plan.frames, "")) files.push_back(image.file);
+    if (plan.checkpoints)
+        for (const PlannedImage& image : plannedImages(outputs, plan.frames, CheckpointSuffix))
+            files.push_back(image.file);
+    if (!outputs.statistics.empty()) files.push_back(outputs.statistics);
+    if (!outputs.page.empty()) files.push_back(outputs.page);
+    if (plan.state) files.push_back(outputs.state);
+    return files;
+}
+
 } // namespace
+
+Image inOutputUnits(Image average, const Scene& scene, int frames) {
+    const TimeGate& gate = scene.transport.gate;
+    if (!scene.transport.integrateOverGate || gate.steadyState || gate.delta) return average;
+    const float width = float(gate.frameWidth * frames);
+    for (Rgb& pixel : average.pixels) pixel *= width;
+    return average;
+}
 
 OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sceneFile,
                            const OutputOverrides& overrides) {
+    // -d rebases every name; otherwise relative names are below the scene's output directory.
     const fs::path base =
         overrides.directory ? *overrides.directory : sceneFile.parent_path() / renderer.outputDirectory;
     const auto commandLine = [&](const fs::path& file) {
         return overrides.directory ? *overrides.directory / file : file;
     };
+    const fs::path top = overrides.directory ? *overrides.directory : sceneFile.parent_path();
+    const auto rebase = [&](const std::string& name) {
+        const fs::path file = name.empty() ? fs::path() : (base / name).lexically_normal();
+        if (!overrides.allowOutside && !name.empty() && !isInside(file, top))
+            throw InputError(file.string(), "lies outside the output folder '" + top.string() +
+                                                "'; -d chooses another, and if you trust the scene, --allow-outside "
+                                                "lets it write anywhere");
+        return file;
+    };
     OutputFiles outputs;
-    outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile, base);
-    outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile, base);
-    outputs.state = rebase(renderer.resumeFile, base);
+    outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile);
+    outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile);
+    outputs.state = rebase(renderer.resumeFile);
     if (overrides.statistics) outputs.statistics = *overrides.statistics;
-    if (outputs.ldr.empty()) outputs.ldr = base / "TungstenRender.png";
+    if (overrides.page) outputs.page = *overrides.page;
+    if (outputs.ldr.empty()) outputs.ldr = rebase("TungstenRender.png");
     if (!renderer.overwriteOutputFiles && !overrides.ldr) outputs.ldr = freeName(outputs.ldr);
     if (!renderer.overwriteOutputFiles && !overrides.hdr && !outputs.hdr.empty()) outputs.hdr = freeName(outputs.hdr);
     const auto resolved = [&](const OutputBuffer& buffer) {
-        return OutputBuffer{rebase(buffer.ldrFile, base).string(), rebase(buffer.hdrFile, base).string()};
+        return OutputBuffer{rebase(buffer.ldrFile).string(), rebase(buffer.hdrFile).string()};
     };
     for (const OutputBuffer& buffer : renderer.colors) outputs.colors.push_back(resolved(buffer));
     for (const OutputBuffer& buffer : renderer.transients) outputs.series.push_back(resolved(buffer));
     return outputs;
 }
 
-void checkOutputs(const OutputFiles& outputs, bool withState) {
+void makeFolderOf(const fs::path& file) {
+    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!fs::is_directory(folder, error))
+        throw InputError(file.string(), "cannot be written: the folder '" + folder.string() +
+                                            "' cannot be created or written to; choose another with -d DIRECTORY");
+}
+
+void checkWritable(const fs::path& file) {
+    makeFolderOf(file);
+    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+    if (::access(folder.c_str(), W_OK) != 0)
+        throw InputError(file.string(), "cannot be written: the folder '" + folder.string() +
+                                            "' cannot be created or written to; choose another with -d DIRECTORY");
+    requireReplaceable(file);
+    const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+    const size_t length = file.filename().string().size();
+    if (length == 0 || (longest > 0 && length > size_t(longest)))
+        throw InputError(file.string(), "cannot be written: the name has " + std::to_string(length) +
+                                            " bytes, the folder takes 1 to " + std::to_string(longest) +
+                                            "; choose another with -o or -e");
+}
+
+void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     checkExtension(outputs.ldr, {".png"});
     checkExtension(outputs.hdr, HdrExtensions);
-    std::vector<fs::path> files{outputs.ldr, outputs.hdr, outputs.statistics};
-    if (withState) files.push_back(outputs.state);
-    const auto add = [&files](const OutputBuffer& buffer, const std::vector<std::string>& hdrExtensions) {
+    checkExtension(outputs.page, {".html", ".htm"});
+    const auto check = [](const OutputBuffer& buffer, const std::vector<std::string>& hdrExtensions) {
         checkExtension(buffer.ldrFile, {".png"});
         checkExtension(buffer.hdrFile, hdrExtensions);
-        files.insert(files.end(), {fs::path(buffer.ldrFile), fs::path(buffer.hdrFile)});
     };
-    for (const OutputBuffer& buffer : outputs.colors) add(buffer, HdrExtensions);
-    for (const OutputBuffer& buffer : outputs.series) add(buffer, {".exr", ".pfm"});
-    for (const fs::path& file : files)
-        if (!file.empty()) checkFolder(file);
+    for (const OutputBuffer& buffer : outputs.colors) check(buffer, HdrExtensions);
+    for (const OutputBuffer& buffer : outputs.series) check(buffer, {".exr", ".pfm"});
+    if (plan.state && outputs.state.empty())
+        throw InputError("", "the resume state has no name: renderer.resume_render_file is empty");
+    std::set<fs::path> folders, inputs, taken;
+    for (const fs::path& input : plan.inputs) inputs.insert(identityOf(input));
+    for (const fs::path& file : plannedFiles(outputs, plan)) {
+        checkWritable(file);
+        folders.insert(file.parent_path());
+        if (inputs.count(identityOf(file)) > 0)
+            throw InputError(file.string(), "would be replaced by an output, but the scene reads it; choose another "
+                                            "name with -d, -o, -e or --stats");
+        if (!taken.insert(identityOf(file)).second)
+            throw InputError(file.string(), "is the name of two outputs; choose another for one of them with -o, -e "
+                                            "or --stats");
+    }
+    for (const fs::path& folder : folders) removeAbandonedFiles(folder.empty() ? "." : folder);
 }
 
 std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
                                   const std::string& suffix) {
     ImageWriter writer(film, scene);
-    writer.whole(withSuffix(outputs.ldr, suffix));
-    const fs::path hdr = outputs.hdr.empty() ? fs::path() : withSuffix(outputs.hdr, suffix);
-    if (!hdr.empty()) writer.whole(hdr);
-    if (!suffix.empty()) return writer.finish();
-    for (const OutputBuffer& buffer : outputs.colors) {
-        if (!buffer.ldrFile.empty()) writer.whole(buffer.ldrFile, ToneMap::Linear);
-        if (!buffer.hdrFile.empty()) writer.whole(buffer.hdrFile);
-    }
-    if (film.frames() <= 1) return writer.finish();
-
-    if (!hdr.empty() && extensionOf(hdr) != ".npy") writer.cube(fs::path(hdr).replace_extension(".npy"));
-    if (outputs.series.empty()) {
-        writer.series(outputs.ldr);
-        if (extensionOf(hdr) == ".pfm") writer.series(hdr);
-    }
-    for (const OutputBuffer& buffer : outputs.series) {
-        if (!buffer.ldrFile.empty()) writer.series(buffer.ldrFile);
-        if (!buffer.hdrFile.empty()) writer.series(buffer.hdrFile);
-    }
+    for (const PlannedImage& image : plannedImages(outputs, film.frames(), suffix)) writer.write(image);
     return writer.finish();
 }
 

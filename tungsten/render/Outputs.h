@@ -18,21 +18,44 @@ struct OutputFiles {
     std::vector<OutputBuffer> series; ///< per-frame files of sequences (resolved names)
     std::filesystem::path state;      ///< resume state
     std::filesystem::path statistics; ///< JSON; empty: none
+    std::filesystem::path page;       ///< HTML; empty: none
 };
 
-/// What the command line says about files (-d, -o, -e, --stats).
+/// What the command line says about files (-d, -o, -e, --stats, --html).
 struct OutputOverrides {
-    std::optional<std::filesystem::path> directory, ldr, hdr, statistics;
+    std::optional<std::filesystem::path> directory, ldr, hdr, statistics, page;
+    bool allowOutside = false; ///< a scene's names may lead out of the output folder
 };
 
 /// File names of a scene: the renderer block's, resolved against its output directory, unless the command line says
-/// otherwise. `overwrite_output_files` false picks names that are free.
+/// otherwise. `overwrite_output_files` false picks names that are free. Names that the scene gives must lie in the
+/// output folder (-d, or else the scene's own): InputError.
 OutputFiles resolveOutputs(const RendererSettings& renderer, const std::filesystem::path& sceneFile,
                            const OutputOverrides& overrides);
 
-/// Creates missing folders and throws InputError if an output (with `withState` the resume state too) could not be
-/// written or has an unknown extension.
-void checkOutputs(const OutputFiles& outputs, bool withState = false);
+/// What a render is going to write.
+struct OutputPlan {
+    int frames = 1;
+    bool state = false, checkpoints = false;   ///< besides the images
+    std::vector<std::filesystem::path> inputs; ///< files that must not be replaced
+};
+
+/// Creates missing folders, removes temporary files that killed renders left there, and throws InputError if an output
+/// could not be written: unknown extension, no permission, a name that is too long, taken by something that is no file,
+/// by an input or by another output.
+void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan);
+
+/// The folder of an output, made again if it has gone. Throws InputError.
+void makeFolderOf(const std::filesystem::path& file);
+
+/// Before the extension of a checkpoint's images.
+inline constexpr const char* CheckpointSuffix = "_checkpoint";
+
+/// Creates missing folders; throws InputError where a file of this name could not be written.
+void checkWritable(const std::filesystem::path& file);
+
+/// An average over `frames` frames as the scene's outputs want it: as it is, or as their integral.
+Image inOutputUnits(Image average, const Scene& scene, int frames);
 
 /// Writes every image of the film and returns the files' names; with a `suffix` (which goes before the extension:
 /// checkpoints) only the main ones. Throws InputError after trying all of them if any failed.

@@ -1,13 +1,16 @@
 #include "tungsten/render/Plugin.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/FileBytes.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <set>
 
 #include <dlfcn.h>
+#include <link.h>
 
 namespace tungsten {
 
@@ -24,7 +27,27 @@ std::vector<std::filesystem::path> pluginFiles(const std::filesystem::path& dire
     return files;
 }
 
+/// The loader maps a library without looking whether the file has all of it, and would be killed on touching the rest.
+void requireWholeLibrary(const std::filesystem::path& file) {
+    const uint64_t size = requireRegularFile(file);
+    const auto fail = [&](const char* why) -> InputError {
+        return {file.string(), std::string("the plugin cannot be loaded: ") + why};
+    };
+    std::ifstream in(file, std::ios::binary);
+    ElfW(Ehdr) header{};
+    in.read(reinterpret_cast<char*>(&header), sizeof header);
+    if (!in || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_phentsize != sizeof(ElfW(Phdr)))
+        throw fail("not a shared object of this machine");
+    std::vector<ElfW(Phdr)> segments(header.e_phnum);
+    in.seekg(std::streamoff(header.e_phoff));
+    in.read(reinterpret_cast<char*>(segments.data()), std::streamsize(segments.size() * sizeof(ElfW(Phdr))));
+    if (!in) throw fail("truncated");
+    for (const auto& segment : segments)
+        if (segment.p_offset > size || segment.p_filesz > size - segment.p_offset) throw fail("truncated");
+}
+
 void loadPlugin(const std::filesystem::path& file, IntegratorRegistry& registry) {
+    requireWholeLibrary(file);
     // Never closed: factories and vtables live in the library.
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) throw InputError(file.string(), std::string("the plugin cannot be loaded: ") + dlerror());

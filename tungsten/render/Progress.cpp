@@ -20,22 +20,25 @@ std::string clockText(double seconds) {
     return text;
 }
 
-std::string errorText(double relative) {
+} // namespace
+
+std::string errorText(double relative, double bound) {
     if (std::isnan(relative)) return "standard error not known yet";
-    char text[48];
-    std::snprintf(text, sizeof text, "standard error %.3g %%", 100.0 * relative);
+    char text[64];
+    if (std::isnan(bound))
+        std::snprintf(text, sizeof text, "standard error %.3g %%", 100.0 * relative);
+    else
+        std::snprintf(text, sizeof text, "standard error %.3g %% (below %.3g %%)", 100.0 * relative, 100.0 * bound);
     return text;
 }
-
-} // namespace
 
 double progressFraction(const ProgressState& state) {
     const int64_t remaining = state.totalSamples - state.resumedSamples;
     double fraction = remaining > 0 ? double(state.samples - state.resumedSamples) / double(remaining) : 1.0;
     if (state.timeoutSeconds > 0.0) fraction = std::max(fraction, state.elapsedSeconds / state.timeoutSeconds);
     // The error falls with the square root of the work.
-    if (state.targetError > 0.0 && state.relativeError > 0.0)
-        fraction = std::max(fraction, std::pow(state.targetError / state.relativeError, 2.0));
+    if (state.targetError > 0.0 && state.errorBound > 0.0)
+        fraction = std::max(fraction, std::pow(state.targetError / state.errorBound, 2.0));
     return std::clamp(fraction, 0.0, 1.0);
 }
 
@@ -48,7 +51,7 @@ std::string progressLine(const ProgressState& state) {
     line += "pass " + std::to_string(state.passes) + "/" + std::to_string(state.totalPasses) + ", " +
             std::to_string(state.samples) + "/" + std::to_string(state.totalSamples) + " spp, " +
             clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) + " left, " +
-            errorText(state.relativeError);
+            errorText(state.relativeError, state.errorBound);
     return line;
 }
 

@@ -15,12 +15,15 @@ struct ProgressState {
     double elapsedSeconds = 0.0;
     double timeoutSeconds = 0.0;                                     ///< 0: none
     double relativeError = std::numeric_limits<double>::quiet_NaN(); ///< NaN: not known yet
+    double errorBound = std::numeric_limits<double>::quiet_NaN();    ///< what it does not exceed; NaN: not known yet
     double targetError = 0.0;                                        ///< 0: none
     int64_t resumedSamples = 0;                                      ///< taken before this run started
 };
 
 /// Fraction of the render that is done, by whichever limit comes first.
 double progressFraction(const ProgressState& state);
+/// "standard error 1.2 % (below 1.4 %)": of a film, with the bound that holds with a confidence of 95 %.
+std::string errorText(double relativeError, double errorBound);
 /// One line: a bar, passes, elapsed and remaining time, standard error.
 std::string progressLine(const ProgressState& state);
 

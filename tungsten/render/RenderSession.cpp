@@ -2,6 +2,8 @@
 
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/render/Checkpoint.h"
+#include "tungsten/render/HtmlPage.h"
+#include "tungsten/render/Memory.h"
 #include "tungsten/render/Progress.h"
 
 #include <bit>
@@ -30,11 +32,14 @@ class Session {
     Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs,
             const SessionOptions& options, SessionResult& result)
         : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options),
-          result_(result), identity_{loaded.hash, options.seed, options.sppStep}, reporter_(options.quiet) {}
+          result_(result), identity_{loaded.hash, options.seed, options.sppStep},
+          trace_(options.trace, *loaded.scene, options.seed), reporter_(options.quiet) {}
 
     void run(const EffectPlan& plan) {
-        checkOutputs(outputs_, options_.resumeEnabled);
         const Scene& scene = *loaded_.scene;
+        checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled, options_.checkpointSeconds > 0.0,
+                                loaded_.inputs});
+        requireMemory();
         result_.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
         resume();
         {
@@ -47,6 +52,23 @@ class Session {
     }
 
   private:
+    /// Film, one more copy of its images while they are written, and what the integrator says.
+    void requireMemory() const {
+        const Camera& camera = loaded_.scene->camera;
+        const int frames = loaded_.scene->transport.gate.frames;
+        const double film = 2.0 * Film::memoryFor(camera.resolution.x, camera.resolution.y, frames);
+        const double tables = integrator_.memoryBytes();
+        const double limit = options_.memoryLimit > 0.0 ? options_.memoryLimit : availableMemoryBytes();
+        if (film + tables <= limit) return;
+        throw InputError(loaded_.diagnostics->file,
+                         "needs about " + memoryText(film + tables) + " of memory (" + memoryText(film) + " for " +
+                             std::to_string(camera.resolution.x) + "x" + std::to_string(camera.resolution.y) +
+                             " pixels in " + std::to_string(frames) + " frames, " + memoryText(tables) +
+                             " for the integrator), " +
+                             (options_.memoryLimit > 0.0 ? "--memory-limit is " : "there are ") + memoryText(limit) +
+                             "; use fewer frames, photons or a smaller --resolution");
+    }
+
     void resume() {
         if (!options_.resumeEnabled || options_.restart) return;
         if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film))
@@ -67,14 +89,17 @@ class Session {
     void renderPasses() {
         const StageTimer timer(result_.statistics, "passes");
         start_ = lastCheckpoint_ = Clock::now();
+        trace_.start();
         bool stop = result_.samples >= uint64_t(options_.spp);
         while (!stop) {
             renderOnePass();
             stop = shouldStop();
+            trace_.record(result_.film, result_.samples, stop);
             if (stop || reporter_.due()) reporter_.show(state(), stop);
             if (!stop) checkpointIfDue();
         }
         result_.renderSeconds = secondsSince(start_);
+        result_.trace = trace_.entries();
     }
 
     void renderOnePass() {
@@ -97,14 +122,14 @@ class Session {
         if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
         if (options_.targetError <= 0.0 || !checksError(result_.film.passes())) return false;
-        return result_.film.relativeStandardError() <= options_.targetError && because(StopReason::TargetReached);
+        return result_.film.relativeErrorBound() <= options_.targetError && because(StopReason::TargetReached);
     }
 
     void checkpointIfDue() {
         if (options_.checkpointSeconds <= 0.0 || secondsSince(lastCheckpoint_) < options_.checkpointSeconds) return;
         const StageTimer timer(result_.statistics, "checkpoint");
         // The images so far are worth more than the checkpoint: the render goes on.
-        for (const Problem& problem : write("_checkpoint"))
+        for (const Problem& problem : write(CheckpointSuffix))
             std::fprintf(stderr, "warning: checkpoint: %s\n", problem.text().c_str());
         lastCheckpoint_ = Clock::now();
     }
@@ -130,7 +155,10 @@ class Session {
             if (suffix.empty()) result_.written = std::move(files);
         });
         if (options_.resumeEnabled)
-            attempt([&] { writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film); });
+            attempt([&] {
+                makeFolderOf(outputs_.state);
+                writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film);
+            });
         return problems;
     }
 
@@ -146,6 +174,7 @@ class Session {
         progress.elapsedSeconds = secondsSince(start_);
         progress.timeoutSeconds = options_.timeoutSeconds;
         progress.relativeError = result_.film.relativeStandardError();
+        progress.errorBound = result_.film.relativeErrorBound();
         progress.targetError = options_.targetError;
         progress.resumedSamples = int64_t(result_.resumedSamples);
         return progress;
@@ -157,6 +186,7 @@ class Session {
     const SessionOptions& options_;
     SessionResult& result_;
     RenderIdentity identity_;
+    Trace trace_;
     ProgressReporter reporter_;
     Clock::time_point start_, lastCheckpoint_;
 };
@@ -182,8 +212,14 @@ void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectP
     Session(loaded, integrator, outputs, options, result).run(plan);
     if (result.film.passes() == 0) return;
     if (!outputs.statistics.empty()) {
+        makeFolderOf(outputs.statistics);
         writeTextFile(outputs.statistics, statisticsJson(loaded, options, result));
         result.written.push_back(outputs.statistics);
+    }
+    if (!outputs.page.empty()) {
+        makeFolderOf(outputs.page);
+        writeFilmPage(outputs.page, loaded, options, result);
+        result.written.push_back(outputs.page);
     }
 }
 

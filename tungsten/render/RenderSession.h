@@ -3,6 +3,7 @@
 
 #include "tungsten/render/Integrator.h"
 #include "tungsten/render/Outputs.h"
+#include "tungsten/render/Trace.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <atomic>
@@ -13,7 +14,7 @@
 namespace tungsten {
 
 /// A target error is first looked at after so many passes, then whenever their number has doubled.
-inline constexpr uint32_t LeastPassesForTargetError = 8;
+inline constexpr uint32_t LeastPassesForTargetError = 16;
 
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
@@ -22,8 +23,11 @@ struct SessionOptions {
     double checkpointSeconds = 0.0;                 ///< 0: none
     bool resumeEnabled = false;                     ///< write and read the state file
     bool restart = false;                           ///< ignore a saved state
-    double targetError = 0.0;                       ///< stop when the relative standard error is at most this; 0: none
+    double targetError = 0.0;                       ///< stop when Film::relativeErrorBound() is at most this; 0: none
+    double memoryLimit = 0.0;                       ///< bytes; 0: what the machine has available
     bool quiet = false;                             ///< no progress bar
+    std::filesystem::path trace;                    ///< folder of the render's trace; empty: none
+    std::string command;                            ///< that started the render, for its page
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: finish the pass, write, stop
 };
 
@@ -34,9 +38,10 @@ struct SessionResult {
     StopReason reason = StopReason::Finished;
     Film film;
     Statistics statistics;
-    double renderSeconds = 0.0;  ///< passes of this run, not counting loading and writing
-    uint64_t samples = 0;        ///< per pixel, resumed ones included
-    uint64_t resumedSamples = 0; ///< of them, taken by earlier runs
+    double renderSeconds = 0.0;    ///< passes of this run, not counting loading and writing
+    uint64_t samples = 0;          ///< per pixel, resumed ones included
+    uint64_t resumedSamples = 0;   ///< of them, taken by earlier runs
+    std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
 };
 

@@ -22,6 +22,7 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     json.field("resumed samples per pixel", result.resumedSamples);
     json.field("stopped because", toString(result.reason));
     json.field("relative standard error", result.film.relativeStandardError());
+    json.field("relative error bound", result.film.relativeErrorBound());
     json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
     json.field("render wall seconds", result.renderSeconds);
     json.field("process CPU seconds", processCpuSeconds());

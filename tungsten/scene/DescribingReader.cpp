@@ -64,7 +64,9 @@ Transform ObjectReader::transform(const std::string& name, const Meaning& meanin
     const Node* node = find(name);
     if (!node) return {};
     if (valueOf(node).IsArray()) {
-        const std::vector<double> m = readNumbers(name);
+        const size_t problems = diagnostics_->problems.size() + diagnostics_->moreProblems;
+        const std::vector<double> m = readNumbers(name, Range::coordinate());
+        if (diagnostics_->problems.size() + diagnostics_->moreProblems > problems) return {};
         if (m.size() == 16) {
             const auto column = [&](size_t c) { return Vec3f(float(m[c]), float(m[c + 4]), float(m[c + 8])); };
             return {column(0), column(1), column(2), column(3)};
@@ -79,12 +81,14 @@ Transform ObjectReader::transform(const std::string& name, const Meaning& meanin
 
 Transform ObjectReader::readTransform(const ObjectReader& fields, const std::string& name) const {
     TransformRecipe recipe;
-    recipe.position = fields.vec3("position", recipe.position, {"length", "where the origin goes"});
-    recipe.scale = fields.vec3("scale", recipe.scale, {"none", "factors along the axes"});
-    recipe.rotationDegrees = fields.vec3("rotation", recipe.rotationDegrees,
-                                         {"degrees", "about z, then x, then y, the last the other way round"});
+    recipe.position =
+        fields.vec3("position", recipe.position, {"length", "where the origin goes"}, Range::coordinate());
+    recipe.scale = fields.vec3("scale", recipe.scale, {"none", "factors along the axes"}, Range::coordinate());
+    recipe.rotationDegrees =
+        fields.vec3("rotation", recipe.rotationDegrees,
+                    {"degrees", "about z, then x, then y, the last the other way round"}, Range::coordinate());
     const auto axis = [&](const char* field, Vec3f& value, bool& explicitly, const Meaning& meaning) {
-        value = fields.vec3(field, value, meaning);
+        value = fields.vec3(field, value, meaning, Range::coordinate());
         explicitly = explicitly || fields.has(field);
     };
     Vec3f lookAt(0.0f);

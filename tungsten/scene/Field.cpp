@@ -22,9 +22,9 @@ std::string brief(double x, double y, double z) {
 }
 
 std::string describe(const Range& range, bool whole) {
-    const bool low = range.low > -1e300, high = range.high < 1e300;
+    const bool low = range.low > -LargestNumber, high = range.high < LargestNumber;
     const std::string number = whole ? "whole number" : "number";
-    if (range.low == 1e-300) return "a positive " + number + (high ? " up to " + brief(range.high) : "");
+    if (range.low == LeastPositive) return "a positive " + number + (high ? " up to " + brief(range.high) : "");
     if (low && high) return "a " + number + " from " + brief(range.low) + " to " + brief(range.high);
     if (low) return "a " + number + " of at least " + brief(range.low);
     if (high) return "a " + number + " of at most " + brief(range.high);

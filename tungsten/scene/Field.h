@@ -3,6 +3,7 @@
 // describes (ObjectReader::describing) collects these declarations; `tungsten --describe` and docs/scene-fields.md
 // show them.
 
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -10,13 +11,22 @@
 
 namespace tungsten {
 
-/// Inclusive bounds of a number; the default accepts every finite value.
+/// What a float holds: numbers of a scene become floats.
+inline constexpr double LargestNumber = double(std::numeric_limits<float>::max());
+inline constexpr double LeastPositive = double(std::numeric_limits<float>::min());
+
+/// Inclusive bounds of a number; the default accepts every value that a float can have.
 struct Range {
-    double low = -1e300;
-    double high = 1e300;
-    static Range positive() { return {1e-300, 1e300}; }
-    static Range nonNegative() { return {0.0, 1e300}; }
+    double low = -LargestNumber;
+    double high = LargestNumber;
+    static Range positive() { return {LeastPositive, LargestNumber}; }
+    static Range nonNegative() { return {0.0, LargestNumber}; }
     static Range unit() { return {0.0, 1.0}; }
+    /// Coordinates: the square of an area is a float still.
+    static Range coordinate() { return {-1e9, 1e9}; }
+    /// Lengths, times and speeds: their squares are floats still.
+    static Range positiveMeasure() { return {1e-18, 1e18}; }
+    static Range measure() { return {-1e18, 1e18}; }
 };
 /// "a positive number", "a whole number from 1 to 16".
 std::string describe(const Range& range, bool whole = false);

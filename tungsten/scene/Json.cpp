@@ -1,10 +1,13 @@
 #include "tungsten/scene/Json.h"
 
+#include "tungsten/core/FileBytes.h"
+
+#include <rapidjson/encodedstream.h>
 #include <rapidjson/error/en.h>
+#include <rapidjson/memorystream.h>
+#include <rapidjson/reader.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 namespace tungsten {
 
@@ -13,7 +16,60 @@ namespace {
 constexpr unsigned Grammar = rapidjson::kParseCommentsFlag | rapidjson::kParseTrailingCommasFlag |
                              rapidjson::kParseNanAndInfFlag | rapidjson::kParseFullPrecisionFlag |
                              rapidjson::kParseIterativeFlag;
-constexpr std::uintmax_t LargestScene = std::uintmax_t(1) << 30;
+constexpr size_t LargestScene = size_t(1) << 30;
+constexpr int DeepestJson = 256;
+
+/// Passes what the parser finds on to a document, as long as it is not nested too deeply: whatever walks through the
+/// values later recurses.
+class ShallowHandler {
+  public:
+    explicit ShallowHandler(rapidjson::Document& document) : document_(document) {}
+    [[nodiscard]] bool tooDeep() const { return depth_ > DeepestJson; }
+
+    bool Null() { return document_.Null(); }
+    bool Bool(bool value) { return document_.Bool(value); }
+    bool Int(int value) { return document_.Int(value); }
+    bool Uint(unsigned value) { return document_.Uint(value); }
+    bool Int64(int64_t value) { return document_.Int64(value); }
+    bool Uint64(uint64_t value) { return document_.Uint64(value); }
+    bool Double(double value) { return document_.Double(value); }
+    bool RawNumber(const char* text, unsigned length, bool copy) { return document_.RawNumber(text, length, copy); }
+    bool String(const char* text, unsigned length, bool copy) { return document_.String(text, length, copy); }
+    bool Key(const char* text, unsigned length, bool copy) { return document_.Key(text, length, copy); }
+    bool StartObject() { return ++depth_ <= DeepestJson && document_.StartObject(); }
+    bool EndObject(unsigned members) { return --depth_ >= 0 && document_.EndObject(members); }
+    bool StartArray() { return ++depth_ <= DeepestJson && document_.StartArray(); }
+    bool EndArray(unsigned elements) { return --depth_ >= 0 && document_.EndArray(elements); }
+
+  private:
+    rapidjson::Document& document_;
+    int depth_ = 0;
+};
+
+struct ParseOutcome {
+    rapidjson::ParseResult result;
+    bool tooDeep = false;
+
+    [[nodiscard]] std::string message() const {
+        return tooDeep ? "nested more than " + std::to_string(DeepestJson) + " levels deep"
+                       : rapidjson::GetParseError_En(result.Code());
+    }
+};
+
+ParseOutcome parseInto(rapidjson::Document& document, const std::string& text) {
+    ParseOutcome outcome;
+    const auto parse = [&](rapidjson::Document& target) {
+        rapidjson::MemoryStream bytes(text.data(), text.size());
+        rapidjson::EncodedInputStream<rapidjson::UTF8<>, rapidjson::MemoryStream> stream(bytes);
+        rapidjson::Reader reader;
+        ShallowHandler handler(target);
+        outcome.result = reader.Parse<Grammar>(stream, handler);
+        outcome.tooDeep = handler.tooDeep();
+        return !outcome.result.IsError();
+    };
+    document.Populate(parse);
+    return outcome;
+}
 
 std::string lineAndColumn(const std::string& text, size_t offset) {
     size_t line = 1, column = 1;
@@ -73,9 +129,10 @@ rapidjson::Value* namedWithDots(rapidjson::Value& array, const std::string& rest
 
 rapidjson::Value parseValue(const std::string& text, rapidjson::Document::AllocatorType& allocator) {
     rapidjson::Document parsed;
-    parsed.Parse<Grammar>(text.c_str());
+    const ParseOutcome outcome = parseInto(parsed, text);
     rapidjson::Value value;
-    if (parsed.HasParseError())
+    if (outcome.tooDeep) throw UsageError("--set: the value is " + outcome.message());
+    if (outcome.result.IsError())
         value.SetString(text.c_str(), rapidjson::SizeType(text.size()), allocator);
     else
         value.CopyFrom(parsed, allocator);
@@ -85,23 +142,16 @@ rapidjson::Value parseValue(const std::string& text, rapidjson::Document::Alloca
 } // namespace
 
 std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) throw InputError(file.string(), "no such scene file");
-    if (std::filesystem::is_directory(file, error)) throw InputError(file.string(), "is a folder, not a scene file");
-    if (std::filesystem::file_size(file, error) > LargestScene && !error)
-        throw InputError(file.string(), "larger than 1 GiB: not a scene file");
-    std::ifstream in(file, std::ios::binary);
-    std::stringstream buffer;
-    buffer << in.rdbuf();
-    if (!in) throw InputError(file.string(), "cannot be read (empty or no permission)");
-    std::string text = buffer.str();
+    const std::vector<char> bytes = readFileBytes(file);
+    if (bytes.size() > LargestScene) throw InputError(file.string(), "larger than 1 GiB: not a scene file");
+    std::string text(bytes.begin(), bytes.end());
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
 
     auto document = std::make_shared<rapidjson::Document>();
-    document->Parse<Grammar>(text.c_str(), text.size());
-    if (document->HasParseError())
-        throw InputError(file.string(), "not valid JSON at " + lineAndColumn(text, document->GetErrorOffset()) + ": " +
-                                            rapidjson::GetParseError_En(document->GetParseError()));
+    const ParseOutcome outcome = parseInto(*document, text);
+    if (outcome.result.IsError())
+        throw InputError(file.string(), "not valid JSON at " + lineAndColumn(text, outcome.result.Offset()) + ": " +
+                                            outcome.message());
     if (!document->IsObject()) throw InputError(file.string(), "the top level must be an object { ... }");
     return document;
 }

@@ -7,8 +7,8 @@
 
 namespace tungsten {
 
-/// Builds one JSON object, nested objects included, with two-space indentation. Numbers that are not finite become
-/// null.
+/// Builds one JSON object, nested objects and arrays of objects included, with two-space indentation. Numbers that are
+/// not finite become null.
 class JsonWriter {
   public:
     JsonWriter();
@@ -22,6 +22,10 @@ class JsonWriter {
     void field(const std::string& name, uint64_t value);
     void beginObject(const std::string& name);
     void endObject();
+    /// Objects follow, without names.
+    void beginArray(const std::string& name);
+    void beginObject();
+    void endArray();
     /// Closes the outer object. Call once.
     [[nodiscard]] std::string finish();
 

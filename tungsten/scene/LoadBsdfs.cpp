@@ -151,6 +151,23 @@ const std::map<std::string, ModelReader>& modelReaders() {
     return readers;
 }
 
+/// Every evaluation visits every part, also where one BSDF is named several times.
+constexpr size_t MostParts = 256;
+
+/// BSDFs that this one consists of, itself included; counted until there are more than `most`.
+size_t parts(const Bsdf& bsdf, size_t most) {
+    size_t count = 1;
+    const auto add = [&](const BsdfPtr& part) {
+        if (count <= most) count += parts(*part, most - count);
+    };
+    if (const auto* mixed = std::get_if<Mixed>(&bsdf.model)) {
+        add(mixed->bsdf0);
+        add(mixed->bsdf1);
+    }
+    if (const auto* transparency = std::get_if<Transparency>(&bsdf.model)) add(transparency->base);
+    return count;
+}
+
 BsdfPtr readBsdf(LoadContext& context, const ObjectReader& reader) {
     std::vector<std::string> types;
     for (const auto& [type, modelReader] : modelReaders()) types.push_back(type);
@@ -158,9 +175,13 @@ BsdfPtr readBsdf(LoadContext& context, const ObjectReader& reader) {
     const std::string type = reader.choice("type", "lambert", types, {"none", "which BSDF", "required"});
     const std::string name = reader.text("name", "", NameMeaning);
     Texture albedo = readTexture(context, reader, "albedo", Texture(1.0f),
-                                 {"none", "factor on the model's reflectance"}, Range::nonNegative());
+                                 {"none", "factor on the model's reflectance"}, Range::unit());
     BsdfModel model = modelReaders().at(type)(context, reader);
     auto bsdf = std::make_shared<Bsdf>(name, std::move(model), std::move(albedo));
+    if (parts(*bsdf, MostParts) > MostParts) {
+        reader.problem("", "consists of more than " + std::to_string(MostParts) + " BSDFs within one another");
+        bsdf = std::make_shared<Bsdf>(name, Lambert{});
+    }
     Texture bump =
         readTexture(context, reader, "bump", Texture(0.0f), {"length", "height that tilts the shading normal"});
     if (!bump.isConstant()) bsdf->bump = std::move(bump);
@@ -172,11 +193,7 @@ BsdfPtr readBsdf(LoadContext& context, const ObjectReader& reader) {
 BsdfPtr bsdfByName(LoadContext& context, const ObjectReader& owner, const std::string& field, const std::string& name) {
     const auto found = context.bsdfs.find(name);
     if (found != context.bsdfs.end()) return found->second;
-    std::vector<std::string> names;
-    for (const auto& [known, bsdf] : context.bsdfs) names.push_back(known);
-    const std::string near = nearestName(name, names);
-    owner.problem(field, "there is no BSDF called '" + name + "' above it" +
-                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    owner.problem(field, "there is no BSDF called '" + name + "' above it" + didYouMean(name, context.bsdfs, owner));
     return defaultBsdf();
 }
 
@@ -221,7 +238,10 @@ std::vector<BsdfPtr> readBsdfList(LoadContext& context, const ObjectReader& owne
         else
             owner.problem(item, "expected the name of a BSDF or an object");
     }
-    if (list.empty()) list.push_back(defaultBsdf());
+    if (list.empty()) {
+        owner.problem(field, "expected at least one BSDF, found an empty array");
+        list.push_back(defaultBsdf());
+    }
     return list;
 }
 

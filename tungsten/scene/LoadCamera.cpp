@@ -5,6 +5,7 @@ namespace tungsten {
 namespace {
 
 constexpr double LargestSide = 65536;
+const Range LensRange{1e-9, 1e9};
 
 FieldOfView fieldOfView(const ObjectReader& reader) {
     return {float(reader.number("fov", 60.0, {"degrees", "horizontal field of view"}, {1e-3, 179.0}))};
@@ -12,10 +13,10 @@ FieldOfView fieldOfView(const ObjectReader& reader) {
 
 ThinLens readThinLens(const ObjectReader& reader) {
     ThinLens lens{fieldOfView(reader)};
-    lens.focusDistance = float(
-        reader.number("focus_distance", 1.0, {"length", "of the sharp plane, along the axis"}, Range::positive()));
+    lens.focusDistance =
+        float(reader.number("focus_distance", 1.0, {"length", "of the sharp plane, along the axis"}, LensRange));
     lens.apertureRadius =
-        float(reader.number("aperture_size", 0.001, {"length", "radius of the lens"}, Range::nonNegative()));
+        float(reader.number("aperture_size", 0.001, {"length", "radius of the lens"}, {0.0, LensRange.high}));
     if (reader.number("cateye", 0.0, {"none", "not simulated: the whole lens is open towards every pixel"},
                       Range::nonNegative()) > 0.0)
         reader.warn("cateye", "not simulated: the whole lens is open towards every pixel");
@@ -50,7 +51,7 @@ void readModel(const ObjectReader& root, const ObjectReader& reader, Camera& cam
         camera.model = lens;
     } else if (type == "orthographic") {
         camera.model = Orthographic{
-            float(reader.number("orthographic_size", 1.0, {"length", "half the image's height"}, Range::positive()))};
+            float(reader.number("orthographic_size", 1.0, {"length", "half the image's height"}, LensRange))};
         reader.accept({"fov"});
     } else {
         camera.model = Pinhole{fieldOfView(reader)};
@@ -82,6 +83,8 @@ void readCamera(LoadContext& context, const ObjectReader& root, const ObjectRead
     camera.resolution = reader.pair("resolution", {1000, 563}, {"pixels", "width and height"}, {1, LargestSide});
     const Transform placement =
         reader.transform("transform", {"none", "where it stands; it looks along +z with y up", "position [0, 0, 2]"});
+    if (!(std::abs(placement.determinant()) >= LeastPositive))
+        reader.problem("transform", "the camera has no extent in some direction: an axis is zero, or two are parallel");
     camera.toWorld = cameraTransform(reader.has("transform") ? placement : defaultCameraTransform());
     camera.filter = ReconstructionFilter(*filterByName(
         reader.choice("reconstruction_filter", "tent", filterNames(), {"none", "how samples weigh in their pixel"})));

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,21 +16,37 @@ namespace tungsten {
 struct LoadContext {
     Scene& scene;
     std::filesystem::path resourceDirectory;
-    std::map<std::string, BsdfPtr> bsdfs;                         ///< by name; the first definition wins
-    std::map<std::string, int> media;                             ///< by name
-    std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps; ///< by file and lookup settings
-    std::vector<std::filesystem::path> resources;                 ///< every file read, for the hash
-    std::vector<ObjectReader> emitters;                           ///< the objects of the scene's emitters
+    bool allowOutside = false;                                         ///< resources may lie outside that directory
+    std::map<std::string, BsdfPtr> bsdfs = {};                         ///< by name; the first definition wins
+    std::map<std::string, int> media = {};                             ///< by name
+    std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps = {}; ///< by file and lookup settings
+    std::vector<std::filesystem::path> resources = {};                 ///< every file read, for the hash
+    std::vector<ObjectReader> emitters = {};                           ///< the objects of the scene's emitters
 
-    /// Resolves against the scene's (or the input) directory and remembers the file.
+    /// Resolves against the scene's (or the input) directory and remembers the file. Throws InputError if it lies
+    /// outside and must not.
     std::filesystem::path resource(const std::string& name);
+    /// Where files that resources name must lie; none: anywhere.
+    [[nodiscard]] std::optional<std::filesystem::path> allowedFolder() const {
+        return allowOutside ? std::nullopt : std::optional(resourceDirectory);
+    }
 };
 
 /// A context to describe types in: nothing is read from files, nothing is kept.
 struct ScratchContext {
     Scene scene;
-    LoadContext context{scene, {}, {}, {}, {}, {}, {}};
+    LoadContext context{scene, {}};
 };
+
+/// "; did you mean 'x'?", or nothing: of the names in a map, while the problem will be listed at all.
+template <typename Value>
+std::string didYouMean(const std::string& name, const std::map<std::string, Value>& known, const ObjectReader& owner) {
+    if (!owner.diagnostics()->listsMore()) return {};
+    std::vector<std::string> names;
+    for (const auto& [candidate, value] : known) names.push_back(candidate);
+    const std::string near = nearestName(name, names);
+    return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
 
 inline constexpr Meaning NameMeaning{"none", "what the rest of the scene, and --set, call it"};
 inline constexpr Meaning PlacementMeaning{"none", "from its own coordinates to the world's", "identity"};

@@ -32,7 +32,7 @@ void addEmitter(LoadContext& context, const ObjectReader& reader, EmitterModel m
     emitter.model = std::move(model);
     emitter.emissionTime = readEmissionTime(reader);
     emitter.medium = readMediumReference(context, reader, "ext_medium", SurroundingsMeaning);
-    emitter.vacuumSpeed = float(reader.number("ext_speed_of_light", -1.0, SurroundingSpeedMeaning));
+    emitter.vacuumSpeed = float(readSpeedOrNone(reader, "ext_speed_of_light", SurroundingSpeedMeaning));
     if (reader.describes()) return;
     context.scene.emitters.push_back(std::move(emitter));
     context.emitters.push_back(reader);
@@ -96,7 +96,7 @@ void readDirectionalPoint(LoadContext& context, const ObjectReader& reader, cons
 
 void readCollimated(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
     const float radius = float(reader.number(
-        "radius", 0.0, {"length", "of the parallel light along +z; 0: a single ray"}, Range::nonNegative()));
+        "radius", 0.0, {"length", "of the parallel light along +z; 0: a single ray"}, {0.0, Range::coordinate().high}));
     const Strength strength =
         readStrength(context, reader, {"power/length^2", "irradiance of the light; of a single ray its power"},
                      {"power", "instead of `emission`, which is it divided by 4 pi", "none"});
@@ -133,6 +133,15 @@ const std::map<std::string, EmitterReader>& emitterReaders() {
 
 } // namespace
 
+double readSpeedOrNone(const ObjectReader& reader, const std::string& field, const Meaning& meaning) {
+    const double speed = reader.number(field, -1.0, meaning, {-1.0, Range::measure().high});
+    const double least = Range::positiveMeasure().low;
+    if (speed > 0.0 && speed < least)
+        reader.problem(field,
+                       "expected a speed of at least " + brief(least) + ", or none (0 or less), found " + brief(speed));
+    return speed;
+}
+
 std::vector<std::string> emitterTypes() {
     std::vector<std::string> types;
     for (const auto& [type, reader] : emitterReaders()) types.push_back(type);
@@ -161,7 +170,7 @@ std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader
 }
 
 double readEmissionTime(const ObjectReader& reader) {
-    return reader.number("emission_time", 0.0, {"time", "when its pulse starts"});
+    return reader.number("emission_time", 0.0, {"time", "when its pulse starts"}, Range::measure());
 }
 
 void warnAboutMediaOfEmitters(const LoadContext& context) {

@@ -20,4 +20,7 @@ void finishEmitters(LoadContext& context, const ObjectReader& root);
 /// Warns about lights in a medium that they do not name; once the geometry is there.
 void warnAboutMediaOfEmitters(const LoadContext& context);
 
+/// A speed of light; 0 or less: the vacuum's.
+double readSpeedOrNone(const ObjectReader& reader, const std::string& field, const Meaning& meaning);
+
 } // namespace tungsten

@@ -49,8 +49,8 @@ Medium readMedium(const ObjectReader& reader) {
     coefficients.sigmaS =
         reader.rgb("sigma_s", Rgb(0.0f), {"1/length", "scattering coefficient"}, Range::nonNegative()) * density;
     medium.model = coefficients;
-    medium.speedOfLight = float(
-        reader.number("speed_of_light", 1.0, {"length/time", "speed at which light travels in it"}, Range::positive()));
+    medium.speedOfLight = float(reader.number(
+        "speed_of_light", 1.0, {"length/time", "speed at which light travels in it"}, Range::positiveMeasure()));
     medium.maxBounces =
         int(reader.integer("max_bounces", 1024, {"none", "scatterings after a surface at which paths end"}, {0, 2e9}));
     medium.guided = type == "guided_homo";
@@ -74,6 +74,18 @@ int addMedium(LoadContext& context, const ObjectReader& reader) {
     const std::string& name = context.scene.media.back().name;
     if (!name.empty()) context.media.emplace(name, index);
     return index;
+}
+
+std::string unknownMedium(const LoadContext& context, const ObjectReader& owner, const std::string& name) {
+    constexpr size_t MostNamed = 12;
+    std::vector<std::string> names;
+    for (const auto& [known, index] : context.media) {
+        if (names.size() == MostNamed) break;
+        names.push_back(known);
+    }
+    return "there is no medium called '" + name + "'" +
+           (names.empty() ? "; the scene defines none" : "; known: " + listOf(names)) +
+           (context.media.size() > names.size() ? " and others" : "") + didYouMean(name, context.media, owner);
 }
 
 } // namespace
@@ -108,13 +120,7 @@ int readMediumReference(LoadContext& context, const ObjectReader& owner, const s
     const std::string name = owner.text(field, "", meaning);
     const auto found = context.media.find(name);
     if (found != context.media.end()) return found->second;
-    std::vector<std::string> names;
-    for (const auto& [known, index] : context.media) names.push_back(known);
-    const std::string near = nearestName(name, names);
-    if (owner.isText(field))
-        owner.problem(field, "there is no medium called '" + name + "'" +
-                                 (names.empty() ? "; the scene defines none" : "; known: " + listOf(names)) +
-                                 (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    if (owner.isText(field)) owner.problem(field, unknownMedium(context, owner, name));
     return -1;
 }
 

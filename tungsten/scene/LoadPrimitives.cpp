@@ -24,7 +24,7 @@ Shape readMesh(LoadContext& context, const ObjectReader& reader, const Transform
         return mesh;
     }
     try {
-        mesh = loadMesh(context.resource(file));
+        mesh = loadMesh(context.resource(file), context.allowedFolder());
     } catch (const InputError& error) {
         reader.problem("file", error.what());
         return TriangleMesh{};
@@ -73,16 +73,34 @@ Region regionOn(const LoadContext& context, int medium, double speed) {
 void readRegions(LoadContext& context, const ObjectReader& reader, Primitive& primitive) {
     const int inside = readMediumReference(context, reader, "int_medium", {"none", "behind its normal"});
     const int outside = readMediumReference(context, reader, "ext_medium", {"none", "before its normal"});
-    const double insideSpeed = reader.number(
-        "int_speed_of_light", -1.0,
+    const double insideSpeed = readSpeedOrNone(
+        reader, "int_speed_of_light",
         {"length/time", "speed of light behind its normal, where there is no medium", "vaccum_speed_of_light"});
-    const double outsideSpeed = reader.number(
-        "ext_speed_of_light", -1.0,
+    const double outsideSpeed = readSpeedOrNone(
+        reader, "ext_speed_of_light",
         {"length/time", "speed of light before its normal, where there is no medium", "vaccum_speed_of_light"});
     primitive.boundsMedium = reader.has("int_medium") || reader.has("ext_medium");
     primitive.boundsRegion = primitive.boundsMedium || insideSpeed > 0.0 || outsideSpeed > 0.0;
     primitive.inside = regionOn(context, inside, insideSpeed);
     primitive.outside = regionOn(context, outside, outsideSpeed);
+}
+
+/// Areas of what lies further out are no numbers, and Embree leaves it out without a word.
+constexpr float LargestCoordinate = 2e9f;
+
+bool isNear(const Vec3f& p) {
+    return std::abs(p.x) <= LargestCoordinate && std::abs(p.y) <= LargestCoordinate &&
+           std::abs(p.z) <= LargestCoordinate;
+}
+
+bool isPlaced(const Shape& shape) {
+    return std::visit(Overloaded{[](const TriangleMesh& mesh) {
+                                     return std::all_of(mesh.positions.begin(), mesh.positions.end(), isNear);
+                                 },
+                                 [](const OneOf<Sphere, Disk> auto& round) {
+                                     return isNear(round.centre) && round.radius <= LargestCoordinate;
+                                 }},
+                      shape);
 }
 
 bool isUsable(const Shape& shape) {
@@ -96,6 +114,8 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     Primitive primitive;
     primitive.name = reader.text("name", "", NameMeaning);
     primitive.shape = readShape(context, reader, transform);
+    if (!isPlaced(primitive.shape))
+        reader.problem("transform", "the surface reaches beyond coordinates of " + brief(double(LargestCoordinate)));
     primitive.bsdfs =
         readBsdfList(context, reader, "bsdf",
                      {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});

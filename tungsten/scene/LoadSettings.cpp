@@ -51,12 +51,13 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
                                         "width of the gate, or of each frame; for photons at a delta gate of their "
                                         "temporal kernel in the first pass",
                                         transient ? nullptr : "none"},
-                                       Range::nonNegative());
+                                       {0.0, Range::measure().high});
     const double centre =
         reader.number("transient_time_center", transient ? 0.0 : -1.0,
                       {"time", transient ? "centre of the gate" : "centre of the gate; below 0: steady state",
-                       transient ? nullptr : "none"});
-    const double start = reader.number("start_time", 0.0, {"time", "when the first frame starts"});
+                       transient ? nullptr : "none"},
+                      Range::measure());
+    const double start = reader.number("start_time", 0.0, {"time", "when the first frame starts"}, Range::measure());
     const int frames =
         int(reader.integer("frame_num", 0, {"none", "frames of a sequence; 0: one gate"}, {0, MostFrames}));
     const bool delta = reader.flag("delta_time_gate", false, {"none", "the gate is a single moment, its centre"});
@@ -111,19 +112,19 @@ TemporalResponse readResponse(const ObjectReader& reader) {
     const std::string type =
         block->choice("type", "tabulated", {"box", "gaussian", "tabulated"}, {"none", "shape of the response"});
     if (type == "tabulated" || block->describes()) {
-        response.times =
-            block->numbers("times", {"time", "tabulated: increasing; the response is linear between them"});
+        response.times = block->numbers("times", {"time", "tabulated: increasing; the response is linear between them"},
+                                        Range::measure());
         response.values = block->numbers("values", {"none", "tabulated: the response at each of the times"});
     }
     if (type == "gaussian" || block->describes()) {
-        const double centre = block->number("center", 0.0, {"time", "gaussian: where it is largest"});
-        const double sigma =
-            block->number("sigma", 1.0, {"time", "gaussian: standard deviation, cut at four"}, Range::positive());
+        const double centre = block->number("center", 0.0, {"time", "gaussian: where it is largest"}, Range::measure());
+        const double sigma = block->number("sigma", 1.0, {"time", "gaussian: standard deviation, cut at four"},
+                                           Range::positiveMeasure());
         response = gaussianResponse(centre, sigma);
     }
     if (type == "box" || block->describes()) {
-        response.times = {block->number("start", 0.0, {"time", "box: when it opens"}),
-                          block->number("end", 1.0, {"time", "box: when it closes"})};
+        response.times = {block->number("start", 0.0, {"time", "box: when it opens"}, Range::measure()),
+                          block->number("end", 1.0, {"time", "box: when it closes"}, Range::measure())};
         response.values = {1.0, 1.0};
     }
     const std::string problem = responseProblem(response);
@@ -168,8 +169,8 @@ TransportSettings readTransport(const ObjectReader& reader, const std::string& t
         reader.choice("time_normalization", "average", {"average", "integral"},
                       {"none", "a pixel is the mean of radiance over its frame, or its integral"}) == "integral";
     if (!isSteadyPhotonMap(type)) useResponse(reader, transport);
-    transport.vacuumSpeed = float(reader.number("vaccum_speed_of_light", 1.0,
-                                                {"length/time", "speed of light outside media"}, Range::positive()));
+    transport.vacuumSpeed = float(reader.number(
+        "vaccum_speed_of_light", 1.0, {"length/time", "speed of light outside media"}, Range::positiveMeasure()));
     return transport;
 }
 

@@ -1,5 +1,8 @@
 #include "tungsten/scene/LoadContext.h"
 
+#include "tungsten/core/InsideFolder.h"
+
+#include <algorithm>
 #include <bit>
 
 namespace tungsten {
@@ -22,13 +25,31 @@ std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::stri
     return entry;
 }
 
+/// The least and the largest value of a bitmap, its scale included.
+std::pair<double, double> extremes(const Bitmap& bitmap) {
+    double low = 0.0, high = 1.0; // of 8-bit images
+    if (!bitmap.hdr.empty()) {
+        const auto [least, largest] = std::minmax_element(bitmap.hdr.begin(), bitmap.hdr.end());
+        low = double(*least);
+        high = double(*largest);
+    }
+    const double a = low * double(bitmap.appliedScale()), b = high * double(bitmap.appliedScale());
+    return {std::min(a, b), std::max(a, b)};
+}
+
 Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const std::string& field,
-                       const std::string& file, bool gammaCorrect, bool interpolate, bool clamp, float scale) {
+                       const std::string& file, bool gammaCorrect, bool interpolate, bool clamp, float scale,
+                       Range range) {
     try {
         const auto bitmap = cachedBitmap(context, file, gammaCorrect, interpolate, clamp, scale);
         if (bitmap->placeholder)
             owner.warn(field,
                        "'" + file + "' is a git-lfs placeholder: the picture was not fetched, a checker stands for it");
+        const auto [low, high] = extremes(*bitmap);
+        if (low < range.low || high > range.high)
+            owner.problem(field, "expected " + describe(range) + " everywhere, found values from " + brief(low) +
+                                     " to " + brief(high) + " in '" + file + "'" +
+                                     (scale != 1.0f ? ", scale included" : ""));
         return Texture(bitmap);
     } catch (const InputError& error) {
         owner.problem(field, error.what());
@@ -61,7 +82,7 @@ Texture readTextureObject(LoadContext& context, const ObjectReader& texture, con
         if (file.empty())
             texture.problem("file", "a bitmap needs the name of an image file");
         else
-            result = readBitmapFile(context, texture, "file", file, gammaCorrect, interpolate, clamp, scale);
+            result = readBitmapFile(context, texture, "file", file, gammaCorrect, interpolate, clamp, scale, range);
     } else if (!texture.has("type")) {
         texture.problem("type", "a texture object needs a type: " + listOf(types));
     }
@@ -83,6 +104,9 @@ std::vector<std::string> textureTypes() {
 
 std::filesystem::path LoadContext::resource(const std::string& name) {
     const std::filesystem::path path = resourceDirectory / std::filesystem::path(name);
+    if (!allowOutside && !isInside(path, resourceDirectory))
+        throw InputError(path.string(), "lies outside the scene's folder (-i chooses another); if you trust the scene, "
+                                        "--allow-outside lets it read any file");
     resources.push_back(path);
     return path;
 }
@@ -94,7 +118,7 @@ Texture readTexture(LoadContext& context, const ObjectReader& owner, const std::
                       meaning);
     if (!owner.has(field)) return fallback;
     if (owner.isText(field))
-        return readBitmapFile(context, owner, field, owner.text(field, "", meaning), true, true, false, 1.0f);
+        return readBitmapFile(context, owner, field, owner.text(field, "", meaning), true, true, false, 1.0f, range);
     if (owner.isObject(field)) return readTextureObject(context, *owner.object(field, meaning), fallback, range);
     return Texture(owner.rgb(field, Rgb(0.0f), meaning, range));
 }

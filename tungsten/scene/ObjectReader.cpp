@@ -9,16 +9,21 @@ namespace tungsten {
 
 namespace {
 
+std::string numberText(double number) {
+    constexpr double LargestWritten = 1e15, SmallestWritten = 1e-4; // beyond, with an exponent
+    const double size = std::abs(number);
+    if (!(size < LargestWritten) || (size > 0.0 && size < SmallestWritten)) return "the number " + brief(number);
+    const std::string text = std::to_string(number);
+    return "the number " + (number == std::floor(number) ? text.substr(0, text.find('.')) : text);
+}
+
 std::string found(const rapidjson::Value& value) {
     if (value.IsNull()) return "null";
     if (value.IsBool()) return value.GetBool() ? "true" : "false";
     if (value.IsString()) return "the string \"" + std::string(value.GetString()).substr(0, 60) + "\"";
     if (value.IsArray()) return "an array of " + std::to_string(value.Size());
     if (value.IsObject()) return "an object";
-    const double number = value.GetDouble();
-    const std::string text = std::to_string(number);
-    return "the number " +
-           (number == std::floor(number) && std::abs(number) < 1e15 ? text.substr(0, text.find('.')) : text);
+    return numberText(value.GetDouble());
 }
 
 bool inside(const Range& range, double number) {
@@ -61,11 +66,17 @@ std::string ObjectReader::pathOf(const std::string& field) const {
 }
 
 void ObjectReader::problem(const std::string& field, const std::string& message) const {
-    diagnostics_->problems.push_back({diagnostics_->file, field.empty() ? path_ : pathOf(field), message});
+    if (diagnostics_->listsMore())
+        diagnostics_->problems.push_back({diagnostics_->file, field.empty() ? path_ : pathOf(field), message});
+    else
+        ++diagnostics_->moreProblems;
 }
 
 void ObjectReader::warn(const std::string& field, const std::string& message) const {
-    diagnostics_->warnings.push_back({diagnostics_->file, field.empty() ? path_ : pathOf(field), message});
+    if (diagnostics_->warnings.size() < Diagnostics::MostListed)
+        diagnostics_->warnings.push_back({diagnostics_->file, field.empty() ? path_ : pathOf(field), message});
+    else
+        ++diagnostics_->moreWarnings;
 }
 
 void ObjectReader::accept(const std::vector<std::string>& names) const {
@@ -84,7 +95,8 @@ void ObjectReader::warnAboutUnknown() const {
             continue;
         }
         if (!known_->insert(name).second) continue;
-        const std::string near = nearestName(name, names);
+        const std::string near =
+            diagnostics_->warnings.size() < Diagnostics::MostListed ? nearestName(name, names) : "";
         warn(name, "unknown field, ignored" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
     }
 }
@@ -160,24 +172,25 @@ std::string ObjectReader::choice(const std::string& name, const std::string& fal
     return fallback;
 }
 
-std::vector<double> ObjectReader::numbers(const std::string& name, const Meaning& meaning) const {
+std::vector<double> ObjectReader::numbers(const std::string& name, const Meaning& meaning, Range range) const {
     if (describes()) declare(name, "an array of numbers", "none", meaning);
-    return readNumbers(name);
+    return readNumbers(name, range);
 }
 
-std::vector<double> ObjectReader::readNumbers(const std::string& name) const {
-    std::vector<double> values;
+std::vector<double> ObjectReader::readNumbers(const std::string& name, Range range) const {
     const Node* node = find(name);
-    if (!node) return values;
-    if (valueOf(node).IsNumber()) return {valueOf(node).GetDouble()};
-    if (valueOf(node).IsArray())
-        for (const auto& entry : valueOf(node).GetArray())
-            if (entry.IsNumber()) values.push_back(entry.GetDouble());
-    if (!valueOf(node).IsArray() || values.size() != valueOf(node).Size()) {
+    if (!node) return {};
+    const rapidjson::SizeType count = valueOf(node).IsArray() ? valueOf(node).Size() : 1;
+    const std::vector<double> values = oneOrSeveral(valueOf(node), count);
+    if (values.size() != count) {
         problem(name, "expected an array of numbers, found " + found(valueOf(node)));
-        values.clear();
+        return {};
     }
-    return values;
+    const auto bad = std::find_if_not(values.begin(), values.end(), [&](double v) { return inside(range, v); });
+    if (bad == values.end()) return values;
+    problem(name + "[" + std::to_string(bad - values.begin()) + "]",
+            "expected " + describe(range) + ", found " + numberText(*bad));
+    return {};
 }
 
 Vec3f ObjectReader::vec3(const std::string& name, const Vec3f& fallback, const Meaning& meaning, Range range) const {
@@ -191,9 +204,8 @@ Vec3f ObjectReader::readVec3(const std::string& name, const Vec3f& fallback, Ran
     const Node* node = find(name);
     if (!node) return fallback;
     const std::vector<double> values = oneOrSeveral(valueOf(node), 3);
-    const bool valid = values.size() == 3 && std::all_of(values.begin(), values.end(), [&](double v) {
-                           return inside(range, v) && std::abs(v) <= double(std::numeric_limits<float>::max());
-                       });
+    const bool valid =
+        values.size() == 3 && std::all_of(values.begin(), values.end(), [&](double v) { return inside(range, v); });
     if (valid) return {float(values[0]), float(values[1]), float(values[2])};
     problem(name, "expected one number or an array of 3, each " + describe(range) + "; found " + found(valueOf(node)));
     return fallback;

@@ -15,11 +15,17 @@
 
 namespace tungsten {
 
-/// Problems and warnings found while reading one scene.
+/// Problems and warnings found while reading one scene. Lists end after MostListed, with the number of those left out.
 struct Diagnostics {
+    static constexpr size_t MostListed = 100;
+
     std::string file;
     std::vector<Problem> problems;
     std::vector<Problem> warnings;
+    size_t moreProblems = 0, moreWarnings = 0; ///< left out
+
+    /// Whether another problem would be listed: what it costs to explain is otherwise spent in vain.
+    [[nodiscard]] bool listsMore() const { return problems.size() < MostListed; }
 };
 
 /// A view of a JSON object at a known path. Reading a field marks it as known; warnAboutUnknown() then names the others
@@ -61,7 +67,7 @@ class ObjectReader {
     /// Two integers, or one for both.
     [[nodiscard]] Vec2i pair(const std::string& name, const Vec2i& fallback, const Meaning& meaning,
                              Range range = {}) const;
-    [[nodiscard]] std::vector<double> numbers(const std::string& name, const Meaning& meaning) const;
+    [[nodiscard]] std::vector<double> numbers(const std::string& name, const Meaning& meaning, Range range = {}) const;
     /// Array form (16 numbers, row-major) or object form (position, look_at, up, axes, scale, rotation).
     [[nodiscard]] Transform transform(const std::string& name, const Meaning& meaning) const;
     /// Seconds from a duration string such as "1h 30m"; no unit means minutes; 0 or less means none.
@@ -98,7 +104,7 @@ class ObjectReader {
   private:
     [[nodiscard]] const Node* find(const std::string& name) const;
     [[nodiscard]] double readNumber(const std::string& name, double fallback, Range range) const;
-    [[nodiscard]] std::vector<double> readNumbers(const std::string& name) const;
+    [[nodiscard]] std::vector<double> readNumbers(const std::string& name, Range range) const;
     [[nodiscard]] Vec3f readVec3(const std::string& name, const Vec3f& fallback, Range range) const;
     [[nodiscard]] std::optional<ObjectReader> readObject(const std::string& name) const;
     [[nodiscard]] std::vector<ObjectReader> readObjects(const std::string& name) const;

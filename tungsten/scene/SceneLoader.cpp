@@ -1,5 +1,6 @@
 #include "tungsten/scene/SceneLoader.h"
 
+#include "tungsten/core/Hash.h"
 #include "tungsten/scene/Json.h"
 #include "tungsten/scene/LoadContext.h"
 #include "tungsten/scene/LoadEmitters.h"
@@ -10,19 +11,6 @@
 namespace tungsten {
 
 namespace {
-
-/// FNV-1a, 64 bits.
-class Hash {
-  public:
-    void add(const std::string& text) {
-        for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
-        value_ *= 0x100000001B3ull;
-    }
-    [[nodiscard]] uint64_t value() const { return value_; }
-
-  private:
-    uint64_t value_ = 0xCBF29CE484222325ull;
-};
 
 uint64_t hashScene(const rapidjson::Document& document, const std::vector<std::filesystem::path>& resources) {
     Hash hash;
@@ -58,6 +46,22 @@ void finishGeometry(Scene& scene) {
     for (Emitter& emitter : scene.emitters) encloseScene(emitter, (low + high) * 0.5f, radius);
 }
 
+/// Lengths that light goes until the gate's end must be floats whose squares are floats.
+void checkReach(const Scene& scene, const ObjectReader& root) {
+    if (scene.transport.gate.steadyState) return;
+    double speed = double(scene.transport.vacuumSpeed), delay = 0.0;
+    for (const Medium& medium : scene.media) speed = std::max(speed, double(medium.speedOfLight));
+    for (const Primitive& primitive : scene.primitives)
+        speed = std::max({speed, double(primitive.inside.speed), double(primitive.outside.speed)});
+    for (const Emitter& emitter : scene.emitters) delay = std::max(delay, std::abs(emitter.emissionTime));
+    const double reach =
+        speed * (std::max(std::abs(scene.transport.gate.start), std::abs(scene.transport.gate.end())) + delay);
+    if (reach > Range::measure().high)
+        root.problem("integrator", "light would go " + brief(reach) +
+                                       " lengths until the gate ends, which is too far: " + "at most " +
+                                       brief(Range::measure().high) + "; check times and speeds of light");
+}
+
 /// What loading leaves beside the scene itself.
 struct Blocks {
     RendererSettings renderer;
@@ -83,7 +87,11 @@ Blocks readScene(LoadContext& context, const ObjectReader& root) {
 } // namespace
 
 void throwIfProblems(const Diagnostics& diagnostics) {
-    if (!diagnostics.problems.empty()) throw InputError(diagnostics.problems);
+    if (diagnostics.problems.empty()) return;
+    std::vector<Problem> problems = diagnostics.problems;
+    if (diagnostics.moreProblems > 0)
+        problems.push_back({diagnostics.file, "", "and " + std::to_string(diagnostics.moreProblems) + " more"});
+    throw InputError(std::move(problems));
 }
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
@@ -95,24 +103,39 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     const ObjectReader root(document, nodeOf(*document), "", diagnostics);
     auto scene = std::make_shared<Scene>();
     scene->file = file;
-    LoadContext context{
-        *scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, {}, {}, {}, {}, {}};
+    LoadContext context{*scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory,
+                        options.allowOutside};
     const Blocks blocks = readScene(context, root);
+    checkReach(*scene, root);
     throwIfProblems(*diagnostics);
 
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
+    std::vector<std::filesystem::path> inputs = context.resources;
+    inputs.insert(inputs.begin(), file);
     return {scene,
             blocks.renderer,
             blocks.integratorType,
             blocks.integrator,
             diagnostics,
+            std::move(inputs),
             hashScene(*document, context.resources)};
+}
+
+RendererSettings peekRenderer(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    try {
+        const std::shared_ptr<rapidjson::Document> document = parseJsonFile(file);
+        for (const std::string& assignment : overrides) applyOverride(*document, assignment);
+        const ObjectReader root(document, nodeOf(*document), "", std::make_shared<Diagnostics>());
+        return readRenderer(blockOf(root, "renderer", {"none", "how long, and what is written"}));
+    } catch (const std::runtime_error&) {
+        return {}; // told about when the scene is loaded
+    }
 }
 
 std::shared_ptr<const Scene> emptyScene() {
     auto scene = std::make_shared<Scene>();
-    LoadContext context{*scene, {}, {}, {}, {}, {}, {}};
+    LoadContext context{*scene, {}};
     readScene(context, ObjectReader::empty("", std::make_shared<Diagnostics>()));
     finishGeometry(*scene);
     return scene;

@@ -35,6 +35,7 @@ struct RendererSettings {
 struct LoadOptions {
     std::filesystem::path inputDirectory; ///< base of resources; empty: the scene's directory
     std::vector<std::string> overrides;   ///< "path.to.field=value", applied to the JSON in order
+    bool allowOutside = false;            ///< resources may lie outside that directory
 };
 
 struct LoadedScene {
@@ -43,9 +44,13 @@ struct LoadedScene {
     std::string integratorType;
     ObjectReader integratorSettings; ///< the integrator block, for its plugin; warns about fields nobody reads
     std::shared_ptr<Diagnostics> diagnostics;
+    std::vector<std::filesystem::path> inputs; ///< every file that was read, the scene first
     uint64_t hash =
         0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
 };
+
+/// The renderer block alone, with overrides; defaults where the file or the block cannot be read.
+RendererSettings peekRenderer(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
 /// Reads and checks a scene file. Throws InputError listing every problem found, UsageError for an override that names
 /// nothing.

@@ -37,14 +37,15 @@ void GuidedPathWalk::lookAhead(const Vec3f& position) {
     const darts::TimeGate open{gate.start - target.start, gate.end() - target.start};
     const auto range = darts::ResidualRange::of(open, path_.state.time, double(speed));
     const float faster = context_.bound.oneSpeed() ? 0.0f : context_.bound.highestSpeed() / speed - 1.0f;
-    path_.step.lookAhead(darts::Residual::of(darts::vec3(target.point.position - position), range),
+    path_.step.lookAhead(darts::Residual::of(darts::vec3(target.vertex.position() - position), range),
                          target.reach + faster * std::max(float(range.high), 0.0f));
 }
 
 void GuidedPathWalk::lookOut(const transport::Start& start) {
     if (path_.step.hasLookedOut() || !context_.waysOut) return;
     const PathTarget& target = *path_.target;
-    const transport::Aim aim{target.point.position, target.surrounding, target.point.margin(), nullptr, true};
+    const transport::Aim aim{target.vertex.position(), target.vertex.region().medium, target.vertex.margin(), nullptr,
+                             true};
     path_.step.lookOut(*context_.waysOut, start, path_.state.region, aim, path_.state.counters.rays);
 }
 
@@ -114,7 +115,7 @@ bool GuidedPathWalk::crossUntimed(const Medium& medium) {
     const float surface = hit ? hit->t : Infinity;
     ControlVertices::sampleUntimed(path_, medium, surface);
     // Only vertices in the medium must lie in the ball from which light is in time: mirrors farther away still count.
-    const Vec3f toTarget = path_.target->point.position - state.ray.origin;
+    const Vec3f toTarget = path_.target->vertex.position() - state.ray.origin;
     const ShellChord inTime(toTarget, state.ray.direction, 0.0, reach, double(surface));
     if (hit) {
         const Rgb reaching = medium.transmittance(surface);

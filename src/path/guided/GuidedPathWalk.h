@@ -53,13 +53,13 @@ class GuidedPathWalk {
     bool leaveInMedium(const Medium& medium, const Vec3f& before);
     bool scatterOnSurface(const SurfaceHit& hit);
     bool leavePlainly(const SurfaceInteraction& surface);
-    bool leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide);
+    bool leaveGuided(const transport::Vertex& here, const darts::Guide& guide);
     void passBoundary(const SurfaceInteraction& surface, const Vec3f& direction, bool straight);
-    /// To a vertex that the walk came to with this density, per area or volume; `normal` as in Arrival. What has been
+    /// To a vertex that the walk came to with this density, per area or volume; `normal` as in Approach. What has been
     /// connected to along the way is over.
     void arrive(float pdf, const Vec3f& normal);
-    /// By light vertices and reflected light, from the ray's origin: on `surface`, or in the medium if there is none.
-    void connectToLightPaths(const SurfaceInteraction* surface);
+    /// By light vertices and reflected light, from the vertex at the ray's origin.
+    void connectToLightPaths(const transport::Vertex& here);
 
     const GuidedContext& context_;
     const Scene& scene_;

@@ -59,18 +59,18 @@ void GuidedPathWalk::arrive(float pdf, const Vec3f& normal) {
     path_.last.caches = LastVertex::Caches::None;
 }
 
-void GuidedPathWalk::connectToLightPaths(const SurfaceInteraction* surface) {
+void GuidedPathWalk::connectToLightPaths(const transport::Vertex& here) {
     const Medium* medium = scene_.medium(path_.state.region);
     const LightPaths& lightPaths = context_.lightPaths;
     const LightVertexCache* vertices = lightPaths.vertices(path_.target->index);
     if (!vertices || !path_.mayFly(medium)) return;
     path_.last.caches = LastVertex::Caches::LightVertices;
-    LightVertexConnections::connect(path_, surface, *vertices);
+    LightVertexConnections::connect(path_, here, *vertices);
     // Wherever reflected light ends, a walk would connect to light vertices.
     const ReflectedLightCache* reflected = lightPaths.reflected(path_.target->index);
     if (!reflected || !medium || path_.state.flights + 1 >= medium->maxBounces) return;
     path_.last.caches = LastVertex::Caches::ReflectedLightToo;
-    ReflectedConnections::connect(path_, surface, *reflected);
+    ReflectedConnections::connect(path_, here, *reflected);
 }
 
 bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
@@ -103,7 +103,7 @@ bool GuidedPathWalk::leaveInMedium(const Medium& medium, const Vec3f& before) {
     CameraPath& state = path_.state;
     const darts::Guide& guide = path_.guideOf(state.region);
     path_.step.startWay();
-    connectToLightPaths(nullptr);
+    connectToLightPaths({medium, state.ray.origin, before, state.region});
     if (!path_.step.residual().alive() || guide.settings().direction == darts::Direction::Phase) {
         state.ray.direction = medium.phase.sample(before, state.sampler.next2D());
         path_.last.pdf = medium.phase.pdf(before, state.ray.direction);
@@ -129,13 +129,15 @@ bool GuidedPathWalk::scatterOnSurface(const SurfaceHit& hit) {
     // The format ends such a path at any surface, index-matched ones included.
     if (context_.settings.limits.endsAtSurface(state.mediumScatters)) return false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, state.ray.direction);
-    const darts::Guide* guide = path_.guideFor(surface, -state.ray.direction);
-    arrive(guide ? ConnectionsFromSurfaces::density(path_, hit) : 0.0f,
+    const transport::Vertex vertex = path_.vertexOn(surface);
+    const darts::Guide* guide = path_.guideFor(vertex, -state.ray.direction);
+    arrive(guide ? ConnectionsFromSurfaces::density(path_, vertex, hit.t) : 0.0f,
            state.ray.direction.dot(hit.ng) < 0.0f ? hit.ng : -hit.ng);
-    return guide ? leaveGuided(surface, *guide) : leavePlainly(surface);
+    return guide ? leaveGuided(vertex, *guide) : leavePlainly(surface);
 }
 
-bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts::Guide& guide) {
+bool GuidedPathWalk::leaveGuided(const transport::Vertex& here, const darts::Guide& guide) {
+    const SurfaceInteraction& surface = *here.surface();
     CameraPath& state = path_.state;
     state.scattered = true;
     state.region = regionBeyond(surface, -state.ray.direction, state.region);
@@ -147,14 +149,13 @@ bool GuidedPathWalk::leaveGuided(const SurfaceInteraction& surface, const darts:
         lookOut({surface.hit.position, surface.hit.margin()});
         if (!survives(guide)) return false;
     }
-    connectToLightPaths(&surface);
+    connectToLightPaths(here);
     if (!path_.step.residual().alive()) return leavePlainly(surface);
     path_.step.startWay();
     const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, state.sampler});
     state.ray = surface.hit.leave(darts::to<Vec3f>(sample.direction));
-    const Scattering scattering = path_.scatteringTowards(state.ray.direction, &surface);
-    state.throughput = state.throughput * scattering.value * sample.inversePdf;
-    path_.last.pdf = scattering.pdf;
+    state.throughput = state.throughput * here.scattering(state.ray.direction) * sample.inversePdf;
+    path_.last.pdf = here.pdf(state.ray.direction);
     return !isBlack(state.throughput);
 }
 

@@ -1,6 +1,7 @@
 #include "path/light/LightTracer.h"
 
 #include "path/PathSettings.h"
+#include "path/Tuning.h"
 
 #include "tungsten/scene/LightChoice.h"
 
@@ -9,9 +10,6 @@
 namespace tungsten::path {
 
 namespace {
-
-constexpr uint64_t PathsPerBatch = 1024;
-constexpr uint64_t BatchesPerWave = 64; ///< traced in parallel before they are added in order
 
 /// Of the first surface that mirrors or refracts; none if there is no such.
 const Primitive* firstSpecular(const Scene& scene) {
@@ -25,8 +23,12 @@ void readRest(const ObjectReader& block, const Scene& scene) {
     acceptPhotonSettings(block);
     block.accept(
         {"enable_light_sampling", "enable_volume_light_sampling", "enable_guiding", "enable_elliptical", "darts"});
-    const bool off = block.isText("darts") && block.text("darts", "", {"none", "guidance"}) == "off";
-    if (block.has("darts") && !off) block.warn("darts", "does not guide the light tracer: its paths are plain");
+    // Read for its mistakes; nothing of it is this integrator's.
+    if (!block.describes() && transport::readPolicy(block).guides())
+        block.warn(block.has("darts")            ? "darts"
+                   : block.has("enable_guiding") ? "enable_guiding"
+                                                 : "enable_elliptical",
+                   "does not guide the light tracer: its paths are plain");
     Diagnostics& diagnostics = *block.diagnostics();
     if (scene.transport.gate.delta)
         block.problem("delta_time_gate", "plain light paths meet a delta gate with probability zero; give the gate a "
@@ -94,11 +96,12 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
     const LightWalkContext context{*scene_,         limits_, sensor_, bounds_, emitters_, {*scene_, forwardBoundaries_},
                                    russianRoulette_};
     const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
-    for (uint64_t traced = 0; traced < paths; traced += PathsPerBatch * BatchesPerWave) {
-        const uint64_t wave = std::min(paths - traced, PathsPerBatch * BatchesPerWave);
-        std::vector<std::vector<Splat>> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
+    for (uint64_t traced = 0; traced < paths; traced += tuning::PathsPerBatch * tuning::BatchesPerWave) {
+        const uint64_t wave = std::min(paths - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
+        std::vector<std::vector<Splat>> batches((wave + tuning::PathsPerBatch - 1) / tuning::PathsPerBatch);
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
-            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
+            const uint64_t first = traced + b * tuning::PathsPerBatch,
+                           last = std::min(first + tuning::PathsPerBatch, traced + wave);
             LightWalkCounters counters;
             for (uint64_t path = first; path < last; ++path) {
                 // As many paths as pixels make a sample: but for rounding the image does not depend on

@@ -62,7 +62,7 @@ bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
         if (path_.timed()) {
             if (bound_.mayArrive(position, path_.time)) return false;
             return !source_ ||
-                   !bound_.beforeEnd(path_.time, (source_->point.position - position).length(), source_->start);
+                   !bound_.beforeEnd(path_.time, (source_->vertex.position() - position).length(), source_->start);
         }
     return false;
 }
@@ -180,12 +180,13 @@ void PathWalk<TimeResolved, Media>::connectToLight(const Vertex& vertex) {
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::connectToSource(const Vertex& vertex) {
     if (!orderCounts(source_->mediumScatters)) return;
-    const auto end = source_->seenFrom(vertex.position());
-    if (!end) return;
+    const auto way = transport::straightWay(vertex.position(), source_->vertex.position());
+    if (!way) return;
     ++path_.counters.connections;
     if constexpr (TimeResolved)
-        if (!bound_.mayConnect(path_.time, end->distance, source_->start)) return;
-    const auto connection = connector_.connect(vertex, path_.throughput, *end, path_.counters.shadowRays);
+        if (!bound_.mayConnect(path_.time, way->distance, source_->start)) return;
+    const auto connection =
+        connector_.connect(vertex, path_.throughput, source_->seenAlong(*way), path_.counters.shadowRays);
     if (!connection || !rendered(path_.interactions + connection->crossings + source_->interactions)) return;
     path_.sink.add(connection->throughput, path_.time + connection->time + source_->start);
 }

@@ -27,7 +27,7 @@ class ArrivalWindow {
     template <typename Point>
     void fill(size_t count, const Point& point);
     /// A candidate whose light, going on straight to `position`, arrives there after a length in [low, high), in
-    /// proportion to `importance(index, squared distance)`; none if all of these are 0.
+    /// proportion to `importance(index, unit direction from there, distance)`; none if all of these are 0.
     template <typename Importance>
     [[nodiscard]] std::optional<Choice> choose(const Vec3f& position, float low, float high, const Vec2f& u,
                                                const Importance& importance) const;
@@ -69,7 +69,9 @@ auto ArrivalWindow::choose(const Vec3f& position, float low, float high, const V
     float sum = 0.0f;
     for (uint32_t i = 0; i < Size; ++i) {
         if (inside[i] == 0) continue;
-        const float value = importance((first + i) % count_, squared[i]);
+        const float distance = std::sqrt(squared[i]);
+        const Vec3f offset(position.x - x[i], position.y - y[i], position.z - z[i]);
+        const float value = importance((first + i) % count_, offset / distance, distance);
         if (!(value > 0.0f)) continue;
         candidates[number] = i;
         importances[number++] = value;

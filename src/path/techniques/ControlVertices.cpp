@@ -14,16 +14,18 @@ void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& ver
     CameraPath& state = path.state;
     if (!path.context.forwardBoundaries && !path.counts(1, 1)) return;
     const Vec3f position = state.ray.at(vertex.distance);
-    const Straight way = path.straightFrom(position);
-    if (!(vertex.toTarget > 0.0f) || !(way.distance > 0.0f)) return;
+    const auto way = transport::straightWay(position, path.target->vertex.position());
+    if (!(vertex.toTarget > 0.0f) || !way) return;
     ++state.counters.controlVertices;
-    const Rgb light = path.target->intensity(-way.direction);
+    const Rgb light = path.target->intensity(-way->direction);
     if (isBlack(light)) return;
-    const float phase = medium.phase.eval(state.ray.direction, way.direction);
+    const float phase = medium.phase.eval(state.ray.direction, way->direction);
     const float chance =
         path.guideOf(state.region).chance(path.step.residual(), darts::vec3(state.ray.direction), vertex, phase);
     if (chance < 1.0f && !(path.next() < chance)) return;
-    const Visibility visibility = path.traceToTarget({position, way.direction}, way, state.region);
+    const float clear = path.target->vertex.margin().before(way->direction, way->distance);
+    const Visibility visibility = path.connector().visibility({position, way->direction, 0.0f, clear}, way->distance,
+                                                              state.region, state.counters.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
     const float share = ControlVertices::share(path, medium, vertex.distance);
     const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
@@ -52,9 +54,10 @@ void ControlVertices::sampleUntimed(GuidedPath& path, const Medium& medium, floa
     const PathTarget& target = *path.target;
     const double speed = double(state.region.speed), low = speed * (gate.start - target.start),
                  high = speed * (gate.end() - target.start);
-    const ShellChord chord(target.point.position - state.ray.origin, state.ray.direction, low, high, double(surface));
+    const ShellChord chord(target.vertex.position() - state.ray.origin, state.ray.direction, low, high,
+                           double(surface));
     const auto addAt = [&](double t, double inversePdf) {
-        const double toTarget = double((target.point.position - state.ray.at(float(t))).length());
+        const double toTarget = double((target.vertex.position() - state.ray.at(float(t))).length());
         add(path, medium, {float(t), float(toTarget), float(inversePdf)}, toTarget / speed + target.start);
     };
     if (gate.delta) {

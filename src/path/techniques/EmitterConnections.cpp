@@ -9,19 +9,20 @@ namespace tungsten::path {
 
 namespace {
 
-/// The part of a connection from the surface at the end of the ray that is not left to light vertices and reflected
-/// light.
-float shareOfWalk(const GuidedPath& path, const SurfaceInteraction& surface, const Straight& way) {
-    const Vec3f toVertex = -path.state.ray.direction;
-    if (path.last.caches == LastVertex::Caches::None || !mayBeLightVertex(surface, toVertex, way.direction))
+/// The part of a connection from the surface at the end of the ray, `length` long, that is not left to light vertices
+/// and reflected light.
+float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
+                  const transport::Straight& way) {
+    if (path.last.caches == LastVertex::Caches::None || !holdsLightVertices(vertex.lobes()) ||
+        !vertex.reflects(way.direction))
         return 1.0f;
-    const PathTarget& target = *path.target;
-    const float lightCosine = std::abs(way.direction.dot(surface.hit.ng));
-    const float areaPdf =
-        pdfEmissionDirection(*target.emitter, target.point, -way.direction) * lightCosine / sqr(way.distance);
-    return transport::balance(
-        ConnectionsFromSurfaces::density(path, surface.hit), LightVertexConnections::density(areaPdf),
-        ReflectedConnections::density(path, surface, toVertex, surface.hit.t, way.direction, areaPdf));
+    const Vec3f& direction = path.state.ray.direction;
+    const float areaPdf = vertex.areaDensity(path.target->vertex.pdf(-way.direction), way.direction, way.distance);
+    float reflected = 0.0f;
+    if (ReflectedConnections::mayFind(path, vertex))
+        reflected = ReflectedConnections::density(path, vertex.pdfReverse(way.direction), {direction, length}, areaPdf);
+    return transport::balance(ConnectionsFromSurfaces::density(path, vertex, length),
+                              LightVertexConnections::density(areaPdf), reflected);
 }
 
 } // namespace
@@ -30,48 +31,38 @@ void ConnectionsFromMedia::connect(GuidedPath& path, const Medium& medium, float
     CameraPath& state = path.state;
     if (path.step.residual().exit.sealed) return;
     if (controlShare == 1.0f && path.context.bound.oneSpeed()) return; // control vertices find it
-    const Straight way = path.straightFrom(state.ray.origin);
     ++state.counters.connections;
-    if (!path.mayConnect(state.time, way.distance)) return;
-    const Rgb light = path.target->intensity(-way.direction);
-    if (isBlack(light)) return;
-    const Visibility visibility = path.traceToTarget({state.ray.origin, way.direction}, way, state.region);
-    if (isBlack(visibility.transmittance) || !path.counts(visibility.crossings, 0)) return;
-    const float share = visibility.oneSpeed ? 1.0f - controlShare : 1.0f;
-    if (!(share > 0.0f)) return;
-    const float phase = medium.phase.eval(state.ray.direction, way.direction);
-    state.sink.add(state.throughput * light * visibility.transmittance * (phase / sqr(way.distance) * share),
-                   state.time + visibility.time + path.target->start);
+    const auto way = path.wayInTime(state.ray.origin, state.time);
+    if (!way) return;
+    const transport::Vertex vertex(medium, state.ray.origin, state.ray.direction, state.region);
+    const auto connection =
+        path.connector().connect(vertex, state.throughput, path.target->seenAlong(*way), state.counters.shadowRays);
+    if (!connection || !path.counts(connection->crossings, 0)) return;
+    const float share = connection->oneSpeed ? 1.0f - controlShare : 1.0f;
+    if (share > 0.0f)
+        state.sink.add(connection->throughput * share, state.time + connection->time + path.target->start);
 }
 
 void ConnectionsFromSurfaces::connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
     CameraPath& state = path.state;
     const PathTarget& target = *path.target;
-    const Straight way = path.straightFrom(hit.position);
     ++state.counters.connections;
     const double time = state.timeAfter(hit.t);
-    if (!path.mayConnect(time, way.distance)) return;
-    const SurfaceInteraction surface = makeInteraction(path.scene(), hit, state.ray.direction);
-    if (!surface.consistent(way.direction, path.scene().transport.consistencyChecks)) return;
-    const Vec3f wo = surface.frame.toLocal(way.direction);
-    const Rgb scattering = surface.bsdf->eval(surface.query(TransportMode::Radiance, lobe::Smooth), surface.wi, wo);
-    if (isBlack(scattering)) return;
-    const Rgb light = target.intensity(-way.direction);
-    if (isBlack(light)) return;
-    const Region region = regionBeyond(surface, way.direction, state.region);
-    const Visibility visibility = path.traceToTarget(hit.leave(way.direction), way, region);
-    if (isBlack(visibility.transmittance) || !path.counts(1 + visibility.crossings, 0)) return;
+    const auto way = path.wayInTime(hit.position, time);
+    if (!way) return;
+    const transport::Vertex vertex = path.vertexOn(makeInteraction(path.scene(), hit, state.ray.direction));
+    const auto connection =
+        path.connector().connect(vertex, throughput, target.seenAlong(*way), state.counters.shadowRays);
+    if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
-    const float lightPdf = target.pdfFrom(hit.position, target.point.position, target.point.normal);
-    const float bsdfPdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi, wo);
-    float weight = lightPdf > 0.0f ? transport::powerHeuristic(lightPdf, bsdfPdf) : 1.0f;
-    if (visibility.crossings == 0) weight *= shareOfWalk(path, surface, way);
-    state.sink.add(throughput * scattering * light * visibility.transmittance * (weight / sqr(way.distance)),
-                   time + visibility.time + target.start);
+    const float lightPdf = target.pdfFrom(hit.position, target.vertex.position(), target.vertex.margin().normal);
+    float weight = lightPdf > 0.0f ? transport::powerHeuristic(lightPdf, vertex.pdf(way->direction)) : 1.0f;
+    if (connection->crossings == 0) weight *= shareOfWalk(path, vertex, hit.t, *way);
+    state.sink.add(connection->throughput * weight, time + connection->time + target.start);
 }
 
-float ConnectionsFromSurfaces::density(const GuidedPath& path, const SurfaceHit& hit) {
-    return path.last.pdf * std::abs(path.state.ray.direction.dot(hit.ng)) / sqr(hit.t);
+float ConnectionsFromSurfaces::density(const GuidedPath& path, const transport::Vertex& vertex, float length) {
+    return vertex.areaDensity(path.last.pdf, path.state.ray.direction, length);
 }
 
 void EmittersMet::add(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {

@@ -21,8 +21,8 @@ struct ConnectionsFromMedia {
 struct ConnectionsFromSurfaces {
     /// `throughput` includes the way there.
     static void connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
-    /// Per area, of the surface point as the walk's next vertex.
-    [[nodiscard]] static float density(const GuidedPath& path, const SurfaceHit& hit);
+    /// Per area, of the surface point at the end of the ray, `length` long, as the walk's next vertex.
+    [[nodiscard]] static float density(const GuidedPath& path, const transport::Vertex& vertex, float length);
 };
 
 /// Emitters that the walk meets.

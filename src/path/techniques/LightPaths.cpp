@@ -27,7 +27,7 @@ bool LightPaths::helpWith(const Scene& scene) {
 }
 
 bool LightPaths::reflectedIn(const Scene& scene) {
-    const auto glossy = [](const BsdfPtr& bsdf) { return reflectsSharply(*bsdf); };
+    const auto glossy = [](const BsdfPtr& bsdf) { return reflectsSharply(bsdf->lobes()); };
     return std::any_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
         return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), glossy);
     });

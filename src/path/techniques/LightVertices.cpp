@@ -6,14 +6,9 @@
 
 namespace tungsten::path {
 
-namespace {
-
-bool scattersSmoothly(const Bsdf& bsdf) {
-    const LobeMask lobes = bsdf.lobes();
+bool holdsLightVertices(LobeMask lobes) {
     return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Through) == 0;
 }
-
-} // namespace
 
 std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, float probability,
                                             Sampler& sampler) {
@@ -21,31 +16,24 @@ std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& e
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
     const Vec3f direction = emission.ray.direction;
     const auto hit = scene.geometry->intersect(emission.ray);
-    if (!hit || !scattersSmoothly(scene.bsdfOf(*hit))) return std::nullopt;
-    LightVertex vertex;
-    vertex.surface = makeInteraction(scene, *hit, direction);
-    vertex.toLight = -direction;
-    const float cosine = std::abs(direction.dot(hit->ng));
-    if (!(cosine > 0.0f) || !vertex.surface.consistent(vertex.toLight, scene.transport.consistencyChecks))
-        return std::nullopt;
-    vertex.power = emission.power / (cosine * probability);
-    vertex.distance = hit->t;
-    vertex.areaPdf = emission.pdfDirection * cosine / sqr(hit->t);
-    vertex.lightPdf = pdfDirect(emitter, hit->position, emission.ray.origin, emission.normal);
-    if (isBlack(vertex.power)) return std::nullopt;
-    return vertex;
+    if (!hit || !holdsLightVertices(scene.bsdfOf(*hit).lobes()) || isBlack(emission.power)) return std::nullopt;
+    const float incidence = std::abs(direction.dot(hit->ng));
+    if (!(incidence > 0.0f)) return std::nullopt;
+    const SurfaceInteraction surface = makeInteraction(scene, *hit, direction);
+    if (!surface.consistent(-direction, scene.transport.consistencyChecks)) return std::nullopt;
+    const transport::Vertex vertex(scene, surface, direction, TransportMode::Photons, scene.regionOf(emitter));
+    return LightVertex{vertex,
+                       emission.power / probability,
+                       hit->t,
+                       vertex.areaDensity(emission.pdfDirection, direction, hit->t),
+                       pdfDirect(emitter, hit->position, emission.ray.origin, emission.normal),
+                       incidence};
 }
 
-Rgb LightVertex::scattered(const Vec3f& direction) const {
-    if (!mayBeLightVertex(surface, direction, toLight)) return Rgb(0.0f);
-    const Vec3f wi = surface.frame.toLocal(direction), wo = surface.frame.toLocal(toLight);
-    const BsdfQuery query = surface.query(TransportMode::Radiance);
-    const Rgb value = surface.bsdf->eval(query, wi, wo) * power;
-    return lightPdf > 0.0f ? value * transport::powerHeuristic(lightPdf, surface.bsdf->pdf(query, wi, wo)) : value;
-}
-
-bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, const Vec3f& toLight) {
-    return scattersSmoothly(*surface.bsdf) && toVertex.dot(surface.hit.ng) * toLight.dot(surface.hit.ng) > 0.0f;
+Rgb LightVertex::intensity(const Vec3f& direction) const {
+    if (!vertex.reflects(direction)) return Rgb(0.0f);
+    const Rgb value = power * vertex.scattering(direction);
+    return lightPdf > 0.0f ? value * transport::powerHeuristic(lightPdf, vertex.pdfReverse(direction)) : value;
 }
 
 void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths,
@@ -61,17 +49,16 @@ void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, float p
     for (const auto& vertex : found)
         if (vertex) vertices_.push_back(*vertex);
     window_.fill(vertices_.size(),
-                 [this](size_t i) { return std::pair(vertices_[i].surface.hit.position, vertices_[i].distance); });
+                 [this](size_t i) { return std::pair(vertices_[i].vertex.position(), vertices_[i].distance); });
 }
 
 auto LightVertexCache::choose(const Vec3f& position, float low, float high, const Vec2f& u) const -> Choice {
     // Rough contributions, beside walks with even directions.
-    const auto importance = [&](size_t i, float squared) {
+    const auto importance = [&](size_t i, const Vec3f& direction, float distance) {
         const LightVertex& vertex = vertices_[i];
-        const Vec3f offset = position - vertex.surface.hit.position;
-        const float cosine = std::abs(offset.dot(vertex.surface.hit.ng)) / std::sqrt(squared);
-        const float walkPdf = 0.25f * InvPi * cosine / squared, candidates = candidateDensity(vertex.areaPdf);
-        return maxComponent(vertex.power) * walkPdf * candidates / (candidates + walkPdf);
+        const float walkPdf = vertex.vertex.areaDensity(0.25f * InvPi, direction, distance);
+        const float candidates = candidateDensity(vertex.areaPdf);
+        return maxComponent(vertex.power) / vertex.incidence * walkPdf * candidates / (candidates + walkPdf);
     };
     const auto choice = window_.choose(position, low, high, u, importance);
     if (!choice) return {};

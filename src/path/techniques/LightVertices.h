@@ -14,23 +14,20 @@ namespace tungsten::path {
 
 /// The first surface on a ray from an emitter, no boundary between.
 struct LightVertex {
-    SurfaceInteraction surface; ///< seen from the light
-    Vec3f toLight;
-    Rgb power{0.0f};       ///< intensity / (density of the direction x |cos| at the surface x the emitter's
-                           ///< probability), transmittance left out
-    float distance = 0.0f; ///< from the light
-    float areaPdf = 0.0f;  ///< density per area of this point
-    float lightPdf =
-        0.0f; ///< density per solid angle of the emitter's point, chosen by area, seen from here; 0: points
+    transport::Vertex vertex; ///< met by light, through the emitter's region
+    Rgb power;       ///< intensity / (density of the direction x the emitter's probability), transmittance left out
+    float distance;  ///< from the light
+    float areaPdf;   ///< density per area of this point
+    float lightPdf;  ///< density per solid angle of the emitter's point, chosen by area, seen from here; 0: points
+    float incidence; ///< |cos| of light's direction and the geometric normal
 
-    /// What leaves along the unit `direction` (scattering, cosine to the light included, times power), weighed against
-    /// emitters that a walk meets.
-    [[nodiscard]] Rgb scattered(const Vec3f& direction) const;
+    /// Power per steradian that leaves along the unit `direction`, weighed against emitters that a walk meets; none to
+    /// the other side of the surface.
+    [[nodiscard]] Rgb intensity(const Vec3f& direction) const;
 };
 
-/// Whether the surface point could be a light vertex for light from `toLight` and a vertex in direction `toVertex`: it
-/// scatters smoothly and transmits nothing, and both are on one side.
-bool mayBeLightVertex(const SurfaceInteraction& surface, const Vec3f& toVertex, const Vec3f& toLight);
+/// Surfaces that may have light vertices: they scatter smoothly and transmit nothing.
+bool holdsLightVertices(LobeMask lobes);
 /// The light path `sampler` draws from the emitter, as far as its first surface; none where that is no light vertex.
 std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, float probability,
                                             Sampler& sampler);

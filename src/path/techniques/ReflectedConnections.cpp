@@ -9,93 +9,60 @@ namespace tungsten::path {
 
 namespace {
 
-/// Where the reflected light ends, as a walk would meet it.
-struct End {
-    Scattering scattering; ///< towards the glossy surface
-    float jacobian = 0.0f; ///< from densities per solid angle at the ray's origin to per area or volume here
-    Region region;         ///< through which its light came
-};
-
-/// None where a walk would not go on like this.
-std::optional<End> endOf(const GuidedPath& path, const ReflectedVertex& vertex, const Vec3f& direction,
-                         float distance) {
-    const Region& region = path.state.region;
-    const float perVolume = 1.0f / sqr(distance);
-    if (!vertex.surface) {
-        const Medium& medium = *path.scene().medium(region);
-        const float phase = medium.phase.eval(direction, vertex.toGlossy);
-        return End{{medium.sigmaS() * phase, phase}, perVolume, region};
-    }
-    const SurfaceInteraction& there = *vertex.surface;
-    if (!mayBeLightVertex(there, -direction, vertex.toGlossy) || !path.guideFor(there, -direction) ||
-        !there.consistent(-direction, path.scene().transport.consistencyChecks))
-        return std::nullopt;
-    const Vec3f wi = there.frame.toLocal(-direction), wo = there.frame.toLocal(vertex.toGlossy);
-    const BsdfQuery query = there.query(TransportMode::Radiance);
-    return End{{there.bsdf->eval(query, wi, wo), there.bsdf->pdf(query, wi, wo)},
-               perVolume * std::abs(direction.dot(there.hit.ng)),
-               regionBeyond(there, -direction, region)};
+/// A walk would go on like this: to the end and, reflected there, to the glossy surface.
+bool walkGoesOn(const GuidedPath& path, const transport::Vertex& end, const Vec3f& direction) {
+    return !end.surface() || (end.reflects(-direction) && path.guideFor(end, -direction));
 }
 
-/// Along the three straight parts from the ray's origin to the light.
-Rgb transmittanceOf(const GuidedPath& path, const ReflectedVertex& vertex, const End& end, float distance) {
+/// From the end, which is seen along `direction`, to the light.
+Rgb transmittanceOf(const GuidedPath& path, const ReflectedVertex& light, const transport::Vertex& end,
+                    const Vec3f& direction) {
     const Scene& scene = path.scene();
-    Rgb transmittance = scene.medium(path.state.region)->transmittance(distance);
-    if (const Medium* between = scene.medium(end.region))
-        transmittance = transmittance * between->transmittance(vertex.flight);
-    if (const Medium* beyond = scene.medium(regionBeyond(vertex.glossy.surface, vertex.glossy.toLight, end.region)))
-        transmittance = transmittance * beyond->transmittance(vertex.glossy.distance);
+    const Region between = end.regionTowards(-direction, path.state.region);
+    const Region beyond = light.glossy.vertex.regionTowards(light.flight.direction, between);
+    Rgb transmittance(1.0f);
+    if (const Medium* medium = scene.medium(between)) transmittance = medium->transmittance(light.flight.distance);
+    if (const Medium* medium = scene.medium(beyond))
+        transmittance = transmittance * medium->transmittance(light.glossy.distance);
     return transmittance;
 }
 
 } // namespace
 
-void ReflectedConnections::connect(GuidedPath& path, const SurfaceInteraction* surface,
-                                   const ReflectedLightCache& cache) {
+void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache) {
     CameraPath& state = path.state;
     const auto [low, high] = path.lengthsInGate();
-    const ReflectedLightCache::Choice choice = cache.choose(state.ray.origin, low, high, state.sampler.next2D());
+    const ReflectedLightCache::Choice choice = cache.choose(here.position(), low, high, state.sampler.next2D());
     if (!choice.vertex) return;
-    const ReflectedVertex& vertex = *choice.vertex;
-    if (!path.counts(2, vertex.surface ? 0 : 1)) return;
-    const Vec3f offset = vertex.position - state.ray.origin;
-    const float distance = offset.length();
-    if (!(distance > 0.0f)) return;
-    const Vec3f direction = offset / distance;
-    const Ray ray = path.leave(surface, direction,
-                               vertex.surface ? vertex.surface->hit.margin().before(direction, distance) : distance);
-    if (!(ray.tMin < ray.tMax)) return;
-    const auto end = endOf(path, vertex, direction, distance);
-    if (!end) return;
-    const Scattering scattering = path.scatteringTowards(direction, surface);
-    if (isBlack(scattering.value) || isBlack(end->scattering.value)) return;
-    ++state.counters.shadowRays;
+    const ReflectedVertex& light = *choice.vertex;
+    const bool inMedium = !light.surface;
+    if (!path.counts(2, inMedium ? 1 : 0)) return;
+    const transport::Vertex end = light.vertexIn(path.scene(), state.region);
+    const auto way = transport::straightWay(here.position(), end.position());
+    if (!way || !walkGoesOn(path, end, way->direction)) return;
     ++state.counters.reflectedLight;
-    if (path.scene().geometry->occluded(ray)) return;
-    const float flight = vertex.surface ? 1.0f : path.context.lightPaths.flights().pdf(distance);
+    const auto connection = path.connectInRegion(here, transport::connectionEnd(*way, end, light.power));
+    if (!connection) return;
     // Of the walk and of light vertices one vertex on, together.
-    const float walk =
-        scattering.pdf * end->jacobian * flight *
-        (end->scattering.pdf * vertex.walkGeometry + LightVertexConnections::density(vertex.glossy.areaPdf));
-    const float share = transport::balance(cache.candidates() * vertex.density, walk);
-    const Rgb transmittance = transmittanceOf(path, vertex, *end, distance);
-    const double length = double(distance) + double(vertex.length), elapsed = state.time + path.target->start;
-    state.sink.add(state.throughput * scattering.value * end->scattering.value * transmittance * vertex.power *
-                       (end->jacobian * choice.weight * share),
-                   elapsed + length / double(state.region.speed));
+    const float arrives = end.areaDensity(here.pdf(way->direction), way->direction, way->distance) *
+                          (inMedium ? path.context.lightPaths.flights().pdf(way->distance) : 1.0f);
+    const float goesOn = end.pdfReverse(-way->direction) * light.perAreaAtGlossy;
+    const float walk = arrives * (goesOn + LightVertexConnections::density(light.glossy.areaPdf));
+    const float share = transport::balance(cache.candidates() * light.density, walk);
+    Rgb transmittance = transmittanceOf(path, light, end, way->direction);
+    if (inMedium) transmittance = transmittance * path.scene().medium(state.region)->sigmaS();
+    const double time = connection->time + double(light.length()) / double(state.region.speed);
+    state.sink.add(connection->throughput * transmittance * (choice.weight * share),
+                   state.time + time + path.target->start);
 }
 
-float ReflectedConnections::density(const GuidedPath& path, const SurfaceInteraction& glossy, const Vec3f& direction,
-                                    float flight, const Vec3f& toLight, float areaPdf) {
-    if (!path.approach || !reflectsSharply(*glossy.bsdf)) return 0.0f;
+float ReflectedConnections::density(const GuidedPath& path, float pdf, const transport::Straight& way, float areaPdf) {
     const bool inMedium = isBlack(path.approach->normal);
-    const float cosine = -direction.dot(path.approach->normal);
+    const float cosine = way.direction.dot(path.approach->normal);
     if (!inMedium && !(cosine > 0.0f)) return 0.0f;
-    const float pdf = glossy.bsdf->pdf(glossy.query(TransportMode::Radiance), glossy.frame.toLocal(toLight),
-                                       glossy.frame.toLocal(direction));
     const LightPaths& lightPaths = path.context.lightPaths;
-    const float end = inMedium ? lightPaths.flights().pdf(flight) : cosine;
-    return lightPaths.reflected(path.target->index)->candidates() * areaPdf * pdf * end / sqr(flight) /
+    const float end = inMedium ? lightPaths.flights().pdf(way.distance) : cosine;
+    return lightPaths.reflected(path.target->index)->candidates() * areaPdf * pdf * end / sqr(way.distance) /
            path.approach->pdf;
 }
 

@@ -7,13 +7,17 @@
 namespace tungsten::path {
 
 struct ReflectedConnections {
-    /// From the ray's origin: on `surface`, or in the medium if there is none.
-    static void connect(GuidedPath& path, const SurfaceInteraction* surface, const ReflectedLightCache& cache);
-    /// Of the reflected light that one vertex before was connected to, at the ray's origin and at a light vertex of
-    /// density `areaPdf` at distance `flight` in direction `direction` from `glossy`, over the walk's density at the
-    /// ray's origin; 0 if there was none.
-    [[nodiscard]] static float density(const GuidedPath& path, const SurfaceInteraction& glossy, const Vec3f& direction,
-                                       float flight, const Vec3f& toLight, float areaPdf);
+    /// From the vertex at the ray's origin.
+    static void connect(GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache);
+    /// Whether one vertex before reflected light was connected to that may have come by way of `glossy`.
+    [[nodiscard]] static bool mayFind(const GuidedPath& path, const transport::Vertex& glossy) {
+        return path.approach && reflectsSharply(glossy.lobes());
+    }
+    /// Of the reflected light that one vertex before was connected to (mayFind), at the ray's origin and at a light
+    /// vertex of density `areaPdf` at the end of `way`, over the walk's density at the ray's origin. `pdf` is light's
+    /// from there, per solid angle, back along `way`.
+    [[nodiscard]] static float density(const GuidedPath& path, float pdf, const transport::Straight& way,
+                                       float areaPdf);
 };
 
 } // namespace tungsten::path

@@ -14,58 +14,46 @@ constexpr uint32_t PilotPass = std::numeric_limits<uint32_t>::max();
 void traceReflection(const Scene& scene, const Emitter& emitter, float probability, const Flights& flights,
                      Sampler sampler, std::vector<ReflectedVertex>& vertices) {
     const auto glossy = traceLightVertex(scene, emitter, probability, sampler);
-    if (!glossy || !reflectsSharply(*glossy->surface.bsdf)) return;
-    const SurfaceInteraction& from = glossy->surface;
-    const BsdfQuery query = from.query(TransportMode::Radiance);
+    if (!glossy || !reflectsSharply(glossy->vertex.lobes())) return;
+    const SurfaceInteraction& from = *glossy->vertex.surface();
     const Vec2f uDirection = sampler.next2D();
-    const auto sample = from.bsdf->sample(query, from.wi, {uDirection, sampler.next1D()});
+    const auto sample = from.bsdf->sample(from.query(TransportMode::Photons), from.wi, {uDirection, sampler.next1D()});
     if (!sample || (sample->lobe & lobe::Smooth) == 0) return;
     const Vec3f direction = from.frame.toWorld(sample->wo).normalized();
-    const float pdf = from.bsdf->pdf(query, from.wi, from.frame.toLocal(direction));
-    const Rgb scattered = glossy->scattered(direction);
-    if (!(pdf > 0.0f) || isBlack(scattered) || !from.consistent(direction, scene.transport.consistencyChecks)) return;
-
-    const float cosine = std::abs(direction.dot(from.hit.ng));
-    const Rgb power = scattered * (cosine / pdf);
+    const float pdf = glossy->vertex.pdf(direction);
+    const Rgb reflected = glossy->intensity(direction);
+    if (!(pdf > 0.0f) || isBlack(reflected)) return;
     const auto end = [&](float flight, float density) {
-        ReflectedVertex vertex;
-        vertex.position = from.hit.position + direction * flight;
-        vertex.toGlossy = -direction;
-        vertex.flight = flight;
-        vertex.length = glossy->distance + flight;
-        vertex.power = power;
-        vertex.density = glossy->areaPdf * pdf * density / sqr(flight);
-        vertex.walkGeometry = cosine / sqr(flight);
-        vertex.glossy = *glossy;
-        return vertex;
+        return ReflectedVertex{*glossy,
+                               {direction, flight},
+                               std::nullopt,
+                               reflected / pdf,
+                               glossy->areaPdf * pdf * density / sqr(flight),
+                               glossy->vertex.areaDensity(1.0f, direction, flight)};
     };
-    const Ray onward = from.hit.leave(direction);
+    const Ray onward = glossy->vertex.leave(direction);
     const auto hit = scene.geometry->intersect(onward);
     const float flight = flights.sample(sampler.next1D()), density = flights.pdf(flight);
     if (flight > onward.tMin && density > 0.0f && (!hit || flight < hit->t)) {
         vertices.push_back(end(flight, density));
-        vertices.back().power = power / density;
+        vertices.back().power = reflected / (pdf * density);
     }
-    if (!hit || !endsReflectedLight(scene.bsdfOf(*hit))) return;
-    const float cosineHere = std::abs(direction.dot(hit->ng));
-    if (!(cosineHere > 0.0f)) return;
-    ReflectedVertex vertex = end(hit->t, cosineHere);
-    vertex.surface = makeInteraction(scene, *hit, direction);
-    vertex.position = hit->position;
-    vertex.power = power / cosineHere;
-    vertices.push_back(vertex);
-    return;
+    if (!hit || !endsReflectedLight(scene.bsdfOf(*hit).lobes())) return;
+    const float incidence = std::abs(direction.dot(hit->ng));
+    if (!(incidence > 0.0f)) return;
+    vertices.push_back(end(hit->t, incidence));
+    vertices.back().surface.emplace(scene, makeInteraction(scene, *hit, direction), direction, TransportMode::Photons,
+                                    glossy->vertex.region());
+    vertices.back().incidence = incidence;
 }
 
 } // namespace
 
-bool reflectsSharply(const Bsdf& bsdf) {
-    const LobeMask lobes = bsdf.lobes();
+bool reflectsSharply(LobeMask lobes) {
     return (lobes & lobe::GlossyReflection) != 0 && (lobes & lobe::Through) == 0;
 }
 
-bool endsReflectedLight(const Bsdf& bsdf) {
-    const LobeMask lobes = bsdf.lobes();
+bool endsReflectedLight(LobeMask lobes) {
     return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
 }
 
@@ -88,19 +76,20 @@ void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, floa
     paths_ = paths;
     vertices_.clear();
     for (const auto& block : found) vertices_.insert(vertices_.end(), block.begin(), block.end());
-    window_.fill(vertices_.size(), [this](size_t i) { return std::pair(vertices_[i].position, vertices_[i].length); });
+    window_.fill(vertices_.size(),
+                 [this](size_t i) { return std::pair(vertices_[i].position(), vertices_[i].length()); });
 }
 
 auto ReflectedLightCache::choose(const Vec3f& position, float low, float high, const Vec2f& u) const -> Choice {
     // Rough contributions, beside walks with even directions.
-    const auto importance = [&](size_t i, float squared) {
+    const auto importance = [&](size_t i, const Vec3f& direction, float distance) {
         const ReflectedVertex& vertex = vertices_[i];
-        float walkPdf = 0.25f * InvPi / squared;
-        if (vertex.surface)
-            walkPdf *= std::abs((position - vertex.position).dot(vertex.surface->hit.ng)) / std::sqrt(squared);
-        const float found = walkPdf * (0.25f * InvPi * vertex.walkGeometry + candidateDensity(vertex.glossy.areaPdf));
+        const float even = 0.25f * InvPi;
+        const float walkPdf =
+            vertex.surface ? vertex.surface->areaDensity(even, direction, distance) : even / sqr(distance);
+        const float found = walkPdf * (even * vertex.perAreaAtGlossy + candidateDensity(vertex.glossy.areaPdf));
         const float candidates = candidates_ * vertex.density;
-        return maxComponent(vertex.power) * walkPdf * candidates / (candidates + found);
+        return maxComponent(vertex.power) / vertex.incidence * walkPdf * candidates / (candidates + found);
     };
     const auto choice = window_.choose(position, low, high, u, importance);
     if (!choice) return {};

@@ -9,16 +9,24 @@ namespace tungsten::path {
 
 /// The end of a light path emitter -> glossy surface -> here, no boundary between.
 struct ReflectedVertex {
-    Vec3f position;
-    std::optional<SurfaceInteraction> surface; ///< seen from the glossy one; none in a medium
-    Vec3f toGlossy;                            ///< unit
-    float flight = 0.0f;                       ///< from the glossy surface
-    float length = 0.0f;                       ///< of light's whole way
-    Rgb power{0.0f};      ///< intensity x what the glossy surface scatters, over the density (transmittance and the
-                          ///< cosine at the surface here left out)
-    float density = 0.0f; ///< of the two last vertices: per area there, per area or volume here
-    float walkGeometry = 0.0f; ///< |cosine at the glossy surface| / flight^2
     LightVertex glossy;
+    transport::Straight flight;               ///< from the glossy surface to here
+    std::optional<transport::Vertex> surface; ///< none in a medium, which is that of the camera's path
+    Rgb power;             ///< of the path up to here: what the glossy surface scatters over the density of the flight,
+                           ///< per solid angle and length (transmittance left out)
+    float density;         ///< of the two last vertices: per area there, per area or volume here
+    float perAreaAtGlossy; ///< density per area there, of 1 per solid angle from here
+    float incidence = 1;   ///< |cos| of the flight and the geometric normal here; 1 in a medium
+
+    [[nodiscard]] Vec3f position() const {
+        return surface ? surface->position() : glossy.vertex.position() + flight.direction * flight.distance;
+    }
+    /// Of light's whole way.
+    [[nodiscard]] float length() const { return glossy.distance + flight.distance; }
+    /// For a path from the camera that comes to here through `region`.
+    [[nodiscard]] transport::Vertex vertexIn(const Scene& scene, const Region& region) const {
+        return surface ? *surface : transport::Vertex(*scene.medium(region), position(), flight.direction, region);
+    }
 };
 
 /// Free flights of light and walks, as weights take them: exponential, one rate for the whole scene.
@@ -29,9 +37,9 @@ struct Flights {
 };
 
 /// Surfaces from which light is followed.
-bool reflectsSharply(const Bsdf& bsdf);
+bool reflectsSharply(LobeMask lobes);
 /// Surfaces that light may be followed to: all lobes smooth, none transmits.
-bool endsReflectedLight(const Bsdf& bsdf);
+bool endsReflectedLight(LobeMask lobes);
 
 /// Reflected light of one emitter.
 class ReflectedLightCache {

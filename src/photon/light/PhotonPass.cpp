@@ -153,7 +153,7 @@ std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, Statist
         GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
     }
     statistics.add("rays", pilot.counters.rays);
-    worth->setTargets(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes.share);
+    worth->measure(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes.share);
     return worth;
 }
 

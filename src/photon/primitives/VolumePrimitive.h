@@ -45,4 +45,19 @@ void forEachPrimitive(const std::variant<Primitives...>&, Use&& use) {
     (use(Primitives{}), ...);
 }
 
+/// What volume_photon_type calls a primitive.
+struct NamedPrimitive {
+    const char* type;
+    VolumePrimitive primitive;
+};
+template <typename Primitive>
+std::vector<NamedPrimitive> named(const Primitive& primitive) {
+    return {{Primitive::Type, primitive}};
+}
+inline std::vector<NamedPrimitive> named(const Slices&) {
+    std::vector<NamedPrimitive> kinds;
+    for (const SliceName& name : SliceNames) kinds.push_back({name.type, Slices{name.kind, {}}});
+    return kinds;
+}
+
 } // namespace tungsten::photon

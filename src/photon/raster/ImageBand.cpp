@@ -2,9 +2,9 @@
 
 namespace tungsten::photon {
 
-ImageBand::ImageBand(const SensorRecord& record, size_t number)
+ImageBand::ImageBand(const SensorRecord& record, size_t number, int frames)
     : firstRow(int(number) * Rows), lastRow(std::min(firstRow + Rows, record.height) - 1),
-      stride(size_t(record.width + Lanes)), x(), y(), z(), record_(record) {
+      stride(size_t(record.width + Lanes)), x(), y(), z(), record_(record), frames_(frames) {
     x = rowsOf(record.x);
     y = rowsOf(record.y);
     z = rowsOf(record.z);
@@ -47,21 +47,22 @@ void ImageBand::addPiece(size_t number) {
         piece.media = rowsOf(recorded.medium);
         piece.interactionCounts = rowsOf(recorded.interactions);
     }
-    for (auto& channel : piece.sums) channel.resize(piece.start.size());
+    for (auto& channel : piece.sums) channel.resize(piece.start.size() * size_t(frames_));
     pieces.push_back(std::move(piece));
 }
 
 void ImageBand::addToFilm(int frame, Film& film) {
     const auto width = size_t(record_.width);
+    const size_t begin = sumsOf(frame);
     for (BandPiece& piece : pieces) {
         const std::vector<Rgb>& throughput = record_.pieces[piece.number].throughput;
         for (int row = firstRow; row <= lastRow; ++row)
             for (size_t column = 0; column < width; ++column) {
-                const size_t i = at(int(column), row);
+                const size_t i = begin + at(int(column), row);
                 film.passPixel(frame, int(column), row) += Rgb(piece.sums[0][i], piece.sums[1][i], piece.sums[2][i]) *
                                                            throughput[size_t(row) * width + column];
             }
-        for (auto& channel : piece.sums) std::fill(channel.begin(), channel.end(), 0.0f);
+        for (auto& channel : piece.sums) std::fill_n(channel.begin() + ptrdiff_t(begin), x.size(), 0.0f);
     }
 }
 

@@ -18,7 +18,7 @@ struct BandPiece {
     bool mixed = false;                          ///< rays differ in medium or interactions
     int medium = -1, interactions = 0;           ///< of the first ray that has this piece, if any
     std::vector<float> media, interactionCounts; ///< of every ray, if mixed
-    std::array<std::vector<float>, 3> sums;      ///< by channel, without the rays' throughput
+    std::array<std::vector<float>, 3> sums;      ///< by channel, frame by frame, without the rays' throughput
 
     /// Adds weight times power at pixels `first`...
     void add(size_t first, const Batch& weight, int channel, float power) {
@@ -41,10 +41,13 @@ class ImageBand {
     static_assert(Rows <= Lanes);
     static size_t count(int imageHeight) { return size_t((imageHeight + Rows - 1) / Rows); }
 
-    ImageBand(const SensorRecord& record, size_t number);
+    /// `frames`: how many have sums at a time.
+    ImageBand(const SensorRecord& record, size_t number, int frames = 1);
 
     [[nodiscard]] size_t at(int column, int row) const { return size_t(row - firstRow) * stride + size_t(column); }
-    /// Adds the sums, times throughput, to the pass image and begins new ones.
+    /// Where the sums of a frame begin.
+    [[nodiscard]] size_t sumsOf(int frame) const { return frames_ > 1 ? size_t(frame) * x.size() : 0; }
+    /// Adds the sums, times throughput, to the frame's pass image and begins new ones.
     void addToFilm(int frame, Film& film);
 
     int firstRow, lastRow; ///< inclusive
@@ -58,6 +61,7 @@ class ImageBand {
     void addPiece(size_t number);
 
     const SensorRecord& record_;
+    int frames_;
 };
 
 /// A band's photons or beams lie scattered in memory: asks for the one that is drawn DrawnAhead later.

@@ -73,7 +73,7 @@ struct SensorRecord {
     }
 };
 
-/// Traces one camera path per pixel, the sample with this index, for a camera with a single position.
+/// Traces one camera path per pixel: the sample with this index.
 SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
                                const SensorWishes& wishes, Statistics& statistics);
 

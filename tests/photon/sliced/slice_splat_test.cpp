@@ -1,5 +1,6 @@
 // Slices drawn into the image against slices gathered ray by ray; edges where their linear systems degenerate.
 
+#include "photon/primitives/sliced/FrameShares.h"
 #include "photon/primitives/sliced/SliceGather.h"
 #include "photon/primitives/sliced/SliceSplat.h"
 
@@ -14,10 +15,11 @@ namespace {
 struct SplatCase {
     const char* name;
     bool unwarped, orthographic;
+    int frames = 0; ///< 0: a delta gate
 };
 
-/// Forward scattering, isotropic and coloured fog at a delta gate; a slanted camera.
-Scene fogAtDeltaGate(const SplatCase& c) {
+/// Forward scattering, isotropic and coloured fog; a slanted camera.
+Scene fogAtGate(const SplatCase& c) {
     Scene scene;
     for (int i = 0; i < 3; ++i) {
         Medium fog;
@@ -30,13 +32,15 @@ Scene fogAtDeltaGate(const SplatCase& c) {
     scene.transport.maxBounces = 7;
     scene.transport.cameraUnwarped = c.unwarped;
     scene.transport.gate = {false, true, 2.5, 0.0, 1};
+    if (c.frames > 0) scene.transport.gate = {false, false, 1.75, 0.25, c.frames};
     if (c.orthographic) scene.camera.model = Orthographic{1.5f};
     scene.camera.resolution = {37, 21};
     const Frame frame(Vec3f(0.4f, -0.3f, 0.8f).normalized());
     scene.camera.toWorld = {frame.s, frame.t, frame.n, Vec3f(1.0f, 2.0f, 3.0f)};
     return scene;
 }
-transport::Sensor kernelOf(const Scene& scene) {
+transport::Sensor sensorOf(const Scene& scene) {
+    if (!scene.transport.gate.delta) return scene.transport.gate;
     return TimeGate{false, false, scene.transport.gate.start - 0.05, 0.1, 1};
 }
 
@@ -56,7 +60,7 @@ std::vector<CollapsedFlights> randomRecords(const Scene& scene, int count) {
         r.bounce = uint16_t(i / 5 % 3);
         r.medium = int16_t(i / 5 % 3);
         r.emitter = i % 25 == 0 ? 0 : -1;
-        r.shared = r.emitter < 0 && (r.shape == FlightShape::Ball || (i % 2 == 0 && r.shape == FlightShape::Volume));
+        r.shared = r.emitter < 0 && i % 2 == 0 && (r.shape == FlightShape::Ball || r.shape == FlightShape::Volume);
         records.push_back(r);
     }
     return records;
@@ -90,96 +94,125 @@ SensorRecord randomView(const Scene& scene) {
     return record;
 }
 
-/// Every piece of every ray by SliceGather.
-std::vector<Vec3d> gathered(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                            const std::vector<CollapsedFlights>& records, float radius) {
+/// Every piece of every ray by SliceGather; every frame.
+std::vector<FrameSums> gatheredByFrame(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                                       const std::vector<CollapsedFlights>& records, float radius) {
     const SliceGather gather(scene, sensor, records, radius);
-    std::vector<Vec3d> image(record.x.size(), Vec3d(0.0));
+    const auto frames = size_t(sensor.gate.frames);
+    std::vector<FrameSums> image(record.x.size(), FrameSums(frames, Vec3d(0.0)));
     for (size_t pixel = 0; pixel < image.size(); ++pixel)
         for (const StraightPiece& piece : record.pieces) {
             if (!(piece.end[pixel] > piece.start[pixel])) continue;
             const Vec3f direction(record.x[pixel], record.y[pixel], record.z[pixel]);
             const Vec3f origin = record.origins.empty() ? record.origin : record.origins[pixel];
             const float start = piece.start[pixel];
-            FrameSums sums(1, Vec3d(0.0));
+            FrameSums sums(frames, Vec3d(0.0));
             gather.gather({origin + direction * start, direction, piece.end[pixel] - start, double(start), 1.0,
                            piece.interactions[pixel], piece.medium[pixel]},
                           sums);
             const Rgb& t = piece.throughput[pixel];
-            image[pixel] += sums[0] * Vec3d(double(t.x), double(t.y), double(t.z));
+            for (size_t frame = 0; frame < frames; ++frame)
+                image[pixel][frame] += sums[frame] * Vec3d(double(t.x), double(t.y), double(t.z));
         }
+    return image;
+}
+
+/// With the records that each frame draws.
+std::vector<FrameSums> gathered(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+                                const std::vector<CollapsedFlights>& records, float radius) {
+    auto image = gatheredByFrame(scene, sensor, record, records, radius);
+    if (sensor.gate.frames == 1) return image;
+    const FrameShares shares(scene, sensor.gate, records);
+    for (int frame = 0; frame < sensor.gate.frames; ++frame) {
+        auto drawn = records;
+        for (size_t i = 0; i < records.size(); ++i)
+            if (drawn[i].shape != FlightShape::Beam) drawn[i].power = drawn[i].power * shares.of(i)[size_t(frame)];
+        const auto of = gatheredByFrame(scene, sensor, record, drawn, radius);
+        for (size_t pixel = 0; pixel < image.size(); ++pixel) image[pixel][size_t(frame)] = of[pixel][size_t(frame)];
+    }
     return image;
 }
 
 class SliceSplat : public testing::TestWithParam<SplatCase> {};
 
-void expectSame(const Scene& scene, const std::vector<CollapsedFlights>& records, const SensorRecord& view) {
-    const transport::Sensor sensor = kernelOf(scene);
+TEST_P(SliceSplat, BringsWhatGathersBring) {
+    const Scene scene = fogAtGate(GetParam());
+    const auto records = randomRecords(scene, 1500);
+    const SensorRecord view = randomView(scene);
+    const transport::Sensor sensor = sensorOf(scene);
     constexpr float Radius = 0.05f;
     const auto expected = gathered(scene, sensor, view, records, Radius);
-    Film film(view.width, view.height, 1);
+    Film film(view.width, view.height, sensor.gate.frames);
     film.beginPass();
     EXPECT_GT(splatSlices(scene, sensor, view, records, Radius, 1.0, film), 1000u);
-    // Single slices have no bound: rays next to a singularity, and those where a float's rounding decides, differ.
-    size_t far = 0, lit = 0;
-    for (int y = 0; y < view.height; ++y)
-        for (int x = 0; x < view.width; ++x) {
-            const Vec3d& exact = expected[size_t(y) * size_t(view.width) + size_t(x)];
-            const Rgb found = film.passPixel(0, x, y);
-            if (exact.z > 0.0) ++lit;
-            bool differs = false;
-            for (int k = 0; k < 3; ++k) {
-                EXPECT_TRUE(std::isfinite(found[k]));
-                differs = differs || std::abs(double(found[k]) - exact[k]) > 2e-3 * exact[k] + 1e-6;
+    for (int frame = 0; frame < sensor.gate.frames; ++frame) {
+        // Single slices have no bound: rays next to a singularity, and those where a float's rounding decides, differ.
+        size_t far = 0, lit = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                const Vec3d& exact = expected[size_t(y) * size_t(view.width) + size_t(x)][size_t(frame)];
+                const Rgb found = film.passPixel(frame, x, y);
+                if (exact.z > 0.0) ++lit;
+                bool differs = false;
+                for (int k = 0; k < 3; ++k) {
+                    EXPECT_TRUE(std::isfinite(found[k]));
+                    differs = differs || std::abs(double(found[k]) - exact[k]) > 2e-3 * exact[k] + 1e-6;
+                }
+                far += differs;
             }
-            far += differs;
-        }
-    EXPECT_GT(lit, expected.size() / 2);
-    EXPECT_LE(far, expected.size() / 50) << "of " << expected.size();
-}
-
-TEST_P(SliceSplat, BringsWhatGathersBring) {
-    const Scene scene = fogAtDeltaGate(GetParam());
-    expectSame(scene, randomRecords(scene, 1500), randomView(scene));
-}
-
-/// Splats draw a point of the whole ray, gathers of the piece: the same where there is one piece.
-TEST_P(SliceSplat, BringsBallsInTheTemporalKernel) {
-    const Scene scene = fogAtDeltaGate(GetParam());
-    auto records = randomRecords(scene, 1500);
-    for (CollapsedFlights& r : records) {
-        r.shape = FlightShape::Ball;
-        r.emitter = -1;
-        r.shared = false;
-        r.bounce = 1;
-        r.medium = 0;
-        // No farther than the camera, so that no ray begins inside.
-        r.base = scene.camera.position() + scene.camera.forward() * (3.0f + 0.1f * r.lengths[0]) + r.directions[0];
-        r.time = scene.transport.gate.start - (scene.transport.cameraUnwarped ? 0.1 + 1.3 * double(r.lengths[1]) : 5.5);
+        EXPECT_GT(lit, expected.size() / 2) << "frame " << frame;
+        EXPECT_LE(far, expected.size() / 50) << "of " << expected.size() << ", frame " << frame;
     }
-    SensorRecord view = randomView(scene);
-    view.pieces.resize(1);
-    StraightPiece& piece = view.pieces.front();
-    std::fill(piece.start.begin(), piece.start.end(), 0.0f);
-    std::fill(piece.end.begin(), piece.end.end(), Infinity);
-    std::fill(piece.medium.begin(), piece.medium.end(), int16_t(0));
-    std::fill(piece.interactions.begin(), piece.interactions.end(), uint16_t(1));
-    expectSame(scene, records, view);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, SliceSplat,
                          testing::Values(SplatCase{"Warped", false, false}, SplatCase{"Unwarped", true, false},
                                          SplatCase{"UnwarpedOrthographic", true, true},
-                                         SplatCase{"WarpedOrthographic", false, true}),
+                                         SplatCase{"WarpedOrthographic", false, true},
+                                         SplatCase{"WarpedFrames", false, false, 5},
+                                         SplatCase{"UnwarpedFrames", true, false, 5},
+                                         SplatCase{"UnwarpedOrthographicGate", true, true, 1},
+                                         SplatCase{"WarpedOrthographicGate", false, true, 1}),
                          [](const auto& test) { return test.param.name; });
+
+/// Alike records, the older ones much darker: drawn at random, and right on average.
+TEST(FrameShares, MakeUpForWhatTheyLeaveOut) {
+    const Scene scene = fogAtGate({"", true, false, 8});
+    constexpr size_t Count = 20000;
+    std::vector<CollapsedFlights> records(Count);
+    Sampler sampler(5, RandomStream::Test, 0, 0);
+    for (size_t i = 0; i < Count; ++i) {
+        records[i].shape = FlightShape::Volume;
+        records[i].time = i % 2 == 0 ? -6.0 : 1.0;
+        records[i].power = Rgb(1.0f);
+        records[i].random = {uint16_t(sampler.nextBits()), uint16_t(sampler.nextBits())};
+    }
+    const FrameShares shares(scene, scene.transport.gate, records);
+    for (size_t frame = 0; frame < 8; ++frame)
+        for (const size_t first : {size_t(0), size_t(1)}) {
+            double sum = 0.0, squares = 0.0, drawn = 0.0;
+            for (size_t i = first; i < Count; i += 2) {
+                const auto factor = double(shares.of(i)[frame]);
+                sum += factor;
+                squares += factor * factor;
+                drawn += factor > 0.0 ? 1.0 : 0.0;
+            }
+            const double n = 0.5 * double(Count), mean = sum / n;
+            const double error = std::sqrt((squares / n - mean * mean) / n);
+            EXPECT_NEAR(mean, 1.0, 5.0 * error + 1e-6) << "frame " << frame;
+            if (first == 0)
+                EXPECT_LT(drawn, 0.1 * n) << "frame " << frame;
+            else
+                EXPECT_EQ(drawn, n) << "frame " << frame;
+        }
+}
 
 /// Parallel directions, a base in the camera, on its axis and behind the gate, in box and delta gates.
 TEST(SliceEdges, EverythingStaysFinite) {
     for (const bool unwarped : {false, true})
         for (const bool delta : {false, true}) {
-            Scene scene = fogAtDeltaGate({"", unwarped, false});
-            if (!delta) scene.transport.gate = {false, false, 2.0, 0.25, 4};
-            const transport::Sensor sensor = delta ? kernelOf(scene) : transport::Sensor(scene.transport.gate);
+            const Scene scene = fogAtGate({"", unwarped, false, delta ? 0 : 4});
+            const transport::Sensor sensor = sensorOf(scene);
             auto records = randomRecords(scene, 3000);
             const Vec3f eye = scene.camera.position(), axis = scene.camera.forward();
             for (size_t i = 0; i < records.size(); ++i) {

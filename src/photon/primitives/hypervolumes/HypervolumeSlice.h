@@ -37,13 +37,4 @@ std::optional<HypervolumeChord<Real>> sliceHypervolume(const Vector<Real>& base,
     return chord.empty() ? std::nullopt : std::optional(chord);
 }
 
-/// (15) without power and phase function: sigma_s^4 / J times the integral over the chord.
-template <typename Real>
-Real chordWeight(const HypervolumeChord<Real>& chord, const Coefficients<Real>& medium, Real before = 0,
-                 bool longFlights = true) {
-    const Real offset = longFlights ? chord.offsetSum() : 0, slope = longFlights ? chord.slopeSum() : 0;
-    return collisions(medium.sigmaS, 4) / chord.jacobian *
-           exponentialIntegral<Real>(medium.sigmaT, offset - before, slope + 1, chord.start, chord.end);
-}
-
 } // namespace tungsten::photon

@@ -1,12 +1,13 @@
 // Balls: at one time, and over a gate.
 
 #include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/sliced/ShortFlights.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
 
 namespace tungsten::photon {
 
 bool SliceEstimate::addBall(const SliceMeeting& m, FrameSums& sums) const {
-    if (m.flights.shared || (scene_.transport.gate.delta && !m.flights.blurredInTime()))
+    if (scene_.transport.gate.delta && !m.flights.blurredInTime())
         return eachSlice(
             m, [&](int frame, double time, double width) { return addBallSlice(m, frame, time, width, sums); });
     bool any = false;
@@ -35,21 +36,22 @@ bool SliceEstimate::unoccluded(const CollapsedFlights& ball, const Vec3f& end) c
     return !scene_.geometry->occluded(ray);
 }
 
+double SliceEstimate::ballShareOf(const SliceMeeting& m, const Vec3d& last, double length) const {
+    if (!m.flights.shared) return 1.0;
+    const auto w = m.directions<2>();
+    const auto& t = m.flights.lengths;
+    return ballShare(ratio(m, {w[0], w[1], last}, {double(t[0]), double(t[1]), length}));
+}
+
 bool SliceEstimate::addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
     const auto slice = sliceBall(m.base, m.sight, m.residual(time));
     bool any = false;
     for (int i = 0; i < slice.count; ++i) {
         const BallReach<double>& reach = slice.reaches[size_t(i)];
         const Vec3d last = (m.sight.at(reach.alongRay) - m.base) / reach.length;
-        double factor = m.speed * width * m.phase(inFloat(last));
-        if (m.flights.shared) {
-            const auto& t = m.flights.lengths;
-            const double pdfs = double(pdfFlight(m.medium, t[0])) * double(pdfFlight(m.medium, t[1]));
-            const double phasePdf = double(m.medium.phase.pdf(m.flights.directions[1], inFloat(last)));
-            const auto w = m.directions<2>();
-            const SharedPath<double> path{{w[0], w[1], last}, reach.length, phasePdf, pdfs};
-            factor *= ballShare(path.ratio(m.sight.direction, warped_));
-        }
+        double factor = m.speed * width * m.phase(inFloat(last)) * unended(m.flights, m.medium, &reach.length, 1);
+        if (!(factor > 0.0)) continue;
+        factor *= ballShareOf(m, last, reach.length);
         const Vec3d value = m.perChannel([&](const auto& medium) { return reach.weight(medium); });
         any = deposit(value, leavingBall(m, reach, inFloat(last)), factor, frame, sums) || any;
     }
@@ -63,9 +65,12 @@ bool SliceEstimate::addBallGate(const SliceMeeting& m, int frame, FrameSums& sum
     if (!(lit.angles() > 0.0)) return false;
     const auto reach = lit.sample(m.random(0, frame));
     if (!(reach.length > 0.0)) return false;
-    const Vec3f last = inFloat((m.sight.at(reach.alongRay) - m.base) / reach.length);
+    const Vec3d towards = (m.sight.at(reach.alongRay) - m.base) / reach.length;
+    const Vec3f last = inFloat(towards);
     const double arrival = m.arrival(reach.length + m.sight.warp() * reach.alongRay);
-    const double factor = m.phase(last) * double(sensor_.weight(arrival));
+    const double factor = m.phase(last) * double(sensor_.weight(arrival)) *
+                          unended(m.flights, m.medium, &reach.length, 1) * ballShareOf(m, towards, reach.length);
+    if (!(factor > 0.0)) return false;
     const Vec3d value = m.perChannel([&](const auto& medium) { return lit.weight(reach, medium); });
     return deposit(value, leavingBall(m, reach, last), factor, frame, sums);
 }

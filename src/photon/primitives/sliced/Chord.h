@@ -63,6 +63,16 @@ struct Chord {
     }
 };
 
+/// (10) for three flights, (15) for four, without power, phase function and a box gate's width: sigma_s^K / J times the
+/// integral over the chord.
+template <typename Real, size_t K>
+Real chordWeight(const Chord<Real, K>& chord, const Coefficients<Real>& medium, Real before = 0,
+                 bool longFlights = true) {
+    const Real offset = longFlights ? chord.offsetSum() : 0, slope = longFlights ? chord.slopeSum() : 0;
+    return collisions(medium.sigmaS, int(K)) / chord.jacobian *
+           exponentialIntegral<Real>(medium.sigmaT, offset - before, slope + 1, chord.start, chord.end);
+}
+
 template <typename Real, size_t K>
 std::array<Real, K> unboundedFlights() {
     std::array<Real, K> longest;

@@ -6,6 +6,7 @@
 #include "tungsten/geometry/Shape.h"
 
 #include <array>
+#include <cmath>
 
 namespace tungsten::photon {
 
@@ -28,7 +29,8 @@ struct CollapsedFlights {
     int16_t medium;  ///< index of the medium the flights cross
     int16_t emitter; ///< a ball on a light: its index; otherwise -1
     FlightShape shape;
-    bool shared; ///< balls and volumes make the same paths: weighed by multiple importance sampling
+    bool shared : 1;       ///< balls and volumes make the same paths: weighed by multiple importance sampling
+    bool shortFlights : 1; ///< they end at random lengths (ShortFlights.h)
 
     [[nodiscard]] int flights() const { return std::max(int(shape), 1); }
     [[nodiscard]] double randomNumber(size_t which) const { return (double(random[which]) + 0.5) * 0x1p-16; }
@@ -44,6 +46,12 @@ struct CollapsedFlights {
         return {base, directions[0], {lengths[0], lengths[1]}, directions[1].x};
     }
 };
+/// Added to random numbers, so that frames differ.
+inline double frameRotation(int frame) {
+    constexpr double GoldenRatio = 0.6180339887498949;
+    const double turned = double(frame) * GoldenRatio;
+    return turned - std::floor(turned);
+}
 static_assert(sizeof(CollapsedFlights) == 104, "many are stored: no padding");
 
 } // namespace tungsten::photon

@@ -25,7 +25,7 @@ void FlightChain::fly(const Rules& rules, const ChainVertex& vertex, int medium,
         if (emitter_ >= 0 && rules.classes.lights) {
             if (!rules.worth) depositLight(rules, vertex, sampler, list);
         } else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1))
-            list.records.push_back(record(vertex, FlightShape::Beam, sampler));
+            list.records.push_back(record(rules, vertex, FlightShape::Beam, sampler));
     }
     if (rules.worth)
         branch(rules, sampler, list);
@@ -51,7 +51,7 @@ void FlightChain::depositLight(const Rules& rules, ChainVertex start, Sampler& s
     start.position = light_.position;
     start.power = Rgb(inverseProbability_);
     if (!counts(rules, start, medium_, 0, 1)) return;
-    CollapsedFlights ball = record(start, FlightShape::Ball, sampler);
+    CollapsedFlights ball = record(rules, start, FlightShape::Ball, sampler);
     ball.emitter = int16_t(emitter_);
     ball.directions[0] = light_.normal;
     ball.directions[1].x = light_.error;
@@ -64,7 +64,7 @@ void FlightChain::scatter(const Rules& rules, const ChainVertex& vertex, Sampler
     const int centre = flights_; // that many flights led here
     if (centre < rules.classes.firstBall || centre > rules.classes.lastBall) return;
     if (!counts(rules, vertex, medium_, centre, 1)) return;
-    CollapsedFlights ball = record(vertex, FlightShape::Ball, sampler);
+    CollapsedFlights ball = record(rules, vertex, FlightShape::Ball, sampler);
     ball.directions[1] = direction(centre - 1);
     if (centre >= 2) {
         const Vec3f& before = at(centre - 1).position;
@@ -82,7 +82,7 @@ void FlightChain::complete(const Rules& rules, int last, Sampler& sampler, Depos
         const int first = last - k + 1;
         if (bases == Bases::None || first < 0 || first >= flights_ || (bases == Bases::First && first > 0)) continue;
         if (!counts(rules, at(first), medium_, first, k)) continue;
-        CollapsedFlights flights = record(at(first), FlightShape(k), sampler);
+        CollapsedFlights flights = record(rules, at(first), FlightShape(k), sampler);
         for (int i = 0; i < k; ++i) flights.directions[size_t(i)] = direction(first + i);
         flights.shared = k == 3 && rules.classes.shared;
         thin(rules, flights, sampler, list);
@@ -97,7 +97,7 @@ void FlightChain::branch(const Rules& rules, Sampler& sampler, DepositList<Colla
         const Bases bases = rules.classes.flights[size_t(k)];
         if (bases == Bases::None || (bases == Bases::First && base > 0)) continue;
         if (!counts(rules, at(base), medium_, base, k)) continue;
-        CollapsedFlights flights = record(at(base), FlightShape(k), sampler);
+        CollapsedFlights flights = record(rules, at(base), FlightShape(k), sampler);
         flights.shared = k == 3 && rules.classes.shared;
         const float expected = rules.worth->expected(flights);
         flights.power = flights.power / expected;
@@ -150,7 +150,8 @@ bool FlightChain::counts(const Rules& rules, const ChainVertex& base, int medium
     return rules.arrival.mayContinue(base.position, base.time);
 }
 
-CollapsedFlights FlightChain::record(const ChainVertex& base, FlightShape shape, Sampler& sampler) const {
+CollapsedFlights FlightChain::record(const Rules& rules, const ChainVertex& base, FlightShape shape,
+                                     Sampler& sampler) const {
     CollapsedFlights flights{};
     flights.time = base.time;
     flights.base = base.position;
@@ -163,6 +164,7 @@ CollapsedFlights FlightChain::record(const ChainVertex& base, FlightShape shape,
     flights.medium = int16_t(medium_);
     flights.emitter = -1;
     flights.shape = shape;
+    flights.shortFlights = rules.classes.shortFlights;
     return flights;
 }
 

@@ -61,7 +61,8 @@ class FlightChain {
     /// Leaves a share of them, or as many as they are worth: none or one.
     static void thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
                      DepositList<CollapsedFlights>& list);
-    [[nodiscard]] CollapsedFlights record(const ChainVertex& base, FlightShape shape, Sampler& sampler) const;
+    [[nodiscard]] CollapsedFlights record(const Rules& rules, const ChainVertex& base, FlightShape shape,
+                                          Sampler& sampler) const;
     [[nodiscard]] const ChainVertex& at(int flight) const { return vertices_[size_t(flight % Most)]; }
     [[nodiscard]] const Vec3f& direction(int flight) const { return directions_[size_t(flight % Most)]; }
 

@@ -3,10 +3,22 @@
 #include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/ShortFlights.h"
 #include "photon/primitives/sliced/SliceMeeting.h"
 #include "photon/primitives/volumes/VolumeSlice.h"
 
 namespace tungsten::photon {
+
+namespace {
+
+template <size_t K>
+std::array<double, K> first(const std::array<double, 4>& all) {
+    std::array<double, K> some;
+    std::copy_n(all.begin(), K, some.begin());
+    return some;
+}
+
+} // namespace
 
 SliceEstimate::SliceEstimate(const Scene& scene, const transport::Sensor& sensor)
     : scene_(scene), sensor_(sensor), warped_(!scene.transport.cameraUnwarped), occluders_(!scene.primitives.empty()) {}
@@ -64,7 +76,8 @@ bool SliceEstimate::addPlane(const SliceMeeting& m, FrameSums& sums) const {
     const auto met = crossPlane(m.base, m.directions<2>(), m.sight);
     if (!met) return false;
     int frame = 0;
-    double factor = m.phase(m.flights.directions[1]);
+    double factor = m.phase(m.flights.directions[1]) * unended(m.flights, m.medium, met->lengths.data(), 2);
+    if (!(factor > 0.0)) return false;
     if (!sensor_.gate.steadyState) {
         const double arrival = m.arrival(met->flightLength() + m.sight.warp() * met->alongRay);
         frame = sensor_.gate.frameOf(arrival);
@@ -77,14 +90,16 @@ bool SliceEstimate::addPlane(const SliceMeeting& m, FrameSums& sums) const {
 }
 
 bool SliceEstimate::addVolume(const SliceMeeting& m, FrameSums& sums) const {
-    if (!m.flights.shared && !scene_.transport.gate.delta) return addVolumeChord(m, sums);
+    if (!scene_.transport.gate.delta) return addVolumeChord(m, sums);
     return eachSlice(m,
                      [&](int frame, double time, double width) { return addVolumeSlice(m, frame, time, width, sums); });
 }
 
 bool SliceEstimate::addVolumeChord(const SliceMeeting& m, FrameSums& sums) const {
-    const auto whole = volumeChord(m.base, m.directions<3>(), m.sight);
+    auto whole = volumeChord(m.base, m.directions<3>(), m.sight);
     if (!whole) return false;
+    if (m.flights.shortFlights) whole->keepFlights(first<3>(flightEnds(m.flights, m.medium)));
+    if (whole->empty()) return false;
     const double factor = m.phase(m.flights.directions[2]);
     if (sensor_.gate.steadyState) return addChord(m, *whole, 0, m.random(0, 0), factor, nullptr, sums);
     const TimeGate& gate = sensor_.gate;
@@ -101,50 +116,64 @@ bool SliceEstimate::addVolumeChord(const SliceMeeting& m, FrameSums& sums) const
     return any;
 }
 
+double SliceEstimate::ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+                            const std::array<double, 3>& lengths) const {
+    const double pdfs = double(pdfFlight(m.medium, float(lengths[0]))) * double(pdfFlight(m.medium, float(lengths[1])));
+    const double phasePdf = double(m.medium.phase.pdf(inFloat(w[1]), inFloat(w[2])));
+    return SharedPath<double>{w, lengths[2], phasePdf, pdfs}.ratio(m.sight.direction, warped_);
+}
+
 template <size_t K>
 bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
                              const ArrivalLine* arrival, FrameSums& sums) const {
     if (chord.empty()) return false;
-    if (occluders_ || (sensor_.response && arrival)) {
+    const double mean = double(meanComponent(m.medium.sigmaT())), ended = m.flights.shortFlights ? mean : 0.0;
+    // The integrand is e^{-(first + fall t)}: of short flights it lacks what their ends stand for.
+    const auto fallOf = [&](double sigmaT) { return sigmaT * (chord.slopeSum() + 1.0) - ended * chord.slopeSum(); };
+    const auto firstOf = [&](double sigmaT) { return (sigmaT - ended) * chord.offsetSum(); };
+    const auto integral = [&](double sigmaT) {
+        return exponentialIntegral(1.0, firstOf(sigmaT), fallOf(sigmaT), chord.start, chord.end) / chord.jacobian;
+    };
+    if (occluders_ || m.flights.shared || (sensor_.response && arrival)) {
         // Drawn by the integrand of the mean coefficient; colours are weighed below.
-        const double sigma = double(meanComponent(m.medium.sigmaT())), fall = sigma * (chord.slopeSum() + 1.0);
-        const double length = chord.end - chord.start, z = fall * length;
+        const double fall = fallOf(mean), length = chord.end - chord.start, z = fall * length;
         const double along = std::abs(z) < 1e-8 ? u * length : -std::log1p(u * std::expm1(-z)) / fall;
         const double t = std::min(chord.start + along, chord.end);
         std::array<double, K> lengths;
         for (size_t i = 0; i < K; ++i) lengths[i] = std::max(chord.length(i, t), 0.0);
         if (!unoccluded(m.flights, lengths.data(), int(K))) return false;
+        if constexpr (K == 3) {
+            if (m.flights.shared) factor *= volumeShare(ratio(m, m.directions<3>(), lengths));
+        }
         if (arrival) factor *= double(sensor_.weight(arrival->offset + arrival->slope * t));
         if (!m.medium.isGrey()) {
-            const double exponent = chord.offsetSum() + (chord.slopeSum() + 1.0) * t;
-            const double drawn = chordWeight(chord, Coefficients<double>{1.0, sigma}) * std::exp(sigma * exponent);
-            const Vec3d value = m.perChannel(
-                [&](const auto& c) { return collisions(c.sigmaS, int(K)) * drawn * std::exp(-c.sigmaT * exponent); });
+            const double drawn = integral(mean) * std::exp(firstOf(mean) + fall * t);
+            const Vec3d value = m.perChannel([&](const auto& c) {
+                return collisions(c.sigmaS, int(K)) * drawn * std::exp(-firstOf(c.sigmaT) - fallOf(c.sigmaT) * t);
+            });
             return deposit(value, m.flights.power, factor, frame, sums);
         }
     }
-    const Vec3d value = m.perChannel([&](const auto& medium) { return chordWeight(chord, medium); });
+    const Vec3d value = m.perChannel([&](const auto& c) { return collisions(c.sigmaS, int(K)) * integral(c.sigmaT); });
     return deposit(value, m.flights.power, factor, frame, sums);
 }
 
 bool SliceEstimate::addVolumeSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
     const auto w = m.directions<3>();
     const auto slice = sliceVolume(m.base, w, m.sight, m.residual(time));
-    if (!slice || !unoccluded(m.flights, slice->lengths.data(), 3)) return false;
-    double factor = m.phase(m.flights.directions[2]) * m.speed * width;
-    if (m.flights.shared) {
-        const auto& t = slice->lengths;
-        const double pdfs = double(pdfFlight(m.medium, float(t[0]))) * double(pdfFlight(m.medium, float(t[1])));
-        const double phasePdf = double(m.medium.phase.pdf(m.flights.directions[1], m.flights.directions[2]));
-        factor *= volumeShare(SharedPath<double>{w, t[2], phasePdf, pdfs}.ratio(m.sight.direction, warped_));
-    }
+    if (!slice) return false;
+    double factor = unended(m.flights, m.medium, slice->lengths.data(), 3);
+    if (!(factor > 0.0) || !unoccluded(m.flights, slice->lengths.data(), 3)) return false;
+    factor *= m.phase(m.flights.directions[2]) * m.speed * width;
+    if (m.flights.shared) factor *= volumeShare(ratio(m, w, slice->lengths));
     const Vec3d value = m.perChannel([&](const auto& medium) { return slice->weight(medium); });
     return deposit(value, m.flights.power, factor, frame, sums);
 }
 
 bool SliceEstimate::addHypervolume(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
-    const auto chord = sliceHypervolume(m.base, m.directions<4>(), m.sight, m.residual(time));
+    auto chord = sliceHypervolume(m.base, m.directions<4>(), m.sight, m.residual(time));
     if (!chord) return false;
+    if (m.flights.shortFlights) chord->keepFlights(flightEnds(m.flights, m.medium));
     const double factor = m.phase(m.flights.directions[3]) * m.speed * width;
     return addChord(m, *chord, frame, m.random(1, frame), factor, nullptr, sums);
 }

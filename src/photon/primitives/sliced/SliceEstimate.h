@@ -38,10 +38,16 @@ class SliceEstimate {
     bool addBall(const SliceMeeting& m, FrameSums& sums) const;
     bool addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
     bool addBallGate(const SliceMeeting& m, int frame, FrameSums& sums) const;
-    /// Where something may be in the way, or weigh times (`arrival`; may be null): at a point drawn by the integrand.
+    /// Where something may be in the way, weigh times (`arrival`; may be null) or share the path: at a point drawn by
+    /// the integrand.
     template <size_t K>
     bool addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
                   const ArrivalLine* arrival, FrameSums& sums) const;
+    /// (16) of a path that balls and volumes share, for one length and for a gate alike.
+    [[nodiscard]] double ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+                               const std::array<double, 3>& lengths) const;
+    /// As what a ball that shares its paths counts; 1 for others.
+    [[nodiscard]] double ballShareOf(const SliceMeeting& m, const Vec3d& last, double length) const;
     /// Power that leaves a ball's centre along `last`, per steradian; 0 where something is in the way.
     [[nodiscard]] Rgb leavingBall(const SliceMeeting& m, const BallReach<double>& reach, const Vec3f& last) const;
     /// At the delta gate, or at a random time of every frame: slice(frame, time, width).

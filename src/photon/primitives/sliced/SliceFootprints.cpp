@@ -5,43 +5,65 @@
 
 namespace tungsten::photon {
 
-SliceFootprints::SliceFootprints(const Scene& scene, const TimeGate& gate, double scale)
-    : scene_(scene), gate_(gate), scale_(scale), warped_(!scene.transport.cameraUnwarped),
-      delta_(scene.transport.gate.delta) {
+SliceFootprints::SliceFootprints(const Scene& scene, const transport::Sensor& sensor, double scale)
+    : scene_(scene), gate_(sensor.gate), scale_(scale), warped_(!scene.transport.cameraUnwarped),
+      delta_(scene.transport.gate.delta), weighed_(sensor.response != nullptr) {
     if (scene.camera.hasSinglePosition()) footprint_.emplace(scene.camera);
 }
 
-std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& flights) const {
+std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& flights,
+                                                   std::span<const float> shares) const {
     const Medium& medium = scene_.media[size_t(flights.medium)];
-    const TimeGate& gate = gate_;
-    const bool blurred = delta_ && flights.blurredInTime();
-    const double until = delta_ && !blurred ? scene_.transport.gate.start : gate.end();
-    const double left = gate.steadyState ? std::numeric_limits<double>::infinity()
-                                         : (until - flights.time) * double(medium.speedOfLight);
-    const float length = float(std::min(left, double(visibleReach(medium))));
+    const auto speed = double(medium.speedOfLight);
+    LaneTimes times = timesOf(flights, speed);
+    times.shares = shares;
+    const float length = std::min(times.start(times.frames), visibleReach(medium));
     if (!(length > 0.0f)) return std::nullopt;
     const auto area = areaOf(flights, length);
     if (!area) return std::nullopt;
-    const bool ball = flights.shape == FlightShape::Ball;
+    const bool ball = flights.shape == FlightShape::Ball, occluders = !scene_.primitives.empty();
     const auto& w = flights.directions;
     const PointEmitter* light =
         flights.emitter >= 0 ? std::get_if<PointEmitter>(&scene_.emitters[size_t(flights.emitter)].model) : nullptr;
-    ImageSlice s{{&flights, VolumeLanes({w[0], w[1], w[2]}), medium.phase.g(), medium.sigmaT().x,
-                  ball ? 0.0f : medium.phase.pdf(w[1], w[2]), 1.0f, light != nullptr},
-                 *area,
-                 float(left),
-                 flights.power,
-                 blurred ? float(gate.frameWidth * double(medium.speedOfLight)) : 0.0f,
-                 ball,
-                 false};
-    s.inLanes = delta_ && (ball || flights.shape == FlightShape::Volume) && (flights.emitter < 0 || light) &&
-                medium.isGrey() && !std::holds_alternative<Rayleigh>(medium.phase.model);
-    const double sigmaS = double(medium.sigmaS().x);
-    s.power = flights.power *
-              float(scale_ * double(medium.speedOfLight) * gate.frameWidth * collisions(sigmaS, flights.flights()));
+    LaneRecord record{&flights,
+                      times,
+                      medium.sigmaT(),
+                      medium.isGrey(),
+                      warped_,
+                      medium.phase.g(),
+                      occluders ? flights.reach : Infinity,
+                      occluders || flights.shared,
+                      ball ? 0.0f : medium.phase.pdf(w[1], w[2]),
+                      1.0f,
+                      light != nullptr};
+    if (ball) record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
+    ImageSlice s{record, kernelOf(flights), *area, flights.power, false};
+    s.inLanes = !weighed_ && medium.phase.isHenyeyGreenstein() && (flights.emitter < 0 || light);
+    const double perLength = atLengths(flights) ? speed * gate_.frameWidth : 1.0;
+    for (int k = 0; k < 3; ++k)
+        s.power[k] *= float(scale_ * perLength * collisions(double(medium.sigmaS()[k]), flights.flights()));
     if (light) s.power = s.power * light->intensity;
-    if (ball) s.record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
     return s;
+}
+
+bool SliceFootprints::atLengths(const CollapsedFlights& flights) const {
+    if (flights.shape == FlightShape::Hypervolume) return true;
+    return delta_ && !flights.blurredInTime();
+}
+
+LaneTimes SliceFootprints::timesOf(const CollapsedFlights& flights, double speed) const {
+    if (gate_.steadyState) return {0.0f, std::numeric_limits<float>::max(), 1};
+    if (delta_ && !flights.blurredInTime())
+        return {float((scene_.transport.gate.start - flights.time) * speed), 0.0f, 1};
+    return {float((gate_.start - flights.time) * speed), float(gate_.frameWidth * speed), gate_.frames};
+}
+
+SliceKernel SliceFootprints::kernelOf(const CollapsedFlights& flights) const {
+    if (flights.shape == FlightShape::Plane) return PlaneLanes(flights);
+    if (flights.shape == FlightShape::Hypervolume) return HypervolumeLanes(flights);
+    if (flights.shape == FlightShape::Volume)
+        return atLengths(flights) ? SliceKernel(VolumeSliceLanes(flights)) : SliceKernel(VolumeChordLanes(flights));
+    return atLengths(flights) ? SliceKernel(BallSliceLanes()) : SliceKernel(BallGateLanes());
 }
 
 std::optional<PixelArea> SliceFootprints::areaOf(const CollapsedFlights& flights, float length) const {

@@ -1,40 +1,54 @@
 #pragma once
 // Records of collapsed flights as images see them.
 
-#include "photon/primitives/sliced/SliceWeights.h"
+#include "photon/primitives/balls/BallLanes.h"
+#include "photon/primitives/hypervolumes/HypervolumeLanes.h"
+#include "photon/primitives/planes/PlaneLanes.h"
+#include "photon/primitives/volumes/VolumeLanes.h"
 #include "photon/raster/ImageFootprint.h"
+#include "transport/Sensor.h"
 
 #include "tungsten/scene/Scene.h"
 
+#include <variant>
+
 namespace tungsten::photon {
+
+/// What a register of rays meets of a record: meet(record, rays, emit).
+using SliceKernel =
+    std::variant<PlaneLanes, VolumeSliceLanes, VolumeChordLanes, HypervolumeLanes, BallSliceLanes, BallGateLanes>;
 
 /// A record as the image sees it.
 struct ImageSlice {
     LaneRecord record;
+    SliceKernel kernel;
     PixelArea area;
-    float residual;     ///< path length left at the base, at the delta gate
-    Rgb power;          ///< with the collapsed collisions
-    float width;        ///< of the temporal kernel, as a length: 0 for what meets the gate itself
-    bool ball, inLanes; ///< inLanes: evaluated a register at a time; otherwise ray by ray
+    Rgb power;    ///< with the collapsed collisions
+    bool inLanes; ///< evaluated a register at a time; otherwise ray by ray
 };
 
 /// For one pass's gate and records.
 class SliceFootprints {
   public:
-    /// `gate`: the pass's; `scale`: on every power.
-    SliceFootprints(const Scene& scene, const TimeGate& gate, double scale);
+    /// `sensor`: with the pass's gate; `scale`: on every power.
+    SliceFootprints(const Scene& scene, const transport::Sensor& sensor, double scale);
 
-    /// None if no ray can meet it in time.
-    [[nodiscard]] std::optional<ImageSlice> prepare(const CollapsedFlights& flights) const;
+    /// None if no ray can meet it in time. `shares`: by frame (FrameShares).
+    [[nodiscard]] std::optional<ImageSlice> prepare(const CollapsedFlights& flights,
+                                                    std::span<const float> shares) const;
 
   private:
+    /// The gate is met at one length of each frame, or at the delta gate; otherwise inside frames.
+    [[nodiscard]] bool atLengths(const CollapsedFlights& flights) const;
+    [[nodiscard]] LaneTimes timesOf(const CollapsedFlights& flights, double speed) const;
+    [[nodiscard]] SliceKernel kernelOf(const CollapsedFlights& flights) const;
     [[nodiscard]] std::optional<PixelArea> areaOf(const CollapsedFlights& flights, float length) const;
 
     const Scene& scene_;
     TimeGate gate_;
     double scale_;
     std::optional<ImageFootprint> footprint_; ///< of pinholes; other cameras see everything everywhere
-    bool warped_, delta_;
+    bool warped_, delta_, weighed_;           ///< weighed_: times by a response
 };
 
 } // namespace tungsten::photon

@@ -1,11 +1,25 @@
 #include "photon/primitives/sliced/SliceGather.h"
 
+#include "photon/primitives/sliced/ShortFlights.h"
+
 namespace tungsten::photon {
 
 namespace {
 
+/// What flights that end can reach: a parallelepiped's box.
+EmbreeSlices::Box reachedByShort(const CollapsedFlights& flights, const std::array<double, 4>& ends, float length) {
+    EmbreeSlices::Box box{flights.base, flights.base};
+    for (int i = 0; i < flights.flights(); ++i) {
+        const Vec3f flight = flights.directions[size_t(i)] * std::min(float(ends[size_t(i)]), length);
+        for (int axis = 0; axis < 3; ++axis) (flight[axis] < 0.0f ? box.low : box.high)[axis] += flight[axis];
+    }
+    return box;
+}
+
 /// Everything that flights of this total length from the base can reach: the hull of their ends, or a sphere.
-EmbreeSlices::Box reached(const CollapsedFlights& flights, float length) {
+EmbreeSlices::Box reached(const CollapsedFlights& flights, const Medium& medium, float length) {
+    const std::array<double, 4> ends = flightEnds(flights, medium);
+    if (flights.shape == FlightShape::Ball) length = std::min(length, float(ends[0]));
     EmbreeSlices::Box box{flights.base, flights.base};
     const auto include = [&](const Vec3f& point) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -18,6 +32,13 @@ EmbreeSlices::Box reached(const CollapsedFlights& flights, float length) {
         include(flights.base + Vec3f(length));
     } else {
         for (int i = 0; i < flights.flights(); ++i) include(flights.base + flights.directions[size_t(i)] * length);
+    }
+    if (flights.shortFlights && flights.shape != FlightShape::Ball) {
+        const EmbreeSlices::Box other = reachedByShort(flights, ends, length);
+        for (int axis = 0; axis < 3; ++axis) {
+            box.low[axis] = std::max(box.low[axis], other.low[axis]);
+            box.high[axis] = std::min(box.high[axis], other.high[axis]);
+        }
     }
     const Vec3f margin = (box.high - box.low) * 1e-5f;
     return {box.low - margin, box.high + margin};
@@ -47,7 +68,7 @@ SliceGather::SliceGather(const Scene& scene, const transport::Sensor& sensor,
                                              : (gate.end() - flights.time) * double(medium.speedOfLight);
         const float length = float(std::min(left, double(visibleReach(medium))));
         if (!(length > 0.0f)) continue;
-        boxes.push_back(reached(flights, length));
+        boxes.push_back(reached(flights, medium, length));
         slices_.push_back(&flights);
     }
     if (!slices_.empty()) structure_ = std::make_unique<EmbreeSlices>(std::move(boxes));

@@ -32,8 +32,9 @@ struct SliceClasses {
     bool beams = false;               ///< m = 1: elsewhere
     std::array<Bases, 5> flights{};   ///< by number of flights, 2 to 4: First: m is that number, All: or more
     int firstBall = 0, lastBall = -1; ///< medium vertices of the chain with a ball: m = vertex + 1
-    float share = 1.0f;  ///< of what is not a beam that is left, at random; its power makes up for the rest
-    bool shared = false; ///< m >= 3: balls and volumes together
+    float share = 1.0f;        ///< of what is not a beam that is left, at random; its power makes up for the rest
+    bool shared = false;       ///< m >= 3: balls and volumes together
+    bool shortFlights = false; ///< flights end at random lengths
 
     /// `lowOrders`: with m = 1. `onlyShared`: m >= 3 alone, which balls and volumes both make.
     static SliceClasses of(SliceKind kind, bool steadyState, bool lowOrders, bool onlyShared);

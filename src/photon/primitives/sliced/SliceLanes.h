@@ -1,7 +1,10 @@
 #pragma once
-// Slices of volumes and balls for a register of rays at a time: VolumeSlice.h and BallSlice.h in floats.
+// A register of camera rays and what a sliced primitive brings to it: what the primitives' kernels in floats share.
 
+#include "photon/primitives/sliced/CollapsedFlights.h"
 #include "photon/raster/Registers.h"
+
+#include <span>
 
 namespace tungsten::photon {
 
@@ -14,6 +17,7 @@ struct Lanes3 {
     Lanes3(const Batch& x_, const Batch& y_, const Batch& z_) : x(x_), y(y_), z(z_) {}
     explicit Lanes3(const Vec3f& v) : x(v.x), y(v.y), z(v.z) {}
     [[nodiscard]] Batch dot(const Lanes3& o) const { return x * o.x + y * o.y + z * o.z; }
+    [[nodiscard]] Batch dot(const Vec3f& o) const { return x * o.x + y * o.y + z * o.z; }
     [[nodiscard]] Lanes3 cross(const Lanes3& o) const {
         return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x};
     }
@@ -32,141 +36,121 @@ inline Batch henyeyGreenstein(float g, const Lanes3& before, const Lanes3& after
     return (1.0f - strength) * (1.0f + strength) * 0.25f * InvPi / (d * xsimd::sqrt(d));
 }
 
-/// Rays, relative to a record's base, and the path lengths left there.
-struct LaneRays {
-    Lanes3 toOrigin, direction; ///< toOrigin: from the base
-    Batch residual;
-};
+/// For p = x a + y b: x = p . first, y = p . second.
+struct DualPair {
+    Vec3f normal, first{0.0f}, second{0.0f};
 
-/// Rays that meet a slice.
-struct LaneSlice {
-    LaneMask met;
-    Batch t1, t2, t3, alongRay, jacobian;
+    DualPair(const Vec3f& a, const Vec3f& b) : normal(a.cross(b)) {
+        const float square = normal.length2();
+        if (!(square > 0.0f)) return;
+        first = b.cross(normal) / square;
+        second = normal.cross(a) / square;
+    }
 };
 
 /// Below it a float determinant is rounding (LeastDeterminant).
 inline constexpr float LeastLaneDeterminant = 1e-4f;
 
-/// A volume's three directions, and what they have in common for every ray.
-class VolumeLanes {
-  public:
-    explicit VolumeLanes(const std::array<Vec3f, 3>& w) : w_(w) {
-        const Vec3f a = w[0] - w[2], b = w[1] - w[2];
-        normal_ = a.cross(b);
-        const float square = normal_.length2();
-        // t1 = p . first, t2 = p . second for p = t1 a + t2 b.
-        if (square > 0.0f) {
-            first_ = b.cross(normal_) / square;
-            second_ = normal_.cross(a) / square;
-        }
-    }
-    /// |det|, (8)
-    [[nodiscard]] Batch jacobian(const Lanes3& ray, bool warped) const {
-        return xsimd::abs(warped ? jacobianWarped(ray) : Lanes3(normal_).dot(ray));
-    }
-    [[nodiscard]] LaneSlice meet(const LaneRays& rays, bool warped) const {
-        return warped ? meetWarped(rays) : meetUnwarped(rays);
-    }
+/// A gate as path lengths left at a record's base.
+struct LaneTimes {
+    float first = 0.0f, width = 0.0f; ///< start and length of frame 0; width 0: at one length
+    int frames = 1;
+    std::span<const float> shares{}; ///< factors on the power, by frame (FrameShares)
 
-  private:
-    [[nodiscard]] Batch jacobianWarped(const Lanes3& c) const {
-        return (Lanes3(w_[0]) + c).dot((Lanes3(w_[1]) + c).cross(Lanes3(w_[2]) + c));
-    }
-    /// The triangle of base + residual w.
-    [[nodiscard]] LaneSlice meetUnwarped(const LaneRays& rays) const {
-        const Lanes3 r = rays.toOrigin - Lanes3(w_[2]) * rays.residual, normal(normal_);
-        const Batch across = normal.dot(rays.direction), t = -(normal.dot(r) / across);
-        const Lanes3 p = r + rays.direction * t;
-        LaneSlice s{rays.residual > 0.0f, p.dot(Lanes3(first_)), p.dot(Lanes3(second_)), Batch(0.0f), t,
-                    xsimd::abs(across)};
-        s.t3 = rays.residual - s.t1 - s.t2;
-        s.met = s.met && s.jacobian > LeastLaneDeterminant && s.t1 >= 0.0f && s.t2 >= 0.0f && s.t3 >= 0.0f;
-        return s;
-    }
-    [[nodiscard]] LaneSlice meetWarped(const LaneRays& rays) const {
-        const Lanes3 &c = rays.direction, a = Lanes3(w_[0]) + c, b = Lanes3(w_[1]) + c, d = Lanes3(w_[2]) + c;
-        const Lanes3 r = rays.toOrigin + c * rays.residual, first = b.cross(d);
-        const Batch determinant = a.dot(first), inverse = 1.0f / determinant;
-        LaneSlice s{
-            rays.residual > 0.0f, r.dot(first) * inverse, r.dot(d.cross(a)) * inverse, r.dot(a.cross(b)) * inverse,
-            Batch(0.0f),          xsimd::abs(determinant)};
-        s.alongRay = rays.residual - s.t1 - s.t2 - s.t3;
-        const Lanes3 miss =
-            Lanes3(w_[0]) * s.t1 + Lanes3(w_[1]) * s.t2 + Lanes3(w_[2]) * s.t3 - rays.toOrigin - c * s.alongRay;
-        constexpr float Accuracy = 1e-4f;
-        s.met = s.met && s.jacobian > LeastLaneDeterminant && s.t1 >= 0.0f && s.t2 >= 0.0f && s.t3 >= 0.0f &&
-                miss.dot(miss) <= Accuracy * Accuracy * rays.residual * rays.residual;
-        return s;
-    }
-
-    std::array<Vec3f, 3> w_;
-    Vec3f normal_, first_{0.0f}, second_{0.0f};
+    [[nodiscard]] float factor(int frame) const { return shares.empty() ? 1.0f : shares[size_t(frame)]; }
+    [[nodiscard]] float start(int frame) const { return first + float(frame) * width; }
 };
 
-/// A ball's reaches on a register of rays: `near` and `far` for a sphere, near alone for an ellipsoid.
-struct BallLanes {
-    Batch length, nearRay, farRay, jacobian;
+/// A register of rays, relative to a record's base.
+struct LaneRays {
+    Lanes3 toOrigin, direction; ///< toOrigin: from the base
+    Batch start, end;           ///< the piece that is looked at
+    LaneMask seen;              ///< rays that have it
+    Batch rotation;             ///< of random numbers
+
+    /// Of the base from the ray's line, and from its origin.
+    [[nodiscard]] Batch distance() const {
+        const Lanes3 off = toOrigin.cross(direction);
+        return xsimd::sqrt(off.dot(off));
+    }
+    [[nodiscard]] Batch originDistance() const { return xsimd::sqrt(toOrigin.dot(toOrigin)); }
+};
+
+/// A record for registers of rays, in a medium with Henyey-Greenstein scattering.
+struct LaneRecord {
+    const CollapsedFlights* flights;
+    LaneTimes times;
+    Rgb sigmaT;
+    bool grey;
+    bool warped; ///< the ray's length counts in times
+    float g;
+    float reach;      ///< of the first flight, if something can be in the way
+    bool drawsPoints; ///< on chords: something can be in the way, or balls share the path
+    float phasePdf;   ///< a volume: of its third direction
+    float pdfs;       ///< a ball: of the two flights that led to it
+    bool isotropic;   ///< a ball on a light that shines alike everywhere
+
+    [[nodiscard]] float warp() const { return warped ? 1.0f : 0.0f; }
+    /// In [0, 1): SliceMeeting::random.
+    [[nodiscard]] Batch random(size_t which, const LaneRays& rays, int frame) const {
+        const Batch u = rays.rotation + float(flights->randomNumber(which) + frameRotation(frame));
+        return xsimd::min(u - xsimd::floor(u), Batch(0x1.fffffep-1f));
+    }
+    /// Path length left at the base: a random one of the frame's, or the only one.
+    [[nodiscard]] Batch residual(const LaneRays& rays, int frame) const {
+        if (times.width == 0.0f) return Batch(times.first);
+        return times.start(frame) + random(0, rays, frame) * times.width;
+    }
+    /// Phase function from the last flight to the camera.
+    [[nodiscard]] Batch towardsCamera(const Lanes3& last, const LaneRays& rays) const {
+        return henyeyGreenstein(g, last, -rays.direction);
+    }
+    /// Probability density of a free flight: the mean of the channels'.
+    [[nodiscard]] Batch flightPdf(const Batch& t) const {
+        if (grey) return sigmaT.x * xsimd::exp(-sigmaT.x * t);
+        Batch sum(0.0f);
+        for (int k = 0; k < 3; ++k) sum += sigmaT[k] * xsimd::exp(-sigmaT[k] * t);
+        return sum * (1.0f / 3.0f);
+    }
+};
+
+/// Mean of e^{-x} from 0 to z >= 0.
+inline Batch meanOfFall(const Batch& z) {
+    return xsimd::select(z < 0.02f, 1.0f - z * (0.5f - z * (1.0f / 6.0f)), (1.0f - xsimd::exp(-z)) / z);
+}
+
+/// What a register of rays meets of a record: a point of each ray, or a chord that is integrated over.
+struct LaneReach {
     LaneMask met;
+    Batch alongRay;                 ///< the point, or the chord's end where light is brightest
+    Batch length;                   ///< of the flights and the ray up to there: they let e^{-sigma_t length} through
+    Batch factor;                   ///< all the rest but power and collapsed collisions
+    std::array<Batch, 4> lengths{}; ///< of the flights, as shadow rays need them
+    bool integrated = false;
+    Batch chord = Batch(0.0f), fall = Batch(0.0f); ///< if integrated: its length, and how fast `length` grows along it
 
-    BallLanes(const LaneRays& rays, bool warped) {
-        const Lanes3 e = -rays.toOrigin;
-        const Batch foot = e.dot(rays.direction);
-        const Batch& s = rays.residual;
-        if (warped) {
-            const Batch distance = xsimd::sqrt(e.dot(e));
-            const Lanes3 d = rays.direction * s - e;
-            nearRay = farRay = (s - distance) * (s + distance) / (2.0f * (s - foot));
-            length = s - nearRay;
-            jacobian = 0.5f * d.dot(d);
-            met = s > distance && jacobian > 0.0f;
-        } else {
-            const Lanes3 off = e.cross(rays.direction);
-            const Batch h = xsimd::sqrt(off.dot(off));
-            const Batch half = xsimd::sqrt(xsimd::max((s - h) * (s + h), Batch(0.0f)));
-            length = s;
-            nearRay = foot - half;
-            farRay = foot + half;
-            jacobian = s * half;
-            met = s > h && jacobian > 0.0f;
-        }
+    /// Without the part of the ray before `start`.
+    [[nodiscard]] Batch weight(float sigmaT, const Batch& start) const {
+        const Batch w = factor * xsimd::exp(-sigmaT * (length - start));
+        return integrated ? w * chord * meanOfFall(sigmaT * fall * chord) : w;
     }
 };
 
-/// A point of a narrow gate for every ray of a register, as BallGate draws it; the piece of the ray that counts is left
-/// to the caller to test.
-struct BallGateLanes {
-    Batch length, alongRay;
-    Batch density; ///< angles over distance from the ray
-    LaneMask met;
-
-    /// `rays.residual`: at the gate's end; `width`: of the gate, a length; u in [0, 1).
-    BallGateLanes(const LaneRays& rays, float width, const Batch& u, bool warped) {
-        const Lanes3 e = -rays.toOrigin, off = e.cross(rays.direction);
-        const Batch foot = e.dot(rays.direction), h = xsimd::sqrt(off.dot(off));
-        const Batch late = rays.residual, soon = late - width;
-        Batch from, to, drawn = u;
-        if (warped) {
-            const Batch distance = xsimd::sqrt(e.dot(e));
-            const auto turn = [&](const Batch& s) {
-                return xsimd::select(s > distance, (s - distance) * (s + distance) / (2.0f * (s - foot)), Batch(0.0f));
-            };
-            from = turn(soon) - foot;
-            to = turn(late) - foot;
-        } else {
-            // Both halves of the chord alike.
-            const auto half = [&](const Batch& s) { return xsimd::sqrt(xsimd::max((s - h) * (s + h), Batch(0.0f))); };
-            from = half(xsimd::max(soon, Batch(0.0f)));
-            to = half(late);
-            drawn = xsimd::abs(2.0f * u - 1.0f); // from the chord's near end to its far one
-        }
-        const Batch angle = xsimd::atan2(h * (to - from), h * h + from * to), slope = xsimd::tan(drawn * angle);
-        const Batch beside = h * (from + h * slope) / (h - from * slope);
-        met = late > 0.0f && to > from && h > 0.0f;
-        if (!warped) met = met && late > h;
-        length = xsimd::sqrt(h * h + beside * beside);
-        alongRay = foot + (warped ? beside : xsimd::select(u < 0.5f, -beside, beside));
-        density = (warped ? angle : 2.0f * angle) / h;
-    }
+/// Consecutive frames.
+struct FrameRange {
+    int first, last;
 };
+
+/// Those in which something that is left between `least` and `most` of any of the lanes `met` falls.
+inline FrameRange framesOf(const LaneTimes& times, const LaneMask& met, const Batch& least, const Batch& most) {
+    if (times.frames == 1) return {0, 0};
+    const float soonest = -darts::lanes::most(xsimd::select(met, -least, Batch(-Infinity)));
+    const float latest = darts::lanes::most(xsimd::select(met, most, Batch(-Infinity)));
+    const auto frame = [&](float length) {
+        return int(std::clamp((length - times.first) / times.width, -1.0f, float(times.frames)));
+    };
+    if (!(latest >= times.first)) return {0, -1};
+    return {std::max(frame(soonest), 0), std::min(frame(latest), times.frames - 1)};
+}
 
 } // namespace tungsten::photon

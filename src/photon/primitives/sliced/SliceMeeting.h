@@ -18,9 +18,9 @@ inline Vec3f inFloat(const Vec3d& v) {
     return {float(v.x), float(v.y), float(v.z)};
 }
 
-/// In [0, 1), different for every ray and frame.
-inline double rayRotation(const Vec3f& d, int frame) {
-    uint32_t hash = 0x9e3779b9u * uint32_t(frame + 1);
+/// In [0, 1), different for every ray.
+inline double rayRotation(const Vec3f& d) {
+    uint32_t hash = 0x9e3779b9u;
     for (const float f : {d.x, d.y, d.z}) {
         hash ^= std::bit_cast<uint32_t>(f);
         hash *= 0x85ebca6bu;
@@ -50,8 +50,8 @@ struct SliceMeeting {
     [[nodiscard]] double arrival(double length) const { return start + length / speed; }
     /// In [0, 1), one of two numbers of the record, turned by ray and frame.
     [[nodiscard]] double random(size_t which, int frame) const {
-        const double u = flights.randomNumber(which) + rayRotation(segment.direction, frame);
-        return u < 1.0 ? u : u - 1.0;
+        const double u = flights.randomNumber(which) + rayRotation(segment.direction) + frameRotation(frame);
+        return u - std::floor(u);
     }
     [[nodiscard]] double phase(const Vec3f& last) const { return double(medium.phase.eval(last, -segment.direction)); }
     /// weight(coefficients) of every channel.

@@ -1,7 +1,9 @@
 #include "photon/primitives/sliced/SliceSplat.h"
 
+#include "photon/Tuning.h"
 #include "photon/primitives/beams/BeamSplat.h"
-#include "photon/primitives/sliced/SliceEstimate.h"
+#include "photon/primitives/sliced/FrameShares.h"
+#include "photon/primitives/sliced/SliceDoses.h"
 #include "photon/primitives/sliced/SliceFootprints.h"
 #include "photon/primitives/sliced/SliceGather.h"
 #include "photon/raster/ImageBand.h"
@@ -16,34 +18,27 @@ namespace {
 struct BandRays {
     std::vector<float> x, y, z;  ///< origins; empty: all the record's
     std::vector<float> rotation; ///< of random numbers
-    /// With occluders: what is drawn is looked at in doses, each of them tested once.
-    std::vector<float> dose, filled;
-    bool dosed = false;
-};
-
-/// Where flights of a register of rays end.
-struct LaneFlights {
-    std::array<Batch, 3> lengths;
-    Batch alongRay;
+    SliceDoses doses;            ///< with occluders
 };
 
 constexpr size_t PilotStep = 8;
-constexpr float DosesPerRay = 64.0f;
 
 class Splatter {
   public:
     Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale, Film& film)
         : scene_(scene), sensor_(sensor), record_(record), estimate_(scene, sensor), scale_(scale), film_(film),
-          warped_(!scene.transport.cameraUnwarped), occluders_(!scene.primitives.empty()) {}
+          occluders_(!scene.primitives.empty()) {}
 
     uint64_t draw(const ImageSlice& slice, ImageBand& band, BandRays& rays) const {
-        uint64_t gathered = 0;
         const auto shows = [&](const BandPiece& piece) { return piece.mixed || shownIn(slice, piece); };
         if (std::none_of(band.pieces.begin(), band.pieces.end(), shows)) return 0;
-        for (int y = std::max(slice.area.top, band.firstRow); y <= std::min(slice.area.bottom, band.lastRow); ++y)
-            for (int x = slice.area.left; x <= slice.area.right; x += Lanes)
-                gathered += slice.inLanes ? drawLanes(slice, band, rays, x, y)
-                                          : drawRays(slice, x, y, std::min(x + Lanes - 1, slice.area.right));
+        if (!slice.inLanes) return drawRays(slice, band);
+        uint64_t gathered = 0;
+        const auto drawBy = [&](const auto& kernel) {
+            for (BandPiece& piece : band.pieces)
+                if (shows(piece)) gathered += drawLanes(kernel, slice, band, piece, rays);
+        };
+        std::visit(drawBy, slice.kernel);
         return gathered;
     }
 
@@ -55,99 +50,67 @@ class Splatter {
                sum < scene_.transport.maxBounces;
     }
 
-    uint64_t drawLanes(const ImageSlice& slice, ImageBand& band, BandRays& origins, int x, int y) const {
-        const size_t i = band.at(x, y);
+    /// A register of rays after the other.
+    template <typename Kernel>
+    uint64_t drawLanes(const Kernel& kernel, const ImageSlice& slice, ImageBand& band, BandPiece& piece,
+                       BandRays& rays) const {
+        uint64_t gathered = 0;
+        for (int y = std::max(slice.area.top, band.firstRow); y <= std::min(slice.area.bottom, band.lastRow); ++y)
+            for (int x = slice.area.left; x <= slice.area.right; x += Lanes) {
+                const size_t i = band.at(x, y);
+                const LaneRays lanes = raysOf(slice, band, piece, rays, i);
+                kernel.meet(slice.record, lanes, [&](int frame, const LaneReach& reach) {
+                    gathered += collect(slice, lanes, reach, piece, frame, band.sumsOf(frame), rays, i);
+                });
+            }
+        return gathered;
+    }
+    [[nodiscard]] LaneRays raysOf(const ImageSlice& slice, const ImageBand& band, const BandPiece& piece,
+                                  const BandRays& rays, size_t i) const {
+        constexpr float Far = 1e18f; // products with it are finite
         const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
-        const Vec3f &o = record_.origin, &b = slice.record.flights->base;
-        const Lanes3 toOrigin = origins.x.empty()
-                                    ? Lanes3(o - b)
-                                    : Lanes3(load(origins.x) - b.x, load(origins.y) - b.y, load(origins.z) - b.z);
-        const LaneRays rays{toOrigin, {load(band.x), load(band.y), load(band.z)}, Batch(slice.residual)};
-        if (!slice.ball) {
-            LaneSlice met = slice.record.volume.meet(rays, warped_);
-            if (occluders_) met.met = met.met && met.t1 < slice.record.flights->reach;
-            if (!xsimd::any(met.met)) return 0;
-            const Batch weight = volumeWeight(slice.record, rays, met, warped_);
-            return collect(slice, band, origins, met.met, {{met.t1, met.t2, met.t3}, met.alongRay}, weight, x, y);
-        }
-        if (slice.width > 0.0f) {
-            const Batch sum = load(origins.rotation) + float(slice.record.flights->randomNumber(0));
-            const BallGateLanes met(rays, slice.width, sum - xsimd::floor(sum), warped_);
-            if (!xsimd::any(met.met)) return 0;
-            return collect(slice, band, origins, met.met, {{met.length, met.length, met.length}, met.alongRay},
-                           ballGateWeight(slice.record, rays, met, slice.width), x, y);
-        }
-        const BallLanes met(rays, warped_);
-        if (!xsimd::any(met.met)) return 0;
-        uint64_t gathered = 0;
-        const auto reach = [&](const Batch& alongRay) {
-            gathered += collect(slice, band, origins, met.met, {{met.length, met.length, met.length}, alongRay},
-                                ballWeight(slice.record, rays, met, alongRay, warped_), x, y);
+        const CollapsedFlights& flights = *slice.record.flights;
+        const Vec3f &o = record_.origin, &b = flights.base;
+        const Lanes3 toOrigin =
+            rays.x.empty() ? Lanes3(o - b) : Lanes3(load(rays.x) - b.x, load(rays.y) - b.y, load(rays.z) - b.z);
+        const Batch start = load(piece.start), end = xsimd::min(load(piece.end), Batch(Far));
+        LaneMask seen = start < end;
+        const int before = flights.bounce + flights.flights();
+        if (piece.mixed)
+            seen = piece.select(seen, i, flights.medium, scene_.transport.minBounces - before,
+                                scene_.transport.maxBounces - 1 - before);
+        return {toOrigin, {load(band.x), load(band.y), load(band.z)}, start, end, seen, load(rays.rotation)};
+    }
+
+    /// Into the band's sums. The throughput holds the way to the piece.
+    uint64_t collect(const ImageSlice& slice, const LaneRays& lanes, const LaneReach& reach, BandPiece& piece,
+                     int frame, size_t sums, BandRays& rays, size_t i) const {
+        const LaneRecord& record = slice.record;
+        const Rgb power = slice.power * record.times.factor(frame);
+        const auto channel = [&](int k) {
+            return xsimd::select(reach.met, reach.weight(record.sigmaT[k], lanes.start), Batch(0.0f));
         };
-        reach(met.nearRay);
-        if (!warped_) reach(met.farRay);
-        return gathered;
+        std::array<Batch, 3> weights;
+        weights.fill(channel(0));
+        if (!record.grey)
+            for (int k = 1; k < 3; ++k) weights[size_t(k)] = channel(k);
+        if (occluders_) {
+            Batch brightness(0.0f);
+            for (int k = 0; k < 3; ++k) brightness += weights[size_t(k)] * (power[k] / 3.0f);
+            const Batch factor = rays.doses.tested(estimate_, record, lanes, reach, brightness, i);
+            if (!xsimd::any(factor > 0.0f)) return 0;
+            for (Batch& weight : weights) weight *= factor;
+        }
+        for (int k = 0; k < 3; ++k) piece.add(sums + i, weights[size_t(k)], k, power[k]);
+        return uint64_t(darts::lanes::sum(xsimd::select(reach.met, Batch(1.0f), Batch(0.0f))));
     }
 
-    /// Into the band's sums.
-    uint64_t collect(const ImageSlice& slice, ImageBand& band, BandRays& rays, const LaneMask& met,
-                     const LaneFlights& flights, const Batch& weight, int x, int y) const {
-        const size_t i = band.at(x, y);
-        const int before = slice.record.flights->bounce + slice.record.flights->flights();
+    uint64_t drawRays(const ImageSlice& slice, const ImageBand& band) const {
         uint64_t gathered = 0;
-        for (BandPiece& piece : band.pieces) {
-            const Batch start = Batch::load_unaligned(piece.start.data() + i);
-            LaneMask inside =
-                met && flights.alongRay >= start && flights.alongRay < Batch::load_unaligned(piece.end.data() + i);
-            if (piece.mixed)
-                inside = piece.select(inside, i, slice.record.flights->medium, scene_.transport.minBounces - before,
-                                      scene_.transport.maxBounces - 1 - before);
-            else if (!shownIn(slice, piece))
-                continue;
-            if (!xsimd::any(inside)) continue;
-            // The throughput holds the way to the piece.
-            Batch here = xsimd::select(inside, weight * xsimd::exp(slice.record.sigmaT * start), Batch(0.0f));
-            if (occluders_) here = tested(slice, band, rays, flights, here, x, y);
-            for (int k = 0; k < 3; ++k) piece.add(i, here, k, slice.power[k]);
-            gathered += uint64_t(darts::lanes::sum(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
-        }
+        for (int y = std::max(slice.area.top, band.firstRow); y <= std::min(slice.area.bottom, band.lastRow); ++y)
+            gathered += drawRays(slice, slice.area.left, y, slice.area.right);
         return gathered;
     }
-
-    /// Whole doses in place of weights: shadow rays cost a hundred times what weights do. Whenever what a ray has been
-    /// given fills another dose, by the record at hand, that one is tested and stands for the dose; evenly from a
-    /// random start, so that every record brings what it weighs on average.
-    Batch tested(const ImageSlice& slice, const ImageBand& band, BandRays& rays, const LaneFlights& flights,
-                 const Batch& weight, int x, int y) const {
-        const size_t i = band.at(x, y);
-        const float power = meanComponent(slice.power);
-        const Batch dose = Batch::load_unaligned(rays.dose.data() + i);
-        const Batch filled = Batch::load_unaligned(rays.filled.data() + i);
-        if (!rays.dosed) { // the pilot that finds the doses
-            (filled + weight * power).store_unaligned(rays.filled.data() + i);
-            return Batch(0.0f);
-        }
-        const Batch sum = filled + weight * power / dose, whole = xsimd::floor(sum);
-        (sum - whole).store_unaligned(rays.filled.data() + i);
-        if (!xsimd::any(whole > 0.0f)) return Batch(0.0f);
-        alignas(64) std::array<float, Lanes> doses, along;
-        alignas(64) std::array<std::array<float, Lanes>, 3> lengths;
-        (whole * dose / power).store_aligned(doses.data());
-        flights.alongRay.store_aligned(along.data());
-        for (size_t k = 0; k < 3; ++k) flights.lengths[k].store_aligned(lengths[k].data());
-        for (size_t lane = 0; lane < size_t(Lanes); ++lane) {
-            if (!(doses[lane] > 0.0f)) continue;
-            const std::array<double, 3> t{double(lengths[0][lane]), double(lengths[1][lane]), double(lengths[2][lane])};
-            const size_t at = i + lane;
-            const Vec3f origin = rays.x.empty() ? record_.origin : Vec3f(rays.x[at], rays.y[at], rays.z[at]);
-            const Vec3f end = origin + Vec3f(band.x[at], band.y[at], band.z[at]) * along[lane];
-            const bool open = slice.ball ? estimate_.unoccluded(*slice.record.flights, end)
-                                         : estimate_.unoccluded(*slice.record.flights, t.data(), 3);
-            if (!open) doses[lane] = 0.0f;
-        }
-        return Batch::load_aligned(doses.data());
-    }
-
     uint64_t drawRays(const ImageSlice& slice, int x, int y, int last) const {
         uint64_t gathered = 0;
         FrameSums sums(size_t(sensor_.gate.frames));
@@ -198,27 +161,22 @@ class Splatter {
             }
         return gathered;
     }
-    /// By a pilot over a part of what is to be drawn: any dose above 0 will do, this one makes about DosesPerRay.
+    /// By a pilot over a part of what is to be drawn.
     void findDoses(const std::vector<std::optional<ImageSlice>>& slices, const std::vector<uint32_t>& drawn,
                    ImageBand& band, BandRays& rays) const {
         if (!occluders_ || drawn.empty()) return;
-        rays.dose.assign(band.x.size(), 1.0f);
-        rays.filled.assign(band.x.size(), 0.0f);
+        rays.doses.reserve(band.x.size());
         for (size_t k = 0; k < drawn.size(); k += PilotStep)
             if (slices[drawn[k]]->inLanes) draw(*slices[drawn[k]], band, rays);
         const CollapsedFlights& first = *slices[drawn.front()]->record.flights;
         Sampler sampler(first.random[0], RandomStream::Folded, first.random[1], drawn.size());
-        for (size_t i = 0; i < rays.dose.size(); ++i) {
-            rays.dose[i] = std::max(rays.filled[i] * (float(PilotStep) / DosesPerRay), 1e-30f);
-            rays.filled[i] = sampler.next1D();
-        }
-        rays.dosed = true;
+        rays.doses.begin(1.0f / float(PilotStep), tuning::DosesPerRay, sampler);
     }
     [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
         BandRays rays;
         rays.rotation.resize(band.x.size());
         for (size_t i = 0; i < rays.rotation.size(); ++i)
-            rays.rotation[i] = float(rayRotation(Vec3f(band.x[i], band.y[i], band.z[i]), 0));
+            rays.rotation[i] = float(rayRotation(Vec3f(band.x[i], band.y[i], band.z[i])));
         if (record_.origins.empty()) return rays;
         for (auto* v : {&rays.x, &rays.y, &rays.z}) v->resize(band.x.size());
         for (int row = band.firstRow; row <= band.lastRow; ++row)
@@ -239,7 +197,7 @@ class Splatter {
     SliceEstimate estimate_;
     double scale_;
     Film& film_;
-    bool warped_, occluders_;
+    bool occluders_;
 };
 
 /// Of the media that scatter and the camera's region: what splatBeams needs.
@@ -254,11 +212,12 @@ bool oneSpeed(const Scene& scene) {
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                      const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film) {
     const Splatter splatter(scene, sensor, record, scale, film);
-    const SliceFootprints footprints(scene, sensor.gate, scale);
+    const SliceFootprints footprints(scene, sensor, scale);
     const size_t bands = ImageBand::count(record.height);
+    const FrameShares shares(scene, sensor.gate, records);
     std::vector<std::optional<ImageSlice>> slices(records.size());
     tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
-        if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i]);
+        if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i], shares.of(i));
     });
     // Records by band, in their own order: the sums do not depend on the threads.
     std::vector<std::vector<uint32_t>> byBand(bands);
@@ -274,11 +233,11 @@ uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const 
     std::vector<uint64_t> gathered(bands, 0);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
-        ImageBand band(record, number);
+        ImageBand band(record, number, sensor.gate.frames);
         BandRays rays = splatter.originsOf(band);
         splatter.findDoses(slices, drawn, band, rays);
         for (const uint32_t i : drawn) gathered[number] += splatter.draw(*slices[i], band, rays);
-        band.addToFilm(0, film);
+        for (int frame = 0; frame < sensor.gate.frames; ++frame) band.addToFilm(frame, film);
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
     });
     uint64_t total = drawBeams ? splatBeams(scene, sensor, record, beams, radius[0], scale, film) : 0;

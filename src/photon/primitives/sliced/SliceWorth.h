@@ -9,16 +9,20 @@
 
 namespace tungsten::photon {
 
+/// Radiance at a time that a record adds to a ray, about, without what all of its shape share: the power that gets
+/// there, a ball's spread over its sphere. 0 where it cannot be seen yet.
+float sliceWorth(const Scene& scene, const CollapsedFlights& record, double time);
+
 /// By the base alone, never by lengths that a record integrates over: their expectation is the same for any number
 /// above 0. Where a record is brighter there are more of them, so that all are about equally bright in the image.
 class SliceWorth {
   public:
-    /// `gate`: the pass's. Every base that counts leaves one record, until there are targets.
+    /// `gate`: the pass's. Every base that counts leaves one record, until measure() has been called.
     SliceWorth(const Scene& scene, const TimeGate& gate);
 
     /// From records of a few paths, one for every base that counts; `share`: how many there are to be for each of
     /// these.
-    void setTargets(std::span<const CollapsedFlights> records, float share);
+    void measure(std::span<const CollapsedFlights> records, float share);
     /// Expected number of records like this one.
     [[nodiscard]] float expected(const CollapsedFlights& record) const;
 
@@ -27,7 +31,7 @@ class SliceWorth {
 
     const Scene& scene_;
     TimeGate gate_;
-    std::array<double, 5> targets_{}; ///< worth of what leaves one record, by shape
+    std::array<double, 5> worthOfOne_{}; ///< worth of what leaves one record, by shape
 };
 
 } // namespace tungsten::photon

@@ -39,7 +39,7 @@ struct Slices {
         return std::nullopt;
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
-    /// One frame, any camera.
+    /// Any camera.
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                           const Selection<CollapsedFlights>& slices, double scale, Film& film);
 };

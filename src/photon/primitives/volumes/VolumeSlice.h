@@ -76,13 +76,4 @@ std::optional<VolumeChord<Real>> volumeChord(const Vector<Real>& base, const std
     return chord.empty() ? std::nullopt : std::optional(chord);
 }
 
-/// (10) without power, phase function and the gate's width: sigma_s^3 / J times the integral over the chord.
-template <typename Real>
-Real chordWeight(const VolumeChord<Real>& chord, const Coefficients<Real>& medium, Real before = 0,
-                 bool longFlights = true) {
-    const Real offset = longFlights ? chord.offsetSum() : 0, slope = longFlights ? chord.slopeSum() : 0;
-    return collisions(medium.sigmaS, 3) / chord.jacobian *
-           exponentialIntegral<Real>(medium.sigmaT, offset - before, slope + 1, chord.start, chord.end);
-}
-
 } // namespace tungsten::photon

@@ -1,0 +1,68 @@
+#pragma once
+// Chord.h for a register of rays: where all lengths, linear in one unknown, are flights'.
+
+#include "photon/primitives/sliced/SliceLanes.h"
+
+namespace tungsten::photon {
+
+template <size_t K>
+struct ChordLanes {
+    std::array<Batch, K> offset, slope; ///< lengths t_i = offset + slope t
+    Batch start, end;                   ///< of the unknown t; empty unless start < end
+
+    [[nodiscard]] LaneMask holds() const { return start < end; }
+    [[nodiscard]] Batch length(size_t i, const Batch& t) const { return offset[i] + slope[i] * t; }
+    [[nodiscard]] Batch offsetSum() const {
+        Batch sum = offset[0];
+        for (size_t i = 1; i < K; ++i) sum += offset[i];
+        return sum;
+    }
+    [[nodiscard]] Batch slopeSum() const {
+        Batch sum = slope[0];
+        for (size_t i = 1; i < K; ++i) sum += slope[i];
+        return sum;
+    }
+    /// Keeps the part where p + q t >= 0.
+    void keepPositive(const Batch& p, const Batch& q) {
+        const Batch root = -(p / q);
+        const LaneMask rises = q >= 0.0f;
+        start = xsimd::select(rises, xsimd::max(start, root), start);
+        end = xsimd::select(rises, end, xsimd::min(end, root));
+    }
+    void keep(const Batch& p, const Batch& q, const Batch& least, const Batch& most) {
+        keepPositive(p - least, q);
+        keepPositive(most - p, -q);
+    }
+    /// Keeps what lies inside every flight, the first of which ends at `reach`.
+    void keepFlights(float reach) {
+        for (size_t i = 0; i < K; ++i) keepPositive(offset[i], slope[i]);
+        if (reach < Infinity) keepPositive(reach - offset[0], -slope[0]);
+    }
+    /// With t the distance along the ray: (10) and (15) for long flights, or at a point drawn by their integrand.
+    /// `factor`: without lengths.
+    [[nodiscard]] LaneReach reach(const LaneRecord& record, const LaneMask& met, const Batch& factor,
+                                  const Batch& u) const {
+        const Batch rise = slopeSum() + 1.0f, fall = xsimd::abs(rise), chord = end - start;
+        const LaneMask falls = rise >= 0.0f;
+        Batch t = xsimd::select(falls, start, end);
+        LaneReach reach{met, t, offsetSum() + rise * t, factor};
+        if (!record.drawsPoints) {
+            reach.integrated = true;
+            reach.chord = chord;
+            reach.fall = fall;
+            return reach;
+        }
+        const Batch sigma(meanComponent(record.sigmaT)), z = sigma * fall * chord;
+        const Batch v = xsimd::select(falls, u, 1.0f - u); // from the bright end, as drawn from the start
+        const Batch left = 1.0f - v * (1.0f - xsimd::exp(-z));
+        const Batch along = xsimd::min(xsimd::select(z < 1e-3f, v * chord, -xsimd::log(left) / (sigma * fall)), chord);
+        t = xsimd::select(falls, start + along, end - along);
+        reach.alongRay = t;
+        reach.length = offsetSum() + rise * t;
+        reach.factor = factor * chord * meanOfFall(z) / left;
+        for (size_t i = 0; i < K; ++i) reach.lengths[i] = xsimd::max(length(i, t), Batch(0.0f));
+        return reach;
+    }
+};
+
+} // namespace tungsten::photon

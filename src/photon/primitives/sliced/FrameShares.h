@@ -1,0 +1,31 @@
+#pragma once
+// Which frames of a sequence a record is drawn in.
+
+#include "photon/primitives/sliced/CollapsedFlights.h"
+
+#include "tungsten/scene/Scene.h"
+
+#include <span>
+
+namespace tungsten::photon {
+
+/// A record is seen in all frames from some time on, but fades: where it is much darker than what others of its shape
+/// bring to a frame on average, it is drawn at random, as often as it is bright, and weighs more. A film then costs
+/// what its light calls for.
+class FrameShares {
+  public:
+    FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records);
+
+    /// By frame, what a record's power is multiplied by: 0 where it is not drawn. Empty: all are drawn.
+    [[nodiscard]] std::span<const float> of(size_t record) const {
+        return std::span(factors_).subspan(factors_.empty() ? 0 : record * frames_, factors_.empty() ? 0 : frames_);
+    }
+
+  private:
+    void chooseAmong(FlightShape shape, const std::vector<CollapsedFlights>& records);
+
+    size_t frames_;
+    std::vector<float> factors_; ///< of all frames of every record
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,175 @@
+#pragma once
+// VolumeSlice.h for a register of rays: slices at one length of each frame, and chords inside frames.
+
+#include "photon/primitives/sliced/ChordLanes.h"
+
+namespace tungsten::photon {
+
+/// Change of path length along the ray.
+inline Batch lengthPerLength(const Lanes3& last, const Lanes3& ray, bool warped) {
+    const Lanes3 sum = last + ray;
+    return warped ? 0.5f * sum.dot(sum) : xsimd::abs(last.dot(ray));
+}
+/// a / (a + b)
+inline Batch shareOf(const Batch& a, const Batch& b) {
+    return a / xsimd::max(a + b, Batch(1e-37f));
+}
+
+/// Of volumes, at flights along these directions that end on the ray: VolumeSlice.h.
+inline Batch volumeJacobian(const Lanes3& first, const Lanes3& second, const Lanes3& last, const Lanes3& ray,
+                            bool warped) {
+    return xsimd::abs(warped ? (first + ray).dot((second + ray).cross(last + ray))
+                             : (first - last).dot((second - last).cross(ray)));
+}
+/// What a volume counts of a path that balls make too, (16): of this Jacobian, at flights of these lengths.
+inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian, const Batch& t1,
+                         const Batch& t2, const Batch& t3) {
+    const Lanes3 last(record.flights->directions[2]);
+    const Batch pdfs = record.grey ? record.sigmaT.x * record.sigmaT.x * xsimd::exp(-record.sigmaT.x * (t1 + t2))
+                                   : record.flightPdf(t1) * record.flightPdf(t2);
+    return shareOf(record.phasePdf * jacobian, pdfs * t3 * t3 * lengthPerLength(last, rays.direction, record.warped));
+}
+
+/// At one path length, or a random one of each frame. For one ray all four lengths are linear in the path length.
+class VolumeSliceLanes {
+  public:
+    explicit VolumeSliceLanes(const CollapsedFlights& flights)
+        : edges_(flights.directions[0] - flights.directions[2], flights.directions[1] - flights.directions[2]) {}
+    /// emit(frame, reach)
+    template <typename Emit>
+    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+        const Line line = record.warped ? warpedLine(record, rays) : unwarpedLine(record, rays);
+        const LaneMask seen = rays.seen && line.jacobian > LeastLaneDeterminant;
+        if (!xsimd::any(seen)) return;
+        const FrameRange range = frames(record, rays, line, seen);
+        for (int frame = range.first; frame <= range.last; ++frame) {
+            if (record.times.factor(frame) == 0.0f) continue;
+            const Batch s = record.residual(rays, frame);
+            const Batch t1 = line.lengths.length(0, s), t2 = line.lengths.length(1, s), t3 = line.lengths.length(2, s);
+            const Batch along = line.lengths.length(3, s);
+            LaneMask met = seen && s > 0.0f && t1 >= 0.0f && t1 < record.reach && t2 >= 0.0f && t3 >= 0.0f &&
+                           along >= rays.start && along < rays.end;
+            if (!xsimd::any(met)) continue;
+            if (record.warped) met = met && closes(record, rays, s, {t1, t2, t3}, along);
+            emit(frame,
+                 LaneReach{
+                     met, along, t1 + t2 + t3 + along, factor(record, rays, line.jacobian, t1, t2, t3), {t1, t2, t3}});
+        }
+    }
+
+  private:
+    /// Lengths of the three flights and along the ray.
+    struct Line {
+        ChordLanes<4> lengths;
+        Batch jacobian;
+    };
+
+    /// The triangle of base + s w.
+    [[nodiscard]] Line unwarpedLine(const LaneRecord& record, const LaneRays& rays) const {
+        const Vec3f& last = record.flights->directions[2];
+        const Batch across = rays.direction.dot(edges_.normal), inverse = 1.0f / across;
+        const Batch along = -(rays.toOrigin.dot(edges_.normal) * inverse), alongPer = last.dot(edges_.normal) * inverse;
+        const Lanes3 p = rays.toOrigin + rays.direction * along, q = rays.direction * alongPer - Lanes3(last);
+        const Batch p1 = p.dot(edges_.first), p2 = p.dot(edges_.second), q1 = q.dot(edges_.first),
+                    q2 = q.dot(edges_.second);
+        return {{{p1, p2, -(p1 + p2), along}, {q1, q2, 1.0f - q1 - q2, alongPer}, {}, {}}, xsimd::abs(across)};
+    }
+    [[nodiscard]] static Line warpedLine(const LaneRecord& record, const LaneRays& rays) {
+        const auto& w = record.flights->directions;
+        const Lanes3 &c = rays.direction, a = Lanes3(w[0]) + c, b = Lanes3(w[1]) + c, d = Lanes3(w[2]) + c;
+        const std::array<Lanes3, 3> rows{b.cross(d), d.cross(a), a.cross(b)};
+        const Batch determinant = a.dot(rows[0]), inverse = 1.0f / determinant;
+        Line line{{}, xsimd::abs(determinant)};
+        for (size_t i = 0; i < 3; ++i) {
+            line.lengths.offset[i] = rays.toOrigin.dot(rows[i]) * inverse;
+            line.lengths.slope[i] = c.dot(rows[i]) * inverse;
+        }
+        const auto &p = line.lengths.offset, &q = line.lengths.slope;
+        line.lengths.offset[3] = -(p[0] + p[1] + p[2]);
+        line.lengths.slope[3] = 1.0f - q[0] - q[1] - q[2];
+        return line;
+    }
+    /// Those whose path lengths the ray can meet.
+    [[nodiscard]] static FrameRange frames(const LaneRecord& record, const LaneRays& rays, const Line& line,
+                                           const LaneMask& seen) {
+        if (record.times.frames == 1) return {0, 0};
+        auto part = line.lengths;
+        part.start = Batch(std::max(record.times.first, 0.0f));
+        part.end = Batch(record.times.start(record.times.frames));
+        for (size_t i = 0; i < 3; ++i) part.keepPositive(part.offset[i], part.slope[i]);
+        part.keep(part.offset[3], part.slope[3], rays.start, rays.end);
+        const LaneMask met = seen && part.holds();
+        return xsimd::any(met) ? framesOf(record.times, met, part.start, part.end) : FrameRange{0, -1};
+    }
+    /// Near-singular systems lose their solution in rounding.
+    [[nodiscard]] static LaneMask closes(const LaneRecord& record, const LaneRays& rays, const Batch& s,
+                                         const std::array<Batch, 3>& t, const Batch& along) {
+        constexpr float Accuracy = 1e-4f;
+        const auto& w = record.flights->directions;
+        const Lanes3 miss =
+            Lanes3(w[0]) * t[0] + Lanes3(w[1]) * t[1] + Lanes3(w[2]) * t[2] - rays.toOrigin - rays.direction * along;
+        return miss.dot(miss) <= Accuracy * Accuracy * s * s;
+    }
+    /// (7), and the share of (16).
+    [[nodiscard]] static Batch factor(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian,
+                                      const Batch& t1, const Batch& t2, const Batch& t3) {
+        const Lanes3 last(record.flights->directions[2]);
+        const Batch weight = record.towardsCamera(last, rays) / jacobian;
+        return record.flights->shared ? weight * volumeShare(record, rays, jacobian, t1, t2, t3) : weight;
+    }
+
+    DualPair edges_; ///< of the unwarped triangle, per unit of path length
+};
+
+/// Inside each frame.
+class VolumeChordLanes {
+  public:
+    explicit VolumeChordLanes(const CollapsedFlights& flights) {
+        const auto& w = flights.directions;
+        rows_ = {w[1].cross(w[2]), w[2].cross(w[0]), w[0].cross(w[1])};
+        const float determinant = w[0].dot(rows_[0]);
+        jacobian_ = std::abs(determinant);
+        if (usable())
+            for (Vec3f& row : rows_) row /= determinant;
+    }
+    /// emit(frame, reach)
+    template <typename Emit>
+    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+        if (!usable()) return;
+        ChordLanes<3> chord{{}, {}, rays.start, rays.end};
+        for (size_t i = 0; i < 3; ++i) {
+            chord.offset[i] = rays.toOrigin.dot(rows_[i]);
+            chord.slope[i] = rays.direction.dot(rows_[i]);
+        }
+        chord.keepFlights(record.reach);
+        const LaneMask met = rays.seen && chord.holds();
+        if (!xsimd::any(met)) return;
+        const Batch p = chord.offsetSum(), q = chord.slopeSum() + record.warp();
+        const Batch a = p + q * chord.start, b = p + q * chord.end;
+        const Batch factor = record.towardsCamera(Lanes3(record.flights->directions[2]), rays) * (1.0f / jacobian_);
+        const auto& w = record.flights->directions;
+        const Batch shared = volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), Lanes3(w[2]), rays.direction,
+                                            record.warped); // (16) is of slices
+        const FrameRange range = framesOf(record.times, met, xsimd::min(a, b), xsimd::max(a, b));
+        for (int frame = range.first; frame <= range.last; ++frame) {
+            if (record.times.factor(frame) == 0.0f) continue;
+            ChordLanes<3> part = chord;
+            part.keep(p, q, Batch(record.times.start(frame)), Batch(record.times.start(frame + 1)));
+            const LaneMask here = met && part.holds();
+            if (!xsimd::any(here)) continue;
+            LaneReach reach = part.reach(record, here, factor, record.random(0, rays, frame));
+            if (record.flights->shared) {
+                const auto& t = reach.lengths;
+                reach.factor *= volumeShare(record, rays, shared, t[0], t[1], t[2]);
+            }
+            emit(frame, reach);
+        }
+    }
+
+  private:
+    [[nodiscard]] bool usable() const { return jacobian_ > LeastLaneDeterminant; }
+    std::array<Vec3f, 3> rows_;
+    float jacobian_;
+};
+
+} // namespace tungsten::photon

@@ -1,0 +1,104 @@
+// The record of camera paths: straight pieces, visible points, legs.
+
+#include "photon/view/SensorRecord.h"
+
+#include "support/Render.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+/// Two clouds and a mirror behind them, in which a wall behind the camera shows.
+constexpr const char* Bench =
+    R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.2, "sigma_s": [0.1, 0.2, 0.3]},
+                                            {"name": "haze", "type": "homogeneous", "sigma_a": 0.1, "sigma_s": 0.4},
+                                            {"name": "ink", "type": "homogeneous", "sigma_a": 0.5}],
+     "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"}, "transform": {"scale": [9, 9, 2]}},
+                    {"type": "cube", "int_medium": "ink", "bsdf": {"type": "forward"}, "transform": {"position": [0, 0, 1.75], "scale": [9, 9, 0.5]}},
+                    {"type": "cube", "int_medium": "haze", "bsdf": {"type": "forward"}, "transform": {"position": [0, 0, 3], "scale": [9, 9, 1]}},
+                    {"type": "cube", "bsdf": {"type": "mirror", "albedo": 0.9}, "transform": {"position": [0, 0, 6], "scale": [8, 8, 2]}},
+                    {"type": "cube", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"position": [0, 0, -10], "scale": [20, 20, 2]}},
+                    {"type": "point", "emission": 1, "transform": {"position": [0, 3, 0]}}],
+     "camera": {"type": "pinhole", "fov": 6, "resolution": [4, 3], "reconstruction_filter": "box",
+                "transform": {"position": [0, 0, -5], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+     "integrator": {"type": "progressive_transient_photon_map", "transient_time_center": 10, "transient_time_width": 1}})";
+
+TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
+    const test::SceneFile file(Bench);
+    const LoadedScene loaded = loadScene(file.path(), {});
+    Statistics statistics;
+    const SensorRecord record = recordSensorPaths(*loaded.scene, {true, false}, 1, 0, {.points = true}, statistics);
+    ASSERT_EQ(record.x.size(), 12u);
+    ASSERT_EQ(record.pieces.size(), 2u) << "nothing scatters in the ink, and behind the mirror the ray is not straight";
+    ASSERT_EQ(record.points.size(), 12u);
+    const StraightPiece &fog = record.pieces[0], &haze = record.pieces[1];
+    for (size_t i = 0; i < 12; ++i) {
+        const float slant = 1.0f / record.z[i];
+        EXPECT_NEAR(fog.start[i], 4.0f * slant, 1e-4f);
+        EXPECT_NEAR(fog.end[i], 6.0f * slant, 1e-3f);
+        EXPECT_EQ(fog.medium[i], 0);
+        EXPECT_EQ(fog.interactions[i], 1);
+        EXPECT_EQ(fog.throughput[i].x, 1.0f);
+        EXPECT_NEAR(haze.start[i], 7.5f * slant, 1e-3f);
+        EXPECT_NEAR(haze.end[i], 8.5f * slant, 1e-3f);
+        EXPECT_EQ(haze.medium[i], 1);
+        EXPECT_EQ(haze.interactions[i], 5) << "two boundaries each of fog and ink, one of the haze";
+        EXPECT_NEAR(haze.throughput[i].z, std::exp(-(0.5f * 2.0f + 0.5f * 0.5f) * slant), 1e-3f);
+        const SensorPoint& point = record.points[i];
+        EXPECT_EQ(point.pixel, i);
+        EXPECT_NEAR(point.time, double(24.0f * slant), 2e-3) << "10 to the mirror, 14 back to the wall";
+        EXPECT_NEAR(point.hit.position.z, -9.0f, 1e-3f);
+        EXPECT_EQ(point.interactions, 13);
+        EXPECT_LT(point.direction.z, 0.0f);
+        EXPECT_NEAR(point.throughput.x, 0.9f * std::exp(-2.0f * (0.3f * 2.0f + 0.5f * 0.5f + 0.5f) * slant), 1e-3f);
+    }
+    const SensorRecord three = recordSensorPaths(*loaded.scene, {true, false}, 1, 0, {true, 3}, statistics);
+    ASSERT_EQ(three.points.size(), 36u);
+    EXPECT_EQ(three.x, record.x);
+    EXPECT_EQ(three.pieces[0].end, record.pieces[0].end);
+    for (size_t i = 0; i < 36; ++i) {
+        EXPECT_EQ(three.points[i].pixel, i / 3);
+        EXPECT_NEAR(three.points[i].throughput.x, record.points[i / 3].throughput.x / 3.0f, 1e-3f);
+        EXPECT_EQ(three.points[i].hit.position == record.points[i / 3].hit.position, i % 3 == 0);
+    }
+    const SensorRecord volumeOnly = recordSensorPaths(*loaded.scene, {false, false}, 1, 0, {}, statistics);
+    EXPECT_TRUE(volumeOnly.points.empty());
+    EXPECT_EQ(volumeOnly.pieces.size(), 2u);
+    EXPECT_EQ(volumeOnly.x, record.x) << "the same rays";
+    EXPECT_NE(recordSensorPaths(*loaded.scene, {false, false}, 1, 1, {}, statistics).x, record.x) << "another sample";
+}
+
+/// What a visitor is shown, in words.
+struct Listing {
+    std::vector<std::string> seen;
+    void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
+        seen.push_back("segment " + std::to_string(state.interactions) + (state.folded ? " folded " : " ") +
+                       std::to_string(hit ? hit->t : 0.0f) + " " + std::to_string(state.throughput.x));
+    }
+    void surface(const SensorState& state, const SurfaceInteraction& surface) {
+        seen.push_back("surface " + std::to_string(surface.hit.position.z) + " " + std::to_string(state.throughput.x));
+    }
+    void escaped(const SensorState&) { seen.emplace_back("escaped"); }
+};
+
+TEST(SensorRecord, ReplaysWhatTheCameraPathsMet) {
+    const test::SceneFile file(Bench);
+    const LoadedScene loaded = loadScene(file.path(), {});
+    const Scene& scene = *loaded.scene;
+    Statistics statistics;
+    const SensorRecord record = recordSensorPaths(scene, {true, false}, 1, 0, {.legs = true}, statistics);
+    for (size_t pixel = 0; pixel < 12; ++pixel) {
+        Sampler sampler(1, RandomStream::Camera, 0, pixel);
+        const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+        const Ray ray = scene.camera.generateRay({int(pixel % 4), int(pixel / 4)}, uFilter, uLens);
+        Listing traced, replayed;
+        followSensorPath(scene, {ray, scene.cameraRegion}, {true, false}, sampler, traced);
+        record.replay(scene, pixel, replayed);
+        EXPECT_EQ(traced.seen, replayed.seen);
+        EXPECT_GT(traced.seen.size(), 20u) << "through fog, ink and haze to the mirror and back";
+    }
+}
+
+} // namespace
+} // namespace tungsten::photon

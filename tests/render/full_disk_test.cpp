@@ -1,0 +1,146 @@
+// Disks that are full, or a quota: earlier files stay, and the command says so.
+
+#include "render/rendered_scene.h"
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/film/ImageIo.h"
+
+#include <sys/mount.h>
+#include <sys/resource.h>
+
+namespace tungsten {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::contentOf;
+using test::TemporaryFolder;
+
+const int BadInput = 1;
+
+using FullDisk = test::RenderedScene;
+
+/// Files of this process and its children end after so many bytes, as on a full disk.
+class FileSizeLimit {
+  public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, SIG_DFL);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+  private:
+    rlimit before_{};
+};
+
+/// A file system of so many KiB, if mounting is permitted.
+class SmallDisk {
+  public:
+    SmallDisk(const fs::path& where, int kibibytes) : where_(where) {
+        fs::create_directories(where);
+        const std::string size = "size=" + std::to_string(kibibytes) + "k";
+        mounted_ = ::mount("tmpfs", where.c_str(), "tmpfs", 0, size.c_str()) == 0;
+    }
+    ~SmallDisk() {
+        if (mounted_) ::umount2(where_.c_str(), MNT_DETACH);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+    [[nodiscard]] bool mounted() const { return mounted_; }
+
+  private:
+    fs::path where_;
+    bool mounted_ = false;
+};
+
+/// Renders images of that type small, then larger while `Shortage` lasts: the second must fail and leave the first.
+template <typename Render, typename Shortage>
+void expectTheEarlierOnesKept(const fs::path& out, const Render& render, const Shortage& shortage) {
+    ASSERT_EQ(render("8x8").exitCode, 0);
+    const std::vector<fs::path> names{"box.png", "box.exr", "TungstenRenderState.dat"};
+    std::vector<std::string> before;
+    for (const fs::path& name : names) before.push_back(contentOf(out / name));
+    const CommandResult result = shortage();
+    EXPECT_EQ(result.exitCode, BadInput) << result.all();
+    for (size_t i = 0; i < names.size(); ++i) {
+        EXPECT_NE(result.err.find(names[i].string() + ": cannot be written"), std::string::npos) << result.err;
+        EXPECT_FALSE(before[i].empty());
+        EXPECT_EQ(contentOf(out / names[i]), before[i]) << names[i];
+    }
+}
+
+TEST_F(FullDisk, FilesThatCannotGrowLeaveTheEarlierOnes) {
+    const auto run = [&](const std::string& size) {
+        return render({"-e", "box.exr", "-c", "1h", "-r", "--resolution", size});
+    };
+    expectTheEarlierOnesKept(out(), run, [&] {
+        const FileSizeLimit limit(1200);
+        return run("64x64");
+    });
+    EXPECT_EQ(filesOf(out()).size(), 3u) << "nothing is left behind";
+}
+
+/// Where in the file the disk is full makes no difference.
+TEST_F(FullDisk, ImagesAreWholeWhereverTheyAreCut) {
+    const TemporaryFolder folder;
+    Image image(40, 30);
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = Rgb(float(i * 7919 % 1013), 1.0f, float(i));
+    const fs::path png = folder.path() / "a.png", exr = folder.path() / "a.exr", npy = folder.path() / "a.npy";
+    const auto writeAll = [&](int& failures) {
+        const auto attempt = [&](auto write) {
+            try {
+                write();
+            } catch (const InputError&) {
+                ++failures;
+            }
+        };
+        attempt([&] { writePng(png, image, ToneMap::Linear); });
+        attempt([&] { writeExr(exr, {ExrPart{"", image, image, false, 0, 0}}); });
+        attempt([&] { writeNpy(npy, {image}); });
+    };
+    int failures = 0;
+    writeAll(failures);
+    ASSERT_EQ(failures, 0);
+    const std::vector<std::string> whole{contentOf(png), contentOf(exr), contentOf(npy)};
+    for (size_t file = 0; file < whole.size(); ++file)
+        for (size_t size = 0; size < whole[file].size(); size += 1 + whole[file].size() / 60) {
+            const FileSizeLimit limit(size);
+            int failed = 0;
+            writeAll(failed);
+            EXPECT_GE(failed, 1) << size;
+        }
+    EXPECT_EQ(contentOf(png), whole[0]);
+    EXPECT_EQ(contentOf(exr), whole[1]);
+    EXPECT_EQ(contentOf(npy), whole[2]);
+    EXPECT_EQ(filesOf(folder.path()).size(), 3u);
+}
+
+TEST_F(FullDisk, AFullDiskLeavesTheEarlierFiles) {
+    const SmallDisk disk(out(), 64);
+    if (!disk.mounted()) GTEST_SKIP() << "mounting a small disk is not permitted here";
+    const auto run = [&](const std::string& size) {
+        return render({"-e", "box.exr", "-c", "1h", "-r", "--resolution", size});
+    };
+    expectTheEarlierOnesKept(out(), run, [&] {
+        std::ofstream(out() / "rest") << std::string(1 << 20, 'x');
+        return run("128x128");
+    });
+}
+
+TEST_F(FullDisk, StandardOutputOnAFullDiskIsAnError) {
+    for (const char* option : {"--list", "--version"}) {
+        const std::string command = std::string(PLUGIN_DIR) + "/tungsten " + option + " > /dev/full 2>/dev/null";
+        const int status = std::system(command.c_str());
+        EXPECT_EQ(WEXITSTATUS(status), BadInput) << option;
+    }
+}
+
+} // namespace
+} // namespace tungsten

@@ -1,0 +1,19 @@
+#pragma once
+// Memory: what there is, and refusing what does not fit before it is asked for.
+
+#include <cstdint>
+#include <string>
+
+namespace tungsten {
+
+/// Bytes that this process can still take: of the machine's memory, and of its control group's limit.
+double availableMemoryBytes();
+
+/// "1.5 GiB".
+std::string memoryText(double bytes);
+
+/// From now on allocations beyond so many bytes fail (std::bad_alloc), instead of having the kernel end the process.
+/// What the libraries and the threads' stacks take comes on top: without it they end the process themselves.
+void limitMemory(double bytes, unsigned threads);
+
+} // namespace tungsten

@@ -1,0 +1,75 @@
+#include "tungsten/render/Trace.h"
+
+#include "tungsten/film/ImageIo.h"
+#include "tungsten/render/Outputs.h"
+#include "tungsten/render/Statistics.h"
+#include "tungsten/scene/JsonWriter.h"
+
+#include <chrono>
+
+namespace tungsten {
+
+namespace {
+
+double wallNow() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
+
+Trace::Trace(std::filesystem::path folder, const Scene& scene, uint64_t seed)
+    : folder_(std::move(folder)), scene_(scene), seed_(seed) {
+    if (!folder_.empty()) checkWritable(folder_ / "trace.json");
+}
+
+void Trace::start() {
+    wallStart_ = wallNow();
+    cpuStart_ = processCpuSeconds();
+}
+
+void Trace::record(const Film& film, uint64_t samples, bool last) {
+    if (folder_.empty()) return;
+    const double wall = wallNow(), cpu = processCpuSeconds();
+    if (!last && wall - wallStart_ < next_) return;
+    write(film, samples, wall - wallStart_, cpu - cpuStart_);
+    next_ = 2.0 * (wall - wallStart_);
+    wallStart_ += wallNow() - wall;
+    cpuStart_ += processCpuSeconds() - cpu;
+}
+
+void Trace::write(const Film& film, uint64_t samples, double wallSeconds, double cpuSeconds) {
+    const std::string number = std::to_string(film.passes());
+    const std::string name = std::string(6 - std::min<size_t>(number.size(), 6), '0') + number + ".npy";
+    entries_.push_back({film.passes(), samples, wallSeconds, cpuSeconds, film.relativeStandardError(), "mean-" + name,
+                        "stderr-" + name});
+    std::vector<Image> means, errors;
+    for (int frame = 0; frame < film.frames(); ++frame) {
+        means.push_back(inOutputUnits(film.mean(frame), scene_, 1));
+        errors.push_back(inOutputUnits(film.standardError(frame), scene_, 1));
+    }
+    writeNpy(folder_ / entries_.back().mean, means);
+    writeNpy(folder_ / entries_.back().standardError, errors);
+    writeList();
+}
+
+void Trace::writeList() const {
+    JsonWriter json;
+    json.field("scene", scene_.file.string());
+    json.field("seed", seed_);
+    json.beginArray("entries");
+    for (const TraceEntry& entry : entries_) {
+        json.beginObject();
+        json.field("passes", uint64_t(entry.passes));
+        json.field("samples per pixel", entry.samples);
+        json.field("wall seconds", entry.wallSeconds);
+        json.field("CPU seconds", entry.cpuSeconds);
+        json.field("relative standard error", entry.relativeError);
+        json.field("mean", entry.mean);
+        json.field("standard error", entry.standardError);
+        json.endObject();
+    }
+    json.endArray();
+    writeTextFile(folder_ / "trace.json", json.finish());
+}
+
+} // namespace tungsten

@@ -1,0 +1,48 @@
+#pragma once
+// The way a render takes to its image: what it would have shown had it been stopped earlier (`--trace`).
+
+#include "tungsten/film/Film.h"
+#include "tungsten/scene/Scene.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tungsten {
+
+/// A render at one moment.
+struct TraceEntry {
+    uint32_t passes = 0;
+    uint64_t samples = 0;                       ///< per pixel, resumed ones included
+    double wallSeconds = 0.0, cpuSeconds = 0.0; ///< of this run's passes, the trace's own left out
+    double relativeError = 0.0;                 ///< relative standard error; NaN: unknown
+    std::string mean, standardError;            ///< files
+};
+
+/// Writes the film whenever the time that passes have taken has doubled, and at the end: `FOLDER/mean-PASSES.npy` and
+/// `stderr-PASSES.npy`, (frames, height, width, 3) of 32-bit floats in the units of all outputs, and after each of
+/// them `FOLDER/trace.json`, which lists what there is. Both files and list appear whole or not at all.
+class Trace {
+  public:
+    /// Writes to nothing without a folder. Throws InputError if the folder cannot be made or written to.
+    Trace(std::filesystem::path folder, const Scene& scene, uint64_t seed);
+
+    /// Before the first pass.
+    void start();
+    /// After a pass. Throws InputError if a file cannot be written.
+    void record(const Film& film, uint64_t samples, bool last);
+    [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }
+
+  private:
+    void write(const Film& film, uint64_t samples, double wallSeconds, double cpuSeconds);
+    void writeList() const;
+
+    std::filesystem::path folder_;
+    const Scene& scene_;
+    uint64_t seed_;
+    double wallStart_ = 0.0, cpuStart_ = 0.0; ///< moved on by the time that writing takes
+    double next_ = 0.0;                       ///< seconds of passes
+    std::vector<TraceEntry> entries_;
+};
+
+} // namespace tungsten
