@@ -133,7 +133,8 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
                    "stop after DURATION of passes (no unit: minutes) and write what is there");
     app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
     app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
-    app.add_option("-e,--hdr-output-file", text.hdr, "linear image (.exr with standard error, .pfm, or .npy)");
+    app.add_option("-e,--hdr-output-file", text.hdr,
+                   "linear image: .exr with standard error, .npz or .h5 with all that is known, .pfm, or .npy");
     app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
     app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
         ->allow_extra_args(false);

@@ -5,6 +5,7 @@
 #include "tungsten/render/HtmlPage.h"
 #include "tungsten/render/Memory.h"
 #include "tungsten/render/Progress.h"
+#include "tungsten/render/ResultDescription.h"
 
 #include <bit>
 #include <chrono>
@@ -151,7 +152,9 @@ class Session {
             }
         };
         attempt([&] {
-            auto files = writeImages(result_.film, *loaded_.scene, outputs_, suffix);
+            const std::string metadata = describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text,
+                                                         options_.command, statisticsJson(loaded_, options_, result_)});
+            auto files = writeImages(result_.film, *loaded_.scene, outputs_, metadata, suffix);
             if (suffix.empty()) result_.written = std::move(files);
         });
         if (options_.resumeEnabled)

@@ -8,20 +8,27 @@
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
+#include <map>
+
 namespace tungsten {
 
 namespace {
+
+/// The grammar's own NaN and Inf included: fields that nobody reads may hold them.
+std::string textOf(const rapidjson::Value& value) {
+    rapidjson::StringBuffer buffer;
+    rapidjson::Writer<rapidjson::StringBuffer, rapidjson::UTF8<>, rapidjson::UTF8<>, rapidjson::CrtAllocator,
+                      rapidjson::kWriteNanAndInfFlag>
+        writer(buffer);
+    value.Accept(writer);
+    return buffer.GetString();
+}
 
 uint64_t hashScene(const rapidjson::Document& document, const std::vector<std::filesystem::path>& resources) {
     Hash hash;
     for (const auto& member : document.GetObject()) {
         if (std::string_view(member.name.GetString()) == "renderer") continue;
-        rapidjson::StringBuffer buffer;
-        rapidjson::Writer<rapidjson::StringBuffer, rapidjson::UTF8<>, rapidjson::UTF8<>, rapidjson::CrtAllocator,
-                          rapidjson::kWriteNanAndInfFlag>
-            writer(buffer);
-        member.value.Accept(writer);
-        hash.add(std::string(member.name.GetString()) + buffer.GetString());
+        hash.add(std::string(member.name.GetString()) + textOf(member.value));
     }
     for (const auto& file : resources) {
         std::error_code error;
@@ -62,6 +69,16 @@ void checkReach(const Scene& scene, const ObjectReader& root) {
                                        brief(Range::measure().high) + "; check times and speeds of light");
 }
 
+/// Metres; 0: not said.
+double readLengthUnit(const ObjectReader& root) {
+    static const std::map<std::string, double> metres{{"km", 1e3},  {"m", 1.0},     {"cm", 1e-2},  {"mm", 1e-3},
+                                                      {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
+    const std::string unit =
+        root.choice("length_unit", "", {"km", "m", "cm", "mm", "um", "in", "ft"},
+                    {"none", "what a unit of length is: results then tell time in picoseconds too", "not said"});
+    return unit.empty() ? 0.0 : metres.at(unit);
+}
+
 /// What loading leaves beside the scene itself.
 struct Blocks {
     RendererSettings renderer;
@@ -74,6 +91,7 @@ Blocks readScene(LoadContext& context, const ObjectReader& root) {
     const ObjectReader integrator = blockOf(root, "integrator", {"none", "how light is simulated, and when"});
     const std::string type = readIntegratorType(integrator);
     context.scene.transport = readTransport(integrator, type);
+    context.scene.lengthUnit = readLengthUnit(root);
     readMedia(context, root);
     readBsdfs(context, root);
     readPrimitives(context, root);
@@ -119,7 +137,8 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
             blocks.integrator,
             diagnostics,
             std::move(inputs),
-            hashScene(*document, context.resources)};
+            hashScene(*document, context.resources),
+            textOf(*document)};
 }
 
 RendererSettings peekRenderer(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
