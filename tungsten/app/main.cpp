@@ -5,8 +5,8 @@
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/Describe.h"
+#include "tungsten/render/Job.h"
 #include "tungsten/render/Memory.h"
-#include "tungsten/render/Plugin.h"
 #include "tungsten/render/Progress.h"
 #include "tungsten/render/RenderSession.h"
 
@@ -38,38 +38,9 @@ void onInterrupt(int) {
     if (interrupted.exchange(true)) _exit(ExitInterrupted);
 }
 
-/// Integrators, what went wrong while loading them, and where they were looked for.
-struct Plugins {
-    IntegratorRegistry registry;
-    std::vector<std::filesystem::path> directories = pluginDirectories();
-    std::vector<Problem> problems = loadPlugins(directories, registry);
-};
-
 void printWarnings(const std::vector<Problem>& warnings, size_t more = 0) {
     for (const Problem& warning : warnings) std::cerr << "warning: " << warning.text() << '\n';
     if (more > 0) std::cerr << "warning: and " << more << " more\n";
-}
-
-[[noreturn]] void failUnknownIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
-    std::vector<std::string> types;
-    for (const auto& [type, entry] : plugins.registry.entries()) types.push_back(type);
-    std::string message = types.empty() ? "no integrator is known" : "expected " + listOf(types);
-    message += ", found '" + loaded.integratorType + "'";
-    const std::string near = nearestName(loaded.integratorType, types);
-    if (!near.empty()) message += "; did you mean '" + near + "'?";
-    message += " (plugins were looked for in";
-    for (size_t i = 0; i < plugins.directories.size(); ++i)
-        message += (i > 0 ? ", " : " ") + plugins.directories[i].string();
-    throw InputError({{loaded.diagnostics->file, "integrator.type", message + ")"}});
-}
-
-std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
-    const auto found = plugins.registry.entries().find(loaded.integratorType);
-    if (found == plugins.registry.entries().end()) failUnknownIntegrator(loaded, plugins);
-    auto integrator = found->second.factory(loaded.scene, loaded.integratorSettings);
-    throwIfProblems(*loaded.diagnostics);
-    loaded.integratorSettings.warnAboutUnknown();
-    return integrator;
 }
 
 SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer) {
@@ -111,20 +82,18 @@ void printSummary(const SessionResult& result) {
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
-    const LoadedScene loaded =
-        loadScene(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside});
-    const auto integrator = makeIntegrator(loaded, plugins);
+    const Job job =
+        makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins);
+    const LoadedScene& loaded = job.loaded;
     printWarnings(loaded.diagnostics->warnings, loaded.diagnostics->moreWarnings);
-    EffectPlan plan = analyseScene(*loaded.scene);
-    integrator->plan(plan);
     loading.reset();
     if (options.explain) {
         std::cout << file.string() << " (" << loaded.integratorType << ")\n";
-        printPlan(plan, std::cout);
+        printPlan(job.plan, std::cout);
         return 0;
     }
     const OutputFiles outputs = resolveOutputs(loaded.renderer, file, options.outputs);
-    runSession(loaded, *integrator, plan, outputs, sessionOptions(options, loaded.renderer), result);
+    runSession(loaded, *job.integrator, job.plan, outputs, sessionOptions(options, loaded.renderer), result);
     if (!options.quiet) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }

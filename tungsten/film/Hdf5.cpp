@@ -74,8 +74,7 @@ void addImages(hid_t file, const ResultContent& content, const ResultContent::Im
     const hsize_t shape[] = {hsize_t(content.frames), height, width, 3}, oneFrame[] = {1, height, width, 3},
                   tile[] = {1, std::min(height, TileSide), std::min(width, TileSide), 3};
     const Handle space(H5Screate_simple(4, shape, nullptr), H5Sclose),
-        frameSpace(H5Screate_simple(4, oneFrame, nullptr), H5Sclose),
-        creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+        frameSpace(H5Screate_simple(4, oneFrame, nullptr), H5Sclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     checked(H5Pset_chunk(creation, 4, tile));
     checked(H5Pset_shuffle(creation));
     checked(H5Pset_deflate(creation, 1));

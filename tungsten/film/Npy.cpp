@@ -22,8 +22,8 @@ std::string npyHeader(const std::string& type, const std::string& shape) {
 }
 
 std::string imagesHeader(size_t frames, int height, int width) {
-    return npyHeader("<f4", std::to_string(frames) + ", " + std::to_string(height) + ", " + std::to_string(width) +
-                                ", 3");
+    return npyHeader("<f4",
+                     std::to_string(frames) + ", " + std::to_string(height) + ", " + std::to_string(width) + ", 3");
 }
 
 /// A zip in a stream. A stream that failed is left to its owner.

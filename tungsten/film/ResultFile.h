@@ -24,9 +24,9 @@ struct ResultContent {
         std::vector<double> values;
     };
     int width = 0, height = 0, frames = 0;
-    std::vector<Images> images;   ///< each (frames, height, width, 3) of 32-bit floats
-    std::vector<Vector> vectors;  ///< 64-bit floats
-    std::string metadata;         ///< JSON
+    std::vector<Images> images;  ///< each (frames, height, width, 3) of 32-bit floats
+    std::vector<Vector> vectors; ///< 64-bit floats
+    std::string metadata;        ///< JSON
 };
 
 /// A zip of one NAME.npy for every array, stored, and metadata.json: what numpy.load reads. Throws InputError naming

@@ -94,6 +94,7 @@ class Session {
         bool stop = result_.samples >= uint64_t(options_.spp);
         while (!stop) {
             renderOnePass();
+            if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
             trace_.record(result_.film, result_.samples, stop);
             if (stop || reporter_.due()) reporter_.show(state(), stop);

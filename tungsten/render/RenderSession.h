@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ namespace tungsten {
 
 /// A target error is first looked at after so many passes, then whenever their number has doubled.
 inline constexpr uint32_t LeastPassesForTargetError = 16;
+
+enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
+std::string toString(StopReason reason);
+
+struct SessionResult;
 
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
@@ -29,10 +35,9 @@ struct SessionOptions {
     std::filesystem::path trace;                    ///< folder of the render's trace; empty: none
     std::string command;                            ///< that started the render, for its page
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: finish the pass, write, stop
+    /// Called after every pass, before it is decided whether to go on. What it throws ends the render.
+    std::function<void(const SessionResult&)> afterPass;
 };
-
-enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
-std::string toString(StopReason reason);
 
 struct SessionResult {
     StopReason reason = StopReason::Finished;

@@ -113,7 +113,8 @@ void throwIfProblems(const Diagnostics& diagnostics) {
 }
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
-    const std::shared_ptr<rapidjson::Document> document = parseJsonFile(file);
+    const std::shared_ptr<rapidjson::Document> document =
+        options.text ? parseJson(*options.text, file.string()) : parseJsonFile(file);
     for (const std::string& assignment : options.overrides) applyOverride(*document, assignment);
 
     auto diagnostics = std::make_shared<Diagnostics>();
@@ -130,7 +131,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
     std::vector<std::filesystem::path> inputs = context.resources;
-    inputs.insert(inputs.begin(), file);
+    if (!options.text) inputs.insert(inputs.begin(), file);
     return {scene,
             blocks.renderer,
             blocks.integratorType,
