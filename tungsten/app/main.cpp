@@ -2,6 +2,7 @@
 
 #include "tungsten/app/Describe.h"
 #include "tungsten/app/List.h"
+#include "tungsten/app/Merge.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/Describe.h"
@@ -43,14 +44,19 @@ void printWarnings(const std::vector<Problem>& warnings, size_t more = 0) {
     if (more > 0) std::cerr << "warning: and " << more << " more\n";
 }
 
+void printErrors(const InputError& error) {
+    for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
+}
+
 SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer) {
     SessionOptions session;
     session.seed = options.seed;
     session.spp = options.spp.value_or(renderer.spp);
     session.sppStep = renderer.sppStep;
+    session.passes = options.passes;
     session.timeoutSeconds = options.timeoutSeconds.value_or(renderer.timeoutSeconds);
     session.checkpointSeconds = options.checkpointSeconds.value_or(renderer.checkpointSeconds);
-    session.resumeEnabled = renderer.enableResume || options.checkpointSeconds.has_value();
+    session.resumeEnabled = !options.passes && (renderer.enableResume || options.checkpointSeconds);
     session.restart = options.restart;
     session.targetError = options.targetError;
     session.memoryLimit = options.memoryLimit;
@@ -103,7 +109,7 @@ int tryScene(const std::filesystem::path& file, const Options& options, const Pl
     try {
         return renderScene(file, options, plugins);
     } catch (const InputError& error) {
-        for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
+        printErrors(error);
     } catch (const UsageError& error) {
         std::cerr << "error: " << error.what() << '\n';
         return ExitBadUsage;
@@ -128,6 +134,7 @@ void requireOutputsOfTheirOwn(const Options& options) {
         std::vector<std::filesystem::path> written;
         if (renderer.overwriteOutputFiles || options.outputs.ldr) written.push_back(files.ldr);
         if (renderer.overwriteOutputFiles || options.outputs.hdr) written.push_back(files.hdr);
+        if (options.passes) written.push_back(files.partialState(options.passes->first, options.passes->end));
         if (renderer.enableResume || options.checkpointSeconds) written.push_back(files.state);
         written.push_back(files.statistics);
         for (const auto& file : written) {
@@ -198,8 +205,12 @@ int withWholeOutput(int code) {
 int main(int argc, char** argv) {
     using namespace tungsten;
     try {
+        if (argc > 1 && std::strcmp(argv[1], "merge") == 0) return withWholeOutput(mergeCommand(argc - 1, argv + 1));
         const auto options = parseOptions(argc, argv);
         return withWholeOutput(options ? run(*options) : 0);
+    } catch (const InputError& error) {
+        printErrors(error);
+        return ExitBadInput;
     } catch (const UsageError& error) {
         std::cerr << "error: " << error.what() << '\n';
         return ExitBadUsage;

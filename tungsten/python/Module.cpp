@@ -35,8 +35,7 @@ void warn(const Problem& problem) {
 /// A scene as a dict, or the name of a file; `set` as --set takes it.
 Job jobOf(const py::object& scene, const py::dict& set, const std::filesystem::path& folder, bool allowOutside) {
     LoadOptions options{folder, {}, allowOutside};
-    for (const auto& [path, value] : set)
-        options.overrides.push_back(path.cast<std::string>() + "=" + jsonOf(value));
+    for (const auto& [path, value] : set) options.overrides.push_back(path.cast<std::string>() + "=" + jsonOf(value));
     std::filesystem::path file = "scene";
     if (py::isinstance<py::dict>(scene))
         options.text = jsonOf(scene);
@@ -183,9 +182,12 @@ void declareErrors(py::module_& module) {
 
 constexpr const char* RenderText =
     "Renders a scene, the name of a file or a dict, and writes nothing.\n\n"
-    "set: {\"media.fog.sigma_s\": 0.3} as --set. It stops after `seconds` of passes, `passes`, `samples` per pixel (default:\n"
-    "the scene's spp) or when the relative error is at most `target_error`, whichever comes first. `progress`: True for the\n"
-    "command's bar, or a function that is called with a dict after each pass and may return False to stop. `folder`: where\n"
+    "set: {\"media.fog.sigma_s\": 0.3} as --set. It stops after `seconds` of passes, `passes`, `samples` per pixel "
+    "(default:\n"
+    "the scene's spp) or when the relative error is at most `target_error`, whichever comes first. `progress`: True "
+    "for the\n"
+    "command's bar, or a function that is called with a dict after each pass and may return False to stop. `folder`: "
+    "where\n"
     "the scene's files are, if not beside it. Ctrl-C takes effect after the pass in progress.";
 
 } // namespace

@@ -37,10 +37,8 @@ py::array edgesOf(const Result& result) {
 }
 
 py::object picosecondsOf(const Result& result) {
-    const double picoseconds = picosecondsPerTime(result.scene());
-    if (picoseconds <= 0.0) return py::none();
-    std::vector<double> edges = frameEdges(result.scene().transport.gate);
-    for (double& edge : edges) edge *= picoseconds;
+    const std::vector<double> edges = frameEdgesInPicoseconds(result.scene());
+    if (edges.empty()) return py::none();
     return py::array_t<double>(py::ssize_t(edges.size()), edges.data());
 }
 
@@ -64,7 +62,8 @@ Result::Result(LoadedScene loaded, const SessionOptions& options, std::unique_pt
       metadata_(describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text, options.command,
                                 statisticsJson(loaded_, options, *session_)})),
       mean_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.mean(frame); })),
-      standardError_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.standardError(frame); })) {}
+      standardError_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.standardError(frame); })) {
+}
 
 std::vector<std::string> Result::write(const std::filesystem::path& file) const {
     OutputFiles outputs;
@@ -96,16 +95,18 @@ void declareResult(py::module_& module) {
                                "the same in picoseconds; None where the scene does not say its length_unit")
         .def_property_readonly("metadata", parsed, "a dict: what a result file says about itself")
         .def_property_readonly("passes", [](const Result& r) { return r.session().film.passes(); })
-        .def_property_readonly("samples", [](const Result& r) { return r.session().samples; }, "per pixel")
-        .def_property_readonly("seconds", [](const Result& r) { return r.session().renderSeconds; }, "of passes")
-        .def_property_readonly("reason", [](const Result& r) { return toString(r.session().reason); },
-                               "why it ended")
-        .def_property_readonly("relative_error",
-                               [](const Result& r) { return r.session().film.relativeStandardError(); },
-                               "rms standard error over mean; NaN while it is unknown")
-        .def_property_readonly("error_bound",
-                               [](const Result& r) { return r.session().film.relativeErrorBound(); },
-                               "what the relative error does not exceed with a confidence of 95 %")
+        .def_property_readonly(
+            "samples", [](const Result& r) { return r.session().samples; }, "per pixel")
+        .def_property_readonly(
+            "seconds", [](const Result& r) { return r.session().renderSeconds; }, "of passes")
+        .def_property_readonly(
+            "reason", [](const Result& r) { return toString(r.session().reason); }, "why it ended")
+        .def_property_readonly(
+            "relative_error", [](const Result& r) { return r.session().film.relativeStandardError(); },
+            "rms standard error over mean; NaN while it is unknown")
+        .def_property_readonly(
+            "error_bound", [](const Result& r) { return r.session().film.relativeErrorBound(); },
+            "what the relative error does not exceed with a confidence of 95 %")
         .def("write", &Result::write, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
              "Writes .exr, .npz, .h5, .pfm, .npy or .png and what goes beside them; returns the names.")
         .def("__repr__", textOf);

@@ -3,11 +3,11 @@
 
 #include "tungsten/python/Result.h"
 
+#include "darts/ConnectionLobe.h"
 #include "darts/ControlVertex.h"
 #include "darts/DistanceSampler.h"
 #include "darts/EdaDensity.h"
 #include "darts/EdaTable.h"
-#include "darts/ConnectionLobe.h"
 #include "darts/GreensFunction.h"
 #include "darts/TemporalResponse.h"
 
@@ -49,8 +49,7 @@ void declareConnections(py::module_& module) {
                py::vectorize([](double offset, double low, double width, double sigmaT, double needle) {
                    return darts::ConnectionLength<double>{low, width, sigmaT, needle}.pdf(offset);
                }),
-               "density per length of S = low + offset", "offset"_a, "low"_a, "width"_a, "sigma_t"_a,
-               "needle"_a = 0.0);
+               "density per length of S = low + offset", "offset"_a, "low"_a, "width"_a, "sigma_t"_a, "needle"_a = 0.0);
     module.def("control_vertex_pdf", py::vectorize([](double C, double delta, double h, double lengthPdf) {
                    return darts::controlVertexPdf(Ellipse<double>{C, delta, h}, lengthPdf);
                }),
@@ -60,13 +59,11 @@ void declareConnections(py::module_& module) {
 
 void declareDirections(py::module_& module) {
     const auto declareLobe = [&](const std::string& name, auto lobe) {
-        module.def((name + "_sample").c_str(), py::vectorize([lobe](double u, double C, double delta) {
-                       return lobe(C, delta).sample(u);
-                   }),
+        module.def((name + "_sample").c_str(),
+                   py::vectorize([lobe](double u, double C, double delta) { return lobe(C, delta).sample(u); }),
                    "h = 1 - cos to the target from u in [0, 1)", "u"_a, "C"_a, "delta"_a);
-        module.def((name + "_pdf").c_str(), py::vectorize([lobe](double h, double C, double delta) {
-                       return lobe(C, delta).pdf(h);
-                   }),
+        module.def((name + "_pdf").c_str(),
+                   py::vectorize([lobe](double h, double C, double delta) { return lobe(C, delta).pdf(h); }),
                    "density per solid angle", "h"_a, "C"_a, "delta"_a);
     };
     declareLobe("path_lobe", &darts::ConnectionLobe<double>::path);
@@ -125,8 +122,8 @@ class Distances {
 
 void declareDistances(py::module_& module) {
     py::class_<Distances>(module, "DistanceSampler", "Resampled distances to the next vertex, in a grey medium.")
-        .def(py::init<const std::string&, const std::string&, float, float, float>(), "preset"_a, "mode"_a,
-             "sigma_a"_a, "sigma_s"_a, "g"_a = 0.0f)
+        .def(py::init<const std::string&, const std::string&, float, float, float>(), "preset"_a, "mode"_a, "sigma_a"_a,
+             "sigma_s"_a, "g"_a = 0.0f)
         .def("sample", &Distances::sample,
              "Draws for connections of lengths low to high to a target at distance C: (distances, transmittance over\n"
              "density), both (n,), from random numbers (n, 4). A distance equal to `surface` is the surface.",

@@ -4,7 +4,6 @@
 #include "tungsten/core/InsideFolder.h"
 #include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/ImageIo.h"
-#include "tungsten/film/ResultFile.h"
 #include "tungsten/render/ResultDescription.h"
 
 #include <algorithm>
@@ -124,9 +123,9 @@ class ImageWriter {
         else if (image.content == Content::Cube || extension == ".npy")
             writeCube(image.file);
         else if (extension == ".npz")
-            writeNpz(image.file, everything());
+            writeNpz(image.file, resultContent(film_, scene_, metadata_));
         else if (extension == ".h5")
-            writeHdf5(image.file, everything());
+            writeHdf5(image.file, resultContent(film_, scene_, metadata_));
         else if (extension == ".exr")
             writeExr(image.file, frame ? std::vector<ExrPart>{exrPart(image.frame)} : allFrames(), metadata_);
         else if (extension == ".pfm")
@@ -152,17 +151,6 @@ class ImageWriter {
         std::vector<ExrPart> parts;
         for (int frame = 0; frame < film_.frames(); ++frame) parts.push_back(exrPart(frame));
         return parts;
-    }
-    [[nodiscard]] ResultContent everything() const {
-        ResultContent content{film_.width(), film_.height(), film_.frames(), {}, {}, metadata_};
-        content.images = {{"mean", [&](int frame) { return overFrame(film_.mean(frame)); }},
-                          {"standard_error", [&](int frame) { return overFrame(film_.standardError(frame)); }}};
-        content.vectors = {{"time_edges", frameEdges(scene_.transport.gate)}};
-        if (const double picoseconds = picosecondsPerTime(scene_); picoseconds > 0.0) {
-            content.vectors.push_back({"time_edges_ps", content.vectors[0].values});
-            for (double& edge : content.vectors[1].values) edge *= picoseconds;
-        }
-        return content;
     }
     void writeCube(const fs::path& file) const {
         std::vector<Image> frames;
@@ -204,6 +192,11 @@ std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan&
 }
 
 } // namespace
+
+fs::path OutputFiles::partialState(uint32_t first, uint32_t end) const {
+    const std::string name = ldr.stem().string() + "_passes_" + std::to_string(first) + "-" + std::to_string(end);
+    return ldr.parent_path() / (name + ".state");
+}
 
 Image inOutputUnits(Image average, const Scene& scene, int frames) {
     const TimeGate& gate = scene.transport.gate;

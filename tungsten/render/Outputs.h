@@ -19,6 +19,9 @@ struct OutputFiles {
     std::filesystem::path state;      ///< resume state
     std::filesystem::path statistics; ///< JSON; empty: none
     std::filesystem::path page;       ///< HTML; empty: none
+
+    /// Of --passes A:B, named after the main image: NAME_passes_A-B.state.
+    [[nodiscard]] std::filesystem::path partialState(uint32_t first, uint32_t end) const;
 };
 
 /// What the command line says about files (-d, -o, -e, --stats, --html).

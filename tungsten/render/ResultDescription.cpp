@@ -1,6 +1,6 @@
 #include "tungsten/render/ResultDescription.h"
 
-#include "tungsten/film/ResultFile.h"
+#include "tungsten/render/Outputs.h"
 #include "tungsten/scene/JsonWriter.h"
 
 #include <fstream>
@@ -31,9 +31,7 @@ void describeTime(JsonWriter& json, const Scene& scene) {
     json.field("edges", edges);
     const double picoseconds = picosecondsPerTime(scene);
     if (picoseconds > 0.0) {
-        std::vector<double> scaled = edges;
-        for (double& edge : scaled) edge *= picoseconds;
-        json.field("edges in picoseconds", scaled);
+        json.field("edges in picoseconds", frameEdgesInPicoseconds(scene));
         json.field("picoseconds per unit", picoseconds);
         json.field("metres per unit of length", scene.lengthUnit);
     }
@@ -55,6 +53,24 @@ std::vector<double> frameEdges(const TimeGate& gate) {
 
 double picosecondsPerTime(const Scene& scene) {
     return 1e12 * double(scene.transport.vacuumSpeed) * scene.lengthUnit / SpeedOfLight;
+}
+
+std::vector<double> frameEdgesInPicoseconds(const Scene& scene) {
+    const double picoseconds = picosecondsPerTime(scene);
+    if (picoseconds <= 0.0) return {};
+    std::vector<double> edges = frameEdges(scene.transport.gate);
+    for (double& edge : edges) edge *= picoseconds;
+    return edges;
+}
+
+ResultContent resultContent(const Film& film, const Scene& scene, const std::string& metadata) {
+    ResultContent content{film.width(), film.height(), film.frames(), {}, {}, metadata};
+    content.images = {
+        {"mean", [&](int frame) { return inOutputUnits(film.mean(frame), scene, 1); }},
+        {"standard_error", [&](int frame) { return inOutputUnits(film.standardError(frame), scene, 1); }}};
+    content.vectors = {{"time_edges", frameEdges(scene.transport.gate)}};
+    if (picosecondsPerTime(scene) > 0.0) content.vectors.push_back({"time_edges_ps", frameEdgesInPicoseconds(scene)});
+    return content;
 }
 
 std::string quantityText(const Scene& scene) {

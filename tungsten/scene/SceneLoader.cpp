@@ -24,12 +24,18 @@ std::string textOf(const rapidjson::Value& value) {
     return buffer.GetString();
 }
 
-uint64_t hashScene(const rapidjson::Document& document, const std::vector<std::filesystem::path>& resources) {
+uint64_t hashText(const rapidjson::Document& document) {
     Hash hash;
     for (const auto& member : document.GetObject()) {
         if (std::string_view(member.name.GetString()) == "renderer") continue;
         hash.add(std::string(member.name.GetString()) + textOf(member.value));
     }
+    return hash.value();
+}
+
+uint64_t hashScene(uint64_t text, const std::vector<std::filesystem::path>& resources) {
+    Hash hash;
+    hash.add(std::to_string(text));
     for (const auto& file : resources) {
         std::error_code error;
         hash.add(file.string() + std::to_string(std::filesystem::file_size(file, error)) +
@@ -131,6 +137,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
     std::vector<std::filesystem::path> inputs = context.resources;
+    const uint64_t text = hashText(*document);
     if (!options.text) inputs.insert(inputs.begin(), file);
     return {scene,
             blocks.renderer,
@@ -138,7 +145,8 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
             blocks.integrator,
             diagnostics,
             std::move(inputs),
-            hashScene(*document, context.resources),
+            hashScene(text, context.resources),
+            text,
             textOf(*document)};
 }
 

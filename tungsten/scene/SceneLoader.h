@@ -49,7 +49,8 @@ struct LoadedScene {
     std::vector<std::filesystem::path> inputs; ///< every file that was read, the scene's own first
     uint64_t hash =
         0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
-    std::string text; ///< of the scene, overrides included: JSON in one line
+    uint64_t textHash = 0; ///< the same without resources
+    std::string text;      ///< of the scene, overrides included: JSON in one line
 };
 
 /// The renderer block alone, with overrides; defaults where the file or the block cannot be read.
