@@ -49,8 +49,9 @@ class Partial : public test::RenderedScene {
 };
 
 TEST_F(Partial, SevenStatesOfPathsAreWhatOneRunGivesBitForBit) {
-    const std::vector<std::string> frames{"--set", "integrator.start_time=3", "--set",
-                                          "integrator.transient_time_width=0.5", "--set", "integrator.frame_num=4"};
+    const std::vector<std::string> frames{"--set", "integrator.start_time=3",
+                                          "--set", "integrator.transient_time_width=0.5",
+                                          "--set", "integrator.frame_num=4"};
     std::vector<std::string> merge{"merge", "--quiet", "-e", target(".pfm"), "-o", target(".png")};
     for (const std::string range : {"7-8", "0-1", "1-2", "2-4", "5-6", "4-5", "6-7"}) {
         std::string colon = range;
@@ -122,7 +123,8 @@ TEST_F(Partial, StatesOfOtherRendersAreRefused) {
     // A last pass of one sample stands in the midst.
     ASSERT_EQ(run({"--passes", "0:3", "--spp", "5"}).exitCode, 0);
     ASSERT_EQ(passes("3:8").exitCode, 0);
-    refusesToMerge({state("0-3"), state("3-8")}, 1, {state("0-3") + ": pass 2 is the last of a render with fewer samples"});
+    refusesToMerge({state("0-3"), state("3-8")}, 1,
+                   {state("0-3") + ": pass 2 is the last of a render with fewer samples"});
 }
 
 TEST_F(Partial, WhatIsNoStateIsRefused) {

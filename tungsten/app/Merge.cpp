@@ -28,7 +28,8 @@ bool parse(int argc, const char* const* argv, MergeOptions& options) {
     app.add_option("states", options.states, "all passes of one render, from its first on, each once")->required();
     app.add_option("-o,--output-file", options.outputs.ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", options.outputs.hdr, "linear image: .exr, .npz, .h5, .pfm or .npy");
-    app.add_option("--stats", options.outputs.statistics, "write what was measured, of every state too, to this JSON file");
+    app.add_option("--stats", options.outputs.statistics,
+                   "write what was measured, of every state too, to this JSON file");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
     try {
         app.parse(argc, argv);

@@ -14,6 +14,8 @@ namespace tungsten {
 namespace {
 
 constexpr hsize_t TileSide = 64;
+/// A name that no file has: of files in memory the library would read one that exists.
+constexpr const char* NoFile = "/dev/null/in memory";
 
 /// What the library returns is negative if it failed.
 template <typename Code>
@@ -90,11 +92,11 @@ void addImages(hid_t file, const ResultContent& content, const ResultContent::Im
 }
 
 /// A file in memory goes to a stream, whose failures are those of all outputs.
-void writeFile(std::ostream& out, const std::string& name, const ResultContent& content) {
+void writeFile(std::ostream& out, const ResultContent& content) {
     constexpr size_t Increment = size_t(1) << 22;
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     checked(H5Pset_fapl_core(access, Increment, false));
-    const Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+    const Handle file(H5Fcreate(NoFile, H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
     addAttribute(file, "format", "darts-tungsten result");
     addAttribute(file, "format_version", H5T_NATIVE_INT, &ResultVersion);
     for (const ResultContent::Images& images : content.images) addImages(file, content, images);
@@ -116,7 +118,7 @@ void writeHdf5(const std::filesystem::path& file, const ResultContent& content) 
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     writeAtomically(file, [&](std::ostream& out) {
         try {
-            writeFile(out, file.filename().string(), content);
+            writeFile(out, content);
         } catch (const std::runtime_error& error) {
             throw InputError(file.string(), std::string("cannot be written: ") + error.what());
         }

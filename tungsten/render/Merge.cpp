@@ -38,7 +38,8 @@ std::vector<Problem> problemsOf(const std::vector<std::unique_ptr<PartialStateRe
             add(*state, "holds " + passesText(state->first(), state->end()) + ", and " + before->file().string() + " " +
                             passesText(before->first(), before->end()) + ": they overlap");
         for (size_t i = 0; i < state->samples().size(); ++i)
-            if (int64_t(state->samples()[i]) != state->identity().sppStep && (i + 1 < state->samples().size() || state != states.back()))
+            if (int64_t(state->samples()[i]) != state->identity().sppStep &&
+                (i + 1 < state->samples().size() || state != states.back()))
                 add(*state, passesText(state->first() + uint32_t(i), state->first() + uint32_t(i) + 1) +
                                 " is the last of a render with fewer samples (spp) than the others");
         if (!before || state->end() > end) before = state.get();
@@ -83,7 +84,8 @@ MergedRender mergePartialStates(const std::vector<fs::path>& files) {
             problems.insert(problems.end(), error.problems().begin(), error.problems().end());
         }
     }
-    std::stable_sort(states.begin(), states.end(), [](const auto& a, const auto& b) { return a->first() < b->first(); });
+    std::stable_sort(states.begin(), states.end(),
+                     [](const auto& a, const auto& b) { return a->first() < b->first(); });
     if (problems.empty()) problems = problemsOf(states);
     if (!problems.empty()) throw InputError(problems);
     MergedRender merged{states.front()->identity(), {}, 0, {}};
