@@ -7,10 +7,10 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(
   g++ cmake ninja-build
-  libembree-dev libopenexr-dev libimath-dev zlib1g-dev rapidjson-dev libcli11-dev libxsimd-dev libtbb-dev libtinygltf-dev
+  libembree-dev libopenexr-dev libimath-dev zlib1g-dev libminizip-dev libhdf5-dev rapidjson-dev libcli11-dev libxsimd-dev libtbb-dev libtinygltf-dev
   libstb-dev libboost-dev libboost-math-dev
   libgtest-dev libbenchmark-dev
-  python3-numpy python3-matplotlib
+  python3-dev pybind11-dev python3-numpy python3-matplotlib
 )
 
 is_installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }

@@ -73,7 +73,7 @@ TEST(Command, BadInputIsExitCodeOne) {
         {{"--set", "primitives.block.bsdf=gray", file}, {file, "primitives[1].bsdf", "grey"}},
         {{"--set", "camera.type=pinhol", file}, {"camera.type", "pinhole"}},
         {{"-o", "x.jpg", file}, {"x.jpg", "accepted: .png"}},
-        {{"-e", "x.tiff", file}, {"x.tiff", ".exr, .pfm or .npy"}},
+        {{"-e", "x.tiff", file}, {"x.tiff", ".exr, .npz, .h5, .pfm or .npy"}},
         {{"--html", "x.htlm", file}, {"x.htlm", "accepted: .html or .htm"}},
         {{"--html", file + "/x.html", file}, {"x.html", "cannot be created or written to"}},
         {{"-d", file, file}, {"cannot be created or written to", "-d DIRECTORY"}},

@@ -4,6 +4,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/film/ResultFile.h"
 
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -62,9 +63,10 @@ class SmallDisk {
 
 /// Renders images of that type small, then larger while `Shortage` lasts: the second must fail and leave the first.
 template <typename Render, typename Shortage>
-void expectTheEarlierOnesKept(const fs::path& out, const Render& render, const Shortage& shortage) {
+void expectTheEarlierOnesKept(const fs::path& out, const Render& render, const Shortage& shortage,
+                              const std::string& image = "box.exr") {
     ASSERT_EQ(render("8x8").exitCode, 0);
-    const std::vector<fs::path> names{"box.png", "box.exr", "TungstenRenderState.dat"};
+    const std::vector<fs::path> names{"box.png", image, "TungstenRenderState.dat"};
     std::vector<std::string> before;
     for (const fs::path& name : names) before.push_back(contentOf(out / name));
     const CommandResult result = shortage();
@@ -77,14 +79,18 @@ void expectTheEarlierOnesKept(const fs::path& out, const Render& render, const S
 }
 
 TEST_F(FullDisk, FilesThatCannotGrowLeaveTheEarlierOnes) {
-    const auto run = [&](const std::string& size) {
-        return render({"-e", "box.exr", "-c", "1h", "-r", "--resolution", size});
-    };
-    expectTheEarlierOnesKept(out(), run, [&] {
-        const FileSizeLimit limit(1200);
-        return run("64x64");
-    });
-    EXPECT_EQ(filesOf(out()).size(), 3u) << "nothing is left behind";
+    for (const std::string image : {"box.exr", "box.npz", "box.h5"}) {
+        const auto run = [&](const std::string& size) {
+            return render({"-e", image, "-c", "1h", "-r", "--resolution", size});
+        };
+        const auto runShort = [&] {
+            const FileSizeLimit limit(1200);
+            return run("64x64");
+        };
+        expectTheEarlierOnesKept(out(), run, runShort, image);
+        EXPECT_EQ(filesOf(out()).size(), 3u) << "nothing is left behind";
+        fs::remove(out() / image);
+    }
 }
 
 /// Where in the file the disk is full makes no difference.
@@ -92,7 +98,9 @@ TEST_F(FullDisk, ImagesAreWholeWhereverTheyAreCut) {
     const TemporaryFolder folder;
     Image image(40, 30);
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = Rgb(float(i * 7919 % 1013), 1.0f, float(i));
-    const fs::path png = folder.path() / "a.png", exr = folder.path() / "a.exr", npy = folder.path() / "a.npy";
+    const fs::path png = folder.path() / "a.png", exr = folder.path() / "a.exr", npy = folder.path() / "a.npy",
+                   npz = folder.path() / "a.npz", hdf5 = folder.path() / "a.h5";
+    const ResultContent content{image.width, image.height, 1, {{"mean", [&](int) { return image; }}}, {}, "{}"};
     const auto writeAll = [&](int& failures) {
         const auto attempt = [&](auto write) {
             try {
@@ -104,22 +112,24 @@ TEST_F(FullDisk, ImagesAreWholeWhereverTheyAreCut) {
         attempt([&] { writePng(png, image, ToneMap::Linear); });
         attempt([&] { writeExr(exr, {ExrPart{"", image, image, false, 0, 0}}); });
         attempt([&] { writeNpy(npy, {image}); });
+        attempt([&] { writeNpz(npz, content); });
+        attempt([&] { writeHdf5(hdf5, content); });
     };
     int failures = 0;
     writeAll(failures);
     ASSERT_EQ(failures, 0);
-    const std::vector<std::string> whole{contentOf(png), contentOf(exr), contentOf(npy)};
-    for (size_t file = 0; file < whole.size(); ++file)
-        for (size_t size = 0; size < whole[file].size(); size += 1 + whole[file].size() / 60) {
+    const std::vector<fs::path> files{png, exr, npy, npz, hdf5};
+    std::vector<std::string> whole;
+    for (const fs::path& file : files) whole.push_back(contentOf(file));
+    for (const std::string& bytes : whole)
+        for (size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 60) {
             const FileSizeLimit limit(size);
             int failed = 0;
             writeAll(failed);
             EXPECT_GE(failed, 1) << size;
         }
-    EXPECT_EQ(contentOf(png), whole[0]);
-    EXPECT_EQ(contentOf(exr), whole[1]);
-    EXPECT_EQ(contentOf(npy), whole[2]);
-    EXPECT_EQ(filesOf(folder.path()).size(), 3u);
+    for (size_t i = 0; i < files.size(); ++i) EXPECT_EQ(contentOf(files[i]), whole[i]) << files[i];
+    EXPECT_EQ(filesOf(folder.path()).size(), files.size());
 }
 
 TEST_F(FullDisk, AFullDiskLeavesTheEarlierFiles) {

@@ -1,5 +1,6 @@
 // Names of the files a render writes, and what is in them.
 
+#include "render/command.h"
 #include "render/fake_integrator.h"
 
 #include "tungsten/film/ImageIo.h"
@@ -76,7 +77,7 @@ TEST(Outputs, UnknownExtensionsNameTheAcceptedOnes) {
     const test::TemporaryFolder folder;
     EXPECT_NE(errorOf({folder.path() / "a.jpg", {}, {}, {}, {}, {}, {}}).find("accepted: .png"), std::string::npos);
     EXPECT_NE(errorOf({folder.path() / "a.png", folder.path() / "b.hdr", {}, {}, {}, {}, {}})
-                  .find("accepted: .exr, .pfm or .npy"),
+                  .find("accepted: .exr, .npz, .h5, .pfm or .npy"),
               std::string::npos);
     EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}, {}, {}}), "");
 }
@@ -120,9 +121,29 @@ TEST(Outputs, ASequenceBecomesAMultiPartExrACubeAndASeries) {
         EXPECT_TRUE(session.has(name)) << name;
     EXPECT_FALSE(session.has("TungstenRender_3.png"));
     EXPECT_FALSE(session.has("image_0.exr")) << "the EXR file holds every frame";
-    EXPECT_EQ(result.written.size(), 6u);
+    EXPECT_EQ(result.written.size(), 7u) << "and metadata beside the cube";
     // 128 bytes of header at most, then 3 frames of 4 x 6 pixels of 3 floats.
     EXPECT_EQ(fs::file_size(session.folder() / "image.npy") % 64, (3 * 4 * 6 * 3 * 4) % 64);
+}
+
+TEST(Outputs, AnExrSaysWhatWasRenderedAndAnNpyHasItBeside) {
+    SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.exr")"));
+    session.run();
+    const std::string metadata = readExrMetadata(session.outputs.hdr);
+    EXPECT_EQ(metadata, test::contentOf(session.folder() / "image.npy.json"));
+    for (const char* part :
+         {"\"format\": \"darts-tungsten result\"", "\"frame_num\":3", "\"passes\": 2", "\"kind\": \"frames\""})
+        EXPECT_NE(metadata.find(part), std::string::npos) << part << " is not in " << metadata;
+}
+
+/// All frames are in one file: no series beside it, and no NPY.
+TEST(Outputs, ResultFilesHoldAllFrames) {
+    for (const std::string extension : {".npz", ".h5"}) {
+        SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "hdr_output_file": "image)" + extension + "\""));
+        session.run();
+        EXPECT_TRUE(session.has("image" + extension));
+        EXPECT_FALSE(session.has("image.npy")) << extension;
+    }
 }
 
 TEST(Outputs, APfmSequenceIsASeriesAndTheMeanOverTheGate) {

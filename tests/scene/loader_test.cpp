@@ -37,6 +37,13 @@ std::string problemsOf(const std::string& json) {
     return "";
 }
 
+TEST(SceneLoader, ScenesMaySayHowLongTheirUnitIs) {
+    EXPECT_DOUBLE_EQ(loadScene(SceneFile("{}").path()).scene->lengthUnit, 0.0);
+    EXPECT_DOUBLE_EQ(loadScene(SceneFile(R"({"length_unit": "mm"})").path()).scene->lengthUnit, 1e-3);
+    EXPECT_NE(problemsOf(R"({"length_unit": "metre"})").find("length_unit: expected km, m, cm, mm, um, in or ft"),
+              std::string::npos);
+}
+
 TEST(SceneLoader, FieldsBecomeTypedValues) {
     const SceneFile file(Fog);
     const LoadedScene loaded = loadScene(file.path());

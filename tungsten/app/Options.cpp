@@ -63,6 +63,30 @@ uint64_t seedOption(const std::string& text) {
     return seed;
 }
 
+/// "A:B": passes A to B - 1.
+PassRange passesOption(const std::string& text) {
+    const char *first = text.data(), *last = first + text.size();
+    PassRange range;
+    const auto [colon, firstError] = std::from_chars(first, last, range.first);
+    const bool parted = firstError == std::errc() && colon != last && *colon == ':';
+    const auto [end, endError] = std::from_chars(parted ? colon + 1 : last, last, range.end);
+    if (!parted || endError != std::errc() || end != last || range.first >= range.end)
+        throw UsageError("--passes " + text +
+                         ": expected A:B for passes A to B - 1 of the render, such as 0:4 and 4:8");
+    return range;
+}
+
+/// A partial state is all that --passes writes.
+void requireNothingElse(const Options& options) {
+    if (!options.passes) return;
+    const OutputOverrides& outputs = options.outputs;
+    if (outputs.hdr || outputs.page || outputs.statistics || !options.trace.empty())
+        throw UsageError("--passes: writes a partial state alone, without -e, --stats, --html and --trace; images are "
+                         "what tungsten merge writes");
+    if (options.checkpointSeconds || options.restart || options.targetError > 0.0)
+        throw UsageError("--passes: goes without -c, -r and --target-error");
+}
+
 /// The parser's message for an option nobody knows, with the nearest one that exists.
 std::string explainUnknown(const CLI::App& app, const std::string& message) {
     std::vector<std::string> names;
@@ -112,7 +136,7 @@ std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
 /// Options as they are written, before they are understood.
 struct OptionTexts {
     std::string memoryLimit, checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre,
-        describe, page;
+        describe, page, passes;
     int64_t spp = 0;
     const CLI::Option* description = nullptr; ///< --describe, which may have no value
 };
@@ -129,11 +153,15 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("-d,--output-directory", text.directory, "base of every output file; created if missing");
     app.add_option("--spp", text.spp, "samples per pixel in total")
         ->check(CLI::Range(int64_t(1), int64_t(1000000000000)));
+    app.add_option("--passes", text.passes,
+                   "render passes A to B - 1 alone, of A:B, into a partial state, NAME_passes_A-B.state beside the "
+                   "image; \"tungsten merge STATES -e IMAGE\" puts such together");
     app.add_option("--timeout", text.timeout,
                    "stop after DURATION of passes (no unit: minutes) and write what is there");
     app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
     app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
-    app.add_option("-e,--hdr-output-file", text.hdr, "linear image (.exr with standard error, .pfm, or .npy)");
+    app.add_option("-e,--hdr-output-file", text.hdr,
+                   "linear image: .exr with standard error, .npz or .h5 with all that is known, .pfm, or .npy");
     app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
     app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
         ->allow_extra_args(false);
@@ -185,6 +213,7 @@ void understand(const OptionTexts& text, Options& options) {
     if (!text.checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", text.checkpoint);
     if (!text.timeout.empty()) options.timeoutSeconds = durationOption("--timeout", text.timeout);
     if (text.spp > 0) options.spp = text.spp;
+    if (!text.passes.empty()) options.passes = passesOption(text.passes);
     if (!text.resolution.empty()) options.overrides.push_back(resolutionOverride(text.resolution));
     if (!text.timeCentre.empty()) options.overrides.push_back("integrator.transient_time_center=" + text.timeCentre);
     if (!text.directory.empty()) options.outputs.directory = text.directory;
@@ -207,6 +236,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     declareOptions(app, options, text);
     if (!parse(app, argc, argv)) return std::nullopt;
     understand(text, options);
+    requireNothingElse(options);
     options.command = commandText(argc, argv);
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
     if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");

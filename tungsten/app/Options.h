@@ -2,6 +2,7 @@
 // The command line of `tungsten`.
 
 #include "tungsten/render/Outputs.h"
+#include "tungsten/render/PartialState.h"
 
 #include <filesystem>
 #include <optional>
@@ -19,6 +20,7 @@ struct Options {
     std::filesystem::path trace; ///< empty: none
     std::optional<double> checkpointSeconds, timeoutSeconds;
     std::optional<int64_t> spp;
+    std::optional<PassRange> passes; ///< --passes
     uint64_t seed = 0xBA5EBA11u;
     double targetError = 0.0;
     double memoryLimit = 0.0; ///< bytes; 0: what is available

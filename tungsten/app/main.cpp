@@ -2,11 +2,12 @@
 
 #include "tungsten/app/Describe.h"
 #include "tungsten/app/List.h"
+#include "tungsten/app/Merge.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/Describe.h"
+#include "tungsten/render/Job.h"
 #include "tungsten/render/Memory.h"
-#include "tungsten/render/Plugin.h"
 #include "tungsten/render/Progress.h"
 #include "tungsten/render/RenderSession.h"
 
@@ -38,38 +39,13 @@ void onInterrupt(int) {
     if (interrupted.exchange(true)) _exit(ExitInterrupted);
 }
 
-/// Integrators, what went wrong while loading them, and where they were looked for.
-struct Plugins {
-    IntegratorRegistry registry;
-    std::vector<std::filesystem::path> directories = pluginDirectories();
-    std::vector<Problem> problems = loadPlugins(directories, registry);
-};
-
 void printWarnings(const std::vector<Problem>& warnings, size_t more = 0) {
     for (const Problem& warning : warnings) std::cerr << "warning: " << warning.text() << '\n';
     if (more > 0) std::cerr << "warning: and " << more << " more\n";
 }
 
-[[noreturn]] void failUnknownIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
-    std::vector<std::string> types;
-    for (const auto& [type, entry] : plugins.registry.entries()) types.push_back(type);
-    std::string message = types.empty() ? "no integrator is known" : "expected " + listOf(types);
-    message += ", found '" + loaded.integratorType + "'";
-    const std::string near = nearestName(loaded.integratorType, types);
-    if (!near.empty()) message += "; did you mean '" + near + "'?";
-    message += " (plugins were looked for in";
-    for (size_t i = 0; i < plugins.directories.size(); ++i)
-        message += (i > 0 ? ", " : " ") + plugins.directories[i].string();
-    throw InputError({{loaded.diagnostics->file, "integrator.type", message + ")"}});
-}
-
-std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
-    const auto found = plugins.registry.entries().find(loaded.integratorType);
-    if (found == plugins.registry.entries().end()) failUnknownIntegrator(loaded, plugins);
-    auto integrator = found->second.factory(loaded.scene, loaded.integratorSettings);
-    throwIfProblems(*loaded.diagnostics);
-    loaded.integratorSettings.warnAboutUnknown();
-    return integrator;
+void printErrors(const InputError& error) {
+    for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
 }
 
 SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer) {
@@ -77,9 +53,10 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.seed = options.seed;
     session.spp = options.spp.value_or(renderer.spp);
     session.sppStep = renderer.sppStep;
+    session.passes = options.passes;
     session.timeoutSeconds = options.timeoutSeconds.value_or(renderer.timeoutSeconds);
     session.checkpointSeconds = options.checkpointSeconds.value_or(renderer.checkpointSeconds);
-    session.resumeEnabled = renderer.enableResume || options.checkpointSeconds.has_value();
+    session.resumeEnabled = !options.passes && (renderer.enableResume || options.checkpointSeconds);
     session.restart = options.restart;
     session.targetError = options.targetError;
     session.memoryLimit = options.memoryLimit;
@@ -111,20 +88,18 @@ void printSummary(const SessionResult& result) {
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
-    const LoadedScene loaded =
-        loadScene(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside});
-    const auto integrator = makeIntegrator(loaded, plugins);
+    const Job job =
+        makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins);
+    const LoadedScene& loaded = job.loaded;
     printWarnings(loaded.diagnostics->warnings, loaded.diagnostics->moreWarnings);
-    EffectPlan plan = analyseScene(*loaded.scene);
-    integrator->plan(plan);
     loading.reset();
     if (options.explain) {
         std::cout << file.string() << " (" << loaded.integratorType << ")\n";
-        printPlan(plan, std::cout);
+        printPlan(job.plan, std::cout);
         return 0;
     }
     const OutputFiles outputs = resolveOutputs(loaded.renderer, file, options.outputs);
-    runSession(loaded, *integrator, plan, outputs, sessionOptions(options, loaded.renderer), result);
+    runSession(loaded, *job.integrator, job.plan, outputs, sessionOptions(options, loaded.renderer), result);
     if (!options.quiet) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }
@@ -134,7 +109,7 @@ int tryScene(const std::filesystem::path& file, const Options& options, const Pl
     try {
         return renderScene(file, options, plugins);
     } catch (const InputError& error) {
-        for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
+        printErrors(error);
     } catch (const UsageError& error) {
         std::cerr << "error: " << error.what() << '\n';
         return ExitBadUsage;
@@ -159,6 +134,7 @@ void requireOutputsOfTheirOwn(const Options& options) {
         std::vector<std::filesystem::path> written;
         if (renderer.overwriteOutputFiles || options.outputs.ldr) written.push_back(files.ldr);
         if (renderer.overwriteOutputFiles || options.outputs.hdr) written.push_back(files.hdr);
+        if (options.passes) written.push_back(files.partialState(options.passes->first, options.passes->end));
         if (renderer.enableResume || options.checkpointSeconds) written.push_back(files.state);
         written.push_back(files.statistics);
         for (const auto& file : written) {
@@ -229,8 +205,12 @@ int withWholeOutput(int code) {
 int main(int argc, char** argv) {
     using namespace tungsten;
     try {
+        if (argc > 1 && std::strcmp(argv[1], "merge") == 0) return withWholeOutput(mergeCommand(argc - 1, argv + 1));
         const auto options = parseOptions(argc, argv);
         return withWholeOutput(options ? run(*options) : 0);
+    } catch (const InputError& error) {
+        printErrors(error);
+        return ExitBadInput;
     } catch (const UsageError& error) {
         std::cerr << "error: " << error.what() << '\n';
         return ExitBadUsage;

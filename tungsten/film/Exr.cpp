@@ -14,12 +14,14 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
 
 namespace tungsten {
 
 namespace {
 
 constexpr const char* Components[3] = {"R", "G", "B"};
+constexpr const char* MetadataName = "metadata";
 constexpr int64_t LargestImage = int64_t(1) << 28;
 
 void insertLayer(Imf::FrameBuffer& buffer, const std::string& layer, const Image& image) {
@@ -63,10 +65,12 @@ class ExrStream : public Imf::OStream {
     std::ostream& out_;
 };
 
-void writeParts(std::ostream& stream, const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
+void writeParts(std::ostream& stream, const std::filesystem::path& file, const std::vector<ExrPart>& parts,
+                const std::string& metadata) {
     try {
         std::vector<Imf::Header> headers;
         for (const ExrPart& part : parts) headers.push_back(headerOf(part, parts.size() > 1));
+        if (!metadata.empty()) headers.at(0).insert(MetadataName, Imf::StringAttribute(metadata));
         ExrStream target(stream, file);
         Imf::MultiPartOutputFile out(target, headers.data(), int(headers.size()));
         for (size_t i = 0; i < parts.size(); ++i) {
@@ -84,8 +88,18 @@ void writeParts(std::ostream& stream, const std::filesystem::path& file, const s
 
 } // namespace
 
-void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts) {
-    writeAtomically(file, [&](std::ostream& out) { writeParts(out, file, parts); });
+void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts, const std::string& metadata) {
+    writeAtomically(file, [&](std::ostream& out) { writeParts(out, file, parts, metadata); });
+}
+
+std::string readExrMetadata(const std::filesystem::path& file) {
+    try {
+        const Imf::MultiPartInputFile in(file.c_str());
+        const auto* attribute = in.header(0).findTypedAttribute<Imf::StringAttribute>(MetadataName);
+        return attribute ? attribute->value() : "";
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), std::string("not a readable EXR image: ") + error.what());
+    }
 }
 
 int exrPartCount(const std::filesystem::path& file) {

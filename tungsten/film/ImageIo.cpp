@@ -1,4 +1,4 @@
-// Formats of our own few lines: PFM, NPY, text; PNG through stb.
+// Formats of our own few lines: PFM, text; PNG through stb.
 
 #include "tungsten/film/ImageIo.h"
 
@@ -79,23 +79,6 @@ Image readPfm(const std::filesystem::path& file) {
         }
     }
     return image;
-}
-
-void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frames) {
-    const int width = frames.empty() ? 0 : frames[0].width, height = frames.empty() ? 0 : frames[0].height;
-    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(frames.size()) + ", " +
-                         std::to_string(height) + ", " + std::to_string(width) + ", 3), }";
-    constexpr size_t Preamble = 10, Alignment = 64;
-    header.append((Alignment - (Preamble + header.size() + 1) % Alignment) % Alignment, ' ');
-    header += '\n';
-    writeAtomically(file, [&](std::ostream& out) {
-        const auto length = uint16_t(header.size());
-        out.write("\x93NUMPY\x01\x00", 8);
-        out.put(char(length & 255)).put(char(length >> 8));
-        out << header;
-        for (const Image& frame : frames)
-            for (int y = 0; y < height; ++y) writeRow(out, frame, y);
-    });
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text) {

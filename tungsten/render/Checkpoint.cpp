@@ -2,12 +2,11 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
-#include "tungsten/core/Hash.h"
 #include "tungsten/film/AtomicFile.h"
+#include "tungsten/film/Checksum.h"
 
 #include <cstring>
 #include <fstream>
-#include <streambuf>
 
 namespace tungsten {
 
@@ -23,43 +22,6 @@ struct Header {
     int64_t sppStep;
     uint64_t samples;
 };
-
-/// Passes bytes on and takes their checksum.
-class ChecksumBuffer : public std::streambuf {
-  public:
-    explicit ChecksumBuffer(std::streambuf& target) : target_(target) {}
-    [[nodiscard]] uint64_t checksum() const { return hash_.value(); }
-
-  protected:
-    std::streamsize xsputn(const char* bytes, std::streamsize count) override {
-        hash_.addBytes(bytes, size_t(count));
-        return target_.sputn(bytes, count);
-    }
-    int_type overflow(int_type c) override {
-        const char byte = traits_type::to_char_type(c);
-        return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
-    }
-
-  private:
-    std::streambuf& target_;
-    Hash hash_;
-};
-
-/// Whether the file ends with the checksum of all its other bytes.
-bool isWhole(std::istream& in, uint64_t size) {
-    constexpr uint64_t ChunkSize = 1 << 16;
-    uint64_t left = size - std::min<uint64_t>(size, sizeof(uint64_t)), stored = 0;
-    std::vector<char> chunk(ChunkSize);
-    Hash hash;
-    while (left > 0 && in) {
-        const uint64_t count = std::min(left, ChunkSize);
-        in.read(chunk.data(), std::streamsize(count));
-        hash.addBytes(chunk.data(), size_t(in.gcount()));
-        left -= count;
-    }
-    in.read(reinterpret_cast<char*>(&stored), sizeof stored);
-    return in && stored == hash.value();
-}
 
 void requireMine(const Header& header, const RenderIdentity& identity, const std::filesystem::path& file) {
     const auto mismatch = [&](const std::string& what) {
@@ -101,7 +63,7 @@ std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, con
     if (std::memcmp(header.magic, Magic, sizeof Magic) != 0)
         throw InputError(file.string(), "a resume state of another version of this program; -r starts over");
     in.seekg(0);
-    if (!isWhole(in, size))
+    if (!endsWithChecksum(in, size))
         throw InputError(file.string(), "the resume state is damaged (its checksum is wrong); -r starts over");
     requireMine(header, identity, file);
     in.seekg(sizeof header);

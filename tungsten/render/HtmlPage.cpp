@@ -2,13 +2,10 @@
 
 #include "tungsten/film/FilmCode.h"
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/render/ResultDescription.h"
 #include "tungsten/scene/JsonWriter.h"
 
-#include <fstream>
 #include <limits>
-#include <thread>
-
-#include <sys/utsname.h>
 
 namespace tungsten {
 
@@ -20,25 +17,6 @@ namespace {
 
 constexpr const char* FilmId = "film";
 constexpr double Nothing = std::numeric_limits<double>::quiet_NaN(); ///< null in JSON
-
-/// Processor, threads and system of this machine.
-std::string machineText() {
-    std::ifstream information("/proc/cpuinfo");
-    std::string processor = "unknown processor";
-    for (std::string line; std::getline(information, line);)
-        if (line.starts_with("model name")) {
-            processor = line.substr(line.find(':') + 2);
-            break;
-        }
-    utsname system{};
-    ::uname(&system);
-    return processor + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads, " + system.sysname +
-           " " + system.machine;
-}
-
-std::string buildText() {
-    return "darts-tungsten " TUNGSTEN_VERSION ", GCC " __VERSION__ ", " TUNGSTEN_BUILD_TYPE;
-}
 
 FilmImages imagesOf(const Film& film, const Scene& scene) {
     FilmImages images;
@@ -97,12 +75,11 @@ void describeTrace(JsonWriter& json, const std::string& name, const std::vector<
 void describeScene(JsonWriter& json, const LoadedScene& loaded, const SessionResult& result, const FilmCode& code) {
     const Scene& scene = *loaded.scene;
     const TimeGate& gate = scene.transport.gate;
-    const bool integral = scene.transport.integrateOverGate && !gate.steadyState && !gate.delta;
     json.beginArray("scenes");
     json.beginObject();
     json.field("name", scene.file.stem().string());
     json.field("toneMap", toneMapName(scene.toneMap));
-    json.field("quantity", integral ? "radiance, integrated over a frame" : "radiance, mean over a frame");
+    json.field("quantity", quantityText(scene));
     json.field("reference", Nothing);
     if (gate.frames > 1) {
         json.beginObject("time");

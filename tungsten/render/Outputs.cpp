@@ -4,6 +4,7 @@
 #include "tungsten/core/InsideFolder.h"
 #include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/render/ResultDescription.h"
 
 #include <algorithm>
 #include <cctype>
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> HdrExtensions{".exr", ".pfm", ".npy"};
+const std::vector<std::string> HdrExtensions{".exr", ".npz", ".h5", ".pfm", ".npy"};
 
 fs::path withSuffix(const fs::path& file, const std::string& suffix) {
     return file.parent_path() / (file.stem().string() + suffix + file.extension().string());
@@ -41,10 +42,16 @@ std::string extensionOf(const fs::path& file) {
     return extension;
 }
 
-/// One file of a film: the image of the whole gate (formats that hold several frames get all of them), one frame, or
-/// all frames as an array.
+/// Files that hold all frames as arrays.
+bool holdsArrays(const fs::path& file) {
+    const std::string extension = extensionOf(file);
+    return extension == ".npy" || extension == ".npz" || extension == ".h5";
+}
+
+/// One file of a film: the image of the whole gate (formats that hold several frames get all of them), one frame, all
+/// frames as an array, or what is known about them.
 struct PlannedImage {
-    enum class Content { Whole, Frame, Cube };
+    enum class Content { Whole, Frame, Cube, Metadata };
     fs::path file;
     Content content = Content::Whole;
     int frame = 0;
@@ -57,7 +64,9 @@ using Content = PlannedImage::Content;
 std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, const std::string& suffix) {
     std::vector<PlannedImage> images;
     const auto add = [&](const fs::path& file, Content content = Content::Whole, int frame = 0, bool linear = false) {
-        if (!file.empty()) images.push_back({file, content, frame, linear});
+        if (file.empty()) return;
+        images.push_back({file, content, frame, linear});
+        if (extensionOf(file) == ".npy") images.push_back({file.string() + ".json", Content::Metadata, 0, false});
     };
     const auto series = [&](const fs::path& file) {
         for (int frame = 0; frame < frames && !file.empty(); ++frame)
@@ -72,7 +81,7 @@ std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, 
         add(buffer.hdrFile);
     }
     if (frames <= 1) return images;
-    if (!hdr.empty() && extensionOf(hdr) != ".npy") add(fs::path(hdr).replace_extension(".npy"), Content::Cube);
+    if (!hdr.empty() && !holdsArrays(hdr)) add(fs::path(hdr).replace_extension(".npy"), Content::Cube);
     if (outputs.series.empty()) {
         series(outputs.ldr);
         if (extensionOf(hdr) == ".pfm") series(hdr);
@@ -87,7 +96,8 @@ std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, 
 /// Writes what it can: a file that fails does not keep the others from being written.
 class ImageWriter {
   public:
-    ImageWriter(const Film& film, const Scene& scene) : film_(film), scene_(scene) {}
+    ImageWriter(const Film& film, const Scene& scene, const std::string& metadata)
+        : film_(film), scene_(scene), metadata_(metadata) {}
 
     void write(const PlannedImage& image) {
         try {
@@ -108,10 +118,16 @@ class ImageWriter {
     void writeContent(const PlannedImage& image) const {
         const bool frame = image.content == Content::Frame;
         const std::string extension = extensionOf(image.file);
-        if (image.content == Content::Cube || extension == ".npy")
+        if (image.content == Content::Metadata)
+            writeTextFile(image.file, metadata_);
+        else if (image.content == Content::Cube || extension == ".npy")
             writeCube(image.file);
+        else if (extension == ".npz")
+            writeNpz(image.file, resultContent(film_, scene_, metadata_));
+        else if (extension == ".h5")
+            writeHdf5(image.file, resultContent(film_, scene_, metadata_));
         else if (extension == ".exr")
-            writeExr(image.file, frame ? std::vector<ExrPart>{exrPart(image.frame)} : allFrames());
+            writeExr(image.file, frame ? std::vector<ExrPart>{exrPart(image.frame)} : allFrames(), metadata_);
         else if (extension == ".pfm")
             writePfm(image.file, frame ? overFrame(film_.mean(image.frame)) : wholeImage());
         else
@@ -144,6 +160,7 @@ class ImageWriter {
 
     const Film& film_;
     const Scene& scene_;
+    const std::string& metadata_;
     std::vector<fs::path> written_;
     std::vector<Problem> problems_;
 };
@@ -175,6 +192,11 @@ std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan&
 }
 
 } // namespace
+
+fs::path OutputFiles::partialState(uint32_t first, uint32_t end) const {
+    const std::string name = ldr.stem().string() + "_passes_" + std::to_string(first) + "-" + std::to_string(end);
+    return ldr.parent_path() / (name + ".state");
+}
 
 Image inOutputUnits(Image average, const Scene& scene, int frames) {
     const TimeGate& gate = scene.transport.gate;
@@ -270,8 +292,8 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
 }
 
 std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
-                                  const std::string& suffix) {
-    ImageWriter writer(film, scene);
+                                  const std::string& metadata, const std::string& suffix) {
+    ImageWriter writer(film, scene, metadata);
     for (const PlannedImage& image : plannedImages(outputs, film.frames(), suffix)) writer.write(image);
     return writer.finish();
 }

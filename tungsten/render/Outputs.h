@@ -13,12 +13,15 @@ namespace tungsten {
 /// Where results go; relative paths are relative to the process directory.
 struct OutputFiles {
     std::filesystem::path ldr;        ///< PNG, always written
-    std::filesystem::path hdr;        ///< .exr, .pfm or .npy; empty: none
+    std::filesystem::path hdr;        ///< .exr, .npz, .h5, .pfm or .npy; empty: none
     std::vector<OutputBuffer> colors; ///< further files of the image, the LDR ones not tone-mapped (resolved names)
     std::vector<OutputBuffer> series; ///< per-frame files of sequences (resolved names)
     std::filesystem::path state;      ///< resume state
     std::filesystem::path statistics; ///< JSON; empty: none
     std::filesystem::path page;       ///< HTML; empty: none
+
+    /// Of --passes A:B, named after the main image: NAME_passes_A-B.state.
+    [[nodiscard]] std::filesystem::path partialState(uint32_t first, uint32_t end) const;
 };
 
 /// What the command line says about files (-d, -o, -e, --stats, --html).
@@ -58,8 +61,9 @@ void checkWritable(const std::filesystem::path& file);
 Image inOutputUnits(Image average, const Scene& scene, int frames);
 
 /// Writes every image of the film and returns the files' names; with a `suffix` (which goes before the extension:
-/// checkpoints) only the main ones. Throws InputError after trying all of them if any failed.
+/// checkpoints) only the main ones. `metadata` (ResultDescription.h) goes into the files that can hold it, and beside
+/// NPY. Throws InputError after trying all of them if any failed.
 std::vector<std::filesystem::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
-                                               const std::string& suffix = "");
+                                               const std::string& metadata, const std::string& suffix = "");
 
 } // namespace tungsten

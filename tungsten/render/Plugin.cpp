@@ -66,6 +66,14 @@ void loadPlugin(const std::filesystem::path& file, IntegratorRegistry& registry)
     descriptor->registerIntegrators(registry);
 }
 
+/// The file of the library that this is in, which may have been loaded by any program.
+std::filesystem::path hostLibrary() {
+    Dl_info information{};
+    std::error_code error;
+    if (dladdr(reinterpret_cast<const void*>(&hostLibrary), &information) == 0) return {};
+    return std::filesystem::canonical(information.dli_fname, error);
+}
+
 } // namespace
 
 void IntegratorRegistry::add(const std::string& type, const std::string& description, IntegratorFactory factory) {
@@ -102,12 +110,16 @@ std::vector<std::filesystem::path> pluginDirectories() {
             start = end + 1;
         }
     }
+    const auto add = [&](const std::filesystem::path& directory) {
+        if (std::find(directories.begin(), directories.end(), directory) == directories.end())
+            directories.push_back(directory);
+    };
     std::error_code error;
     const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (!error) {
-        directories.push_back(executable.parent_path());
-        directories.push_back(executable.parent_path().parent_path() / "lib" / "tungsten");
-    }
+    if (!error) add(executable.parent_path());
+    const std::filesystem::path library = hostLibrary();
+    add(library.parent_path());
+    add(library.parent_path() / "tungsten");
     return directories;
 }
 

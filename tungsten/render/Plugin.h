@@ -1,8 +1,9 @@
 #pragma once
 // What a plugin exports, and how the host finds plugins.
 //
-// A plugin is a shared object libtungsten-NAME.so beside the executable (or in ../lib/tungsten) or on
-// TUNGSTEN_PLUGIN_PATH (colon separated). It defines
+// A plugin is a shared object libtungsten-NAME.so beside the executable or the host's library, in the
+// folder tungsten beside that (lib/tungsten of an installation), or on TUNGSTEN_PLUGIN_PATH (colon separated). It
+// defines
 //
 //     extern "C" const tungsten::PluginDescriptor* tungstenPlugin() {
 //         static const tungsten::PluginDescriptor descriptor{tungsten::PluginAbi, "name", registerIntegrators};
@@ -42,7 +43,7 @@ struct PluginDescriptor {
 /// registers its integrators. The libraries stay loaded for the life of the process. Returns what went wrong: files
 /// that cannot be loaded, lack the entry point or have another ABI.
 std::vector<Problem> loadPlugins(const std::vector<std::filesystem::path>& directories, IntegratorRegistry& registry);
-/// TUNGSTEN_PLUGIN_PATH's directories, then those beside the executable.
+/// TUNGSTEN_PLUGIN_PATH's directories, then those of the executable and of the host's library.
 std::vector<std::filesystem::path> pluginDirectories();
 
 } // namespace tungsten

@@ -1,10 +1,12 @@
 #include "tungsten/render/RenderSession.h"
 
+#include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/render/Checkpoint.h"
 #include "tungsten/render/HtmlPage.h"
 #include "tungsten/render/Memory.h"
 #include "tungsten/render/Progress.h"
+#include "tungsten/render/ResultDescription.h"
 
 #include <bit>
 #include <chrono>
@@ -33,12 +35,16 @@ class Session {
             const SessionOptions& options, SessionResult& result)
         : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options),
           result_(result), identity_{loaded.hash, options.seed, options.sppStep},
+          firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
           trace_(options.trace, *loaded.scene, options.seed), reporter_(options.quiet) {}
 
     void run(const EffectPlan& plan) {
         const Scene& scene = *loaded_.scene;
-        checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled, options_.checkpointSeconds > 0.0,
-                                loaded_.inputs});
+        if (options_.passes)
+            checkWritable(partialState());
+        else
+            checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
+                                    options_.checkpointSeconds > 0.0, loaded_.inputs});
         requireMemory();
         result_.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
         resume();
@@ -47,11 +53,41 @@ class Session {
             integrator_.prepare(plan, result_.statistics);
         }
         if (stopBeforeFirstPass()) return;
+        if (options_.passes) return renderPartially();
         renderPasses();
         finish();
     }
 
   private:
+    /// Samples per pixel of this session. Throws UsageError for passes that the render does not have.
+    static uint64_t samplesOf(const SessionOptions& options) {
+        const auto spp = uint64_t(options.spp), step = uint64_t(options.sppStep);
+        if (!options.passes) return spp;
+        const uint64_t passes = (spp + step - 1) / step;
+        const auto [first, end] = *options.passes;
+        if (end > passes)
+            throw UsageError("--passes " + std::to_string(first) + ":" + std::to_string(end) + ": the render has " +
+                             std::to_string(passes) + " passes, from 0, of " + std::to_string(spp) +
+                             " samples per pixel in steps (spp_step) of " + std::to_string(step));
+        return std::min(spp, end * step) - first * step;
+    }
+    [[nodiscard]] std::filesystem::path partialState() const {
+        return outputs_.partialState(options_.passes->first, options_.passes->end);
+    }
+
+    /// Every pass goes to the file as soon as it is there.
+    void renderPartially() {
+        const std::filesystem::path file = partialState();
+        const PartialIdentity identity = PartialIdentity::of(loaded_, options_.seed, options_.sppStep);
+        writeAtomically(file, [&](std::ostream& out) {
+            PartialStateWriter writer(out, file.string(), identity, firstPass_);
+            partial_ = &writer;
+            renderPasses();
+            writer.finish(statisticsJson(loaded_, options_, result_), processCpuSeconds());
+        });
+        result_.written = {file};
+    }
+
     /// Film, one more copy of its images while they are written, and what the integrator says.
     void requireMemory() const {
         const Camera& camera = loaded_.scene->camera;
@@ -90,9 +126,10 @@ class Session {
         const StageTimer timer(result_.statistics, "passes");
         start_ = lastCheckpoint_ = Clock::now();
         trace_.start();
-        bool stop = result_.samples >= uint64_t(options_.spp);
+        bool stop = result_.samples >= spp_;
         while (!stop) {
             renderOnePass();
+            if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
             trace_.record(result_.film, result_.samples, stop);
             if (stop || reporter_.due()) reporter_.show(state(), stop);
@@ -103,11 +140,12 @@ class Session {
     }
 
     void renderOnePass() {
-        const uint64_t left = uint64_t(options_.spp) - result_.samples;
+        const uint64_t left = spp_ - result_.samples, before = firstPass_ * uint64_t(options_.sppStep);
         const auto samples = uint32_t(std::min(uint64_t(options_.sppStep), left));
-        const PassInfo pass{result_.film.passes(), result_.samples, samples, options_.seed};
+        const PassInfo pass{firstPass_ + result_.film.passes(), before + result_.samples, samples, options_.seed};
         result_.film.beginPass();
         integrator_.renderPass(pass, result_.film, result_.statistics);
+        if (partial_) partial_->add(result_.film, samples);
         result_.film.endPass(double(samples));
         result_.samples += samples;
     }
@@ -117,7 +155,7 @@ class Session {
             result_.reason = reason;
             return true;
         };
-        if (result_.samples >= uint64_t(options_.spp)) return because(StopReason::Finished);
+        if (result_.samples >= spp_) return because(StopReason::Finished);
         if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
         if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
@@ -151,7 +189,9 @@ class Session {
             }
         };
         attempt([&] {
-            auto files = writeImages(result_.film, *loaded_.scene, outputs_, suffix);
+            const std::string metadata = describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text,
+                                                         options_.command, statisticsJson(loaded_, options_, result_)});
+            auto files = writeImages(result_.film, *loaded_.scene, outputs_, metadata, suffix);
             if (suffix.empty()) result_.written = std::move(files);
         });
         if (options_.resumeEnabled)
@@ -164,13 +204,13 @@ class Session {
 
     /// Costs a sweep over the film (the standard error): made only when it is shown.
     [[nodiscard]] ProgressState state() const {
-        const uint64_t left = uint64_t(options_.spp) - std::min(result_.samples, uint64_t(options_.spp));
+        const uint64_t left = spp_ - std::min(result_.samples, spp_);
         const uint64_t step = uint64_t(options_.sppStep);
         ProgressState progress;
         progress.passes = result_.film.passes();
         progress.totalPasses = progress.passes + uint32_t((left + step - 1) / step);
         progress.samples = int64_t(result_.samples);
-        progress.totalSamples = options_.spp;
+        progress.totalSamples = int64_t(spp_);
         progress.elapsedSeconds = secondsSince(start_);
         progress.timeoutSeconds = options_.timeoutSeconds;
         progress.relativeError = result_.film.relativeStandardError();
@@ -186,6 +226,9 @@ class Session {
     const SessionOptions& options_;
     SessionResult& result_;
     RenderIdentity identity_;
+    uint32_t firstPass_;
+    uint64_t spp_; ///< of this session
+    PartialStateWriter* partial_ = nullptr;
     Trace trace_;
     ProgressReporter reporter_;
     Clock::time_point start_, lastCheckpoint_;

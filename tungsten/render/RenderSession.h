@@ -3,11 +3,13 @@
 
 #include "tungsten/render/Integrator.h"
 #include "tungsten/render/Outputs.h"
+#include "tungsten/render/PartialState.h"
 #include "tungsten/render/Trace.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,23 +18,28 @@ namespace tungsten {
 /// A target error is first looked at after so many passes, then whenever their number has doubled.
 inline constexpr uint32_t LeastPassesForTargetError = 16;
 
+enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
+std::string toString(StopReason reason);
+
+struct SessionResult;
+
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
     int64_t spp = 32, sppStep = 16;
-    double timeoutSeconds = 0.0;                    ///< 0: none
-    double checkpointSeconds = 0.0;                 ///< 0: none
-    bool resumeEnabled = false;                     ///< write and read the state file
-    bool restart = false;                           ///< ignore a saved state
-    double targetError = 0.0;                       ///< stop when Film::relativeErrorBound() is at most this; 0: none
-    double memoryLimit = 0.0;                       ///< bytes; 0: what the machine has available
-    bool quiet = false;                             ///< no progress bar
-    std::filesystem::path trace;                    ///< folder of the render's trace; empty: none
-    std::string command;                            ///< that started the render, for its page
+    std::optional<PassRange> passes; ///< of the render; they go into a partial state, and no images are written
+    double timeoutSeconds = 0.0;     ///< 0: none
+    double checkpointSeconds = 0.0;  ///< 0: none
+    bool resumeEnabled = false;      ///< write and read the state file
+    bool restart = false;            ///< ignore a saved state
+    double targetError = 0.0;        ///< stop when Film::relativeErrorBound() is at most this; 0: none
+    double memoryLimit = 0.0;        ///< bytes; 0: what the machine has available
+    bool quiet = false;              ///< no progress bar
+    std::filesystem::path trace;     ///< folder of the render's trace; empty: none
+    std::string command;             ///< that started the render, for its page
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: finish the pass, write, stop
+    /// Called after every pass, before it is decided whether to go on. What it throws ends the render.
+    std::function<void(const SessionResult&)> afterPass;
 };
-
-enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
-std::string toString(StopReason reason);
 
 struct SessionResult {
     StopReason reason = StopReason::Finished;

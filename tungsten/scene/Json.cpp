@@ -92,7 +92,8 @@ std::vector<std::string> memberNames(const rapidjson::Value& value) {
 }
 
 /// What a scene may consist of, whether or not the file has it.
-const std::vector<std::string> Blocks{"media", "bsdfs", "primitives", "camera", "integrator", "renderer"};
+const std::vector<std::string> Blocks{"media",      "bsdfs",    "primitives", "camera",
+                                      "integrator", "renderer", "length_unit"};
 
 [[noreturn]] void failOverride(const std::string& assignment, const std::string& step, const rapidjson::Value& at,
                                std::vector<std::string> names) {
@@ -141,19 +142,22 @@ rapidjson::Value parseValue(const std::string& text, rapidjson::Document::Alloca
 
 } // namespace
 
+std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const std::string& file) {
+    auto document = std::make_shared<rapidjson::Document>();
+    const ParseOutcome outcome = parseInto(*document, text);
+    if (outcome.result.IsError())
+        throw InputError(file, "not valid JSON at " + lineAndColumn(text, outcome.result.Offset()) + ": " +
+                                   outcome.message());
+    if (!document->IsObject()) throw InputError(file, "the top level must be an object { ... }");
+    return document;
+}
+
 std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file) {
     const std::vector<char> bytes = readFileBytes(file);
     if (bytes.size() > LargestScene) throw InputError(file.string(), "larger than 1 GiB: not a scene file");
     std::string text(bytes.begin(), bytes.end());
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-
-    auto document = std::make_shared<rapidjson::Document>();
-    const ParseOutcome outcome = parseInto(*document, text);
-    if (outcome.result.IsError())
-        throw InputError(file.string(), "not valid JSON at " + lineAndColumn(text, outcome.result.Offset()) + ": " +
-                                            outcome.message());
-    if (!document->IsObject()) throw InputError(file.string(), "the top level must be an object { ... }");
-    return document;
+    return parseJson(text, file.string());
 }
 
 void applyOverride(rapidjson::Document& document, const std::string& assignment) {

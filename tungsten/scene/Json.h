@@ -21,7 +21,8 @@ inline const ObjectReader::Node* nodeOf(const rapidjson::Value& value) {
 }
 
 /// Parses the format's grammar: JSON with comments, trailing commas, NaN and Inf, an optional byte-order mark. Throws
-/// InputError with line and column.
+/// InputError with line and column, in the name of `file`.
+std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const std::string& file);
 std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file);
 
 /// Applies "path.to.field=value" to the document: array elements by index or by `name`. The value is JSON, or else a

@@ -8,11 +8,6 @@
 
 namespace tungsten {
 
-struct JsonWriter::Implementation {
-    rapidjson::StringBuffer buffer;
-    rapidjson::PrettyWriter<rapidjson::StringBuffer> writer{buffer};
-};
-
 namespace {
 
 /// Length of the UTF-8 sequence at `at`, or 0 if there is none.
@@ -47,6 +42,17 @@ std::string validUtf8(const std::string& text) {
 
 } // namespace
 
+struct JsonWriter::Implementation {
+    rapidjson::StringBuffer buffer;
+    rapidjson::PrettyWriter<rapidjson::StringBuffer> writer{buffer};
+
+    void add(double value) { std::isfinite(value) ? writer.Double(value) : writer.Null(); }
+    void add(const std::string& value) {
+        const std::string valid = validUtf8(value);
+        writer.String(valid.data(), rapidjson::SizeType(valid.size()));
+    }
+};
+
 JsonWriter::JsonWriter() : implementation_(std::make_unique<Implementation>()) {
     implementation_->writer.SetIndent(' ', 2);
     implementation_->writer.StartObject();
@@ -55,16 +61,34 @@ JsonWriter::~JsonWriter() = default;
 
 void JsonWriter::field(const std::string& name, const std::string& value) {
     implementation_->writer.Key(name.c_str());
-    const std::string valid = validUtf8(value);
-    implementation_->writer.String(valid.data(), rapidjson::SizeType(valid.size()));
+    implementation_->add(value);
 }
 
 void JsonWriter::field(const std::string& name, double value) {
     implementation_->writer.Key(name.c_str());
-    if (std::isfinite(value))
-        implementation_->writer.Double(value);
-    else
-        implementation_->writer.Null();
+    implementation_->add(value);
+}
+
+void JsonWriter::field(const std::string& name, bool value) {
+    implementation_->writer.Key(name.c_str());
+    implementation_->writer.Bool(value);
+}
+
+void JsonWriter::field(const std::string& name, const std::vector<double>& values) {
+    beginArray(name);
+    for (const double value : values) implementation_->add(value);
+    endArray();
+}
+
+void JsonWriter::field(const std::string& name, const std::vector<std::string>& values) {
+    beginArray(name);
+    for (const std::string& value : values) implementation_->add(value);
+    endArray();
+}
+
+void JsonWriter::jsonField(const std::string& name, const std::string& json) {
+    implementation_->writer.Key(name.c_str());
+    implementation_->writer.RawValue(json.data(), json.size(), rapidjson::kObjectType);
 }
 
 void JsonWriter::field(const std::string& name, uint64_t value) {

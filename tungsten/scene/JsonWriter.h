@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tungsten {
 
@@ -20,6 +21,11 @@ class JsonWriter {
     void field(const std::string& name, const char* value) { field(name, std::string(value)); }
     void field(const std::string& name, double value);
     void field(const std::string& name, uint64_t value);
+    void field(const std::string& name, bool value);
+    void field(const std::string& name, const std::vector<double>& values);
+    void field(const std::string& name, const std::vector<std::string>& values);
+    /// A value that is JSON already.
+    void jsonField(const std::string& name, const std::string& json);
     void beginObject(const std::string& name);
     void endObject();
     /// Objects follow, without names.

@@ -18,8 +18,9 @@ void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
         {"none", "color: further files of the image; transients: a series of frames; others are not written",
          "required"});
     if (!buffer.has("type")) buffer.problem("type", "an output buffer needs a type: " + listOf(types));
-    const OutputBuffer files{buffer.text("ldr_output_file", "", {"none", "8-bit image (.png)"}),
-                             buffer.text("hdr_output_file", "", {"none", "linear image (.exr, .pfm or .npy)"})};
+    const OutputBuffer files{
+        buffer.text("ldr_output_file", "", {"none", "8-bit image (.png)"}),
+        buffer.text("hdr_output_file", "", {"none", "linear image (.exr, .npz, .h5, .pfm or .npy)"})};
     for (const char* variance : {"two_buffer_variance", "sample_variance"})
         if (buffer.flag(variance, false, {"none", "not produced: the EXR has a stderr layer"}))
             buffer.warn(variance, "not produced; the stderr layer of an EXR holds each pixel's standard error");
@@ -179,8 +180,9 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.outputDirectory =
         reader.text("output_directory", "", {"none", "base of the files below", "the scene's folder"});
     renderer.outputFile = reader.text("output_file", renderer.outputFile, {"none", "tone-mapped image (.png)"});
-    renderer.hdrOutputFile =
-        reader.text("hdr_output_file", "", {"none", "linear image (.exr with standard error, .pfm or .npy)"});
+    renderer.hdrOutputFile = reader.text(
+        "hdr_output_file", "",
+        {"none", "linear image (.exr with standard error, .npz or .h5 with all that is known, .pfm or .npy)"});
     renderer.resumeFile =
         reader.text("resume_render_file", renderer.resumeFile, {"none", "where a render's state goes"});
     renderer.overwriteOutputFiles =

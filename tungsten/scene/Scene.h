@@ -88,6 +88,7 @@ struct Scene {
     Region cameraRegion;
     ToneMap toneMap = ToneMap::Gamma;
     TransportSettings transport;
+    double lengthUnit = 0.0; ///< metres; 0: the scene does not say
     std::unique_ptr<SceneGeometry> geometry;
 
     [[nodiscard]] const Bsdf& bsdfOf(const SurfaceHit& hit) const {

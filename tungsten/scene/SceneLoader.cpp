@@ -8,21 +8,34 @@
 #include <rapidjson/stringbuffer.h>
 #include <rapidjson/writer.h>
 
+#include <map>
+
 namespace tungsten {
 
 namespace {
 
-uint64_t hashScene(const rapidjson::Document& document, const std::vector<std::filesystem::path>& resources) {
+/// The grammar's own NaN and Inf included: fields that nobody reads may hold them.
+std::string textOf(const rapidjson::Value& value) {
+    rapidjson::StringBuffer buffer;
+    rapidjson::Writer<rapidjson::StringBuffer, rapidjson::UTF8<>, rapidjson::UTF8<>, rapidjson::CrtAllocator,
+                      rapidjson::kWriteNanAndInfFlag>
+        writer(buffer);
+    value.Accept(writer);
+    return buffer.GetString();
+}
+
+uint64_t hashText(const rapidjson::Document& document) {
     Hash hash;
     for (const auto& member : document.GetObject()) {
         if (std::string_view(member.name.GetString()) == "renderer") continue;
-        rapidjson::StringBuffer buffer;
-        rapidjson::Writer<rapidjson::StringBuffer, rapidjson::UTF8<>, rapidjson::UTF8<>, rapidjson::CrtAllocator,
-                          rapidjson::kWriteNanAndInfFlag>
-            writer(buffer);
-        member.value.Accept(writer);
-        hash.add(std::string(member.name.GetString()) + buffer.GetString());
+        hash.add(std::string(member.name.GetString()) + textOf(member.value));
     }
+    return hash.value();
+}
+
+uint64_t hashScene(uint64_t text, const std::vector<std::filesystem::path>& resources) {
+    Hash hash;
+    hash.add(std::to_string(text));
     for (const auto& file : resources) {
         std::error_code error;
         hash.add(file.string() + std::to_string(std::filesystem::file_size(file, error)) +
@@ -62,6 +75,16 @@ void checkReach(const Scene& scene, const ObjectReader& root) {
                                        brief(Range::measure().high) + "; check times and speeds of light");
 }
 
+/// Metres; 0: not said.
+double readLengthUnit(const ObjectReader& root) {
+    static const std::map<std::string, double> metres{{"km", 1e3},  {"m", 1.0},     {"cm", 1e-2},  {"mm", 1e-3},
+                                                      {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
+    const std::string unit =
+        root.choice("length_unit", "", {"km", "m", "cm", "mm", "um", "in", "ft"},
+                    {"none", "what a unit of length is: results then tell time in picoseconds too", "not said"});
+    return unit.empty() ? 0.0 : metres.at(unit);
+}
+
 /// What loading leaves beside the scene itself.
 struct Blocks {
     RendererSettings renderer;
@@ -74,6 +97,7 @@ Blocks readScene(LoadContext& context, const ObjectReader& root) {
     const ObjectReader integrator = blockOf(root, "integrator", {"none", "how light is simulated, and when"});
     const std::string type = readIntegratorType(integrator);
     context.scene.transport = readTransport(integrator, type);
+    context.scene.lengthUnit = readLengthUnit(root);
     readMedia(context, root);
     readBsdfs(context, root);
     readPrimitives(context, root);
@@ -95,7 +119,8 @@ void throwIfProblems(const Diagnostics& diagnostics) {
 }
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
-    const std::shared_ptr<rapidjson::Document> document = parseJsonFile(file);
+    const std::shared_ptr<rapidjson::Document> document =
+        options.text ? parseJson(*options.text, file.string()) : parseJsonFile(file);
     for (const std::string& assignment : options.overrides) applyOverride(*document, assignment);
 
     auto diagnostics = std::make_shared<Diagnostics>();
@@ -112,14 +137,17 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
     std::vector<std::filesystem::path> inputs = context.resources;
-    inputs.insert(inputs.begin(), file);
+    const uint64_t text = hashText(*document);
+    if (!options.text) inputs.insert(inputs.begin(), file);
     return {scene,
             blocks.renderer,
             blocks.integratorType,
             blocks.integrator,
             diagnostics,
             std::move(inputs),
-            hashScene(*document, context.resources)};
+            hashScene(text, context.resources),
+            text,
+            textOf(*document)};
 }
 
 RendererSettings peekRenderer(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

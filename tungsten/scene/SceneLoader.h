@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ struct LoadOptions {
     std::filesystem::path inputDirectory; ///< base of resources; empty: the scene's directory
     std::vector<std::string> overrides;   ///< "path.to.field=value", applied to the JSON in order
     bool allowOutside = false;            ///< resources may lie outside that directory
+    std::optional<std::string> text = {}; ///< the scene itself: the file's name is then only told in messages
 };
 
 struct LoadedScene {
@@ -44,9 +46,11 @@ struct LoadedScene {
     std::string integratorType;
     ObjectReader integratorSettings; ///< the integrator block, for its plugin; warns about fields nobody reads
     std::shared_ptr<Diagnostics> diagnostics;
-    std::vector<std::filesystem::path> inputs; ///< every file that was read, the scene first
+    std::vector<std::filesystem::path> inputs; ///< every file that was read, the scene's own first
     uint64_t hash =
         0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
+    uint64_t textHash = 0; ///< the same without resources
+    std::string text;      ///< of the scene, overrides included: JSON in one line
 };
 
 /// The renderer block alone, with overrides; defaults where the file or the block cannot be read.

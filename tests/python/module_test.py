@@ -1,0 +1,233 @@
+#!/usr/bin/python3
+"""The Python module: renders against the command (the environment's TUNGSTEN), errors, interruption, and sampling against closed
+forms."""
+
+import gc
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import darts_tungsten
+from darts_tungsten import sampling
+
+PROJECT = Path(__file__).resolve().parents[2]
+TUNGSTEN = os.environ["TUNGSTEN"]
+SCENE = {
+    "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.8, "sigma_a": 0.05}],
+    "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.6}],
+    "primitives": [
+        {"name": "floor", "type": "quad", "bsdf": "grey", "transform": {"scale": [4, 1, 4]}},
+        {"name": "lamp", "type": "point", "ext_medium": "fog", "emission": 8, "transform": {"position": [0.5, 1.8, 1]}}],
+    "camera": {"type": "pinhole", "resolution": [12, 8], "fov": 45, "medium": "fog",
+               "transform": {"position": [0, 1.2, 3.5], "look_at": [0, 0.5, 0], "up": [0, 1, 0]}},
+    "integrator": {"type": "path_tracer", "max_bounces": 8, "start_time": 3, "transient_time_width": 0.5, "frame_num": 4},
+    "renderer": {"spp": 8, "spp_step": 2}}
+
+
+class Render(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+        self.file = self.folder / "scene.json"
+        self.file.write_text(json.dumps(SCENE))
+
+    def command(self, *options):
+        subprocess.run([TUNGSTEN, "--quiet", "-d", self.folder, "-e", "film.npz", *options, self.file], check=True)
+        return np.load(self.folder / "film.npz")
+
+    def test_two_renders_in_one_process_are_what_two_processes_give(self):
+        first = darts_tungsten.render(SCENE, seed=5, threads=1)
+        second = darts_tungsten.render(str(self.file), seed=6, set={"media.fog.sigma_a": 0.2})
+        np.testing.assert_array_equal(first.mean, self.command("-s", "5")["mean"])
+        film = self.command("-s", "6", "--set", "media.fog.sigma_a=0.2")
+        np.testing.assert_array_equal(second.mean, film["mean"])
+        np.testing.assert_array_equal(second.standard_error, film["standard_error"])
+        np.testing.assert_array_equal(second.time_edges, film["time_edges"])
+
+    def test_integrals_are_told_in_units_of_outputs(self):
+        change = {"integrator.time_normalization": "integral"}
+        mean, integral = darts_tungsten.render(SCENE).mean, darts_tungsten.render(SCENE, set=change).mean
+        np.testing.assert_array_equal(integral, mean * np.float32(0.5))
+
+    def test_arrays_are_views_that_keep_the_result(self):
+        result = darts_tungsten.render(SCENE, passes=2)
+        mean, again = result.mean, result.mean
+        self.assertEqual((mean.shape, mean.dtype), ((4, 8, 12, 3), np.float32))
+        self.assertTrue(np.shares_memory(mean, again))
+        with self.assertRaises(ValueError):
+            mean[0] = 1
+        copy = mean.copy()
+        del result, again
+        gc.collect()
+        np.testing.assert_array_equal(mean, copy)
+
+    def test_limits(self):
+        self.assertEqual(darts_tungsten.render(SCENE).samples, 8)
+        self.assertEqual(darts_tungsten.render(SCENE, passes=3).passes, 3)
+        self.assertEqual(darts_tungsten.render(SCENE, samples=5).samples, 5)
+        timed = darts_tungsten.render(SCENE, passes=10 ** 6, seconds=0.3)
+        self.assertEqual(timed.reason, "time-out")
+        self.assertLess(timed.seconds, 5)
+        steady = {"integrator.frame_num": 0, "integrator.transient_time_width": 0}
+        reached = darts_tungsten.render(SCENE, passes=10 ** 6, target_error=0.5, set=steady)
+        self.assertEqual(reached.reason, "target error reached")
+        self.assertLessEqual(reached.error_bound, 0.5)
+        for bad in ({"passes": 0}, {"samples": 0}, {"seconds": 0}, {"seconds": float("nan")}, {"target_error": -1},
+                    {"threads": 0}, {"passes": 1, "samples": 1}):
+            with self.assertRaises(darts_tungsten.UsageError, msg=bad) as raised:
+                darts_tungsten.render(SCENE, **bad)
+            self.assertIn(next(iter(bad)), str(raised.exception))
+
+    def test_metadata_and_files(self):
+        result = darts_tungsten.render(SCENE, set={"length_unit": "m"})
+        self.assertEqual(result.metadata["scene"]["length_unit"], "m")
+        self.assertEqual(result.metadata["statistics"]["passes"], 4)
+        np.testing.assert_allclose(result.time_edges_ps, result.time_edges * 1e12 / 299792458, rtol=1e-12)
+        self.assertIsNone(darts_tungsten.render(SCENE, passes=1).time_edges_ps)
+        names = result.write(str(self.folder / "mine.npz"))
+        self.assertEqual(names, [str(self.folder / "mine.npz")])
+        np.testing.assert_array_equal(np.load(names[0])["mean"], result.mean)
+        with self.assertRaisesRegex(darts_tungsten.InputError, "accepted: .exr"):
+            result.write(str(self.folder / "mine.tiff"))
+
+    def test_every_problem_is_listed(self):
+        with self.assertRaises(darts_tungsten.InputError) as raised:
+            darts_tungsten.render(SCENE, set={"media.fog.sigma_s": -1, "camera.fov": "wide"})
+        self.assertEqual(sorted(path for _, path, _ in raised.exception.problems), ["camera.fov", "media[0].sigma_s"])
+        self.assertIsInstance(raised.exception, ValueError)
+        with self.assertRaisesRegex(darts_tungsten.InputError, "did you mean 'path_tracer'"):
+            darts_tungsten.render(SCENE, set={"integrator.type": "path_trace"})
+        with self.assertRaisesRegex(darts_tungsten.InputError, "no such file|cannot be read"):
+            darts_tungsten.render("nowhere.json")
+        with self.assertRaisesRegex(darts_tungsten.UsageError, "did you mean 'sigma_s'|nothing is called"):
+            darts_tungsten.render(SCENE, set={"medium.fog.sigma_s": 1})
+
+    def test_warnings_are_pythons(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            darts_tungsten.plan(SCENE, set={"integrator.max_bounce": 3})
+        self.assertIn("max_bounce", str(caught[0].message))
+
+    def test_progress_may_stop(self):
+        seen = []
+
+        def progress(state):
+            seen.append(state["passes"])
+            return len(seen) < 3
+
+        result = darts_tungsten.render(SCENE, passes=100, progress=progress)
+        self.assertEqual((seen, result.passes, result.reason), ([1, 2, 3], 3, "interrupted"))
+
+        def fail(_):
+            raise KeyError("mine")
+
+        with self.assertRaises(KeyError):
+            darts_tungsten.render(SCENE, passes=100, progress=fail)
+
+    def test_ctrl_c_interrupts_and_other_threads_run(self):
+        ticks = []
+
+        def interrupt():
+            for _ in range(20):
+                ticks.append(time.monotonic())
+                time.sleep(0.01)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        thread = threading.Thread(target=interrupt)
+        thread.start()
+        with self.assertRaises(KeyboardInterrupt):
+            darts_tungsten.render(SCENE, passes=10 ** 7, seconds=60)
+        thread.join()
+        self.assertEqual(len(ticks), 20)
+
+    def test_plan_and_describe(self):
+        plan = darts_tungsten.plan(SCENE)
+        self.assertEqual(plan["integrator"], "path_tracer")
+        self.assertTrue(all(effect["reason"] for effect in plan["effects"]))
+        explained = subprocess.run([TUNGSTEN, "--explain", self.file], check=True, capture_output=True, text=True).stdout
+        for effect in plan["effects"]:
+            self.assertIn(effect["reason"], explained)
+        fields = {field["name"]: field for field in darts_tungsten.describe("homogeneous")[0]["fields"]}
+        self.assertEqual(fields["sigma_s"]["unit"], "1/length")
+        with self.assertRaisesRegex(darts_tungsten.UsageError, "homogeneous"):
+            darts_tungsten.describe("homogenous")
+
+
+class Sampling(unittest.TestCase):
+    """A density's integral is 1; samples spread as their density says; weights average to the transmittance."""
+
+    def test_directions(self):
+        h = (np.arange(200000) + 0.5) / 100000
+        u = (np.arange(100000) + 0.5) / 100000
+        table = sampling.EdaTable(0.9, 0.3)
+        for name, pdf, sample in (
+                ("path", lambda h: sampling.path_lobe_pdf(h, 2.0, 0.5), lambda u: sampling.path_lobe_sample(u, 2.0, 0.5)),
+                ("photon", lambda h: sampling.photon_lobe_pdf(h, 2.0, 0.5), lambda u: sampling.photon_lobe_sample(u, 2.0, 0.5)),
+                ("eda", lambda h: table.pdf(2.0, 0.5, 1.0, h), lambda u: table.sample(2.0, 0.5, 1.0, u))):
+            density = 2 * np.pi * pdf(h)
+            self.assertAlmostEqual(density.mean() * 2, 1, delta=1e-4, msg=name)
+            # Quantiles are where the density's integral says.
+            below = np.interp(sample(u[::5000]), h, np.cumsum(density) / 100000)
+            np.testing.assert_allclose(below, u[::5000], atol=1e-3, err_msg=name)
+
+    def test_connection_lengths(self):
+        offset = (np.arange(100000) + 0.5) / 50000
+        density = sampling.connection_length_pdf(offset, 0.1, 2.0, 1.5)
+        np.testing.assert_allclose(density, 1.5 * np.exp(-1.5 * offset) / -np.expm1(-3), rtol=1e-6)
+        u = np.linspace(0, 0.99, 12)
+        np.testing.assert_allclose(sampling.connection_length_sample(u, 0.1, 2.0, 1.5), -np.log1p(u * np.expm1(-3)) / 1.5, rtol=1e-6,
+                                   atol=1e-12)
+
+    def test_connections_have_their_length(self):
+        h = np.linspace(0, 2, 9)
+        first, second = sampling.first_leg(2.0, 0.5, h), sampling.second_leg(2.0, 0.5, h)
+        np.testing.assert_allclose(first + second, 2.5)
+        np.testing.assert_allclose(second, np.sqrt((first - 2) ** 2 + 4 * first * h), rtol=1e-12)
+
+    def test_greens_functions(self):
+        rho, s = np.array([[1.0], [2.0]]), np.array([2.5, 4.0, 8.0])
+        D = 1 / (3 * (0.1 + 0.9 * 0.5))
+        expected = -1.5 * np.log(4 * np.pi * D * s) - rho ** 2 / (4 * D * s) - 0.1 * s
+        np.testing.assert_allclose(sampling.diffusion_log(rho, s, 0.1, 0.9, 0.5), expected)
+        self.assertEqual(sampling.causal_log(2.0, 1.0, 0.1, 0.9), -np.inf)
+
+    def test_weights_of_distances_average_to_the_transmittance(self):
+        random = np.random.default_rng(7).random((200000, 4), dtype=np.float32)
+        for preset in ("published", "best"):
+            for mode in ("path", "photon"):
+                distance, weight = sampling.DistanceSampler(preset, mode, 0.1, 0.9).sample(2.0, 4.8, 5.0, 0.7, random)
+                reach = sampling.first_leg(2.0, 3.0, 0.7)
+                self.assertLessEqual(distance[weight > 0].max(), reach * 1.0001)
+                error = weight.std() / len(weight) ** 0.5
+                self.assertAlmostEqual(weight.mean(), -np.expm1(-reach), delta=4.5 * error, msg=f"{preset}, {mode}")
+                self.assertLess(error, 0.01)
+
+    def test_responses(self):
+        response = sampling.TemporalResponse.gaussian(3.0, 0.5)
+        time = np.linspace(1, 5, 4001)
+        self.assertAlmostEqual(response.pdf(time).sum() * 0.001, 1, delta=1e-3)
+        np.testing.assert_allclose(response.distribution(response.quantile([0.1, 0.5, 0.9])), [0.1, 0.5, 0.9])
+
+    def test_bad_input(self):
+        random = np.zeros((2, 4), np.float32)
+        for bad in (lambda: sampling.DistanceSampler("beste", "path", 0, 1), lambda: sampling.DistanceSampler("best", "light", 0, 1),
+                    lambda: sampling.DistanceSampler("best", "path", -1, 1), lambda: sampling.EdaTable(2.0, 0.0),
+                    lambda: sampling.DistanceSampler("best", "path", 0, 1).sample(1, 2, 3, 5, random),
+                    lambda: sampling.DistanceSampler("best", "path", 0, 1).sample(1, 2, 3, 1, random[:, :3])):
+            with self.assertRaises(ValueError):
+                bad()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,70 @@
+#include "tungsten/app/Merge.h"
+
+#include "tungsten/app/Options.h"
+#include "tungsten/core/Errors.h"
+#include "tungsten/film/ImageIo.h"
+#include "tungsten/render/PartialState.h"
+#include "tungsten/render/Progress.h"
+#include "tungsten/render/ResultDescription.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <iostream>
+
+namespace tungsten {
+
+namespace {
+
+struct MergeOptions {
+    std::vector<std::filesystem::path> states;
+    OutputFiles outputs;
+    bool quiet = false;
+};
+
+/// False: --help has been answered.
+bool parse(int argc, const char* const* argv, MergeOptions& options) {
+    CLI::App app{"Puts the partial states of --passes together: the images that one run gives.", "tungsten merge"};
+    app.add_option("states", options.states, "all passes of one render, from its first on, each once")->required();
+    app.add_option("-o,--output-file", options.outputs.ldr, "tone-mapped image (.png)");
+    app.add_option("-e,--hdr-output-file", options.outputs.hdr, "linear image: .exr, .npz, .h5, .pfm or .npy");
+    app.add_option("--stats", options.outputs.statistics,
+                   "write what was measured, of every state too, to this JSON file");
+    app.add_flag("--quiet", options.quiet, "print errors and warnings only");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() != 0)
+            throw UsageError("merge: " + std::string(error.what()) + " (tungsten merge --help lists the options)");
+        app.exit(error, std::cout, std::cerr);
+        return false;
+    }
+    if (options.outputs.ldr.empty() && options.outputs.hdr.empty())
+        throw UsageError("merge: no image is asked for; give one by -e NAME.exr or -o NAME.png");
+    return true;
+}
+
+} // namespace
+
+int mergeCommand(int argc, const char* const* argv) {
+    MergeOptions options;
+    if (!parse(argc, argv, options)) return 0;
+    const MergedRender merged = mergePartialStates(options.states);
+    checkOutputs(options.outputs, {merged.film.frames(), false, false, options.states});
+    const Scene& scene = *merged.identity.scene;
+    const std::string metadata =
+        describeResult({scene, merged.identity.integrator, merged.identity.sceneText, "", merged.statistics});
+    std::vector<std::filesystem::path> written = writeImages(merged.film, scene, options.outputs, metadata);
+    if (!options.outputs.statistics.empty()) {
+        writeTextFile(options.outputs.statistics, merged.statistics);
+        written.push_back(options.outputs.statistics);
+    }
+    if (options.quiet) return 0;
+    std::printf("%zu states, %u passes, %llu samples per pixel, %s\n", options.states.size(), merged.film.passes(),
+                static_cast<unsigned long long>(merged.samples),
+                errorText(merged.film.relativeStandardError(), merged.film.relativeErrorBound()).c_str());
+    for (const auto& file : written) std::printf("wrote %s\n", file.c_str());
+    return 0;
+}
+
+} // namespace tungsten

@@ -1,0 +1,222 @@
+// `import darts_tungsten`.
+
+#include "tungsten/python/Result.h"
+
+#include "tungsten/render/Describe.h"
+#include "tungsten/render/Progress.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <tbb/global_control.h>
+
+#include <chrono>
+
+namespace tungsten::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// Loaded once; immutable from then on.
+const Plugins& plugins() {
+    static const Plugins loaded;
+    return loaded;
+}
+
+std::string jsonOf(const py::handle& value) {
+    return py::module_::import("json").attr("dumps")(value).cast<std::string>();
+}
+
+void warn(const Problem& problem) {
+    if (PyErr_WarnEx(PyExc_UserWarning, problem.text().c_str(), 1) != 0) throw py::error_already_set();
+}
+
+/// A scene as a dict, or the name of a file; `set` as --set takes it.
+Job jobOf(const py::object& scene, const py::dict& set, const std::filesystem::path& folder, bool allowOutside) {
+    LoadOptions options{folder, {}, allowOutside};
+    for (const auto& [path, value] : set) options.overrides.push_back(path.cast<std::string>() + "=" + jsonOf(value));
+    std::filesystem::path file = "scene";
+    if (py::isinstance<py::dict>(scene))
+        options.text = jsonOf(scene);
+    else
+        file = scene.cast<std::filesystem::path>();
+    for (const Problem& problem : plugins().problems) warn(problem);
+    Job job = makeJob(file, options, plugins());
+    for (const Problem& problem : job.loaded.diagnostics->warnings) warn(problem);
+    return job;
+}
+
+/// When a render stops, as Python says it; what is none is the scene's.
+struct Limits {
+    std::optional<double> seconds;
+    std::optional<int64_t> passes, samples;
+    double targetError = 0.0;
+};
+
+SessionOptions sessionOptions(const RendererSettings& renderer, const Limits& limits) {
+    const auto require = [](bool positive, const char* name) {
+        if (!positive) throw UsageError(std::string(name) + ": expected a number above 0");
+    };
+    require(limits.seconds.value_or(1.0) > 0.0, "seconds");
+    require(limits.passes.value_or(1) > 0, "passes");
+    require(limits.samples.value_or(1) > 0, "samples");
+    if (!(limits.targetError >= 0.0)) throw UsageError("target_error: expected a number above 0, such as 0.01");
+    if (limits.passes && limits.samples) throw UsageError("passes, samples: say one of them");
+    SessionOptions options;
+    options.sppStep = renderer.sppStep;
+    options.spp = limits.passes ? *limits.passes * renderer.sppStep : limits.samples.value_or(renderer.spp);
+    options.timeoutSeconds = limits.seconds.value_or(renderer.timeoutSeconds);
+    options.targetError = limits.targetError;
+    options.quiet = true;
+    return options;
+}
+
+py::dict stateOf(const SessionResult& session, const SessionOptions& options) {
+    py::dict state;
+    state["passes"] = session.film.passes();
+    state["samples"] = session.samples;
+    state["total_samples"] = options.spp;
+    state["relative_error"] = session.film.relativeStandardError();
+    return state;
+}
+
+/// Between passes: Ctrl-C becomes KeyboardInterrupt, and `progress` is called; where it says False, the render stops.
+void listen(const SessionResult& session, const SessionOptions& options, const py::object& progress,
+            std::atomic<bool>& interrupted) {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!PyCallable_Check(progress.ptr())) return;
+    const py::object answer = progress(stateOf(session, options));
+    if (answer.is(py::bool_(false))) interrupted = true;
+}
+
+Result render(const py::object& scene, const py::dict& set, const Limits& limits, uint64_t seed,
+              std::optional<int> threads, const py::object& progress, const std::filesystem::path& folder,
+              bool allowOutside) {
+    if (threads && (*threads < 1 || *threads > 1024)) throw UsageError("threads: expected a number from 1 to 1024");
+    const Job job = jobOf(scene, set, folder, allowOutside);
+    SessionOptions options = sessionOptions(job.loaded.renderer, limits);
+    std::atomic<bool> interrupted{false};
+    options.seed = seed;
+    options.quiet = !progress.is(py::bool_(true));
+    options.interrupted = &interrupted;
+    options.afterPass = [&](const SessionResult& session) { listen(session, options, progress, interrupted); };
+    const py::gil_scoped_release released;
+    using tbb::global_control;
+    const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
+    const global_control parallelism(global_control::max_allowed_parallelism, threads ? size_t(*threads) : all);
+    auto session = std::make_unique<SessionResult>();
+    runSession(job.loaded, *job.integrator, job.plan, {}, options, *session);
+    return {job.loaded, options, std::move(session)};
+}
+
+/// What --explain says.
+py::dict planOf(const py::object& scene, const py::dict& set, const std::filesystem::path& folder, bool allowOutside) {
+    const Job job = jobOf(scene, set, folder, allowOutside);
+    py::list effects;
+    for (const Effect& effect : job.plan.effects) {
+        py::dict entry;
+        entry["name"] = effect.name;
+        entry["on"] = effect.on;
+        entry["reason"] = effect.reason;
+        effects.append(entry);
+    }
+    py::dict plan;
+    plan["integrator"] = job.loaded.integratorType;
+    plan["effects"] = effects;
+    return plan;
+}
+
+/// What --describe says.
+py::list describe(const std::string& type) {
+    py::list types;
+    for (const DescribedKind& kind : selectDescriptions(describeAll(plugins().registry), type))
+        for (const auto& description : kind.types) {
+            py::list fields;
+            for (const Field& field : description->fields) {
+                py::dict entry;
+                entry["name"] = field.name;
+                entry["accepted"] = field.accepted;
+                entry["default"] = field.fallback;
+                entry["unit"] = field.unit;
+                entry["meaning"] = field.meaning;
+                fields.append(entry);
+            }
+            py::dict entry;
+            entry["name"] = description->name;
+            entry["kind"] = kind.kind;
+            entry["note"] = description->note;
+            entry["fields"] = fields;
+            types.append(entry);
+        }
+    return types;
+}
+
+/// Exceptions of Python for ours: an InputError lists every problem as (file, path, message).
+void declareErrors(py::module_& module) {
+    static PyObject* inputError = nullptr; // live as long as the module, which Python never unloads
+    static PyObject* usageError = nullptr;
+    inputError = PyErr_NewExceptionWithDoc("darts_tungsten.InputError",
+                                           "A mistake in a scene or file; `problems` lists all of them as (file, path, "
+                                           "message).",
+                                           PyExc_ValueError, nullptr);
+    usageError = PyErr_NewException("darts_tungsten.UsageError", PyExc_ValueError, nullptr);
+    module.attr("InputError") = py::handle(inputError);
+    module.attr("UsageError") = py::handle(usageError);
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const InputError& error) {
+            py::list problems;
+            for (const Problem& problem : error.problems())
+                problems.append(py::make_tuple(problem.file, problem.path, problem.message));
+            const py::object raised = py::handle(inputError)(error.what());
+            raised.attr("problems") = problems;
+            PyErr_SetObject(inputError, raised.ptr());
+        } catch (const UsageError& error) {
+            PyErr_SetString(usageError, error.what());
+        }
+    });
+}
+
+constexpr const char* RenderText =
+    "Renders a scene, the name of a file or a dict, and writes nothing.\n\n"
+    "set: {\"media.fog.sigma_s\": 0.3} as --set. It stops after `seconds` of passes, `passes`, `samples` per pixel "
+    "(default:\n"
+    "the scene's spp) or when the relative error is at most `target_error`, whichever comes first. `progress`: True "
+    "for the\n"
+    "command's bar, or a function that is called with a dict after each pass and may return False to stop. `folder`: "
+    "where\n"
+    "the scene's files are, if not beside it. Ctrl-C takes effect after the pass in progress.";
+
+} // namespace
+
+void declare(py::module_& module) {
+    module.doc() = "A time-of-flight renderer; see docs/python.md.";
+    module.attr("__version__") = TUNGSTEN_VERSION;
+    declareErrors(module);
+    declareResult(module);
+    declareSampling(module);
+    using namespace py::literals;
+    const auto renderWith = [](const py::object& scene, const py::dict& set, std::optional<double> seconds,
+                               std::optional<int64_t> passes, std::optional<int64_t> samples, double targetError,
+                               uint64_t seed, std::optional<int> threads, const py::object& progress,
+                               const std::filesystem::path& folder, bool allowOutside) {
+        return render(scene, set, {seconds, passes, samples, targetError}, seed, threads, progress, folder,
+                      allowOutside);
+    };
+    module.def("render", renderWith, RenderText, "scene"_a, py::kw_only(), "set"_a = py::dict(),
+               "seconds"_a = py::none(), "passes"_a = py::none(), "samples"_a = py::none(), "target_error"_a = 0.0,
+               "seed"_a = SessionOptions().seed, "threads"_a = py::none(), "progress"_a = py::none(),
+               "folder"_a = std::filesystem::path(), "allow_outside"_a = false);
+    module.def("plan", planOf, "Which effects a scene calls for, and why (--explain).", "scene"_a, py::kw_only(),
+               "set"_a = py::dict(), "folder"_a = std::filesystem::path(), "allow_outside"_a = false);
+    module.def("describe", describe, "The fields of a type, kind or block, or of all (--describe).", "type"_a = "");
+}
+
+} // namespace tungsten::python
+
+PYBIND11_MODULE(darts_tungsten, module) {
+    tungsten::python::declare(module);
+}

@@ -1,0 +1,115 @@
+#include "tungsten/python/Result.h"
+
+#include "tungsten/render/ResultDescription.h"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+
+namespace tungsten::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// All frames, one after the other.
+template <typename Frame>
+std::vector<float> arrayOf(const Film& film, const Scene& scene, const Frame& frameOf) {
+    std::vector<float> values;
+    values.reserve(size_t(film.frames()) * size_t(film.height()) * size_t(film.width()) * 3);
+    for (int frame = 0; frame < film.frames(); ++frame)
+        for (const Rgb& pixel : inOutputUnits(frameOf(frame), scene, 1).pixels)
+            values.insert(values.end(), {pixel.x, pixel.y, pixel.z});
+    return values;
+}
+
+py::array viewOf(const std::vector<float>& values, const Film& film, const py::object& owner) {
+    const std::vector<py::ssize_t> shape{film.frames(), film.height(), film.width(), 3};
+    py::array view(py::dtype::of<float>(), shape, values.data(), owner);
+    view.attr("setflags")(py::arg("write") = false);
+    return view;
+}
+
+py::array edgesOf(const Result& result) {
+    const std::vector<double> edges = frameEdges(result.scene().transport.gate);
+    return py::array_t<double>(py::ssize_t(edges.size()), edges.data());
+}
+
+py::object picosecondsOf(const Result& result) {
+    const std::vector<double> edges = frameEdgesInPicoseconds(result.scene());
+    if (edges.empty()) return py::none();
+    return py::array_t<double>(py::ssize_t(edges.size()), edges.data());
+}
+
+py::object parsed(const Result& result) {
+    return py::module_::import("json").attr("loads")(result.metadata());
+}
+
+std::string textOf(const Result& result) {
+    const SessionResult& session = result.session();
+    char text[160];
+    std::snprintf(text, sizeof text, "<darts_tungsten.Result: %d frames of %d x %d pixels, %u passes, %s>",
+                  session.film.frames(), session.film.width(), session.film.height(), session.film.passes(),
+                  toString(session.reason).c_str());
+    return text;
+}
+
+} // namespace
+
+Result::Result(LoadedScene loaded, const SessionOptions& options, std::unique_ptr<const SessionResult> session)
+    : loaded_(std::move(loaded)), session_(std::move(session)),
+      metadata_(describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text, options.command,
+                                statisticsJson(loaded_, options, *session_)})),
+      mean_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.mean(frame); })),
+      standardError_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.standardError(frame); })) {
+}
+
+std::vector<std::string> Result::write(const std::filesystem::path& file) const {
+    OutputFiles outputs;
+    (file.extension() == ".png" ? outputs.ldr : outputs.hdr) = file;
+    checkOutputs(outputs, {session_->film.frames(), false, false, loaded_.inputs});
+    std::vector<std::string> names;
+    for (const auto& written : writeImages(session_->film, scene(), outputs, metadata_)) names.push_back(written);
+    return names;
+}
+
+py::array Result::mean(const py::object& self) {
+    const auto& result = self.cast<const Result&>();
+    return viewOf(result.mean_, result.session_->film, self);
+}
+
+py::array Result::standardError(const py::object& self) {
+    const auto& result = self.cast<const Result&>();
+    return viewOf(result.standardError_, result.session_->film, self);
+}
+
+void declareResult(py::module_& module) {
+    const auto property = [](auto get) { return py::cpp_function(get); };
+    py::class_<Result>(module, "Result", "What a render left; docs/results.md says what the arrays are.")
+        .def_property_readonly("mean", property(&Result::mean), "(frames, height, width, 3), a read-only view")
+        .def_property_readonly("standard_error", property(&Result::standardError),
+                               "of mean, a read-only view; NaN while there is but one pass")
+        .def_property_readonly("time_edges", edgesOf, "frames + 1 times in the scene's unit")
+        .def_property_readonly("time_edges_ps", picosecondsOf,
+                               "the same in picoseconds; None where the scene does not say its length_unit")
+        .def_property_readonly("metadata", parsed, "a dict: what a result file says about itself")
+        .def_property_readonly("passes", [](const Result& r) { return r.session().film.passes(); })
+        .def_property_readonly(
+            "samples", [](const Result& r) { return r.session().samples; }, "per pixel")
+        .def_property_readonly(
+            "seconds", [](const Result& r) { return r.session().renderSeconds; }, "of passes")
+        .def_property_readonly(
+            "reason", [](const Result& r) { return toString(r.session().reason); }, "why it ended")
+        .def_property_readonly(
+            "relative_error", [](const Result& r) { return r.session().film.relativeStandardError(); },
+            "rms standard error over mean; NaN while it is unknown")
+        .def_property_readonly(
+            "error_bound", [](const Result& r) { return r.session().film.relativeErrorBound(); },
+            "what the relative error does not exceed with a confidence of 95 %")
+        .def("write", &Result::write, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
+             "Writes .exr, .npz, .h5, .pfm, .npy or .png and what goes beside them; returns the names.")
+        .def("__repr__", textOf);
+}
+
+} // namespace tungsten::python

@@ -1,0 +1,38 @@
+#pragma once
+// A render as Python sees it.
+
+#include "tungsten/render/Job.h"
+#include "tungsten/render/RenderSession.h"
+
+#include <pybind11/numpy.h>
+
+namespace tungsten::python {
+
+/// What a render left: the film in output units, and what is known about it. Arrays that Python gets are views of it.
+class Result {
+  public:
+    /// Images are made once, here.
+    Result(LoadedScene loaded, const SessionOptions& options, std::unique_ptr<const SessionResult> session);
+
+    [[nodiscard]] const SessionResult& session() const { return *session_; }
+    [[nodiscard]] const Scene& scene() const { return *loaded_.scene; }
+    [[nodiscard]] const std::string& metadata() const { return metadata_; }
+    /// Writes .exr, .npz, .h5, .pfm, .npy or .png, with what goes beside them. Returns the files' names.
+    [[nodiscard]] std::vector<std::string> write(const std::filesystem::path& file) const;
+
+    /// Read-only views (frames, height, width, 3) that keep `self` alive.
+    static pybind11::array mean(const pybind11::object& self);
+    static pybind11::array standardError(const pybind11::object& self);
+
+  private:
+    LoadedScene loaded_;
+    std::unique_ptr<const SessionResult> session_;
+    std::string metadata_;
+    std::vector<float> mean_, standardError_;
+};
+
+void declareResult(pybind11::module_& module);
+/// The submodule `sampling`: densities and samplers of src/darts over arrays.
+void declareSampling(pybind11::module_& module);
+
+} // namespace tungsten::python

@@ -1,0 +1,39 @@
+#include "tungsten/render/Job.h"
+
+namespace tungsten {
+
+namespace {
+
+[[noreturn]] void failUnknownIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
+    std::vector<std::string> types;
+    for (const auto& [type, entry] : plugins.registry.entries()) types.push_back(type);
+    std::string message = types.empty() ? "no integrator is known" : "expected " + listOf(types);
+    message += ", found '" + loaded.integratorType + "'";
+    const std::string near = nearestName(loaded.integratorType, types);
+    if (!near.empty()) message += "; did you mean '" + near + "'?";
+    message += " (plugins were looked for in";
+    for (size_t i = 0; i < plugins.directories.size(); ++i)
+        message += (i > 0 ? ", " : " ") + plugins.directories[i].string();
+    throw InputError({{loaded.diagnostics->file, "integrator.type", message + ")"}});
+}
+
+std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
+    const auto found = plugins.registry.entries().find(loaded.integratorType);
+    if (found == plugins.registry.entries().end()) failUnknownIntegrator(loaded, plugins);
+    auto integrator = found->second.factory(loaded.scene, loaded.integratorSettings);
+    throwIfProblems(*loaded.diagnostics);
+    loaded.integratorSettings.warnAboutUnknown();
+    return integrator;
+}
+
+} // namespace
+
+Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins) {
+    Job job{loadScene(file, options), nullptr, {}};
+    job.integrator = makeIntegrator(job.loaded, plugins);
+    job.plan = analyseScene(*job.loaded.scene);
+    job.integrator->plan(job.plan);
+    return job;
+}
+
+} // namespace tungsten

@@ -1,0 +1,227 @@
+#include "tungsten/render/PartialStateReader.h"
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/core/FileBytes.h"
+#include "tungsten/film/Checksum.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+namespace tungsten {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The last two are the version.
+constexpr char Magic[8] = {'T', 'P', 'A', 'R', 'T', 'S', '0', '1'};
+constexpr size_t VersionAt = 6;
+
+/// Fixed part of the file's start; texts, passes, an end and the checksum follow.
+struct Header {
+    char magic[8];
+    uint64_t content, seed;
+    int64_t sppStep;
+    int32_t width, height, frames;
+    uint32_t firstPass;
+    double gateStart, frameWidth, lengthUnit;
+    float vacuumSpeed, cameraSpeed;
+    uint8_t steadyState, delta, hasResponse, cameraUnwarped, integrate, toneMap, unused[2];
+};
+
+/// Before each pass; without samples: the end, with the process's CPU seconds.
+struct PassHeader {
+    uint32_t samples = 0, unused = 0;
+    uint64_t bytes = 0; ///< deflated
+    double cpuSeconds = 0.0;
+};
+
+size_t passBytes(const Film& film) {
+    return size_t(film.width()) * size_t(film.height()) * size_t(film.frames()) * sizeof(Rgb);
+}
+
+Header headerOf(const PartialIdentity& identity, uint32_t firstPass) {
+    const Scene& scene = *identity.scene;
+    const TransportSettings& transport = scene.transport;
+    Header header{};
+    std::memcpy(header.magic, Magic, sizeof Magic);
+    header.content = identity.content;
+    header.seed = identity.seed;
+    header.sppStep = identity.sppStep;
+    header.width = scene.camera.resolution.x;
+    header.height = scene.camera.resolution.y;
+    header.frames = transport.gate.frames;
+    header.firstPass = firstPass;
+    header.gateStart = transport.gate.start;
+    header.frameWidth = transport.gate.frameWidth;
+    header.lengthUnit = scene.lengthUnit;
+    header.vacuumSpeed = transport.vacuumSpeed;
+    header.cameraSpeed = scene.cameraRegion.speed;
+    header.steadyState = transport.gate.steadyState;
+    header.delta = transport.gate.delta;
+    header.hasResponse = !transport.response.empty();
+    header.cameraUnwarped = transport.cameraUnwarped;
+    header.integrate = transport.integrateOverGate;
+    header.toneMap = uint8_t(scene.toneMap);
+    return header;
+}
+
+/// A scene of what images need.
+std::shared_ptr<Scene> sceneOf(const Header& header) {
+    auto scene = std::make_shared<Scene>();
+    scene->camera.resolution = Vec2i(header.width, header.height);
+    TransportSettings& transport = scene->transport;
+    transport.gate = {header.steadyState != 0, header.delta != 0, header.gateStart, header.frameWidth, header.frames};
+    transport.vacuumSpeed = header.vacuumSpeed;
+    transport.cameraUnwarped = header.cameraUnwarped != 0;
+    transport.integrateOverGate = header.integrate != 0;
+    if (header.hasResponse) transport.response = {{header.gateStart, transport.gate.end()}, {1.0, 1.0}};
+    scene->lengthUnit = header.lengthUnit;
+    scene->cameraRegion.speed = header.cameraSpeed;
+    scene->toneMap = ToneMap(header.toneMap);
+    return scene;
+}
+
+template <typename Value>
+void writeValue(std::ostream& out, const Value& value) {
+    out.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void writeText(std::ostream& out, const std::string& text) {
+    writeValue(out, uint64_t(text.size()));
+    out.write(text.data(), std::streamsize(text.size()));
+}
+
+template <typename Value>
+Value readValue(std::istream& in) {
+    Value value{};
+    in.read(reinterpret_cast<char*>(&value), sizeof value);
+    return value;
+}
+
+std::string readText(std::istream& in) {
+    std::string value(readValue<uint64_t>(in), '\0');
+    in.read(value.data(), std::streamsize(value.size()));
+    return value;
+}
+
+/// Of a file that is whole; the stream goes on behind it.
+Header readHeader(std::istream& in, const fs::path& file) {
+    const uint64_t size = requireRegularFile(file);
+    const auto header = readValue<Header>(in);
+    if (!in || std::memcmp(header.magic, Magic, VersionAt) != 0)
+        throw InputError(file.string(), "not a partial state, as --passes writes, or damaged");
+    if (std::memcmp(header.magic, Magic, sizeof Magic) != 0)
+        throw InputError(file.string(), "a partial state of another version of this program");
+    in.seekg(0);
+    if (!endsWithChecksum(in, size))
+        throw InputError(file.string(), "the partial state is damaged or truncated (its checksum is wrong)");
+    in.seekg(sizeof header);
+    return header;
+}
+
+} // namespace
+
+PartialIdentity PartialIdentity::of(const LoadedScene& loaded, uint64_t seed, int64_t sppStep) {
+    Hash hash;
+    hash.add(std::to_string(loaded.textHash));
+    for (const fs::path& input : loaded.inputs) {
+        if (input == loaded.scene->file) continue; // its text is in the hash
+        const std::vector<char> bytes = readFileBytes(input);
+        hash.addBytes(bytes.data(), bytes.size());
+    }
+    return {hash.value(), seed, sppStep, loaded.scene, loaded.integratorType, loaded.text};
+}
+
+struct PartialStateWriter::Implementation {
+    std::ostream& target;
+    std::string file;
+    ChecksumBuffer buffer;
+    std::ostream out;
+    std::vector<Bytef> deflated;
+
+    Implementation(std::ostream& stream, std::string name)
+        : target(stream), file(std::move(name)), buffer(*stream.rdbuf()), out(&buffer) {}
+    void requireGood() const {
+        if (!out) throw InputError(file, "cannot be written: the disk is full, or there is a quota");
+    }
+};
+
+PartialStateWriter::PartialStateWriter(std::ostream& out, std::string file, const PartialIdentity& identity,
+                                       uint32_t firstPass)
+    : implementation_(std::make_unique<Implementation>(out, std::move(file))) {
+    writeValue(implementation_->out, headerOf(identity, firstPass));
+    for (const std::string& text :
+         {std::string(TUNGSTEN_VERSION), identity.scene->file.string(), identity.integrator, identity.sceneText})
+        writeText(implementation_->out, text);
+    implementation_->requireGood();
+}
+PartialStateWriter::~PartialStateWriter() = default;
+
+void PartialStateWriter::add(Film& film, uint32_t samples) {
+    std::vector<Bytef>& deflated = implementation_->deflated;
+    const auto bytes = uLong(passBytes(film));
+    deflated.resize(compressBound(bytes));
+    auto size = uLongf(deflated.size());
+    const auto* pixels = reinterpret_cast<const Bytef*>(&film.passPixel(0, 0, 0));
+    if (compress2(deflated.data(), &size, pixels, bytes, Z_BEST_SPEED) != Z_OK)
+        throw InputError(implementation_->file, "cannot be written: out of memory");
+    writeValue(implementation_->out, PassHeader{samples, 0, size, 0.0});
+    implementation_->out.write(reinterpret_cast<const char*>(deflated.data()), std::streamsize(size));
+    implementation_->requireGood();
+}
+
+void PartialStateWriter::finish(const std::string& statistics, double cpuSeconds) {
+    writeValue(implementation_->out, PassHeader{0, 0, 0, cpuSeconds});
+    writeText(implementation_->out, statistics);
+    writeValue(implementation_->target, implementation_->buffer.checksum());
+    implementation_->requireGood();
+}
+
+PartialStateReader::PartialStateReader(const fs::path& file) : file_(file) {
+    (void)requireRegularFile(file);
+    std::ifstream in(file, std::ios::binary);
+    const Header header = readHeader(in, file);
+    first_ = header.firstPass;
+    build_ = readText(in);
+    const std::shared_ptr<Scene> scene = sceneOf(header);
+    scene->file = readText(in);
+    const std::string integrator = readText(in);
+    identity_ = {header.content, header.seed, header.sppStep, scene, integrator, readText(in)};
+    passesAt_ = in.tellg();
+    auto pass = readValue<PassHeader>(in);
+    for (; pass.samples > 0; pass = readValue<PassHeader>(in)) {
+        samples_.push_back(pass.samples);
+        in.seekg(std::streamoff(pass.bytes), std::ios::cur);
+    }
+    cpuSeconds_ = pass.cpuSeconds;
+    statistics_ = readText(in);
+}
+
+std::string PartialStateReader::differenceTo(const PartialStateReader& other) const {
+    if (build_ != other.build_) return "version of this program (" + build_ + ", " + other.build_ + ")";
+    if (identity_.content != other.identity_.content) return "scene (or a changed file or --set)";
+    if (identity_.seed != other.identity_.seed) return "seed";
+    if (identity_.sppStep != other.identity_.sppStep) return "spp_step";
+    return "";
+}
+
+void PartialStateReader::fold(Film& film) const {
+    std::ifstream in(file_, std::ios::binary);
+    in.seekg(passesAt_);
+    std::vector<Bytef> deflated;
+    for (const uint32_t samples : samples_) {
+        deflated.resize(readValue<PassHeader>(in).bytes);
+        in.read(reinterpret_cast<char*>(deflated.data()), std::streamsize(deflated.size()));
+        film.beginPass();
+        auto bytes = uLongf(passBytes(film));
+        const int code = uncompress(reinterpret_cast<Bytef*>(&film.passPixel(0, 0, 0)), &bytes, deflated.data(),
+                                    uLong(deflated.size()));
+        if (!in || code != Z_OK || bytes != passBytes(film))
+            throw InputError(file_.string(), "the partial state has changed while it was read");
+        film.endPass(double(samples));
+    }
+}
+
+} // namespace tungsten
