@@ -145,8 +145,12 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
                    "write means and standard errors whenever the render's time has doubled, and trace.json, to this "
                    "folder");
     app.add_option("--target-error", options.targetError,
-                   "stop when the relative error is at most this (0.01 is 1 %) with a confidence of 95 %")
+                   "stop when the relative error, noise and the bias of kernels, is at most this (0.01 is 1 %) with a "
+                   "confidence of 95 %")
         ->check(CLI::PositiveNumber);
+    app.add_flag("--bias", options.bias,
+                 "estimate what the kernels of photon maps leave, as a number and by pixel (layer bias of .exr); "
+                 "--target-error does so, too");
     app.add_option("--memory-limit", text.memoryLimit,
                    "refuse what needs more than SIZE (512M, 16G), and fail at more (default: what is available)");
     app.add_flag("--allow-outside", options.outputs.allowOutside,

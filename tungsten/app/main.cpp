@@ -82,6 +82,7 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.resumeEnabled = renderer.enableResume || options.checkpointSeconds.has_value();
     session.restart = options.restart;
     session.targetError = options.targetError;
+    session.bias = options.bias;
     session.memoryLimit = options.memoryLimit;
     session.quiet = options.quiet;
     session.trace = options.trace;
@@ -98,7 +99,8 @@ void printSummary(const SessionResult& result) {
     std::printf("%u passes, %llu samples per pixel in %.1f s (%s)", result.film.passes(),
                 static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str());
     const double error = result.film.relativeStandardError();
-    if (!std::isnan(error)) std::printf(", %s", errorText(error, result.film.relativeErrorBound()).c_str());
+    if (!std::isnan(error))
+        std::printf(", %s", errorText(error, result.film.relativeErrorBound(), result.relativeBias()).c_str());
     std::printf("\n");
     constexpr size_t MostListed = 12;
     for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)
