@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
-RENDERER = Path(__import__("os").environ.get("TUNGSTEN", PROJECT / "build/bin/tungsten"))
+RENDERER = PROJECT / "build/bin/tungsten"
 
 # Scene file, radii, and what all its renders set.
 SCENES = {

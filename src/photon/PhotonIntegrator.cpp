@@ -51,6 +51,17 @@ bool PhotonIntegrator::leavesBias(const EffectPlan& facts) const {
     return plan.volume.on || plan.surfacePhotons.on || plan.connections.on;
 }
 
+double PhotonIntegrator::kernelWidth(uint32_t pass) const {
+    const uint32_t at = settings_.progressive ? pass : 0;
+    if (!plan_.volume.on) return double(surfaceRadiusFactor(at, settings_.alpha));
+    if (std::holds_alternative<Points>(settings_.primitive)) {
+        const double factor = double(pointRadiusFactor(at, settings_.volumeAlpha));
+        return settings_.fixedVolumeRadius ? factor : std::sqrt(factor);
+    }
+    return scene_->transport.gate.delta ? deltaGateFactor(at, settings_.volumeAlpha)
+                                        : double(beamRadiusFactor(at, settings_.alpha));
+}
+
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
     return settings_.progressive ? pass.index : 0;
 }

@@ -18,6 +18,8 @@ class PhotonIntegrator : public Integrator {
     void prepare(const EffectPlan& plan, Statistics& statistics) override;
     [[nodiscard]] double memoryBytes() const override;
     [[nodiscard]] bool leavesBias(const EffectPlan& plan) const override;
+    /// Of the volume's kernels, where there are any, else of surfaces'.
+    [[nodiscard]] double kernelWidth(uint32_t pass) const override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:

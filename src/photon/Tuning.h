@@ -87,7 +87,7 @@ inline constexpr float SharedConnections = 100.0f, LeastShared = 2.5f, MostShare
 
 /// Width of the kernels that the bias is estimated with, of those that the image is made with. Narrower ones need no
 /// photons but the pass's, and tell more where what they blur has edges.
-inline constexpr float NarrowKernel = 0.70710678f;
+inline constexpr float NarrowKernel = 0.8f;
 
 // --- Stores and structures -------------------------------------------------------------------------------------------
 

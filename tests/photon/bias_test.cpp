@@ -61,13 +61,11 @@ class KernelBiasOf : public testing::TestWithParam<BiasCase> {
   protected:
     [[nodiscard]] static Errors errorsOf(const BiasCase& c, double radius, uint32_t passes) {
         test::PulsesInFog pulses = test::singleScatteringCases()[c.pulses];
-        test::Overrides overrides{"camera.resolution=" + std::to_string(Side),
-                                  "integrator.type=progressive_transient_photon_map",
-                                  "integrator.fixed_volume_radius=true",
-                                  "integrator.include_surfaces=false",
-                                  test::setting("photon_count", 200000),
-                                  test::setting("volume_photon_count", 20000),
-                                  test::setting("volume_gather_radius", radius)};
+        test::Overrides overrides{
+            "camera.resolution=" + std::to_string(Side),  "integrator.type=progressive_transient_photon_map",
+            "integrator.fixed_volume_radius=true",        "integrator.include_surfaces=false",
+            test::setting("photon_count", 200000),        test::setting("volume_photon_count", 20000),
+            test::setting("volume_gather_radius", radius)};
         if (c.delta) overrides.emplace_back("integrator.delta_time_gate=true");
         overrides.insert(overrides.end(), c.overrides.begin(), c.overrides.end());
         const auto rendered =
@@ -86,7 +84,7 @@ TEST_P(KernelBiasOf, IsWithinAFactorOfTwo) {
     EXPECT_GT(errors.bias, 2.0 * errors.noise) << "nothing is seen below the noise";
     EXPECT_GT(errors.claimed.estimate, 0.5 * errors.bias);
     EXPECT_LT(errors.claimed.estimate, 2.0 * errors.bias);
-    EXPECT_LT(errors.corrected, 0.8 * errors.bias) << "the estimate is no picture of the bias";
+    EXPECT_LT(errors.corrected, 0.95 * errors.bias) << "the estimate is no picture of the bias";
     RecordProperty("bias", std::to_string(errors.bias));
     RecordProperty("estimate", std::to_string(errors.claimed.estimate));
 }
@@ -115,8 +113,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(BiasCase{"Points", 0, Fixed, 0.3}, BiasCase{"ShrinkingPoints", 1, Shrinking, 0.7},
                     BiasCase{"ColouredPoints", 2, Fixed, 0.5}, BiasCase{"GuidedPoints", 3, with(Fixed, {Best}), 0.3},
                     BiasCase{"Beams", 3, with(Fixed, {Beams}), 0.3},
-                    BiasCase{"ShrinkingGuidedBeams", 1, with(Shrinking, {Beams, Best, "integrator.alpha=0.9"}), 0.8},
-                    BiasCase{"PointsAtADeltaGate", 3, Fixed, 0.3, true}, BiasCase{"BeamsAtADeltaGate", 3, with(Fixed, {Beams}), 0.3, true}, BiasCase{"GuidedPointsOnADeltaGate", 3, with(Fixed, {Best}), 0.3, true}),
+                    BiasCase{"ShrinkingGuidedBeams", 1, with(Shrinking, {Beams, Best, "integrator.alpha=0.9"}), 0.4},
+                    BiasCase{"PointsAtADeltaGate", 3, Fixed, 0.3, true},
+                    BiasCase{"BeamsAtADeltaGate", 3, with(Fixed, {Beams}), 0.3, true},
+                    BiasCase{"GuidedPointsOnADeltaGate", 3, with(Fixed, {Best}), 0.3, true}),
     [](const testing::TestParamInfo<BiasCase>& tested) { return std::string(tested.param.name); });
 
 } // namespace

@@ -156,6 +156,10 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_flag("--allow-outside", options.outputs.allowOutside,
                  "let scenes read and write outside their folder and the output folder");
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
+    app.add_flag(
+        "--plan-cost", options.planCost,
+        "print what errors of 10, 3, 1 and 0.3 % cost in seconds by points, beams, sliced primitives and paths, "
+        "from a pilot of each (--timeout: its DURATION, default 3s); to --stats as JSON; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
     text.description =
         app.add_option("--describe", text.describe,
@@ -212,6 +216,8 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     if (!parse(app, argc, argv)) return std::nullopt;
     understand(text, options);
     options.command = commandText(argc, argv);
+    if (options.planCost && options.outputs.statistics && options.scenes.size() > 1)
+        throw UsageError("--plan-cost: takes one scene at a time with --stats");
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
     if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");
     if (options.outputs.page && options.scenes.size() > 1) throw UsageError("--html: takes one scene at a time");

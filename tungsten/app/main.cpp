@@ -3,6 +3,7 @@
 #include "tungsten/app/Describe.h"
 #include "tungsten/app/List.h"
 #include "tungsten/app/Options.h"
+#include "tungsten/app/PlanCost.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Memory.h"
@@ -111,6 +112,10 @@ void printSummary(const SessionResult& result) {
 
 /// Exit code: 0, or 130 when interrupted before there was anything to write.
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+    if (options.planCost) {
+        planCost(file, options, [&](const LoadedScene& loaded) { return makeIntegrator(loaded, plugins); });
+        return 0;
+    }
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
     const LoadedScene loaded =
@@ -206,7 +211,7 @@ int run(const Options& options) {
                                  options.threads > 0 ? size_t(options.threads) : all);
     if (options.memoryLimit > 0.0) limitMemory(options.memoryLimit, std::thread::hardware_concurrency());
     handleSignals();
-    if (!options.explain) requireOutputsOfTheirOwn(options);
+    if (!options.explain && !options.planCost) requireOutputsOfTheirOwn(options);
     int code = 0;
     for (const auto& scene : options.scenes) {
         if (interrupted) return ExitInterrupted; // not all were rendered

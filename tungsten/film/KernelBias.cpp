@@ -19,9 +19,10 @@ RelativeBias RelativeBias::of(const Film& film, const Film& bias) {
     if (!(mean > 0.0) || std::isnan(noise)) return {Unknown, Unknown};
     const double square = std::max(bias.meanSquare() - noise, 0.0);
     // The noise is uncertain, and so is its product with the bias: over k independent pixels they scatter by noise
-    // sqrt(2 / k) and 2 sqrt(square noise / k). The factor says what the first may be.
+    // sqrt(2 / k) and 2 sqrt(square noise / k). The factor says what the first may be, with two standard deviations;
+    // what one explains is no bias that is seen.
     const double doubt = (factor * factor - 1.0) * std::sqrt(noise * (noise + 2.0 * square));
-    return {std::sqrt(square) / mean, std::sqrt(square + doubt) / mean};
+    return {std::sqrt(std::max(square - 0.5 * doubt, 0.0)) / mean, std::sqrt(square + doubt) / mean};
 }
 
 } // namespace tungsten

@@ -38,6 +38,8 @@ class Integrator {
     [[nodiscard]] virtual double memoryBytes() const { return 0.0; }
     /// Whether kernels blur the image; `plan` is complete.
     [[nodiscard]] virtual bool leavesBias(const EffectPlan&) const { return false; }
+    /// Width of a pass's kernels over that of the first pass's, whose square their bias follows; after prepare().
+    [[nodiscard]] virtual double kernelWidth(uint32_t) const { return 1.0; }
     /// Adds the pass's image to every frame of film.passPixel(): each pixel's mean over the pass's samples, averaged
     /// over the gate.
     virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;
