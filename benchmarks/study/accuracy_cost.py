@@ -15,20 +15,18 @@ import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
 RENDERER = PROJECT / "build/bin/tungsten"
-SHIPPED, OWN = "data/scenes/{}/scene.json", "benchmarks/study/scenes/{}.json"
-
-# Scene file, and what its renders set.
+# Folder of the scene, and what its renders set.
 SCENES = {
-    "cornell-fog": (SHIPPED, []),
-    "two-pulses": (SHIPPED, ["integrator.frame_num=4"]),
-    "mirror-fog": (SHIPPED, []),
-    "glass-tank": (SHIPPED, []),
-    "fogged-box": (SHIPPED, []),
-    "laser-in-fog": (SHIPPED, []),
-    "lamp-in-fog": (OWN, []),
-    "several-lights": (OWN, []),
-    "milk-behind-glass": (OWN, []),
-    "cloud-in-haze": (OWN, []),
+    "cornell-fog": ("data/scenes", []),
+    "two-pulses": ("data/scenes", ["integrator.frame_num=4"]),
+    "mirror-fog": ("data/scenes", []),
+    "glass-tank": ("data/scenes", []),
+    "fogged-box": ("data/scenes", []),
+    "laser-in-fog": ("data/scenes", []),
+    "lamp-in-fog": ("benchmarks/study/scenes", []),
+    "several-lights": ("benchmarks/study/scenes", []),
+    "milk-behind-glass": ("benchmarks/study/scenes", []),
+    "cloud-in-haze": ("benchmarks/study/scenes", []),
 }
 # Small passes: every method has many of them in little time.
 COMMON = ["renderer.spp_step=1", "integrator.photon_count=20000", "integrator.volume_photon_count=10000"]
@@ -36,11 +34,14 @@ LEVELS = [1.0, 0.3, 0.1, 0.03]
 
 
 def command(scene, arguments, settings):
-    file, own = SCENES[scene]
+    folder, own = SCENES[scene]
+    file = PROJECT / folder / scene / "scene.json"
+    if not file.exists():
+        file = PROJECT / folder / f"{scene}.json"
     line = [RENDERER, "-t", "1", "--resolution", arguments.resolution, "-d", arguments.folder]
     for value in [*COMMON, *own, *settings]:
         line += ["--set", value]
-    return [*line, PROJECT / file.format(scene)]
+    return [*line, file]
 
 
 def run(line):

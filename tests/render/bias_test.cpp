@@ -17,8 +17,8 @@ using test::tinyScene;
 const char* const FortyPasses = R"("spp": 40, "spp_step": 1, "hdr_output_file": "image.exr")";
 
 TEST(Bias, IsInTheExrTheStatisticsAndTheTrace) {
-    SessionFixture session(tinyScene(std::string(test::ThreeFrames) + R"(, "time_normalization": "integral")",
-                                     FortyPasses));
+    SessionFixture session(
+        tinyScene(std::string(test::ThreeFrames) + R"(, "time_normalization": "integral")", FortyPasses));
     session.integrator.bias = 0.2f;
     session.options.bias = true;
     session.options.trace = session.folder() / "trace";

@@ -120,10 +120,10 @@ TEST(PlanCost, PrintsATableAndWritesJson) {
 
 /// Paths miss a laser's light where it is scattered for the first time: a reason instead of a price.
 TEST(PlanCost, SaysWhyAMethodHasNoPrice) {
-    const auto result = test::tungsten({"--plan-cost", "--timeout", "0.1s", "--resolution", "8x8", "--set",
-                                        "renderer.spp_step=1", "--set", "integrator.photon_count=2000", "--set",
-                                        "integrator.volume_photon_count=2000",
-                                        std::string(PROJECT_DATA_DIR) + "/scenes/laser-in-fog/scene.json"});
+    const auto result =
+        test::tungsten({"--plan-cost", "--timeout", "0.1s", "--resolution", "8x8", "--set", "renderer.spp_step=1",
+                        "--set", "integrator.photon_count=2000", "--set", "integrator.volume_photon_count=2000",
+                        std::string(PROJECT_DATA_DIR) + "/scenes/laser-in-fog/scene.json"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const size_t paths = result.out.find("\npaths");
     ASSERT_NE(paths, std::string::npos) << result.out;

@@ -31,8 +31,8 @@ struct Method {
 /// Points, beams, sliced primitives and paths, with the scene's own sampling, or the best where it says nothing.
 std::vector<Method> methodsFor(const LoadedScene& loaded) {
     const bool photonMap = loaded.integratorType.ends_with("photon_map");
-    const std::string map = "integrator.type=" + (photonMap ? loaded.integratorType
-                                                            : std::string("progressive_transient_photon_map"));
+    const std::string map =
+        "integrator.type=" + (photonMap ? loaded.integratorType : std::string("progressive_transient_photon_map"));
     const std::string sliced = loaded.scene->transport.gate.steadyState ? "volumes" : "mis_volumes_balls";
     std::vector<Method> methods;
     for (const std::string& primitive : {std::string("points"), std::string("beams"), sliced})
@@ -59,9 +59,9 @@ void measure(Method& method, const std::filesystem::path& file, const Options& o
             method.refusal = "lacks " + plan.lacks.front();
             return;
         }
-        method.costs = measurePasses(*loaded.scene, *integrator, plan,
-                                     {options.seed, uint32_t(loaded.renderer.sppStep),
-                                      options.timeoutSeconds.value_or(DefaultPilotSeconds)});
+        method.costs = measurePasses(
+            *loaded.scene, *integrator, plan,
+            {options.seed, uint32_t(loaded.renderer.sppStep), options.timeoutSeconds.value_or(DefaultPilotSeconds)});
         if (!method.costs) method.refusal = "black: nothing arrived in the passes of the pilot";
     } catch (const InputError& error) {
         const Problem& first = error.problems().front();

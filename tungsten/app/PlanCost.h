@@ -2,8 +2,8 @@
 // `tungsten --plan-cost`: what an error costs by each method.
 
 #include "tungsten/app/Options.h"
-#include "tungsten/scene/SceneLoader.h"
 #include "tungsten/render/Integrator.h"
+#include "tungsten/scene/SceneLoader.h"
 
 #include <functional>
 #include <memory>
