@@ -66,7 +66,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
     const auto add = [&](const std::string& name, const Choice& choice) {
         plan.describe(name, choice.on, choice.reason);
     };
-    if (!firstScatteringInView.on) add("light of a single direction in view", firstScatteringInView);
+    if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
     if (!guidance.on) add("Russian roulette", roulette);
     add("guided paths", guidance);
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);

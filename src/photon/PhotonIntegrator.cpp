@@ -4,6 +4,8 @@
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/surface/SharedLight.h"
 
+#include <tbb/parallel_for.h>
+
 namespace tungsten::photon {
 
 namespace {
@@ -44,23 +46,46 @@ double PhotonIntegrator::memoryBytes() const {
     return surface + (scatters ? volume : 0.0);
 }
 
+bool PhotonIntegrator::leavesBias(const EffectPlan& facts) const {
+    const PhotonPlan plan = PhotonPlan::of(*scene_, settings_, facts);
+    return plan.volume.on || plan.surfacePhotons.on || plan.connections.on;
+}
+
+double PhotonIntegrator::kernelWidth(uint32_t pass) const {
+    const uint32_t at = settings_.progressive ? pass : 0;
+    if (!plan_.volume.on) return double(surfaceRadiusFactor(at, settings_.alpha));
+    if (std::holds_alternative<Points>(settings_.primitive)) {
+        const double factor = double(pointRadiusFactor(at, settings_.volumeAlpha));
+        return settings_.fixedVolumeRadius ? factor : std::sqrt(factor);
+    }
+    return scene_->transport.gate.delta ? deltaGateFactor(at, settings_.volumeAlpha)
+                                        : double(beamRadiusFactor(at, settings_.alpha));
+}
+
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
     return settings_.progressive ? pass.index : 0;
 }
 
-TimeGate PhotonIntegrator::gate(uint32_t step) const {
+TimeGate PhotonIntegrator::gate(uint32_t step, float kernel) const {
     const TimeGate& gate = scene_->transport.gate;
     if (!gate.delta) return gate;
-    const double tau = settings_.temporalRadius * deltaGateFactor(step, settings_.volumeAlpha);
+    const double tau = settings_.temporalRadius * deltaGateFactor(step, settings_.volumeAlpha) * double(kernel);
     return {false, false, gate.start - tau, 2.0 * tau, 1};
+}
+
+bool PhotonIntegrator::onDeltaGate() const {
+    return plan_.meetsDeltaGate && std::visit([](const auto& p) { return p.AtVertices; }, settings_.primitive);
+}
+
+SensorRays PhotonIntegrator::sensorRays(const PassInfo& pass) const {
+    const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
+    return {plan_.splats(), plan_.folds && settings_.includeSurfaces, glossy_ ? tuning::HighlightPaths : 0, uFolded};
 }
 
 void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, GatherStructures& structures,
                                     Statistics& statistics) const {
     const StageTimer timer(statistics, "build");
-    const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
-    const SensorRays rays{structures.splatted, plan_.folds && settings_.includeSurfaces,
-                          glossy_ ? tuning::HighlightPaths : 0, uFolded};
+    const SensorRays rays = sensorRays(pass);
     const auto build = [&]<typename Primitive>(const Primitive& primitive) {
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;
@@ -100,6 +125,46 @@ void PhotonIntegrator::look(const GatherStructures& structures, const SensorReco
     renderSensorPass(*scene_, structures, record, pass, film, statistics);
 }
 
+void PhotonIntegrator::see(const GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
+                           const PassInfo& pass, Film& film, Statistics& statistics) const {
+    if (plan_.connections.on) {
+        const StageTimer timer(statistics, "share light");
+        const float factor = surfaceRadiusFactor(step(pass), settings_.alpha) * structures.kernel;
+        auto kernel = SharingKernel::of(first->points.size() / first->samples, maps.received.size(),
+                                        settings_.gatherRadius, factor);
+        if (scene_->transport.gate.delta) kernel.time = structures.kernel;
+        const auto asTraced = transport::Sensor::of(*scene_, gate(step(pass)));
+        shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics);
+    }
+    look(structures, first, pass, film, statistics);
+    for (uint32_t s = 1; first && s < pass.samples; ++s) {
+        const SensorRecord further = record(pass, s, statistics);
+        look(structures, &further, pass, film, statistics);
+    }
+}
+
+void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
+                                    const PassInfo& pass, Film& film, Statistics& statistics) const {
+    const StageTimer timer(statistics, "bias");
+    Statistics unreported; // the pass's figures are those of its image
+    structures.kernel = tuning::NarrowKernel;
+    if (!onDeltaGate()) structures.sensor.gate = gate(step(pass), structures.kernel);
+    std::visit(Overloaded{[](std::monostate) {},
+                          [&](auto& volume) { volume.narrow(structures.kernel, structures.sensor, sensorRays(pass)); }},
+               structures.volume);
+    Film& bias = *pass.bias;
+    see(structures, maps, first, pass, bias, unreported);
+    // The bias is as the square of the kernel's width.
+    const float extrapolation = 1.0f / (1.0f - sqr(structures.kernel));
+    tbb::parallel_for(0, film.height(), [&](int y) {
+        for (int frame = 0; frame < film.frames(); ++frame)
+            for (int x = 0; x < film.width(); ++x) {
+                Rgb& pixel = bias.passPixel(frame, x, y);
+                pixel = (film.passPixel(frame, x, y) - pixel) * extrapolation;
+            }
+    });
+}
+
 void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
@@ -124,17 +189,9 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
         const StageTimer timer(statistics, "build");
         structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
     }
-    if (plan_.connections.on) {
-        const StageTimer timer(statistics, "share light");
-        const auto kernel = SharingKernel::of(first->points.size() / first->samples, maps.received.size(),
-                                              settings_.gatherRadius, surfaceFactor);
-        shareLight(*scene_, sensor, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics);
-    }
-    look(structures, first ? &*first : nullptr, pass, film, statistics);
-    for (uint32_t s = 1; first && s < pass.samples; ++s) {
-        const SensorRecord further = record(pass, s, statistics);
-        look(structures, &further, pass, film, statistics);
-    }
+    const SensorRecord* recorded = first ? &*first : nullptr;
+    see(structures, maps, recorded, pass, film, statistics);
+    if (pass.bias) estimateBias(structures, maps, recorded, pass, film, statistics);
 }
 
 } // namespace tungsten::photon

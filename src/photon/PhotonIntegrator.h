@@ -17,19 +17,31 @@ class PhotonIntegrator : public Integrator {
     void plan(EffectPlan& plan) const override;
     void prepare(const EffectPlan& plan, Statistics& statistics) override;
     [[nodiscard]] double memoryBytes() const override;
+    [[nodiscard]] bool leavesBias(const EffectPlan& plan) const override;
+    /// Of the volume's kernels, where there are any, else of surfaces'.
+    [[nodiscard]] double kernelWidth(uint32_t pass) const override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
     /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that
     /// shared them would share their error, which no spread of passes tells.
     [[nodiscard]] uint32_t step(const PassInfo& pass) const;
-    /// The scene's gate; for a delta gate the box that the pass's temporal kernel is.
-    [[nodiscard]] TimeGate gate(uint32_t step) const;
+    /// The scene's gate; for a delta gate the box that the pass's temporal kernel is, `kernel` times as wide.
+    [[nodiscard]] TimeGate gate(uint32_t step, float kernel = 1.0f) const;
     /// Of this sample of the pass; the first one's holds the surface points, too.
     [[nodiscard]] SensorRecord record(const PassInfo& pass, uint32_t sample, Statistics& statistics) const;
+    /// Control vertices are all that volumes store, and lie on the delta gate itself: no kernel in time.
+    [[nodiscard]] bool onDeltaGate() const;
+    [[nodiscard]] SensorRays sensorRays(const PassInfo& pass) const;
     /// Structures over the pass's volume records.
     void gatherVolume(VolumeStore&& maps, const PassInfo& pass, GatherStructures& structures,
                       Statistics& statistics) const;
+    /// Adds what all samples of the pass see of its photons; `first` is the record of the first, if there are any.
+    void see(const GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
+             const PassInfo& pass, Film& film, Statistics& statistics) const;
+    /// Looks at the pass's photons again with narrower kernels, and says by how much the film's pass image is wrong.
+    void estimateBias(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
+                      const PassInfo& pass, Film& film, Statistics& statistics) const;
     /// Adds what one recorded sample sees; without a record, what all the pass's samples see.
     void look(const GatherStructures& structures, const SensorRecord* record, const PassInfo& pass, Film& film,
               Statistics& statistics) const;

@@ -120,16 +120,19 @@ class SensorGather {
             emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
     }
 
-    /// Density estimate with a constant kernel over the k nearest photons (docs/scene-format.md, section 10.4).
+    /// Density estimate with a constant kernel over the k nearest photons (docs/scene-format.md, section 10.4), or over
+    /// those of them that a narrower kernel holds.
     void gatherSurface(const SensorState& state, const SurfaceInteraction& surface) {
         const auto& photons = structures_.surfacePhotons.records;
-        const float squaredRadius = structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,
-                                                               structures_.gatherCount, workspace_.neighbours);
+        const float squaredRadius =
+            sqr(structures_.kernel) * structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,
+                                                                 structures_.gatherCount, workspace_.neighbours);
         if (!(squaredRadius > 0.0f)) return;
         counters_.gathered += workspace_.neighbours.size();
         const float scale = structures_.surfacePhotons.scale() * InvPi / squaredRadius;
         const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
         for (const auto& neighbour : workspace_.neighbours) {
+            if (structures_.kernel < 1.0f && neighbour.squaredDistance > squaredRadius) continue;
             const Photon& photon = photons[neighbour.index];
             if (isBlack(photon.power) || !rendered(state.interactions + photon.bounce)) continue; // densityPhotons
             const Vec3f wo = surface.frame.toLocal(-photon.direction);

@@ -18,6 +18,7 @@ struct GatherStructures {
     const GlossyLight* glossy = nullptr; ///< with rules.glossy
     uint32_t gatherCount = 0;
     float surfaceRadius = 0.0f;
+    float kernel = 1.0f; ///< width of kernels, of what the schedule says
     VolumeGathers volume{};
     std::unique_ptr<NearestPhotons> surfaces{}; ///< null when there is no surface photon
 };

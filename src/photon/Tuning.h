@@ -83,6 +83,13 @@ inline constexpr float SpreadPixels = 0.5f;
 /// without the bound a small image's blocks are off by 4 % (cornell-fog, 64 x 64). Bench: study cbox-128
 inline constexpr float SharedConnections = 100.0f, LeastShared = 2.5f, MostShared = 4.0f;
 
+// --- Bias ------------------------------------------------------------------------------------------------------------
+
+/// Width of the kernels that the bias is estimated with, of those that the image is made with. Narrower ones need no
+/// photons but the pass's, and tell more where what they blur has edges: a slab seen from outside, estimate over true
+/// bias 0.60 at 0.71 and 0.52 at 0.8, which has 0.74 of the noise. Bench: benchmarks/study/bias.py
+inline constexpr float NarrowKernel = 0.70710678f;
+
 // --- Stores and structures -------------------------------------------------------------------------------------------
 
 /// Photon beams are cut into pieces of so many radii, at most so many, for Embree. cbox/transient-beams.json, 20 000

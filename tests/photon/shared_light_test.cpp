@@ -36,7 +36,7 @@ class SharedLight : public testing::Test {
         return image;
     }
     [[nodiscard]] ReceivedLight straightDown(uint32_t point) const {
-        return {point, 0, Vec3f(0.0f, 1.0f, 0.0f), Rgb(0.0f, 2.0f, 0.0f)};
+        return {point, 0, 0.0f, Vec3f(0.0f, 1.0f, 0.0f), Rgb(0.0f, 2.0f, 0.0f)};
     }
     /// Scale 3, light 2, albedo 0.5, gate of width 2.
     static constexpr float Reflected = 3.0f * 2.0f * 0.5f * InvPi / 2.0f;

@@ -17,10 +17,12 @@ class FakeIntegrator : public Integrator {
     std::vector<PassInfo> passes;
     std::function<void(const PassInfo&)> afterPass = [](const PassInfo&) {};
     float noise = 1.0f; ///< pixels are uniform in [1 - noise, 1]
+    float bias = 0.0f;  ///< that it says it leaves, with a noise of its own; 0: it leaves none
     bool prepared = false;
 
     void plan(EffectPlan& plan) const override { plan.describe("fake", true, "a test"); }
     void prepare(const EffectPlan&, Statistics&) override { prepared = true; }
+    [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return bias > 0.0f; }
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {
         for (int frame = 0; frame < film.frames(); ++frame)
             for (int y = 0; y < film.height(); ++y)
@@ -28,6 +30,7 @@ class FakeIntegrator : public Integrator {
                     const auto path = uint64_t((frame * film.height() + y) * film.width() + x);
                     Sampler sampler(pass.seed, RandomStream::Test, pass.index, path);
                     film.passPixel(frame, x, y) = Rgb(1.0f - noise * sampler.next1D());
+                    if (pass.bias) pass.bias->passPixel(frame, x, y) += Rgb(bias * (0.9f + 0.2f * sampler.next1D()));
                 }
         statistics.add("fake passes", 1);
         passes.push_back(pass);

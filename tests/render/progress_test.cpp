@@ -42,6 +42,23 @@ TEST(Progress, TheLimitThatComesFirstDecides) {
     EXPECT_DOUBLE_EQ(progressFraction(state), 0.75);
 }
 
+TEST(Progress, BiasIsShownWhereItIsEstimatedAndCounts) {
+    ProgressState state = half();
+    state.timeoutSeconds = 0.0;
+    state.relativeError = 0.02;
+    state.errorBound = 0.03;
+    EXPECT_FALSE(contains(progressLine(state), "bias"));
+    state.bias = {0.01, 0.04};
+    EXPECT_TRUE(contains(progressLine(state), "standard error 2 % (below 3 %), bias 1 % (below 4 %)"));
+    state.targetError = 0.05; // reached by both together
+    EXPECT_DOUBLE_EQ(progressFraction(state), 1.0);
+    state.targetError = 0.04;
+    EXPECT_NEAR(progressFraction(state), 0.64, 1e-12);
+    constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+    state.bias = {Unknown, Unknown};
+    EXPECT_TRUE(contains(progressLine(state), "bias not known yet"));
+}
+
 TEST(Progress, ResumedSamplesTakeNoTimeAgain) {
     ProgressState state = half();
     state.resumedSamples = 40; // 40 of the remaining 120 in 30 s

@@ -212,11 +212,11 @@ TEST(Session, AFlippedBitIsNoticed) {
     content << std::ifstream(file, std::ios::binary).rdbuf();
     const std::string whole = content.str();
     const RenderIdentity identity{session.loaded.hash, session.options.seed, session.options.sppStep};
-    Film film(6, 4, 3);
+    Film film(6, 4, 3), bias;
     const auto accepted = [&](const std::string& bytes) {
         std::ofstream(file, std::ios::binary) << bytes;
         try {
-            return readCheckpoint(file, identity, film).has_value();
+            return readCheckpoint(file, identity, film, bias).has_value();
         } catch (const InputError&) {
             return false;
         }

@@ -3,6 +3,7 @@
 
 #include "support/SceneFile.h"
 
+#include "tungsten/film/KernelBias.h"
 #include "tungsten/render/Integrator.h"
 #include "tungsten/scene/SceneLoader.h"
 
@@ -20,11 +21,12 @@ struct RenderOptions {
     uint32_t samplesPerPass = 1;
     uint64_t seed = 1;
     size_t threads = 2;
+    bool bias = false; ///< estimate what kernels leave
 };
 
 struct Rendered {
     std::shared_ptr<const Scene> scene;
-    Film film;
+    Film film, bias;
     Statistics statistics;
 
     /// Mean over the image of one frame's channel average, and its standard error from the spread of the passes.
@@ -51,11 +53,16 @@ std::unique_ptr<Rendered> render(const std::filesystem::path& file, const Render
     integrator->prepare(plan, rendered->statistics);
     const Camera& camera = loaded.scene->camera;
     rendered->film = Film(camera.resolution.x, camera.resolution.y, loaded.scene->transport.gate.frames);
+    rendered->bias = Film(camera.resolution.x, camera.resolution.y, rendered->film.frames(), PassWeight::Repeats);
     for (uint32_t pass = 0; pass < options.passes; ++pass) {
+        PassInfo info{pass, uint64_t(pass) * options.samplesPerPass, options.samplesPerPass, options.seed};
+        const uint32_t standsFor = options.bias ? passesOfItsBias(pass) : 0;
+        if (standsFor > 0) info.bias = &rendered->bias;
         rendered->film.beginPass();
-        integrator->renderPass({pass, uint64_t(pass) * options.samplesPerPass, options.samplesPerPass, options.seed},
-                               rendered->film, rendered->statistics);
+        rendered->bias.beginPass();
+        integrator->renderPass(info, rendered->film, rendered->statistics);
         rendered->film.endPass(double(options.samplesPerPass));
+        if (standsFor > 0) rendered->bias.endPass(double(standsFor));
     }
     return rendered;
 }

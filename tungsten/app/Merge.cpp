@@ -54,7 +54,7 @@ int mergeCommand(int argc, const char* const* argv) {
     const Scene& scene = *merged.identity.scene;
     const std::string metadata =
         describeResult({scene, merged.identity.integrator, merged.identity.sceneText, "", merged.statistics});
-    std::vector<std::filesystem::path> written = writeImages(merged.film, scene, options.outputs, metadata);
+    std::vector<std::filesystem::path> written = writeImages(merged.film, Film(), scene, options.outputs, metadata);
     if (!options.outputs.statistics.empty()) {
         writeTextFile(options.outputs.statistics, merged.statistics);
         written.push_back(options.outputs.statistics);

@@ -173,13 +173,21 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
                    "write means and standard errors whenever the render's time has doubled, and trace.json, to this "
                    "folder");
     app.add_option("--target-error", options.targetError,
-                   "stop when the relative error is at most this (0.01 is 1 %) with a confidence of 95 %")
+                   "stop when the relative error, noise and the bias of kernels, is at most this (0.01 is 1 %) with a "
+                   "confidence of 95 %")
         ->check(CLI::PositiveNumber);
+    app.add_flag("--bias", options.bias,
+                 "estimate what the kernels of photon maps leave, as a number and by pixel (layer bias of .exr); "
+                 "--target-error does so, too");
     app.add_option("--memory-limit", text.memoryLimit,
                    "refuse what needs more than SIZE (512M, 16G), and fail at more (default: what is available)");
     app.add_flag("--allow-outside", options.outputs.allowOutside,
                  "let scenes read and write outside their folder and the output folder");
     app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
+    app.add_flag(
+        "--plan-cost", options.planCost,
+        "print what errors of 10, 3, 1 and 0.3 % cost in seconds by points, beams, sliced primitives and paths, "
+        "from a pilot of each (--timeout: its DURATION, default 3s); to --stats as JSON; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
     text.description =
         app.add_option("--describe", text.describe,
@@ -238,6 +246,8 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     understand(text, options);
     requireNothingElse(options);
     options.command = commandText(argc, argv);
+    if (options.planCost && options.outputs.statistics && options.scenes.size() > 1)
+        throw UsageError("--plan-cost: takes one scene at a time with --stats");
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
     if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");
     if (options.outputs.page && options.scenes.size() > 1) throw UsageError("--html: takes one scene at a time");

@@ -26,7 +26,8 @@ struct Options {
     double memoryLimit = 0.0; ///< bytes; 0: what is available
     int threads = 0;          ///< 0: all
     bool restart = false, quiet = false;
-    bool explain = false, list = false;
+    bool bias = false;
+    bool explain = false, list = false, planCost = false;
     std::optional<std::string> describe; ///< a type or kind; empty: all
     bool markdown = false;
 };

@@ -4,6 +4,7 @@
 #include "tungsten/app/List.h"
 #include "tungsten/app/Merge.h"
 #include "tungsten/app/Options.h"
+#include "tungsten/app/PlanCost.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Job.h"
@@ -59,6 +60,7 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.resumeEnabled = !options.passes && (renderer.enableResume || options.checkpointSeconds);
     session.restart = options.restart;
     session.targetError = options.targetError;
+    session.bias = options.bias;
     session.memoryLimit = options.memoryLimit;
     session.quiet = options.quiet;
     session.trace = options.trace;
@@ -75,7 +77,8 @@ void printSummary(const SessionResult& result) {
     std::printf("%u passes, %llu samples per pixel in %.1f s (%s)", result.film.passes(),
                 static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str());
     const double error = result.film.relativeStandardError();
-    if (!std::isnan(error)) std::printf(", %s", errorText(error, result.film.relativeErrorBound()).c_str());
+    if (!std::isnan(error))
+        std::printf(", %s", errorText(error, result.film.relativeErrorBound(), result.relativeBias()).c_str());
     std::printf("\n");
     constexpr size_t MostListed = 12;
     for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)
@@ -86,6 +89,10 @@ void printSummary(const SessionResult& result) {
 
 /// Exit code: 0, or 130 when interrupted before there was anything to write.
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+    if (options.planCost) {
+        planCost(file, options, [&](const LoadedScene& loaded) { return makeIntegrator(loaded, plugins); });
+        return 0;
+    }
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
     const Job job =
@@ -180,7 +187,7 @@ int run(const Options& options) {
                                  options.threads > 0 ? size_t(options.threads) : all);
     if (options.memoryLimit > 0.0) limitMemory(options.memoryLimit, std::thread::hardware_concurrency());
     handleSignals();
-    if (!options.explain) requireOutputsOfTheirOwn(options);
+    if (!options.explain && !options.planCost) requireOutputsOfTheirOwn(options);
     int code = 0;
     for (const auto& scene : options.scenes) {
         if (interrupted) return ExitInterrupted; // not all were rendered

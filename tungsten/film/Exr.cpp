@@ -32,8 +32,12 @@ void insertLayer(Imf::FrameBuffer& buffer, const std::string& layer, const Image
     }
 }
 
-bool hasError(const ExrPart& part) {
-    return !part.standardError.pixels.empty();
+/// Layers besides the image, by the prefix of their channels.
+std::vector<std::pair<std::string, const Image*>> layersOf(const ExrPart& part) {
+    std::vector<std::pair<std::string, const Image*>> layers{
+        {"stderr.", &part.standardError}, {"bias.", &part.bias}, {"biasStderr.", &part.biasError}};
+    std::erase_if(layers, [](const auto& layer) { return layer.second->pixels.empty(); });
+    return layers;
 }
 
 Imf::Header headerOf(const ExrPart& part, bool multiPart) {
@@ -43,7 +47,8 @@ Imf::Header headerOf(const ExrPart& part, bool multiPart) {
     if (multiPart) header.setName(part.name);
     for (const char* component : Components) {
         header.channels().insert(component, Imf::Channel(Imf::FLOAT));
-        if (hasError(part)) header.channels().insert(std::string("stderr.") + component, Imf::Channel(Imf::FLOAT));
+        for (const auto& [layer, image] : layersOf(part))
+            header.channels().insert(layer + component, Imf::Channel(Imf::FLOAT));
     }
     if (part.hasTime) {
         header.insert("timeStart", Imf::DoubleAttribute(part.timeStart));
@@ -76,7 +81,7 @@ void writeParts(std::ostream& stream, const std::filesystem::path& file, const s
         for (size_t i = 0; i < parts.size(); ++i) {
             Imf::FrameBuffer buffer;
             insertLayer(buffer, "", parts[i].colour);
-            if (hasError(parts[i])) insertLayer(buffer, "stderr.", parts[i].standardError);
+            for (const auto& [layer, image] : layersOf(parts[i])) insertLayer(buffer, layer, *image);
             Imf::OutputPart part(out, int(i));
             part.setFrameBuffer(buffer);
             part.writePixels(parts[i].colour.height);

@@ -16,13 +16,13 @@ namespace {
 
 constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
 constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '2'};
+constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '3'};
 
 struct StateHeader {
     char magic[8];
     int32_t width, height, frames;
     uint32_t passes;
-    double weight;
+    double weight, squaredWeights;
     uint64_t nonFinite;
 };
 
@@ -42,10 +42,9 @@ double fold(const Rgb& value, double weight, double totalBefore, Rgb& mean, Rgb&
     return deviation;
 }
 
-/// Standard error of a weighted mean whose passes have variance inversely proportional to their weight.
-Image errorImage(int width, int height, const Rgb* moment2, uint32_t passes, double weight) {
+/// Standard error: the root of the second moment times `scale`.
+Image errorImage(int width, int height, const Rgb* moment2, double scale) {
     Image image(width, height);
-    const double scale = passes < 2 ? Unknown : 1.0 / (double(passes - 1) * weight);
     for (size_t i = 0; i < image.pixels.size(); ++i)
         for (int c = 0; c < 3; ++c) image.pixels[i][c] = float(std::sqrt(std::max(double(moment2[i][c]), 0.0) * scale));
     return image;
@@ -55,6 +54,15 @@ Image imageOf(int width, int height, const Rgb* pixels) {
     Image image(width, height);
     std::copy(pixels, pixels + image.pixels.size(), image.pixels.begin());
     return image;
+}
+
+/// Over pixels and channels, of a function of their values.
+template <typename Function>
+double meanOf(const std::vector<Rgb>& pixels, const Function& function) {
+    double sum = 0.0;
+    for (const Rgb& pixel : pixels)
+        for (int c = 0; c < 3; ++c) sum += function(pixel[c]);
+    return pixels.empty() ? 0.0 : sum / (3.0 * double(pixels.size()));
 }
 
 void writeArray(std::ostream& out, const std::vector<Rgb>& values) {
@@ -67,7 +75,8 @@ void readArray(std::istream& in, std::vector<Rgb>& values) {
 
 } // namespace
 
-Film::Film(int width, int height, int frames) : width_(width), height_(height), frames_(frames) {
+Film::Film(int width, int height, int frames, PassWeight meaning)
+    : width_(width), height_(height), frames_(frames), meaning_(meaning) {
     const double bytes = memoryFor(width, height, frames);
     if (bytes > LargestFilmBytes)
         throw InputError("film", std::to_string(width) + "x" + std::to_string(height) + " pixels in " +
@@ -113,9 +122,23 @@ void Film::endPass(double weight) {
         }
     });
     for (const uint32_t count : rowNonFinite) nonFinite_ += count;
-    if (passes_ > 0) scatter_.add(std::accumulate(rowDeviation.begin(), rowDeviation.end(), 0.0));
+    if (passes_ > 0) scatter_.add(variance(std::accumulate(rowDeviation.begin(), rowDeviation.end(), 0.0), weight));
     weight_ += weight;
+    squaredWeights_ += weight * weight;
     ++passes_;
+}
+
+double Film::variance(double deviation, double weight) const {
+    // The squared distance of the pass from the mean before it, over what is expected of it with a variance of 1.
+    if (meaning_ == PassWeight::Samples) return deviation;
+    const double fromMean = deviation * (weight_ + weight) / (weight_ * weight);
+    return fromMean / (1.0 + squaredWeights_ / (weight_ * weight_));
+}
+
+double Film::errorScale() const {
+    if (passes_ < 2) return Unknown;
+    if (meaning_ == PassWeight::Samples) return 1.0 / (double(passes_ - 1) * weight_);
+    return squaredWeights_ / (weight_ * (weight_ * weight_ - squaredWeights_));
 }
 
 Image Film::mean(int frame) const {
@@ -124,7 +147,7 @@ Image Film::mean(int frame) const {
 
 Image Film::standardError(int frame) const {
     const Rgb* moments = moment2_.data() + size_t(frame) * size_t(width_) * size_t(height_);
-    return errorImage(width_, height_, moments, passes_, weight_);
+    return errorImage(width_, height_, moments, errorScale());
 }
 
 Image Film::meanOverFrames() const {
@@ -132,20 +155,24 @@ Image Film::meanOverFrames() const {
 }
 
 Image Film::standardErrorOverFrames() const {
-    return frames_ > 1 ? errorImage(width_, height_, totalMoment2_.data(), passes_, weight_) : standardError(0);
+    return frames_ > 1 ? errorImage(width_, height_, totalMoment2_.data(), errorScale()) : standardError(0);
+}
+
+double Film::meanValue() const {
+    return meanOf(mean_, [](float value) { return double(value); });
+}
+
+double Film::meanSquare() const {
+    return meanOf(mean_, [](float value) { return double(value) * double(value); });
+}
+
+double Film::meanSquaredError() const {
+    return errorScale() * meanOf(moment2_, [](float value) { return double(value); });
 }
 
 double Film::relativeStandardError() const {
-    if (passes_ < 2) return Unknown;
-    double moments = 0.0, means = 0.0;
-    for (size_t i = 0; i < mean_.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            moments += double(moment2_[i][c]);
-            means += double(mean_[i][c]);
-        }
-    const double count = 3.0 * double(mean_.size());
-    const double rms = std::sqrt(moments / (double(passes_ - 1) * weight_) / count);
-    return means > 0.0 ? rms / (means / count) : Unknown;
+    const double mean = meanValue();
+    return mean > 0.0 ? std::sqrt(meanSquaredError()) / mean : Unknown;
 }
 
 size_t Film::memoryBytes() const {
@@ -154,7 +181,7 @@ size_t Film::memoryBytes() const {
 }
 
 void Film::write(std::ostream& out) const {
-    StateHeader header{{}, width_, height_, frames_, passes_, weight_, nonFinite_};
+    StateHeader header{{}, width_, height_, frames_, passes_, weight_, squaredWeights_, nonFinite_};
     std::memcpy(header.magic, Magic, sizeof Magic);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
     for (const auto* values : {&mean_, &moment2_, &totalMean_, &totalMoment2_}) writeArray(out, *values);
@@ -171,13 +198,14 @@ void Film::read(std::istream& in, const std::string& fileName) {
                                        std::to_string(header.height) + " pixels in " + std::to_string(header.frames) +
                                        " frames, this render " + std::to_string(width_) + "x" +
                                        std::to_string(height_) + " in " + std::to_string(frames_));
-    Film loaded(width_, height_, frames_);
+    Film loaded(width_, height_, frames_, meaning_);
     for (auto* values : {&loaded.mean_, &loaded.moment2_, &loaded.totalMean_, &loaded.totalMoment2_})
         readArray(in, *values);
     loaded.scatter_.read(in);
     if (!in) throw InputError(fileName, "the saved render state is truncated");
     loaded.passes_ = header.passes;
     loaded.weight_ = header.weight;
+    loaded.squaredWeights_ = header.squaredWeights;
     loaded.nonFinite_ = header.nonFinite;
     *this = std::move(loaded);
 }

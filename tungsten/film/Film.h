@@ -23,12 +23,18 @@ struct Image {
     [[nodiscard]] const Rgb& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
 };
 
+/// What the weight of a pass says.
+enum class PassWeight {
+    Samples, ///< the pass is the mean of so many samples: its variance is inversely proportional to them
+    Repeats, ///< the pass stands for so many like it; all have one variance
+};
+
 /// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
 /// (by samples per pixel). Mean and second moment follow West (1979), so adding in the same order gives the same bits.
 class Film {
   public:
     Film() = default;
-    Film(int width, int height, int frames);
+    Film(int width, int height, int frames, PassWeight meaning = PassWeight::Samples);
     /// Bytes that such a film takes.
     [[nodiscard]] static double memoryFor(int width, int height, int frames);
 
@@ -55,12 +61,19 @@ class Film {
     /// Mean over the frames: the image of the whole gate.
     [[nodiscard]] Image meanOverFrames() const;
     [[nodiscard]] Image standardErrorOverFrames() const;
+    /// Over pixels, channels and frames: of the mean, of its square, of the squared standard error (NaN: unknown).
+    [[nodiscard]] double meanValue() const;
+    [[nodiscard]] double meanSquare() const;
+    [[nodiscard]] double meanSquaredError() const;
+    /// Factor >= 1 from the root of meanSquaredError() to what the error that was made does not exceed with a
+    /// confidence of 95 % (PassScatter). NaN with fewer than five passes.
+    [[nodiscard]] double boundFactor() const { return scatter_.boundFactor(); }
     /// rms over pixels and frames of the standard error, relative to the mean pixel value. NaN while it is unknown:
     /// with fewer than two passes, or black.
     [[nodiscard]] double relativeStandardError() const;
     /// What the error that was made, as relativeStandardError() counts it, does not exceed with a confidence of 95 %
     /// (PassScatter). NaN while it is unknown: with fewer than five passes, or black.
-    [[nodiscard]] double relativeErrorBound() const { return relativeStandardError() * scatter_.boundFactor(); }
+    [[nodiscard]] double relativeErrorBound() const { return relativeStandardError() * boundFactor(); }
     [[nodiscard]] size_t memoryBytes() const;
 
     /// Exact binary state for checkpoints. read() throws InputError(file name, ...) on a mismatch or truncation.
@@ -68,9 +81,15 @@ class Film {
     void read(std::istream& in, const std::string& fileName);
 
   private:
+    /// From a second moment to the squared standard error; NaN while it is unknown.
+    [[nodiscard]] double errorScale() const;
+    /// An estimate of the variance of one pass from what it adds to the second moment.
+    [[nodiscard]] double variance(double deviation, double weight) const;
+
     int width_ = 0, height_ = 0, frames_ = 0;
+    PassWeight meaning_ = PassWeight::Samples;
     uint32_t passes_ = 0;
-    double weight_ = 0.0;
+    double weight_ = 0.0, squaredWeights_ = 0.0; ///< sums over the passes
     uint64_t nonFinite_ = 0;
     PassScatter scatter_;
     std::vector<Rgb> mean_, moment2_, pass_;

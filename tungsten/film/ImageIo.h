@@ -26,13 +26,14 @@ struct ExrPart {
     Image standardError; ///< layer stderr.R, stderr.G, stderr.B; may be empty
     bool hasTime = false;
     double timeStart = 0.0, timeEnd = 0.0; ///< attributes timeStart and timeEnd
+    Image bias{}, biasError{}; ///< layers bias.R, ... and its standard error, biasStderr.R, ...; may be empty
 };
 /// Float channels, ZIP compression. One part: an ordinary file; several: a multi-part file. `metadata` becomes a string
 /// attribute of the first part, unless it is empty.
 void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts, const std::string& metadata = "");
 /// That attribute; empty: there is none.
 std::string readExrMetadata(const std::filesystem::path& file);
-/// RGB of part `part`, layer `layer` ("" or "stderr."). Missing channels: InputError.
+/// RGB of part `part`, layer `layer` (such as "" or "stderr."). Missing channels: InputError.
 Image readExr(const std::filesystem::path& file, int part = 0, const std::string& layer = "");
 int exrPartCount(const std::filesystem::path& file);
 

@@ -12,15 +12,15 @@ namespace tungsten {
 
 namespace {
 
-/// The last two are the version: 02 ends with the checksum of all before.
-constexpr char Magic[8] = {'T', 'S', 'T', 'A', 'T', 'E', '0', '2'};
+/// The last two are the version: since 02 it ends with the checksum of all before.
+constexpr char Magic[8] = {'T', 'S', 'T', 'A', 'T', 'E', '0', '3'};
 constexpr size_t VersionAt = 6;
 
 struct Header {
     char magic[8];
     uint64_t sceneHash, seed;
     int64_t sppStep;
-    uint64_t samples;
+    uint64_t samples, biasFrames;
 };
 
 void requireMine(const Header& header, const RenderIdentity& identity, const std::filesystem::path& file) {
@@ -36,22 +36,23 @@ void requireMine(const Header& header, const RenderIdentity& identity, const std
 } // namespace
 
 void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
-                     const Film& film) {
-    Header header{{}, identity.sceneHash, identity.seed, identity.sppStep, point.samples};
+                     const Film& film, const Film& bias) {
+    Header header{{}, identity.sceneHash, identity.seed, identity.sppStep, point.samples, uint64_t(bias.frames())};
     std::memcpy(header.magic, Magic, sizeof Magic);
     writeAtomically(file, [&](std::ostream& out) {
         ChecksumBuffer buffer(*out.rdbuf());
         std::ostream summed(&buffer);
         summed.write(reinterpret_cast<const char*>(&header), sizeof header);
         film.write(summed);
+        if (bias.frames() > 0) bias.write(summed);
         const uint64_t checksum = buffer.checksum();
         out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
         if (!summed) out.setstate(std::ios::badbit);
     });
 }
 
-std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,
-                                          Film& film) {
+std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, Film& film,
+                                          Film& bias) {
     std::error_code error;
     if (std::filesystem::status(file, error).type() == std::filesystem::file_type::not_found) return std::nullopt;
     const uint64_t size = requireRegularFile(file);
@@ -66,8 +67,13 @@ std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, con
     if (!endsWithChecksum(in, size))
         throw InputError(file.string(), "the resume state is damaged (its checksum is wrong); -r starts over");
     requireMine(header, identity, file);
+    if (header.biasFrames != uint64_t(bias.frames()))
+        throw InputError(file.string(), std::string("the saved state belongs to a render ") +
+                                            (header.biasFrames > 0 ? "with" : "without") +
+                                            " an estimate of its bias (--bias, --target-error); -r starts over");
     in.seekg(sizeof header);
     film.read(in, file.string());
+    if (header.biasFrames > 0) bias.read(in, file.string());
     return ResumePoint{header.samples};
 }
 

@@ -20,11 +20,12 @@ struct ResumePoint {
     uint64_t samples = 0; ///< per pixel
 };
 
+/// `bias` is the film's, without frames where none is estimated.
 void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, const ResumePoint& point,
-                     const Film& film);
-/// Loads the film; none if there is no such file. Throws InputError if the state belongs to another render or is
-/// damaged.
-std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity,
-                                          Film& film);
+                     const Film& film, const Film& bias);
+/// Loads the films; none if there is no such file. Throws InputError if the state belongs to another render, one that
+/// estimates a bias or does not as `bias` has it, or is damaged.
+std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, const RenderIdentity& identity, Film& film,
+                                          Film& bias);
 
 } // namespace tungsten

@@ -38,9 +38,15 @@ struct EffectPlan {
 
     /// Every effect with its reason, integrators' own included, in order of description.
     std::vector<Effect> effects;
+    /// Light of the scene that the image will lack, each with a reason; empty where it will have all.
+    std::vector<std::string> lacks;
 
     void describe(const std::string& name, bool on, const std::string& reason) {
         effects.push_back({name, on, reason});
+    }
+    void lack(const std::string& light, const std::string& reason) {
+        describe(light, false, reason);
+        lacks.push_back(light + ": " + reason);
     }
 };
 

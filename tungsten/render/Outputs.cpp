@@ -96,8 +96,8 @@ std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, 
 /// Writes what it can: a file that fails does not keep the others from being written.
 class ImageWriter {
   public:
-    ImageWriter(const Film& film, const Scene& scene, const std::string& metadata)
-        : film_(film), scene_(scene), metadata_(metadata) {}
+    ImageWriter(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata)
+        : film_(film), bias_(bias), scene_(scene), metadata_(metadata) {}
 
     void write(const PlannedImage& image) {
         try {
@@ -140,12 +140,16 @@ class ImageWriter {
         const TimeGate& gate = scene_.transport.gate;
         char name[32];
         std::snprintf(name, sizeof name, "frame.%04d", frame);
-        return {name,
-                overFrame(film_.mean(frame)),
-                overFrame(film_.standardError(frame)),
-                !gate.steadyState,
-                gate.frameStart(frame),
-                gate.frameStart(frame + 1)};
+        ExrPart part{.name = name,
+                     .colour = overFrame(film_.mean(frame)),
+                     .standardError = overFrame(film_.standardError(frame)),
+                     .hasTime = !gate.steadyState,
+                     .timeStart = gate.frameStart(frame),
+                     .timeEnd = gate.frameStart(frame + 1)};
+        if (frame >= bias_.frames()) return part;
+        part.bias = overFrame(bias_.mean(frame));
+        part.biasError = overFrame(bias_.standardError(frame));
+        return part;
     }
     [[nodiscard]] std::vector<ExrPart> allFrames() const {
         std::vector<ExrPart> parts;
@@ -158,7 +162,7 @@ class ImageWriter {
         writeNpy(file, frames);
     }
 
-    const Film& film_;
+    const Film &film_, &bias_;
     const Scene& scene_;
     const std::string& metadata_;
     std::vector<fs::path> written_;
@@ -291,9 +295,9 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     for (const fs::path& folder : folders) removeAbandonedFiles(folder.empty() ? "." : folder);
 }
 
-std::vector<fs::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
+std::vector<fs::path> writeImages(const Film& film, const Film& bias, const Scene& scene, const OutputFiles& outputs,
                                   const std::string& metadata, const std::string& suffix) {
-    ImageWriter writer(film, scene, metadata);
+    ImageWriter writer(film, bias, scene, metadata);
     for (const PlannedImage& image : plannedImages(outputs, film.frames(), suffix)) writer.write(image);
     return writer.finish();
 }

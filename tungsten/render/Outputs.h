@@ -60,10 +60,11 @@ void checkWritable(const std::filesystem::path& file);
 /// An average over `frames` frames as the scene's outputs want it: as it is, or as their integral.
 Image inOutputUnits(Image average, const Scene& scene, int frames);
 
-/// Writes every image of the film and returns the files' names; with a `suffix` (which goes before the extension:
-/// checkpoints) only the main ones. `metadata` (ResultDescription.h) goes into the files that can hold it, and beside
-/// NPY. Throws InputError after trying all of them if any failed.
-std::vector<std::filesystem::path> writeImages(const Film& film, const Scene& scene, const OutputFiles& outputs,
-                                               const std::string& metadata, const std::string& suffix = "");
+/// Writes every image of the film, and of its bias where `bias` has frames, and returns the files' names; with a
+/// `suffix` (which goes before the extension: checkpoints) only the main ones. `metadata` (ResultDescription.h) goes
+/// into the files that can hold it, and beside NPY. Throws InputError after trying all of them if any failed.
+std::vector<std::filesystem::path> writeImages(const Film& film, const Film& bias, const Scene& scene,
+                                               const OutputFiles& outputs, const std::string& metadata,
+                                               const std::string& suffix = "");
 
 } // namespace tungsten

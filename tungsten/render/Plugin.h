@@ -19,7 +19,7 @@
 namespace tungsten {
 
 /// Increases whenever a header that plugins include changes incompatibly; the compiler's ABI is part of it.
-inline constexpr const char* PluginAbi = "tungsten-plugin-4/" __VERSION__;
+inline constexpr const char* PluginAbi = "tungsten-plugin-5/" __VERSION__;
 
 /// Fingerprint of the sizes of what host and plugins share: catches a plugin that was not rebuilt after a header
 /// changed.

@@ -20,16 +20,22 @@ std::string clockText(double seconds) {
     return text;
 }
 
-} // namespace
-
-std::string errorText(double relative, double bound) {
-    if (std::isnan(relative)) return "standard error not known yet";
+/// "bias 0.5 % (below 0.8 %)".
+std::string figureText(const std::string& name, double relative, double bound) {
+    if (std::isnan(relative)) return name + " not known yet";
     char text[64];
     if (std::isnan(bound))
-        std::snprintf(text, sizeof text, "standard error %.3g %%", 100.0 * relative);
+        std::snprintf(text, sizeof text, " %.3g %%", 100.0 * relative);
     else
-        std::snprintf(text, sizeof text, "standard error %.3g %% (below %.3g %%)", 100.0 * relative, 100.0 * bound);
-    return text;
+        std::snprintf(text, sizeof text, " %.3g %% (below %.3g %%)", 100.0 * relative, 100.0 * bound);
+    return name + text;
+}
+
+} // namespace
+
+std::string errorText(double relative, double bound, const RelativeBias& bias) {
+    const std::string noise = figureText("standard error", relative, bound);
+    return bias.bound == 0.0 ? noise : noise + ", " + figureText("bias", bias.estimate, bias.bound);
 }
 
 double progressFraction(const ProgressState& state) {
@@ -37,8 +43,8 @@ double progressFraction(const ProgressState& state) {
     double fraction = remaining > 0 ? double(state.samples - state.resumedSamples) / double(remaining) : 1.0;
     if (state.timeoutSeconds > 0.0) fraction = std::max(fraction, state.elapsedSeconds / state.timeoutSeconds);
     // The error falls with the square root of the work.
-    if (state.targetError > 0.0 && state.errorBound > 0.0)
-        fraction = std::max(fraction, std::pow(state.targetError / state.errorBound, 2.0));
+    const double bound = std::hypot(state.errorBound, state.bias.bound);
+    if (state.targetError > 0.0 && bound > 0.0) fraction = std::max(fraction, std::pow(state.targetError / bound, 2.0));
     return std::clamp(fraction, 0.0, 1.0);
 }
 
@@ -51,7 +57,7 @@ std::string progressLine(const ProgressState& state) {
     line += "pass " + std::to_string(state.passes) + "/" + std::to_string(state.totalPasses) + ", " +
             std::to_string(state.samples) + "/" + std::to_string(state.totalSamples) + " spp, " +
             clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) + " left, " +
-            errorText(state.relativeError, state.errorBound);
+            errorText(state.relativeError, state.errorBound, state.bias);
     return line;
 }
 

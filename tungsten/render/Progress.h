@@ -1,6 +1,8 @@
 #pragma once
 // What a person sees while a render runs: passes, time left, standard error.
 
+#include "tungsten/film/KernelBias.h"
+
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -16,14 +18,16 @@ struct ProgressState {
     double timeoutSeconds = 0.0;                                     ///< 0: none
     double relativeError = std::numeric_limits<double>::quiet_NaN(); ///< NaN: not known yet
     double errorBound = std::numeric_limits<double>::quiet_NaN();    ///< what it does not exceed; NaN: not known yet
+    RelativeBias bias{0.0, 0.0};                                     ///< 0: none is estimated
     double targetError = 0.0;                                        ///< 0: none
     int64_t resumedSamples = 0;                                      ///< taken before this run started
 };
 
 /// Fraction of the render that is done, by whichever limit comes first.
 double progressFraction(const ProgressState& state);
-/// "standard error 1.2 % (below 1.4 %)": of a film, with the bound that holds with a confidence of 95 %.
-std::string errorText(double relativeError, double errorBound);
+/// "standard error 1.2 % (below 1.4 %), bias 0.5 % (below 0.8 %)": of a film, with bounds that hold with a confidence
+/// of 95 %; without the bias where it is 0 and sure to be.
+std::string errorText(double relativeError, double errorBound, const RelativeBias& bias = {0.0, 0.0});
 /// One line: a bar, passes, elapsed and remaining time, standard error.
 std::string progressLine(const ProgressState& state);
 

@@ -45,7 +45,11 @@ class Session {
         else
             checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
                                     options_.checkpointSeconds > 0.0, loaded_.inputs});
-        requireMemory();
+        const bool bias = (options_.bias || options_.targetError > 0.0) && !options_.passes && integrator_.leavesBias(plan);
+        requireMemory(bias ? 3.0 : 2.0);
+        if (bias)
+            result_.bias = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames,
+                                PassWeight::Repeats);
         result_.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
         resume();
         {
@@ -88,11 +92,12 @@ class Session {
         result_.written = {file};
     }
 
-    /// Film, one more copy of its images while they are written, and what the integrator says.
-    void requireMemory() const {
+    /// Film, that of its bias, one more copy of its images while they are written (`films` in all), and what the
+    /// integrator says.
+    void requireMemory(double films) const {
         const Camera& camera = loaded_.scene->camera;
         const int frames = loaded_.scene->transport.gate.frames;
-        const double film = 2.0 * Film::memoryFor(camera.resolution.x, camera.resolution.y, frames);
+        const double film = films * Film::memoryFor(camera.resolution.x, camera.resolution.y, frames);
         const double tables = integrator_.memoryBytes();
         const double limit = options_.memoryLimit > 0.0 ? options_.memoryLimit : availableMemoryBytes();
         if (film + tables <= limit) return;
@@ -107,7 +112,7 @@ class Session {
 
     void resume() {
         if (!options_.resumeEnabled || options_.restart) return;
-        if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film))
+        if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film, result_.bias))
             result_.samples = point->samples;
         result_.resumedSamples = result_.samples;
         if (result_.samples > 0 && !options_.quiet)
@@ -131,7 +136,7 @@ class Session {
             renderOnePass();
             if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
-            trace_.record(result_.film, result_.samples, stop);
+            trace_.record(result_.film, result_.bias, result_.samples, stop);
             if (stop || reporter_.due()) reporter_.show(state(), stop);
             if (!stop) checkpointIfDue();
         }
@@ -142,11 +147,15 @@ class Session {
     void renderOnePass() {
         const uint64_t left = spp_ - result_.samples, before = firstPass_ * uint64_t(options_.sppStep);
         const auto samples = uint32_t(std::min(uint64_t(options_.sppStep), left));
-        const PassInfo pass{firstPass_ + result_.film.passes(), before + result_.samples, samples, options_.seed};
+        const uint32_t done = result_.film.passes(), standsFor = result_.estimatesBias() ? passesOfItsBias(done) : 0;
+        const PassInfo pass{firstPass_ + done, before + result_.samples, samples, options_.seed,
+                            standsFor > 0 ? &result_.bias : nullptr};
         result_.film.beginPass();
+        if (pass.bias) result_.bias.beginPass();
         integrator_.renderPass(pass, result_.film, result_.statistics);
         if (partial_) partial_->add(result_.film, samples);
         result_.film.endPass(double(samples));
+        if (pass.bias) result_.bias.endPass(double(standsFor));
         result_.samples += samples;
     }
 
@@ -160,7 +169,7 @@ class Session {
         if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
         if (options_.targetError <= 0.0 || !checksError(result_.film.passes())) return false;
-        return result_.film.relativeErrorBound() <= options_.targetError && because(StopReason::TargetReached);
+        return result_.errorBound() <= options_.targetError && because(StopReason::TargetReached);
     }
 
     void checkpointIfDue() {
@@ -191,13 +200,13 @@ class Session {
         attempt([&] {
             const std::string metadata = describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text,
                                                          options_.command, statisticsJson(loaded_, options_, result_)});
-            auto files = writeImages(result_.film, *loaded_.scene, outputs_, metadata, suffix);
+            auto files = writeImages(result_.film, result_.bias, *loaded_.scene, outputs_, metadata, suffix);
             if (suffix.empty()) result_.written = std::move(files);
         });
         if (options_.resumeEnabled)
             attempt([&] {
                 makeFolderOf(outputs_.state);
-                writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film);
+                writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film, result_.bias);
             });
         return problems;
     }
@@ -215,6 +224,7 @@ class Session {
         progress.timeoutSeconds = options_.timeoutSeconds;
         progress.relativeError = result_.film.relativeStandardError();
         progress.errorBound = result_.film.relativeErrorBound();
+        progress.bias = result_.relativeBias();
         progress.targetError = options_.targetError;
         progress.resumedSamples = int64_t(result_.resumedSamples);
         return progress;

@@ -1,6 +1,7 @@
 #pragma once
 // Runs an integrator pass by pass: progress, standard error, time-outs, checkpoints, outputs.
 
+#include "tungsten/film/KernelBias.h"
 #include "tungsten/render/Integrator.h"
 #include "tungsten/render/Outputs.h"
 #include "tungsten/render/PartialState.h"
@@ -8,6 +9,7 @@
 #include "tungsten/scene/SceneLoader.h"
 
 #include <atomic>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -31,7 +33,8 @@ struct SessionOptions {
     double checkpointSeconds = 0.0;  ///< 0: none
     bool resumeEnabled = false;      ///< write and read the state file
     bool restart = false;            ///< ignore a saved state
-    double targetError = 0.0;        ///< stop when Film::relativeErrorBound() is at most this; 0: none
+    double targetError = 0.0;        ///< stop when SessionResult::errorBound() is at most this; 0: none
+    bool bias = false;               ///< estimate what kernels leave; a target error does, too
     double memoryLimit = 0.0;        ///< bytes; 0: what the machine has available
     bool quiet = false;              ///< no progress bar
     std::filesystem::path trace;     ///< folder of the render's trace; empty: none
@@ -44,12 +47,21 @@ struct SessionOptions {
 struct SessionResult {
     StopReason reason = StopReason::Finished;
     Film film;
+    Film bias; ///< by pixel, of measured passes; without pixels where none is estimated
     Statistics statistics;
     double renderSeconds = 0.0;    ///< passes of this run, not counting loading and writing
     uint64_t samples = 0;          ///< per pixel, resumed ones included
     uint64_t resumedSamples = 0;   ///< of them, taken by earlier runs
     std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
+
+    [[nodiscard]] bool estimatesBias() const { return bias.frames() > 0; }
+    /// Of the film's mean; 0 where none is estimated.
+    [[nodiscard]] RelativeBias relativeBias() const {
+        return estimatesBias() ? RelativeBias::of(film, bias) : RelativeBias{0.0, 0.0};
+    }
+    /// Of noise and bias together, relative; what the error does not exceed with a confidence of 95 %. NaN: unknown.
+    [[nodiscard]] double errorBound() const { return std::hypot(film.relativeErrorBound(), relativeBias().bound); }
 };
 
 /// Renders and writes every output. `plan` is complete (Integrator::plan was called). Throws InputError before the

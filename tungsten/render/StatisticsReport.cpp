@@ -23,6 +23,12 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     json.field("stopped because", toString(result.reason));
     json.field("relative standard error", result.film.relativeStandardError());
     json.field("relative error bound", result.film.relativeErrorBound());
+    if (result.estimatesBias()) {
+        const RelativeBias bias = result.relativeBias();
+        json.field("relative bias", bias.estimate);
+        json.field("relative bias bound", bias.bound);
+        json.field("passes measured for bias", uint64_t(result.bias.passes()));
+    }
     json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
     json.field("render wall seconds", result.renderSeconds);
     json.field("process CPU seconds", processCpuSeconds());

@@ -27,28 +27,35 @@ void Trace::start() {
     cpuStart_ = processCpuSeconds();
 }
 
-void Trace::record(const Film& film, uint64_t samples, bool last) {
+void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool last) {
     if (folder_.empty()) return;
     const double wall = wallNow(), cpu = processCpuSeconds();
     if (!last && wall - wallStart_ < next_) return;
-    write(film, samples, wall - wallStart_, cpu - cpuStart_);
+    write(film, bias, samples, wall - wallStart_, cpu - cpuStart_);
     next_ = 2.0 * (wall - wallStart_);
     wallStart_ += wallNow() - wall;
     cpuStart_ += processCpuSeconds() - cpu;
 }
 
-void Trace::write(const Film& film, uint64_t samples, double wallSeconds, double cpuSeconds) {
+void Trace::write(const Film& film, const Film& bias, uint64_t samples, double wallSeconds, double cpuSeconds) {
     const std::string number = std::to_string(film.passes());
     const std::string name = std::string(6 - std::min<size_t>(number.size(), 6), '0') + number + ".npy";
-    entries_.push_back({film.passes(), samples, wallSeconds, cpuSeconds, film.relativeStandardError(), "mean-" + name,
-                        "stderr-" + name});
-    std::vector<Image> means, errors;
+    TraceEntry entry{film.passes(), samples,        wallSeconds,      cpuSeconds, film.relativeStandardError(),
+                     {0.0, 0.0},    "mean-" + name, "stderr-" + name, ""};
+    std::vector<Image> means, errors, biases;
     for (int frame = 0; frame < film.frames(); ++frame) {
         means.push_back(inOutputUnits(film.mean(frame), scene_, 1));
         errors.push_back(inOutputUnits(film.standardError(frame), scene_, 1));
+        if (frame < bias.frames()) biases.push_back(inOutputUnits(bias.mean(frame), scene_, 1));
     }
-    writeNpy(folder_ / entries_.back().mean, means);
-    writeNpy(folder_ / entries_.back().standardError, errors);
+    writeNpy(folder_ / entry.mean, means);
+    writeNpy(folder_ / entry.standardError, errors);
+    if (!biases.empty()) {
+        entry.relativeBias = RelativeBias::of(film, bias);
+        entry.bias = "bias-" + name;
+        writeNpy(folder_ / entry.bias, biases);
+    }
+    entries_.push_back(entry);
     writeList();
 }
 
@@ -66,6 +73,11 @@ void Trace::writeList() const {
         json.field("relative standard error", entry.relativeError);
         json.field("mean", entry.mean);
         json.field("standard error", entry.standardError);
+        if (!entry.bias.empty()) {
+            json.field("relative bias", entry.relativeBias.estimate);
+            json.field("relative bias bound", entry.relativeBias.bound);
+            json.field("bias", entry.bias);
+        }
         json.endObject();
     }
     json.endArray();

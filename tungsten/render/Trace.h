@@ -1,7 +1,7 @@
 #pragma once
 // The way a render takes to its image: what it would have shown had it been stopped earlier (`--trace`).
 
-#include "tungsten/film/Film.h"
+#include "tungsten/film/KernelBias.h"
 #include "tungsten/scene/Scene.h"
 
 #include <filesystem>
@@ -16,12 +16,14 @@ struct TraceEntry {
     uint64_t samples = 0;                       ///< per pixel, resumed ones included
     double wallSeconds = 0.0, cpuSeconds = 0.0; ///< of this run's passes, the trace's own left out
     double relativeError = 0.0;                 ///< relative standard error; NaN: unknown
-    std::string mean, standardError;            ///< files
+    RelativeBias relativeBias{0.0, 0.0};        ///< where the film's bias is estimated
+    std::string mean, standardError, bias;      ///< files; `bias` where it is estimated
 };
 
 /// Writes the film whenever the time that passes have taken has doubled, and at the end: `FOLDER/mean-PASSES.npy` and
-/// `stderr-PASSES.npy`, (frames, height, width, 3) of 32-bit floats in the units of all outputs, and after each of
-/// them `FOLDER/trace.json`, which lists what there is. Both files and list appear whole or not at all.
+/// `stderr-PASSES.npy`, where it is estimated also `bias-PASSES.npy`, (frames, height, width, 3) of 32-bit floats in
+/// the units of all outputs, and after each of them `FOLDER/trace.json`, which lists what there is. Both files and list
+/// appear whole or not at all.
 class Trace {
   public:
     /// Writes to nothing without a folder. Throws InputError if the folder cannot be made or written to.
@@ -30,11 +32,12 @@ class Trace {
     /// Before the first pass.
     void start();
     /// After a pass. Throws InputError if a file cannot be written.
-    void record(const Film& film, uint64_t samples, bool last);
+    /// `bias`: of the film, without frames where none is estimated.
+    void record(const Film& film, const Film& bias, uint64_t samples, bool last);
     [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }
 
   private:
-    void write(const Film& film, uint64_t samples, double wallSeconds, double cpuSeconds);
+    void write(const Film& film, const Film& bias, uint64_t samples, double wallSeconds, double cpuSeconds);
     void writeList() const;
 
     std::filesystem::path folder_;

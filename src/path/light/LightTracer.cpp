@@ -74,11 +74,11 @@ void LightTracer::plan(EffectPlan& plan) const {
     plan.describe("emission in view", plan.surfaceEmission,
                   plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
     if (plan.environment)
-        plan.describe("environment in view", false, "no light path starts on the way from the camera to infinity");
+        plan.lack("environment in view", "no light path starts on the way from the camera to infinity");
     if (plan.specularSensorPaths)
-        plan.describe("mirrors and refraction in view", false,
-                      "connections to the camera are straight: what is seen in mirrors or through refraction is "
-                      "missing; caustics are found");
+        plan.lack("mirrors and refraction in view",
+                  "connections to the camera are straight: what is seen in mirrors or through refraction is "
+                  "missing; caustics are found");
     plan.describe("Russian roulette", russianRoulette_,
                   russianRoulette_ ? "enable_rr, or its default in steady state"
                                    : "off by default in time-resolved renders");

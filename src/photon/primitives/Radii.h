@@ -16,6 +16,10 @@ class Radii {
     [[nodiscard]] bool single() const { return radii_.size() == 1; }
     [[nodiscard]] const std::vector<float>& values() const { return radii_; }
 
+    /// All of them times `factor`.
+    void scale(float factor) {
+        for (float& radius : radii_) radius *= factor;
+    }
     /// Of the records that chooseEvenly chooses.
     [[nodiscard]] Radii chosen(double share, float u) const {
         if (single()) return *this;

@@ -33,16 +33,22 @@ class VolumeGather {
         : scene_(scene), sensor_(sensor), scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
         if (!culling.directView() && culling.straightTimesKnown())
             straight_ = Primitive::straight(scene, culling, all_.records, all_.radii);
-        if (!rays.splatted) {
-            gather_ = gatherOf(all_, false);
-            if (straight_) straightGather_ = gatherOf(*straight_, false);
-        } else if (rays.folded) {
-            selectFolded(rays);
-        }
+        if (rays.splatted && rays.folded) selectFolded(rays);
+        buildGathers(rays);
     }
 
     VolumeGather(const VolumeGather&) = delete;
     VolumeGather& operator=(const VolumeGather&) = delete;
+
+    /// Looks at the same records with radii times `factor` and another gate from now on.
+    void narrow(float factor, const transport::Sensor& sensor, const SensorRays& rays) {
+        sensor_ = sensor;
+        all_.radii.scale(factor);
+        folded_.radii.scale(factor);
+        if (straight_) straight_->radii.scale(factor);
+        for (auto& hand : dealt_) hand.radii.scale(factor);
+        buildGathers(rays);
+    }
 
     /// On the records' power: 1 / number of paths.
     [[nodiscard]] float scale() const { return scale_; }
@@ -69,13 +75,19 @@ class VolumeGather {
     void selectFolded(const SensorRays& rays) {
         const double share = Primitive::foldedShare(all_.records, all_.radii);
         folded_ = {chosenEvenly(all_.records, share, rays.uFolded), all_.radii.chosen(share, rays.uFolded)};
-        gather_ = gatherOf(folded_, true);
         auto hands = dealt(folded_.records, rays.parts);
         const auto radii = folded_.radii.dealt(rays.parts);
         dealt_.resize(rays.parts);
-        for (size_t k = 0; k < rays.parts; ++k) {
-            dealt_[k] = {std::move(hands[k]), radii[k]};
-            parts_.push_back(gatherOf(dealt_[k], true));
+        for (size_t k = 0; k < rays.parts; ++k) dealt_[k] = {std::move(hands[k]), radii[k]};
+    }
+    void buildGathers(const SensorRays& rays) {
+        if (!rays.splatted) {
+            gather_ = gatherOf(all_, false);
+            if (straight_) straightGather_ = gatherOf(*straight_, false);
+        } else if (rays.folded) {
+            gather_ = gatherOf(folded_, true);
+            parts_.clear();
+            for (const auto& hand : dealt_) parts_.push_back(gatherOf(hand, true));
         }
     }
 

@@ -11,8 +11,9 @@ namespace tungsten::photon {
 struct ReceivedLight {
     uint32_t point; ///< index in the SensorRecord
     int32_t frame;
-    Vec3f from; ///< unit direction it came from
-    Rgb light;  ///< of one path: times BSDF and cosine, radiance times the frame's width
+    float offCentre; ///< of its arrival in the frame: -1 at the start, 1 at the end
+    Vec3f from;      ///< unit direction it came from
+    Rgb light;       ///< of one path: times BSDF and cosine, radiance times the frame's width
 };
 
 } // namespace tungsten::photon

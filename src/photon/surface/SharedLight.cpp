@@ -93,6 +93,7 @@ class Sharing {
         for (const uint32_t q : neighbours)
             for (uint32_t i = first_[q]; i < first_[q + 1]; ++i) {
                 const ReceivedLight& one = *sorted_[i];
+                if (std::abs(one.offCentre) > kernel_.time) continue;
                 if (!surface.consistent(one.from, scene_.transport.consistencyChecks)) continue;
                 const Rgb radiance = surface.bsdf->eval(query, surface.wi, surface.frame.toLocal(one.from)) *
                                      one.light * point.throughput;
@@ -124,7 +125,8 @@ void shareLight(const Scene& scene, const transport::Sensor& sensor, const Senso
                 const std::vector<ReceivedLight>& received, const SharingKernel& kernel, double scale, Film& film,
                 Statistics& statistics) {
     if (received.empty()) return;
-    const Sharing sharing(scene, record, received, kernel, scale / sensor.gate.frameWidth, film);
+    const double width = sensor.gate.frameWidth * double(kernel.time);
+    const Sharing sharing(scene, record, received, kernel, scale / width, film);
     tbb::parallel_for(0, record.height, [&](int y) { statistics.add("non-finite samples", sharing.row(y)); });
 }
 

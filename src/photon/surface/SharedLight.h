@@ -14,6 +14,7 @@ namespace tungsten::photon {
 /// keeps its own light and the estimate has no bias, and in the scene.
 struct SharingKernel {
     float pixels, distance;
+    float time = 1.0f; ///< part of a frame's width, about its middle, that is shared
 
     /// Wide in the image where few connections arrive, as wide in the scene as surface photons are gathered; shrinking
     /// from pass to pass as `factor` (of gather radii) does.

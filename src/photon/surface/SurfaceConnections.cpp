@@ -91,7 +91,7 @@ void SurfaceConnections::connect(const SendingVertex& from, const darts::TimeGat
         if (onSurface && isBlack(scattering(draw.direction))) continue; // not on this side
         const SpreadLight seen = spreadAt(draw);
         const Rgb light = from.power * seen.light(scattering) * (draw.inverseExpectation * perKept_);
-        if (!isBlack(light)) receive(from, gate, draw, {draw.point, 0, seen.from, light}, received, rays);
+        if (!isBlack(light)) receive(from, gate, draw, {draw.point, 0, 0.0f, seen.from, light}, received, rays);
     }
 }
 
@@ -119,6 +119,7 @@ void SurfaceConnections::receive(const SendingVertex& from, const darts::TimeGat
     if (!(time >= gate.begin && time < gate.end)) return;
     light.frame = sensor_.gate.frameOf(time);
     if (light.frame < 0) return;
+    light.offCentre = float(2.0 * (time - sensor_.gate.frameStart(light.frame)) / sensor_.gate.frameWidth - 1.0);
     light.light = light.light * visibility.transmittance * sensor_.weight(time);
     received.push_back(light);
 }

@@ -1,0 +1,135 @@
+// What an error costs: the pilot's laws of known passes, and the command that prints them.
+
+#include "render/command.h"
+#include "support/SceneFile.h"
+
+#include "tungsten/core/Random.h"
+#include "tungsten/render/CostPilot.h"
+#include "tungsten/scene/SceneLoader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tungsten {
+namespace {
+
+/// Passes whose variance grows and whose bias falls with their index; the mean is 1.
+class KnownPasses : public Integrator {
+  public:
+    PowerLaw variance{0.04, 0.25}, bias{0.02, -0.5};
+    bool kernels = true;
+    std::vector<uint32_t> indices;
+
+    void plan(EffectPlan&) const override {}
+    void prepare(const EffectPlan&, Statistics&) override {}
+    [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return kernels; }
+    [[nodiscard]] double kernelWidth(uint32_t pass) const override {
+        return std::pow(double(pass) + 1.0, 0.5 * bias.exponent);
+    }
+    void renderPass(const PassInfo& pass, Film& film, Statistics&) override {
+        indices.push_back(pass.index);
+        const double age = kernels ? double(pass.index) + 1.0 : 1.0;
+        const double spread = std::sqrt(3.0 * variance.first * std::pow(age, variance.exponent)); // of a box, half
+        const double left = bias.first * std::pow(age, bias.exponent);
+        Sampler sampler(pass.seed, RandomStream::Test, pass.index, 0);
+        for (int y = 0; y < film.height(); ++y)
+            for (int x = 0; x < film.width(); ++x) {
+                const double sign = (x + y) % 2 == 0 ? 1.0 : -1.0, wrong = kernels ? sign * left : 0.0;
+                const double noise = spread * (2.0 * double(sampler.next1D()) - 1.0);
+                film.passPixel(0, x, y) += Rgb(float(1.0 + wrong + noise));
+                if (pass.bias) pass.bias->passPixel(0, x, y) += Rgb(float(wrong + 0.3 * noise));
+            }
+    }
+};
+
+std::optional<PassCosts> costsOf(KnownPasses& integrator) {
+    const test::SceneFile file(R"({"primitives": [{"type": "point", "emission": 1}],
+        "camera": {"type": "pinhole", "resolution": [64, 64]}, "integrator": {"type": "path_tracer"}})");
+    const LoadedScene loaded = loadScene(file.path());
+    return measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene), {7, 1, 0.05});
+}
+
+TEST(PowerLaw, SumsAreThoseOfTheirTerms) {
+    for (const double exponent : {-1.4, -1.0, -0.47, 0.0, 0.3}) {
+        const PowerLaw law{2.0, exponent};
+        double sum = 0.0;
+        for (int i = 1; i <= 5000; ++i) {
+            sum += 2.0 * std::pow(i, exponent);
+            if (i == 1 || i == 256 || i == 257 || i == 5000) {
+                EXPECT_NEAR(law.sum(i), sum, 1e-5 * sum) << i;
+            }
+        }
+    }
+}
+
+TEST(PassCosts, PassesForAnErrorAreTheFirstThatReachIt) {
+    const PassCosts costs{.variance = {0.09, 0.2}, .bias = {0.05, -0.4}, .cpuSeconds = {0.5, 0.0}};
+    for (const double error : {0.2, 0.05, 0.01}) {
+        const double passes = costs.passesFor(error).value();
+        EXPECT_LE(costs.error(passes), error);
+        EXPECT_GT(costs.error(passes - 1.0), error);
+        EXPECT_NEAR(costs.cpuSecondsFor(passes), 0.5 * passes, 1e-6 * passes);
+    }
+    EXPECT_EQ(costs.passesFor(1.0), 1.0);
+    const PassCosts stuck{.variance = {0.09, 0.0}, .bias = {0.05, 0.0}};
+    EXPECT_TRUE(stuck.passesFor(0.06).has_value());
+    EXPECT_FALSE(stuck.passesFor(0.04).has_value()) << "a bias that stays";
+}
+
+TEST(CostPilot, FindsTheLawsOfPasses) {
+    KnownPasses integrator;
+    const PassCosts costs = costsOf(integrator).value();
+    EXPECT_EQ(costs.passes, integrator.indices.size());
+    // 4096 pixels and several rounds: variances to 3 % at most, laws over 5.5 units of the logarithm.
+    EXPECT_NEAR(costs.variance.first, 0.04, 0.004);
+    EXPECT_NEAR(costs.variance.exponent, 0.25, 0.03);
+    EXPECT_NEAR(costs.bias.first, 0.02, 0.004);
+    EXPECT_NEAR(costs.bias.exponent, -0.5, 1e-9);
+    EXPECT_GT(costs.cpuSeconds.first, 0.0);
+    integrator.bias.first = 0.0;
+    EXPECT_EQ(costsOf(integrator).value().bias.first, 0.0) << "noise is no bias";
+}
+
+TEST(CostPilot, PassesWithoutKernelsAreAlike) {
+    KnownPasses integrator;
+    integrator.kernels = false;
+    const PassCosts costs = costsOf(integrator).value();
+    EXPECT_NEAR(costs.variance.first, 0.04, 0.002);
+    EXPECT_EQ(costs.variance.exponent, 0.0);
+    EXPECT_EQ(costs.bias.first, 0.0);
+}
+
+TEST(PlanCost, PrintsATableAndWritesJson) {
+    const test::TemporaryFolder folder;
+    const std::string json = (folder.path() / "cost.json").string();
+    const auto result = test::tungsten({"--plan-cost", "--timeout", "0.2s", "--resolution", "12x12", "--stats", json,
+                                        "--set", "renderer.spp_step=1", "--set", "integrator.photon_count=3000",
+                                        "--set", "integrator.volume_photon_count=3000", "-d", folder.path().string(),
+                                        std::string(PROJECT_DATA_DIR) + "/scenes/cornell-fog/scene.json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    for (const char* text : {"points", "beams", "mis_volumes_balls", "paths", "cheapest", "0.3 %"})
+        EXPECT_NE(result.out.find(text), std::string::npos) << text << result.out;
+    const std::string written = test::contentOf(json);
+    EXPECT_NE(written.find("\"CPU seconds\""), std::string::npos) << written;
+    EXPECT_NE(written.find("integrator.darts=best"), std::string::npos);
+    size_t files = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
+    EXPECT_EQ(files, 1u) << "it renders nothing";
+}
+
+/// Paths miss a laser's light where it is scattered for the first time: a reason instead of a price.
+TEST(PlanCost, SaysWhyAMethodHasNoPrice) {
+    const auto result =
+        test::tungsten({"--plan-cost", "--timeout", "0.1s", "--resolution", "8x8", "--set", "renderer.spp_step=1",
+                        "--set", "integrator.photon_count=2000", "--set", "integrator.volume_photon_count=2000",
+                        std::string(PROJECT_DATA_DIR) + "/scenes/laser-in-fog/scene.json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const size_t paths = result.out.find("\npaths");
+    ASSERT_NE(paths, std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("lacks light of a single direction in view", paths), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("paths", result.out.find("\ncheapest")), std::string::npos) << result.out;
+}
+
+} // namespace
+} // namespace tungsten

@@ -1,0 +1,183 @@
+#include "tungsten/app/PlanCost.h"
+
+#include "tungsten/core/Errors.h"
+#include "tungsten/film/ImageIo.h"
+#include "tungsten/render/CostPilot.h"
+#include "tungsten/scene/JsonWriter.h"
+
+#include <tbb/global_control.h>
+
+#include <cstdio>
+#include <optional>
+
+namespace tungsten {
+
+namespace {
+
+constexpr double Errors[] = {0.1, 0.03, 0.01, 0.003};
+constexpr double DefaultPilotSeconds = 3.0;
+
+struct Method {
+    std::string name;
+    std::vector<std::string> settings; ///< as --set takes them
+    std::string refusal{};             ///< why it cannot render the scene
+    std::optional<PassCosts> costs{};
+
+    [[nodiscard]] std::optional<double> passesFor(double error) const {
+        return costs ? costs->passesFor(error) : std::nullopt;
+    }
+};
+
+/// Points, beams, sliced primitives and paths, with the scene's own sampling, or the best where it says nothing.
+std::vector<Method> methodsFor(const LoadedScene& loaded) {
+    const bool photonMap = loaded.integratorType.ends_with("photon_map");
+    const std::string map =
+        "integrator.type=" + (photonMap ? loaded.integratorType : std::string("progressive_transient_photon_map"));
+    const std::string sliced = loaded.scene->transport.gate.steadyState ? "volumes" : "mis_volumes_balls";
+    std::vector<Method> methods;
+    for (const std::string& primitive : {std::string("points"), std::string("beams"), sliced})
+        methods.push_back({primitive, {map, "integrator.volume_photon_type=" + primitive}});
+    methods.push_back({"paths", {"integrator.type=transient_path_tracer"}});
+    if (!loaded.integratorSettings.has("darts"))
+        for (Method& method : methods) method.settings.emplace_back("integrator.darts=best");
+    return methods;
+}
+
+LoadOptions loadOptions(const Options& options, const std::vector<std::string>& more) {
+    LoadOptions load{options.inputDirectory, options.overrides, options.outputs.allowOutside};
+    load.overrides.insert(load.overrides.end(), more.begin(), more.end());
+    return load;
+}
+
+void measure(Method& method, const std::filesystem::path& file, const Options& options, const MakeIntegrator& make) {
+    try {
+        const LoadedScene loaded = loadScene(file, loadOptions(options, method.settings));
+        const auto integrator = make(loaded);
+        EffectPlan plan = analyseScene(*loaded.scene);
+        integrator->plan(plan);
+        if (!plan.lacks.empty()) {
+            method.refusal = "lacks " + plan.lacks.front();
+            return;
+        }
+        method.costs = measurePasses(
+            *loaded.scene, *integrator, plan,
+            {options.seed, uint32_t(loaded.renderer.sppStep), options.timeoutSeconds.value_or(DefaultPilotSeconds)});
+        if (!method.costs) method.refusal = "black: nothing arrived in the passes of the pilot";
+    } catch (const InputError& error) {
+        const Problem& first = error.problems().front();
+        method.refusal = first.path.empty() ? first.message : first.path + ": " + first.message;
+    }
+}
+
+/// The method of least CPU seconds; none if no method gets there.
+const Method* cheapest(const std::vector<Method>& methods, double error) {
+    const Method* best = nullptr;
+    double least = Infinity;
+    for (const Method& method : methods) {
+        const auto passes = method.passesFor(error);
+        if (!passes || method.costs->cpuSecondsFor(*passes) >= least) continue;
+        least = method.costs->cpuSecondsFor(*passes);
+        best = &method;
+    }
+    return best;
+}
+
+void printTable(const std::string& scene, const std::vector<Method>& methods, size_t threads) {
+    std::printf("%s: CPU seconds (seconds on %zu threads) until noise and bias are\n%-18s", scene.c_str(), threads, "");
+    for (const double error : Errors) std::printf(" %20.3g %%", 100.0 * error);
+    std::printf("\n");
+    for (const Method& method : methods) {
+        std::printf("%-18s", method.name.c_str());
+        if (!method.costs) {
+            std::printf("   %s\n", method.refusal.c_str());
+            continue;
+        }
+        for (const double error : Errors) {
+            char text[64] = "never";
+            if (const auto passes = method.passesFor(error))
+                std::snprintf(text, sizeof text, "%.3g (%.3g)", method.costs->cpuSecondsFor(*passes),
+                              method.costs->wallSecondsFor(*passes));
+            std::printf(" %22s", text);
+        }
+        std::printf("\n");
+    }
+    std::printf("%-18s", "cheapest");
+    for (const double error : Errors) {
+        const Method* best = cheapest(methods, error);
+        std::printf(" %22s", best ? best->name.c_str() : "none");
+    }
+    std::printf("\n");
+    std::fflush(stdout);
+}
+
+void writeLaw(JsonWriter& json, const std::string& name, const PowerLaw& law) {
+    json.beginObject(name);
+    json.field("first", law.first);
+    json.field("exponent", law.exponent);
+    json.endObject();
+}
+
+void writeMethod(JsonWriter& json, const Method& method) {
+    json.beginObject();
+    json.field("name", method.name);
+    std::string settings;
+    for (const std::string& setting : method.settings) settings += (settings.empty() ? "" : " ") + setting;
+    json.field("settings", settings);
+    if (!method.costs) {
+        json.field("refused because", method.refusal);
+        return json.endObject();
+    }
+    json.field("passes of the pilot", uint64_t(method.costs->passes));
+    writeLaw(json, "relative variance of a pass", method.costs->variance);
+    writeLaw(json, "relative bias of a pass", method.costs->bias);
+    writeLaw(json, "CPU seconds of a pass", method.costs->cpuSeconds);
+    json.beginArray("prices");
+    for (const double error : Errors) {
+        json.beginObject();
+        json.field("error", error);
+        const double passes = method.passesFor(error).value_or(NAN); // null: never
+        json.field("passes", passes);
+        json.field("CPU seconds", std::isnan(passes) ? NAN : method.costs->cpuSecondsFor(passes));
+        json.field("wall seconds", std::isnan(passes) ? NAN : method.costs->wallSecondsFor(passes));
+        json.endObject();
+    }
+    json.endArray();
+    json.endObject();
+}
+
+std::string costJson(const std::string& scene, const std::vector<Method>& methods, size_t threads) {
+    JsonWriter json;
+    json.field("scene", scene);
+    json.field("threads", uint64_t(threads));
+    json.beginArray("methods");
+    for (const Method& method : methods) writeMethod(json, method);
+    json.endArray();
+    json.beginArray("cheapest");
+    for (const double error : Errors) {
+        const Method* best = cheapest(methods, error);
+        json.beginObject();
+        json.field("error", error);
+        json.field("method", best ? best->name : "");
+        json.endObject();
+    }
+    json.endArray();
+    return json.finish();
+}
+
+} // namespace
+
+void planCost(const std::filesystem::path& file, const Options& options, const MakeIntegrator& make) {
+    const LoadedScene loaded = loadScene(file, loadOptions(options, {}));
+    if (options.outputs.statistics) checkWritable(*options.outputs.statistics);
+    std::vector<Method> methods = methodsFor(loaded);
+    for (Method& method : methods) measure(method, file, options, make);
+    const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    printTable(file.string(), methods, threads);
+    if (options.outputs.statistics)
+        writeTextFile(*options.outputs.statistics, costJson(file.string(), methods, threads));
+    for (const Method& method : methods)
+        if (method.costs) return;
+    throw InputError(file.string(), "no method can tell what an error costs: " + methods.front().refusal);
+}
+
+} // namespace tungsten

@@ -1,0 +1,28 @@
+#include "tungsten/film/KernelBias.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace tungsten {
+
+uint32_t passesOfItsBias(uint32_t pass) {
+    constexpr uint32_t MeasuredPerOctave = 8, Most = 4;
+    const uint32_t group = std::clamp(std::bit_floor(pass) / MeasuredPerOctave, 1u, Most);
+    return pass % group == (group - 1) / 2 ? group : 0;
+}
+
+RelativeBias RelativeBias::of(const Film& film, const Film& bias) {
+    constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+    const double mean = film.meanValue(), noise = bias.meanSquaredError(), factor = bias.boundFactor();
+    if (!(mean > 0.0) || std::isnan(noise)) return {Unknown, Unknown};
+    const double square = std::max(bias.meanSquare() - noise, 0.0);
+    // The noise is uncertain, and so is its product with the bias: over k independent pixels they scatter by noise
+    // sqrt(2 / k) and 2 sqrt(square noise / k). The factor says what the first may be, with two standard deviations;
+    // what one explains is no bias that is seen.
+    const double doubt = (factor * factor - 1.0) * std::sqrt(noise * (noise + 2.0 * square));
+    return {std::sqrt(std::max(square - 0.5 * doubt, 0.0)) / mean, std::sqrt(square + doubt) / mean};
+}
+
+} // namespace tungsten

@@ -1,0 +1,180 @@
+#include "tungsten/render/CostPilot.h"
+
+#include "tungsten/film/Film.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+namespace tungsten {
+
+namespace {
+
+constexpr std::array<uint32_t, 3> Indices{0, 15, 255};
+constexpr uint32_t LeastRounds = 2;
+constexpr double MostPasses = 1e9;
+
+double wallNow() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Passes of one index.
+struct Sample {
+    Film film, bias;
+    double cpu = 0.0, wall = 0.0; ///< of a pass, measuring its bias left out
+
+    [[nodiscard]] double variance() const { return film.meanSquaredError() * double(film.passes()); }
+};
+
+/// Least squares of logarithms, over the indices. All 0 where one of the values is not above 0.
+PowerLaw fitted(const std::array<double, Indices.size()>& values) {
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+    for (size_t k = 0; k < Indices.size(); ++k) {
+        if (!(values[k] > 0.0)) return {};
+        const double u = std::log(double(Indices[k]) + 1.0), v = std::log(values[k]);
+        n += 1.0;
+        x += u;
+        y += v;
+        xx += u * u;
+        xy += u * v;
+    }
+    const double exponent = (n * xy - x * y) / (n * xx - x * x);
+    return {std::exp((y - exponent * x) / n), exponent};
+}
+
+/// Every sample's bias image over the square of its kernels' width is that of the first pass, with noise: their mean by
+/// inverse variances. 0 where that does not rise above its own noise.
+PowerLaw biasLaw(const std::array<Sample, Indices.size()>& samples, const Integrator& integrator) {
+    const auto squaredWidth = [&](size_t k) { return std::pow(integrator.kernelWidth(Indices[k]), 2.0); };
+    const Film& first = samples[0].bias;
+    std::vector<Vec3d> sums(size_t(first.frames()) * size_t(first.width()) * size_t(first.height()), Vec3d(0.0));
+    double weights = 0.0;
+    for (size_t k = 0; k < samples.size(); ++k) {
+        const Film& bias = samples[k].bias;
+        const double variance = bias.meanSquaredError(), width = squaredWidth(k);
+        if (!(variance > 0.0)) return {};
+        size_t i = 0;
+        for (int frame = 0; frame < bias.frames(); ++frame)
+            for (const Rgb& pixel : bias.mean(frame).pixels)
+                sums[i++] += Vec3d(double(pixel.x), double(pixel.y), double(pixel.z)) * (width / variance);
+        weights += width * width / variance;
+    }
+    double square = 0.0;
+    for (const Vec3d& sum : sums) square += sum.dot(sum) / (3.0 * double(sums.size()) * weights * weights);
+    const double noise = 1.0 / weights;
+    if (square < 2.0 * noise) return {};
+    return {std::sqrt(square - noise), std::log(squaredWidth(1)) / std::log(double(Indices[1]) + 1.0)};
+}
+
+template <typename Of>
+std::array<double, Indices.size()> each(const std::array<Sample, Indices.size()>& samples, const Of& of) {
+    std::array<double, Indices.size()> values{};
+    for (size_t k = 0; k < values.size(); ++k) values[k] = of(samples[k]);
+    return values;
+}
+
+double meanOf(const std::array<double, Indices.size()>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value / double(values.size());
+    return sum;
+}
+
+void renderRound(Integrator& integrator, std::array<Sample, Indices.size()>& samples, bool measuresBias,
+                 const PilotOptions& options, uint32_t round) {
+    for (size_t k = 0; k < samples.size(); ++k) {
+        Sample& sample = samples[k];
+        PassInfo pass{Indices[k], uint64_t(Indices[k]) * options.samplesPerPass, options.samplesPerPass,
+                      options.seed + round, measuresBias ? &sample.bias : nullptr};
+        Statistics statistics;
+        sample.film.beginPass();
+        if (measuresBias) sample.bias.beginPass();
+        const double wall = wallNow(), cpu = processCpuSeconds();
+        integrator.renderPass(pass, sample.film, statistics);
+        sample.film.endPass(1.0);
+        const auto stages = statistics.stages();
+        const auto bias = stages.find("bias");
+        const Statistics::Stage extra = bias == stages.end() ? Statistics::Stage{} : bias->second;
+        const double share = 1.0 / double(sample.film.passes());
+        sample.wall += (wallNow() - wall - extra.wallSeconds - sample.wall) * share;
+        sample.cpu += (processCpuSeconds() - cpu - extra.cpuSeconds - sample.cpu) * share;
+        if (measuresBias) sample.bias.endPass(1.0);
+    }
+}
+
+PassCosts costsOf(const std::array<Sample, Indices.size()>& samples, const Integrator& integrator, bool measuresBias,
+                  double mean) {
+    PassCosts costs;
+    const auto variance = each(samples, [&](const Sample& s) { return s.variance() / (mean * mean); });
+    const auto cpu = each(samples, [](const Sample& s) { return std::max(s.cpu, 1e-9); });
+    const auto wall = each(samples, [](const Sample& s) { return std::max(s.wall, 1e-9); });
+    if (measuresBias) {
+        costs.variance = fitted(variance);
+        costs.cpuSeconds = fitted(cpu);
+        costs.wallSeconds = fitted(wall);
+        costs.bias = biasLaw(samples, integrator);
+        costs.bias.first /= mean;
+    } else { // no kernels: all passes are alike
+        costs.variance.first = meanOf(variance);
+        costs.cpuSeconds.first = meanOf(cpu);
+        costs.wallSeconds.first = meanOf(wall);
+    }
+    for (const Sample& sample : samples) costs.passes += sample.film.passes();
+    return costs;
+}
+
+} // namespace
+
+double PowerLaw::sum(double n) const {
+    constexpr double Exact = 256.0;
+    const double whole = std::min(std::floor(n), Exact), from = whole + 0.5, to = n + 0.5;
+    double sum = 0.0;
+    for (double i = 1.0; i <= whole; ++i) sum += std::pow(i, exponent);
+    // The rest by its integral.
+    const double power = exponent + 1.0;
+    sum += std::abs(power) < 1e-9 ? std::log(to / from) : (std::pow(to, power) - std::pow(from, power)) / power;
+    return first * sum;
+}
+
+double PassCosts::error(double n) const {
+    const double systematic = bias.sum(n) / n;
+    return std::sqrt(variance.sum(n) / (n * n) + systematic * systematic);
+}
+
+std::optional<double> PassCosts::passesFor(double wanted) const {
+    if (error(1.0) <= wanted) return 1.0;
+    if (error(MostPasses) > wanted) return std::nullopt;
+    double low = 0.0, high = std::log(MostPasses);
+    for (int i = 0; i < 100; ++i) {
+        const double middle = 0.5 * (low + high);
+        (error(std::exp(middle)) > wanted ? low : high) = middle;
+    }
+    return std::ceil(std::exp(high) - 1e-6);
+}
+
+std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
+                                       const PilotOptions& options) {
+    const Vec2i size = scene.camera.resolution;
+    const int frames = scene.transport.gate.frames;
+    const bool measuresBias = integrator.leavesBias(plan);
+    const double wall = wallNow(), cpu = processCpuSeconds();
+    Statistics preparing;
+    integrator.prepare(plan, preparing);
+    const double prepareWall = wallNow() - wall, prepareCpu = processCpuSeconds() - cpu;
+    std::array<Sample, Indices.size()> samples;
+    for (Sample& sample : samples) {
+        sample.film = Film(size.x, size.y, frames);
+        if (measuresBias) sample.bias = Film(size.x, size.y, frames);
+    }
+    const double start = wallNow();
+    for (uint32_t round = 0; round < LeastRounds || wallNow() - start < options.seconds; ++round)
+        renderRound(integrator, samples, measuresBias, options, round);
+    const double mean = meanOf(each(samples, [](const Sample& s) { return s.film.meanValue(); }));
+    if (!(mean > 0.0)) return std::nullopt;
+    PassCosts costs = costsOf(samples, integrator, measuresBias, mean);
+    costs.prepareCpuSeconds = prepareCpu;
+    costs.prepareWallSeconds = prepareWall;
+    return costs;
+}
+
+} // namespace tungsten
