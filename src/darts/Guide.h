@@ -38,13 +38,13 @@ class Splits {
   public:
     /// Into how many copies a walk goes on that should have been split `count` times by now (Guide::splits).
     [[nodiscard]] int copies(int count) {
-        const int more = std::max(count - done_, 0);
-        done_ += more;
+        const int more = done_ < 0 ? 0 : std::max(count - done_, 0);
+        done_ = std::max(count, done_);
         return 1 << more;
     }
 
   private:
-    int done_ = 0;
+    int done_ = -1; ///< none before the first vertex in a body: what starts with little left has nothing to make up for
 };
 
 /// Sampling in one medium towards one kind of target. Immutable; a walk keeps the state: position, elapsed time,
