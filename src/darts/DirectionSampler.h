@@ -111,8 +111,12 @@ class DirectionSampler {
                                          const View& view, Random&& random) const {
         if (settings_.direction == Direction::Phase || leavesToScatterer(residual))
             return fromScatterer(residual, scatterer, random);
+        if (residual.way == Way::Out) {
+            const DirectionsOut out(residual, least(residual, excess), medium_);
+            return mix(residual, out.share(), scatterer, out, random);
+        }
         return withGuided(residual, excess, view, [&](const auto& guided) {
-            if (resamples(residual)) return resample(residual, excess, scatterer, guided, random);
+            if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
             return mix(residual, guideShare(residual, excess), scatterer, guided, random);
         });
     }
@@ -123,16 +127,19 @@ class DirectionSampler {
                             const View& view) const {
         if (settings_.direction == Direction::Phase || leavesToScatterer(residual)) return scatterer.pdf(direction);
         const float h = oneMinusCosine(direction, residual.axis);
-        const float share =
-            resamples(residual) ? 1.0f - candidatesAt(residual).ownShare() : guideShare(residual, excess);
-        return withGuided(residual, excess, view, [&](const auto& guided) {
+        const auto mixture = [&](float share, const auto& guided) {
             return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
-        });
+        };
+        if (residual.way == Way::Out) {
+            const DirectionsOut out(residual, least(residual, excess), medium_);
+            return mixture(out.share(), out);
+        }
+        const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
+        return withGuided(residual, excess, view, [&](const auto& guided) { return mixture(share, guided); });
     }
 
     /// gamma = (C / S) / (C / S + alpha).
     [[nodiscard]] float guideShare(const Residual& residual, float excess) const {
-        if (residual.way == Way::Out) return OutShare;
         const float ratio = residual.C / (residual.C + excess);
         const float alpha =
             residual.way == Way::Through ? settings_.alpha : std::max(settings_.alpha, LeastAlphaOutside);
@@ -144,35 +151,19 @@ class DirectionSampler {
     // Bench: study bodies, paths.
     /// Where boundaries of unknown kind lie between, the lobe is a rougher guess.
     static constexpr float LeastAlphaOutside = 0.5f;
-    /// Share of the guided directions where light must leave a body.
-    static constexpr float OutShare = 0.65f;
-    /// Phase functions of |g| up to this are even enough for a share of their own directions.
-    static constexpr float MostEven = 0.3f;
-
-    /// Resampling's candidates: the first `own` are the scatterer's.
-    struct Candidates {
-        int count, own;
-        [[nodiscard]] float ownShare() const { return float(own) / float(count); }
-    };
-    [[nodiscard]] Candidates candidatesAt(const Residual& residual) const {
-        if (residual.way == Way::Out) return {MostDirections, 6};
-        const int count = std::min(settings_.directionCandidates, MostDirections);
-        return {count, count / 2};
+    /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
+    /// study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
+    [[nodiscard]] static bool leavesToScatterer(const Residual& residual) {
+        return residual.way == Way::Out && !residual.exit.connects;
     }
-
-    [[nodiscard]] bool resamples(const Residual& residual) const {
-        return settings_.direction == Direction::Ris || (residual.way == Way::Out && std::abs(g_) > MostEven);
-    }
-    /// Behind refraction light leaves in more directions than the guide knows; even phase functions do better alone.
-    /// (Bench: study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
-    [[nodiscard]] bool leavesToScatterer(const Residual& residual) const {
-        return residual.way == Way::Out && !residual.exit.connects && !resamples(residual);
+    /// Excess lengths of 0 have no lobe.
+    [[nodiscard]] static float least(const Residual& residual, float excess) {
+        return std::max(excess, 1e-6f * residual.C);
     }
     /// use(the vertex's guided distribution).
     template <typename View, typename Use>
     [[nodiscard]] auto withGuided(const Residual& residual, float excess, const View& view, Use&& use) const {
-        const float C = residual.C, delta = std::max(excess, 1e-6f * C);
-        if (residual.way == Way::Out) return use(DirectionsOut(residual, delta, medium_));
+        const float C = residual.C, delta = least(residual, excess);
         const auto about = [&](const auto& lobe) {
             return use(
                 GuidedDirections(AboutTarget{lobe, residual.axis}, residual, delta, view, focus<View>(C + delta)));
@@ -208,8 +199,8 @@ class DirectionSampler {
     template <typename Scatterer, typename Guided, typename Random>
     [[nodiscard]] DirectionSample resample(const Residual& residual, float excess, const Scatterer& scatterer,
                                            const Guided& guided, Random& random) const {
-        const auto [count, owns] = candidatesAt(residual);
-        const float ownShare = candidatesAt(residual).ownShare();
+        const int count = std::min(settings_.directionCandidates, MostDirections), owns = count / 2;
+        const float ownShare = float(owns) / float(count);
         std::array<DirectionSample, MostDirections> candidates;
         std::array<float, MostDirections> weights{};
         float sum = 0.0f;

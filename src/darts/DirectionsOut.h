@@ -7,30 +7,23 @@
 
 namespace darts {
 
-/// A lobe about the drift of walks that diffuse to the boundary in time, and the lobe of the connection. Holds the
-/// residual and the medium by reference.
+/// The lobe of the connection, and one about the drift of walks that diffuse to the boundary in time. The drift knows
+/// nothing of the phase function: only where that is even does it stand in for it.
 class DirectionsOut {
   public:
     /// `excess` > 0: of the connection drawn for the coming control vertex.
     DirectionsOut(const Residual& residual, float excess, const Medium& medium);
 
+    /// Of directions at the vertex; the rest are the scatterer's own.
+    [[nodiscard]] float share() const { return share_; }
     /// choice, u, v in [0, 1) -> unit direction.
     [[nodiscard]] Vec3 sample(float choice, float u, float v) const;
     /// Density per solid angle; h = 1 - cos between the direction and residual.axis.
     [[nodiscard]] float pdf(const Vec3& direction, float h) const;
-    /// What a direction is good for, about 1 on the average: the first passage from where light gets to, and the
-    /// connection, whose last turn has the density `last` per solid angle.
-    [[nodiscard]] float usefulness(const Heading& ray, float pdf, float last) const;
 
   private:
-    [[nodiscard]] float connectionUsefulness(const Heading& ray, float last) const;
-
-    const Residual& residual_;
-    const Medium& medium_;
-    float excess_, sigmaT_;
-    float here_; ///< logarithm of the first passage from the vertex
-    float gate_; ///< length of the gate in mean free paths
-    float connectionShare_ = 0;
+    Vec3 axis_;                            ///< towards the target
+    float share_, connectionShare_ = 1.0f; ///< of these directions, that of connectionLobe_
     ConnectionLobe<float> connectionLobe_, driftLobe_;
     Vec3 drift_; ///< unit axis of driftLobe_
 };

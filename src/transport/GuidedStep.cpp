@@ -1,5 +1,7 @@
 #include "transport/GuidedStep.h"
 
+#include "transport/Tuning.h"
+
 namespace tungsten::transport {
 
 void GuidedStep::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
@@ -20,11 +22,22 @@ void GuidedStep::startRoulette(const darts::Guide& guide, int medium, float thro
 
 float GuidedStep::survival(const darts::Guide& guide, int medium, float throughput) {
     if (!(guide.settings().roulette > 0.0f)) return 1.0f;
-    const float useful = guide.logUsefulness(reachable_, throughput);
-    if (first_ && first_->medium == medium && first_->way == reachable_.way)
-        return guide.survival(useful, first_->usefulness);
-    first_ = First{useful, medium, reachable_.way};
+    useful_ = guide.logUsefulness(reachable_, throughput);
+    if (first_ && first_->medium == medium && first_->way == reachable_.way) {
+        const float survival = guide.survival(useful_, first_->usefulness);
+        lineage_ *= survival;
+        return survival;
+    }
+    first_ = First{useful_, medium, reachable_.way};
     return 1.0f;
+}
+
+int GuidedStep::copies(const darts::Guide& guide) {
+    if (reachable_.way == darts::Way::Out) return splits_.copies(guide.splits(reachable_));
+    if (!first_ || reachable_.way == darts::Way::Unknown) return 1;
+    const int copies = guide.copies(useful_, first_->usefulness, tuning::MostCopies / lineage_);
+    lineage_ *= float(copies);
+    return copies;
 }
 
 void GuidedStep::passBoundary(float distance) {

@@ -64,8 +64,9 @@ class GuidedStep {
     void startRoulette(const darts::Guide& guide, int medium, float throughput);
     /// Probability of going on; 1 where the roulette starts.
     [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput);
-    /// Into how many copies the walk goes on, itself included (darts::Splits).
-    [[nodiscard]] int copies(const darts::Guide& guide) { return splits_.copies(guide.splits(reachable_)); }
+    /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, elsewhere those that
+    /// have become too useful.
+    [[nodiscard]] int copies(const darts::Guide& guide);
 
     // Connection.
     /// A straight way starts whose connection is drawn in flight, when the surface ahead is known, unless connect()
@@ -187,6 +188,8 @@ class GuidedStep {
     std::variant<Later, darts::ConnectionSample, OnWay, Over> connection_;
     std::optional<Shared> shared_;
     std::optional<First> first_;
+    float useful_ = 0.0f;  ///< logarithm, at the last survival()
+    float lineage_ = 1.0f; ///< copies that stem from the walk's start, as many as roulette leaves on the average
     darts::Splits splits_;
 };
 

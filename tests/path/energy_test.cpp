@@ -120,5 +120,27 @@ TEST(Energy, ConnectionsDoNotChangeTheMean) {
     }
 }
 
+/// A pulse in a closed white box of fog, late: what diffusion's slowest modes have left. Guided walks of 120
+/// scatterings must not let few of them carry everything.
+TEST(Energy, GuidedPathsFillAClosedWhiteBox) {
+    const double time = 15.0, light = -0.4, camera = 0.9, sigmaS = 8.0;
+    const auto rendered = renderWithPathTracer(
+        R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 8}],
+            "primitives": [{"type": "cube", "bsdf": {"type": "lambert", "albedo": 1}, "int_medium": "fog", "transform": {"scale": 2}},
+                           {"type": "point", "power": 100.530965, "ext_medium": "fog", "int_medium": "fog",
+                            "transform": {"position": [0.3, 0.2, -0.4]}}],
+            "camera": {"type": "pinhole", "resolution": [2, 2], "fov": 20, "medium": "fog",
+                       "transform": {"position": [0, 0, 0.9], "look_at": [0, 0, -0.5]}},
+            "integrator": {"type": "path_tracer", "max_bounces": 100000, "transient_time_center": 15,
+                           "transient_time_width": 2, "darts": "best"}})",
+        {{}, 50, 40});
+    // Of the source seen one mean free path ahead; the next modes are below 1 % by then.
+    const double k = M_PI / 2.0, D = 1.0 / (3.0 * sigmaS), seen = camera - 1.0 / sigmaS;
+    const double expected =
+        1.0 + 2.0 * std::cos(k * (light + 1.0)) * std::cos(k * (seen + 1.0)) * std::exp(-D * k * k * time);
+    EXPECT_NEAR(rendered->mean(), expected, 4.5 * rendered->pixelError() + 0.03 * expected);
+    EXPECT_LT(rendered->pixelError(), 0.08 * expected);
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -1,6 +1,7 @@
 // The stages of a guided step: what a walk may ask in which state, and what it gets.
 
 #include "transport/GuidedStep.h"
+#include "transport/Tuning.h"
 
 #include <gtest/gtest.h>
 
@@ -45,6 +46,29 @@ TEST(GuidedStep, LooksInTwoStages) {
     EXPECT_EQ(step.reachable().excess, step.residual().excess);
     step.leave();
     EXPECT_FALSE(step.hasLooked());
+}
+
+TEST(GuidedStep, WhatHasBecomeTooUsefulSplits) {
+    const darts::Guide guide = guideWith(0.1f);
+    GuidedStep step;
+    step.look(ahead());
+    step.startRoulette(guide, 0, 1.0f);
+    EXPECT_FLOAT_EQ(step.survival(guide, 0, 3.9f), 1.0f);
+    EXPECT_EQ(step.copies(guide), 1);
+    EXPECT_FLOAT_EQ(step.survival(guide, 0, 20.0f), 1.0f);
+    EXPECT_EQ(step.copies(guide), 6);
+    // Never more of one walk than the bound allows, however useful it is.
+    float stemming = 6.0f;
+    for (int i = 0; i < 100; ++i) {
+        EXPECT_FLOAT_EQ(step.survival(guide, 0, 1e6f), 1.0f);
+        stemming *= float(step.copies(guide));
+    }
+    EXPECT_LE(stemming, tuning::MostCopies);
+    EXPECT_GT(stemming, 0.1f * tuning::MostCopies);
+    // Roulette makes room again.
+    EXPECT_LT(step.survival(guide, 0, 1e-4f), 0.01f);
+    (void)step.survival(guide, 0, 1e6f);
+    EXPECT_GT(step.copies(guide), 8);
 }
 
 /// Both ways to a control vertex must arrive after the length that was drawn.
