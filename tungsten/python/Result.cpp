@@ -70,7 +70,8 @@ std::vector<std::string> Result::write(const std::filesystem::path& file) const 
     (file.extension() == ".png" ? outputs.ldr : outputs.hdr) = file;
     checkOutputs(outputs, {session_->film.frames(), false, false, loaded_.inputs});
     std::vector<std::string> names;
-    for (const auto& written : writeImages(session_->film, session_->bias, scene(), outputs, metadata_)) names.push_back(written);
+    for (const auto& written : writeImages(session_->film, session_->bias, scene(), outputs, metadata_))
+        names.push_back(written);
     return names;
 }
 
