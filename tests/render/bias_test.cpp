@@ -4,6 +4,7 @@
 #include "render/fake_integrator.h"
 
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/render/ResultDescription.h"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +48,20 @@ TEST(Bias, IsInTheExrTheStatisticsAndTheTrace) {
     EXPECT_NE(list.find("\"bias\": \"bias-000040.npy\""), std::string::npos) << list;
     EXPECT_EQ(contentOf(session.folder() / "trace/bias-000040.npy").size(),
               contentOf(session.folder() / "trace/mean-000040.npy").size());
+}
+
+TEST(Bias, IsInResultFiles) {
+    SessionFixture session(tinyScene("", FortyPasses));
+    session.integrator.bias = 0.2f;
+    session.options.bias = true;
+    const SessionResult& result = session.run();
+    const ResultContent content = resultContent(result.film, result.bias, *session.loaded.scene, "");
+    ASSERT_EQ(content.images.size(), 4u);
+    EXPECT_EQ(content.images[2].name, "bias");
+    EXPECT_EQ(content.images[2].frame(0).pixels, result.bias.mean(0).pixels);
+    EXPECT_EQ(content.images[3].name, "bias_standard_error");
+    EXPECT_EQ(content.images[3].frame(0).pixels, result.bias.standardError(0).pixels);
+    EXPECT_EQ(resultContent(result.film, Film(), *session.loaded.scene, "").images.size(), 2u);
 }
 
 TEST(Bias, CostsNothingWhereNoneIsLeftOrAskedFor) {

@@ -20,7 +20,10 @@ struct Job {
     EffectPlan plan;
 };
 
-/// Throws what loadScene throws, and InputError for an integrator that nobody registers or that refuses its settings.
+/// Throws InputError for an integrator that nobody registers or that refuses its settings.
+std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins);
+
+/// Throws what loadScene throws, and what makeIntegrator throws.
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins);
 
 } // namespace tungsten

@@ -123,9 +123,9 @@ class ImageWriter {
         else if (image.content == Content::Cube || extension == ".npy")
             writeCube(image.file);
         else if (extension == ".npz")
-            writeNpz(image.file, resultContent(film_, scene_, metadata_));
+            writeNpz(image.file, resultContent(film_, bias_, scene_, metadata_));
         else if (extension == ".h5")
-            writeHdf5(image.file, resultContent(film_, scene_, metadata_));
+            writeHdf5(image.file, resultContent(film_, bias_, scene_, metadata_));
         else if (extension == ".exr")
             writeExr(image.file, frame ? std::vector<ExrPart>{exrPart(image.frame)} : allFrames(), metadata_);
         else if (extension == ".pfm")

@@ -63,11 +63,16 @@ std::vector<double> frameEdgesInPicoseconds(const Scene& scene) {
     return edges;
 }
 
-ResultContent resultContent(const Film& film, const Scene& scene, const std::string& metadata) {
+ResultContent resultContent(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata) {
     ResultContent content{film.width(), film.height(), film.frames(), {}, {}, metadata};
     content.images = {
         {"mean", [&](int frame) { return inOutputUnits(film.mean(frame), scene, 1); }},
         {"standard_error", [&](int frame) { return inOutputUnits(film.standardError(frame), scene, 1); }}};
+    if (bias.frames() > 0) {
+        content.images.push_back({"bias", [&](int frame) { return inOutputUnits(bias.mean(frame), scene, 1); }});
+        content.images.push_back(
+            {"bias_standard_error", [&](int frame) { return inOutputUnits(bias.standardError(frame), scene, 1); }});
+    }
     content.vectors = {{"time_edges", frameEdges(scene.transport.gate)}};
     if (picosecondsPerTime(scene) > 0.0) content.vectors.push_back({"time_edges_ps", frameEdgesInPicoseconds(scene)});
     return content;

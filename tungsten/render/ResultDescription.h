@@ -28,8 +28,8 @@ std::vector<double> frameEdges(const TimeGate& gate);
 double picosecondsPerTime(const Scene& scene);
 /// The same edges in picoseconds; none where picosecondsPerTime() is 0.
 std::vector<double> frameEdgesInPicoseconds(const Scene& scene);
-/// All that a result file holds. Film, scene and metadata must outlive it.
-ResultContent resultContent(const Film& film, const Scene& scene, const std::string& metadata);
+/// All that a result file holds, the bias where `bias` has frames. Films, scene and metadata must outlive it.
+ResultContent resultContent(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata);
 /// What a pixel of a frame holds.
 std::string quantityText(const Scene& scene);
 
