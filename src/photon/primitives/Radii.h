@@ -22,7 +22,7 @@ class Radii {
     }
     /// Of the records that chooseEvenly chooses.
     [[nodiscard]] Radii chosen(double share, float u) const {
-        if (single()) return *this;
+        if (single()) return radii_.front();
         Radii part;
         chooseEvenly(radii_.size(), share, u, [&](size_t i) { part.radii_.push_back(radii_[i]); });
         return part;

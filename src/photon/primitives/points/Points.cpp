@@ -29,7 +29,7 @@ Selection<Photon> Points::straight(const Scene&, const ArrivalCulling& culling, 
         seen.records.push_back(photons[i]);
         if (!radii.single()) own.push_back(radii[i]);
     }
-    seen.radii = radii.single() ? radii : Radii(std::move(own));
+    seen.radii = radii.single() ? Radii(radii[0]) : Radii(std::move(own));
     return seen;
 }
 
