@@ -87,7 +87,8 @@ inline constexpr float SharedConnections = 100.0f, LeastShared = 2.5f, MostShare
 
 /// Width of the kernels that the bias is estimated with, of those that the image is made with. Narrower ones need no
 /// photons but the pass's, and tell more where what they blur has edges: a slab seen from outside, estimate over true
-/// bias 0.60 at 0.71 and 0.52 at 0.8, which has 0.74 of the noise. Bench: benchmarks/study/bias.py
+/// bias 0.60 at 0.71 and 0.52 at 0.8, where the estimate's noise was taken off differently. Bench:
+/// benchmarks/study/bias.py
 inline constexpr float NarrowKernel = 0.70710678f;
 
 // --- Stores and structures -------------------------------------------------------------------------------------------

@@ -157,6 +157,8 @@ TEST_F(Partial, UsageIsChecked) {
         refused({"--passes", range}, "--passes " + range + ": expected A:B");
     refused({"--passes", "6:9", "--spp", "15"}, "--passes 6:9: the render has 8 passes");
     refused({"--passes", "0:2", "-c", "1h"}, "--passes: goes without -c");
+    for (const std::string option : {"--bias", "--plan-cost"})
+        refused({"--passes", "0:2", option}, "--passes: goes without -c");
     refused({"--passes", "0:2", "-e", "box.exr"}, "tungsten merge");
     EXPECT_TRUE(!fs::exists(out()) || filesOf(out()).empty());
     EXPECT_EQ(tungsten({"merge", "a.state"}).exitCode, 2);

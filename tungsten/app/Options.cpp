@@ -83,8 +83,8 @@ void requireNothingElse(const Options& options) {
     if (outputs.hdr || outputs.page || outputs.statistics || !options.trace.empty())
         throw UsageError("--passes: writes a partial state alone, without -e, --stats, --html and --trace; images are "
                          "what tungsten merge writes");
-    if (options.checkpointSeconds || options.restart || options.targetError > 0.0)
-        throw UsageError("--passes: goes without -c, -r and --target-error");
+    if (options.checkpointSeconds || options.restart || options.targetError > 0.0 || options.bias || options.planCost)
+        throw UsageError("--passes: goes without -c, -r, --target-error, --bias and --plan-cost");
 }
 
 /// The parser's message for an option nobody knows, with the nearest one that exists.

@@ -49,19 +49,16 @@ LoadOptions loadOptions(const Options& options, const std::vector<std::string>& 
     return load;
 }
 
-void measure(Method& method, const std::filesystem::path& file, const Options& options, const MakeIntegrator& make) {
+void measure(Method& method, const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     try {
-        const LoadedScene loaded = loadScene(file, loadOptions(options, method.settings));
-        const auto integrator = make(loaded);
-        EffectPlan plan = analyseScene(*loaded.scene);
-        integrator->plan(plan);
-        if (!plan.lacks.empty()) {
-            method.refusal = "lacks " + plan.lacks.front();
+        const Job job = makeJob(file, loadOptions(options, method.settings), plugins);
+        if (!job.plan.lacks.empty()) {
+            method.refusal = "lacks " + job.plan.lacks.front();
             return;
         }
-        method.costs = measurePasses(
-            *loaded.scene, *integrator, plan,
-            {options.seed, uint32_t(loaded.renderer.sppStep), options.timeoutSeconds.value_or(DefaultPilotSeconds)});
+        method.costs = measurePasses(*job.loaded.scene, *job.integrator, job.plan,
+                                     {options.seed, uint32_t(job.loaded.renderer.sppStep),
+                                      options.timeoutSeconds.value_or(DefaultPilotSeconds)});
         if (!method.costs) method.refusal = "black: nothing arrived in the passes of the pilot";
     } catch (const InputError& error) {
         const Problem& first = error.problems().front();
@@ -166,11 +163,11 @@ std::string costJson(const std::string& scene, const std::vector<Method>& method
 
 } // namespace
 
-void planCost(const std::filesystem::path& file, const Options& options, const MakeIntegrator& make) {
+void planCost(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     const LoadedScene loaded = loadScene(file, loadOptions(options, {}));
     if (options.outputs.statistics) checkWritable(*options.outputs.statistics);
     std::vector<Method> methods = methodsFor(loaded);
-    for (Method& method : methods) measure(method, file, options, make);
+    for (Method& method : methods) measure(method, file, options, plugins);
     const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     printTable(file.string(), methods, threads);
     if (options.outputs.statistics)

@@ -90,7 +90,7 @@ void printSummary(const SessionResult& result) {
 /// Exit code: 0, or 130 when interrupted before there was anything to write.
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     if (options.planCost) {
-        planCost(file, options, [&](const LoadedScene& loaded) { return makeIntegrator(loaded, plugins); });
+        planCost(file, options, plugins);
         return 0;
     }
     SessionResult result;

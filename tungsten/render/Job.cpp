@@ -17,8 +17,6 @@ namespace {
     throw InputError({{loaded.diagnostics->file, "integrator.type", message + ")"}});
 }
 
-} // namespace
-
 std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
     const auto found = plugins.registry.entries().find(loaded.integratorType);
     if (found == plugins.registry.entries().end()) failUnknownIntegrator(loaded, plugins);
@@ -27,6 +25,8 @@ std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plug
     loaded.integratorSettings.warnAboutUnknown();
     return integrator;
 }
+
+} // namespace
 
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins) {
     Job job{loadScene(file, options), nullptr, {}};

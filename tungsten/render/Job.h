@@ -20,10 +20,7 @@ struct Job {
     EffectPlan plan;
 };
 
-/// Throws InputError for an integrator that nobody registers or that refuses its settings.
-std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins);
-
-/// Throws what loadScene throws, and what makeIntegrator throws.
+/// Throws what loadScene throws, and InputError for an integrator that nobody registers or that refuses its settings.
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins);
 
 } // namespace tungsten

@@ -45,8 +45,7 @@ class Session {
         else
             checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
                                     options_.checkpointSeconds > 0.0, loaded_.inputs});
-        const bool bias =
-            (options_.bias || options_.targetError > 0.0) && !options_.passes && integrator_.leavesBias(plan);
+        const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(plan);
         requireMemory(bias ? 3.0 : 2.0);
         if (bias)
             result_.bias = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames,
