@@ -38,6 +38,9 @@ install_missing() {
 
 install_missing
 launcher=()
-if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+if command -v ccache >/dev/null; then
+  launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  export CCACHE_SLOPPINESS=pch_defines,time_macros # else it leaves files with precompiled headers alone
+fi
 cmake --preset default "-DTUNGSTEN_WERROR=${TUNGSTEN_WERROR:-OFF}" "${launcher[@]}"
 cmake --build --preset default "$@"

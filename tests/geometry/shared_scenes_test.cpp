@@ -1,5 +1,7 @@
 // The meshes of the shared scenes: they load as they are, quickly and in little memory.
 
+#include "support/Folders.h"
+
 #include "tungsten/geometry/SceneGeometry.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +13,7 @@ namespace tungsten {
 namespace {
 
 TEST(SharedScenes, MeshesLoadAndBuildQuickly) {
-    const std::filesystem::path scenes = std::filesystem::path(SHARED_DIR) / "scenes";
+    const std::filesystem::path scenes = test::sharedFolder() / "scenes";
     if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "the shared scenes are not here";
     struct Expectation {
         const char* folder;

@@ -3,6 +3,7 @@
 #include "photon/primitives/ProgressiveSchedule.h"
 
 #include "render_photons.h"
+#include "support/Folders.h"
 
 #include <gtest/gtest.h>
 
@@ -80,7 +81,7 @@ TEST(BeamMap, KernelsShrinkAsPublished) {
 class CornellFog : public testing::Test {
   protected:
     static constexpr int Frames = 3;
-    std::filesystem::path file = std::filesystem::path(PROJECT_DATA_DIR) / "scenes/cornell-fog/scene.json";
+    std::filesystem::path file = test::dataFolder() / "scenes/cornell-fog/scene.json";
     Overrides overrides{"camera.resolution=[2, 2]",
                         "integrator.frame_num=3",
                         "integrator.start_time=4.6",
@@ -225,7 +226,7 @@ TEST(BeamMap, WrongSettingsAreExplained) {
 }
 
 TEST(BeamMap, SharedScenesLoadAndRender) {
-    const std::filesystem::path folder = std::filesystem::path(SHARED_DIR) / "scenes";
+    const std::filesystem::path folder = test::sharedFolder() / "scenes";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the shared scenes are not here";
     for (const char* name : {"cbox/transient-beams.json", "dragon/scene-beams-short.json",
                              "dragon/scene-beams-darts-long.json", "dragon/transient-beams.json"}) {

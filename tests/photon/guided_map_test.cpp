@@ -1,6 +1,7 @@
 // Guided light paths in whole scenes: surfaces, mirrors, sequences, several pulses, full stores, threads.
 
 #include "render_photons.h"
+#include "support/Folders.h"
 
 #include <gtest/gtest.h>
 
@@ -389,7 +390,7 @@ TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
         explicit Warm(const Rendered& render)
             : mean(double(render.film.mean(0).at(0, 0).x)), error(double(render.film.standardError(0).at(0, 0).x)) {}
     };
-    const std::filesystem::path file = std::filesystem::path(PROJECT_DATA_DIR) / "scenes/mirror-fog/scene.json";
+    const std::filesystem::path file = test::dataFolder() / "scenes/mirror-fog/scene.json";
     const Overrides mirror{"camera.resolution=[1, 1]", "camera.fov=14", "integrator.volume_alpha=1",
                            "integrator.alpha=1", setting("photon_count", 8000)};
     const auto render = [&](const std::string& darts) {

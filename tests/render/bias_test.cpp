@@ -2,6 +2,7 @@
 
 #include "render/command.h"
 #include "render/fake_integrator.h"
+#include "support/Folders.h"
 
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/render/ResultDescription.h"
@@ -124,7 +125,7 @@ TEST(Bias, TheCommandEstimatesItForPhotonMaps) {
         const auto result = test::tungsten(
             {"--bias", "--spp", "6", "--resolution", "12x12", "--set", "renderer.spp_step=1", "--set",
              "integrator.type=" + type, "--set", "integrator.photon_count=3000", "-d", folder.path().string(), "-e",
-             type + ".exr", std::string(PROJECT_DATA_DIR) + "/scenes/cornell-fog/scene.json"});
+             type + ".exr", (test::dataFolder() / "scenes/cornell-fog/scene.json").string()});
         ASSERT_EQ(result.exitCode, 0) << result.err;
         const bool photons = type == "transient_photon_map";
         EXPECT_EQ(result.out.find(", bias ") != std::string::npos, photons) << result.out;

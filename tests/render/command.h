@@ -1,6 +1,7 @@
 #pragma once
 // Runs the `tungsten` command as a child process.
 
+#include "support/Folders.h"
 #include "support/SceneFile.h"
 
 #include <csignal>
@@ -32,7 +33,7 @@ inline std::string contentOf(const std::filesystem::path& file) {
 class Command {
   public:
     explicit Command(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), std::string(PLUGIN_DIR) + "/tungsten");
+        arguments.insert(arguments.begin(), (binaryFolder() / "tungsten").string());
         std::vector<char*> argv;
         for (std::string& argument : arguments) argv.push_back(argument.data());
         argv.push_back(nullptr);

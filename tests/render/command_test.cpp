@@ -1,6 +1,7 @@
 // The `tungsten` command from outside: exit codes, messages, files.
 
 #include "render/command.h"
+#include "support/Folders.h"
 
 #include "tungsten/film/ImageIo.h"
 
@@ -68,7 +69,8 @@ TEST(Command, BadInputIsExitCodeOne) {
     const std::vector<Mistake> mistakes{
         {{"/nowhere/scene.json"}, {"/nowhere/scene.json", "no such file"}},
         {{"--set", "integrator.type=path_trace", file},
-         {file, "integrator.type", "did you mean 'path_tracer'?", "progressive_photon_map", PLUGIN_DIR}},
+         {file, "integrator.type", "did you mean 'path_tracer'?", "progressive_photon_map",
+          test::binaryFolder().string()}},
         {{"--set", "integrator.max_bounces=\"x\"", file}, {file, "integrator.max_bounces"}},
         {{"--set", "primitives.block.bsdf=gray", file}, {file, "primitives[1].bsdf", "grey"}},
         {{"--set", "camera.type=pinhol", file}, {"camera.type", "pinhole"}},

@@ -1,6 +1,7 @@
 // What an error costs: the pilot's laws of known passes, and the command that prints them.
 
 #include "render/command.h"
+#include "support/Folders.h"
 #include "support/SceneFile.h"
 
 #include "tungsten/core/Random.h"
@@ -106,7 +107,7 @@ TEST(PlanCost, PrintsATableAndWritesJson) {
     const auto result = test::tungsten({"--plan-cost", "--timeout", "0.2s", "--resolution", "12x12", "--stats", json,
                                         "--set", "renderer.spp_step=1", "--set", "integrator.photon_count=3000",
                                         "--set", "integrator.volume_photon_count=3000", "-d", folder.path().string(),
-                                        std::string(PROJECT_DATA_DIR) + "/scenes/cornell-fog/scene.json"});
+                                        (test::dataFolder() / "scenes/cornell-fog/scene.json").string()});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     for (const char* text : {"points", "beams", "mis_volumes_balls", "paths", "cheapest", "0.3 %"})
         EXPECT_NE(result.out.find(text), std::string::npos) << text << result.out;
@@ -123,7 +124,7 @@ TEST(PlanCost, SaysWhyAMethodHasNoPrice) {
     const auto result =
         test::tungsten({"--plan-cost", "--timeout", "0.1s", "--resolution", "8x8", "--set", "renderer.spp_step=1",
                         "--set", "integrator.photon_count=2000", "--set", "integrator.volume_photon_count=2000",
-                        std::string(PROJECT_DATA_DIR) + "/scenes/laser-in-fog/scene.json"});
+                        (test::dataFolder() / "scenes/laser-in-fog/scene.json").string()});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const size_t paths = result.out.find("\npaths");
     ASSERT_NE(paths, std::string::npos) << result.out;

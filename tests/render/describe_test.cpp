@@ -2,6 +2,7 @@
 
 #include "render/command.h"
 #include "scene/expect_described.h"
+#include "support/Folders.h"
 
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Plugin.h"
@@ -15,7 +16,7 @@ namespace {
 
 std::vector<DescribedKind> shippedDescriptions() {
     IntegratorRegistry registry;
-    EXPECT_TRUE(loadPlugins({PLUGIN_DIR}, registry).empty());
+    EXPECT_TRUE(loadPlugins({test::binaryFolder()}, registry).empty());
     return describeAll(registry);
 }
 

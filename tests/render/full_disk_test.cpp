@@ -1,6 +1,7 @@
 // Disks that are full, or a quota: earlier files stay, and the command says so.
 
 #include "render/rendered_scene.h"
+#include "support/Folders.h"
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
@@ -146,7 +147,8 @@ TEST_F(FullDisk, AFullDiskLeavesTheEarlierFiles) {
 
 TEST_F(FullDisk, StandardOutputOnAFullDiskIsAnError) {
     for (const char* option : {"--list", "--version"}) {
-        const std::string command = std::string(PLUGIN_DIR) + "/tungsten " + option + " > /dev/full 2>/dev/null";
+        const std::string command =
+            (test::binaryFolder() / "tungsten").string() + " " + option + " > /dev/full 2>/dev/null";
         const int status = std::system(command.c_str());
         EXPECT_EQ(WEXITSTATUS(status), BadInput) << option;
     }

@@ -1,5 +1,6 @@
 // Finding and loading plugins: what works, and what a broken one says.
 
+#include "support/Folders.h"
 #include "support/SceneFile.h"
 
 #include "tungsten/render/Plugin.h"
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path Faulty = fs::path(PLUGIN_DIR).parent_path() / "faulty_plugins";
+const fs::path Faulty = test::binaryFolder().parent_path() / "faulty_plugins";
 
 std::string problemsOf(const fs::path& directory, IntegratorRegistry& registry) {
     std::string text;
@@ -38,7 +39,7 @@ class PluginFolder {
 
 TEST(Plugin, TheShippedOnesLoadAndSayWhereTheyComeFrom) {
     IntegratorRegistry registry;
-    EXPECT_EQ(problemsOf(PLUGIN_DIR, registry), "");
+    EXPECT_EQ(problemsOf(test::binaryFolder(), registry), "");
     for (const char* type : {"path_tracer", "progressive_photon_map", "progressive_transient_photon_map"}) {
         ASSERT_EQ(registry.entries().count(type), 1u) << type;
         EXPECT_NE(registry.entries().at(type).origin.find("libtungsten-"), std::string::npos);
@@ -48,9 +49,9 @@ TEST(Plugin, TheShippedOnesLoadAndSayWhereTheyComeFrom) {
 
 TEST(Plugin, OfEqualFileNamesTheFirstDirectoryWins) {
     const test::TemporaryFolder folder;
-    fs::copy_file(fs::path(PLUGIN_DIR) / "libtungsten-path.so", folder.path() / "libtungsten-path.so");
+    fs::copy_file(test::binaryFolder() / "libtungsten-path.so", folder.path() / "libtungsten-path.so");
     IntegratorRegistry registry;
-    EXPECT_TRUE(loadPlugins({folder.path(), PLUGIN_DIR}, registry).empty());
+    EXPECT_TRUE(loadPlugins({folder.path(), test::binaryFolder()}, registry).empty());
     EXPECT_EQ(fs::path(registry.entries().at("path_tracer").origin).parent_path(), folder.path());
 }
 
@@ -67,7 +68,7 @@ TEST(Plugin, MissingDirectoriesAndOtherFilesAreNoProblem) {
 TEST(Plugin, ABrokenFileIsNamedAndTheOthersStillLoad) {
     const PluginFolder garbage(std::string("this is no shared object"));
     IntegratorRegistry registry;
-    const std::vector<Problem> problems = loadPlugins({garbage.path(), PLUGIN_DIR}, registry);
+    const std::vector<Problem> problems = loadPlugins({garbage.path(), test::binaryFolder()}, registry);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].file, garbage.file().string());
     EXPECT_NE(problems[0].message.find("cannot be loaded"), std::string::npos) << problems[0].message;
@@ -76,7 +77,7 @@ TEST(Plugin, ABrokenFileIsNamedAndTheOthersStillLoad) {
 
 /// Mapped and touched beyond its end, it would end the process.
 TEST(Plugin, ATruncatedFileIsNamed) {
-    const fs::path original = fs::path(PLUGIN_DIR) / "libtungsten-path.so";
+    const fs::path original = test::binaryFolder() / "libtungsten-path.so";
     const auto size = fs::file_size(original);
     for (const std::uintmax_t length : {std::uintmax_t(0), std::uintmax_t(20), std::uintmax_t(64), std::uintmax_t(300),
                                         size / 4, size / 2, size * 3 / 4}) {
@@ -96,7 +97,7 @@ TEST(Plugin, APipeIsNotWaitedFor) {
 }
 
 TEST(Plugin, AMissingEntryPointIsNamed) {
-    const PluginFolder host(fs::path(PLUGIN_DIR) / "libtungsten.so");
+    const PluginFolder host(test::binaryFolder() / "libtungsten.so");
     IntegratorRegistry registry;
     EXPECT_NE(problemsOf(host.path(), registry).find("does not define tungstenPlugin()"), std::string::npos);
 }

@@ -1,6 +1,7 @@
 // What a render may lose or touch: kills, odd files and names, scenes that mean harm.
 
 #include "render/rendered_scene.h"
+#include "support/Folders.h"
 
 #include "tungsten/film/ImageIo.h"
 
@@ -204,7 +205,7 @@ TEST_F(Robustness, WhatDoesNotFitIntoMemoryIsRefusedWithTheFigure) {
 
 TEST_F(Robustness, PluginsComeFromTheNamedPlacesOnly) {
     const fs::path plugin = folder() / "libtungsten-here.so";
-    fs::copy_file(fs::path(PLUGIN_DIR) / "libtungsten-path.so", plugin);
+    fs::copy_file(test::binaryFolder() / "libtungsten-path.so", plugin);
     const fs::path before = fs::current_path();
     fs::current_path(folder());
     const CommandResult result = test::tungsten({"--list"});

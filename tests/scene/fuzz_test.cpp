@@ -1,5 +1,6 @@
 // Mutated scenes: every one either loads or says what is wrong; nothing else happens.
 
+#include "support/Folders.h"
 #include "support/SceneFile.h"
 
 #include "tungsten/core/Random.h"
@@ -48,7 +49,7 @@ std::string mutate(std::string text, Sampler& sampler) {
 }
 
 TEST(SceneFuzz, MutatedScenesLoadOrExplain) {
-    const std::string original = readText(std::filesystem::path(PROJECT_DATA_DIR) / "scenes/cornell-fog/scene.json");
+    const std::string original = readText(test::dataFolder() / "scenes/cornell-fog/scene.json");
     ASSERT_FALSE(original.empty());
     const test::SceneFile file(original);
     ASSERT_NO_THROW(loadScene(file.path()));

@@ -1,5 +1,6 @@
 // Whole scenes: what the format's fields become, and what bad scenes say.
 
+#include "support/Folders.h"
 #include "support/SceneFile.h"
 
 #include "tungsten/film/ImageIo.h"
@@ -250,7 +251,7 @@ TEST(Visibility, TimeTransmittanceAndCrossingsThroughABoundary) {
 }
 
 TEST(SceneLoader, SharedScenesLoadUnchanged) {
-    const std::filesystem::path folder = std::filesystem::path(SHARED_DIR) / "scenes";
+    const std::filesystem::path folder = test::sharedFolder() / "scenes";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "the shared scenes are not here";
     for (const char* name :
          {"cbox/transient.json", "cbox/scene.json", "cbox/path_tracer.json", "cbox/transient-beams.json",

@@ -2,6 +2,7 @@
 // Do methods agree? Renders a scene by several methods and compares the means over blocks of pixels within their
 // standard errors.
 
+#include "support/Folders.h"
 #include "support/SceneFile.h"
 
 #include "tungsten/render/Plugin.h"
@@ -203,7 +204,7 @@ class PassRenderer {
     static const IntegratorRegistry& registry() {
         static const IntegratorRegistry loaded = [] {
             IntegratorRegistry fresh;
-            const std::vector<Problem> problems = loadPlugins({PLUGIN_DIR}, fresh);
+            const std::vector<Problem> problems = loadPlugins({binaryFolder()}, fresh);
             if (!problems.empty()) throw InputError(problems);
             return fresh;
         }();

@@ -3,6 +3,7 @@
 // infinite variance, so a path tracer's standard error would mean little.
 
 #include "support/Agreement.h"
+#include "support/Folders.h"
 
 namespace tungsten::test {
 
@@ -40,14 +41,7 @@ inline AgreementScene builtScene(const std::string& name, const std::string& jso
 }
 inline AgreementScene shippedScene(const std::string& name, std::vector<std::string> overrides, double radius,
                                    Effort effort) {
-    return {name,
-            std::filesystem::path(PROJECT_DATA_DIR) / "scenes" / name / "scene.json",
-            std::move(overrides),
-            24,
-            24,
-            radius,
-            effort,
-            nullptr,
+    return {name, dataFolder() / "scenes" / name / "scene.json", std::move(overrides), 24, 24, radius, effort, nullptr,
             false};
 }
 

@@ -1,6 +1,7 @@
 #include "tungsten/texture/Texture.h"
 
 #include "image_files.h"
+#include "support/Folders.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
 
@@ -203,7 +204,7 @@ TEST(Bitmap, GitLfsPointerBecomesTheFormatsPlaceholder) {
 }
 
 TEST(Bitmap, SharedSceneTexturesLoad) {
-    const std::filesystem::path scenes = std::filesystem::path(SHARED_DIR) / "scenes";
+    const std::filesystem::path scenes = test::sharedFolder() / "scenes";
     if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "the shared scenes are not here";
     int count = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes)) {
