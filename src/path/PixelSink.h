@@ -39,7 +39,7 @@ class PixelSink {
         }
         const float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
         if (weight > 0.0f) ++counters_.arrivals;
-        film_.passPixel(frame, x_, y_) += radiance * weight;
+        film_.add(frame, x_, y_, radiance * weight);
     }
 
     Film& film_;

@@ -159,8 +159,8 @@ void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMa
     tbb::parallel_for(0, film.height(), [&](int y) {
         for (int frame = 0; frame < film.frames(); ++frame)
             for (int x = 0; x < film.width(); ++x) {
-                Rgb& pixel = bias.passPixel(frame, x, y);
-                pixel = (film.passPixel(frame, x, y) - pixel) * extrapolation;
+                const Rgb narrow = bias.passPixel(frame, x, y);
+                bias.set(frame, x, y, (film.passPixel(frame, x, y) - narrow) * extrapolation);
             }
     });
 }

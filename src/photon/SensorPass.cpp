@@ -202,7 +202,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
             const Vec3d value = workspace.sums[size_t(frame)] * scale;
             const Rgb pixel{float(value.x), float(value.y), float(value.z)};
             if (isFinite(pixel))
-                film.passPixel(frame, x, y) += pixel;
+                film.add(frame, x, y, pixel);
             else
                 ++counters.nonFinite;
         }

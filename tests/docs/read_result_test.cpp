@@ -15,7 +15,7 @@ namespace {
 TEST(Results, TheReaderOfThePageReadsWhatWasWritten) {
     const auto file = std::filesystem::temp_directory_path() / ("results-" + std::to_string(::getpid()) + ".h5");
     // More than one tile, not whole ones.
-    ResultContent content{70, 65, 3, {}, {}, "{}"};
+    ResultContent content{70, 65, 3, 3, {}, {}, "{}"};
     const auto value = [](int frame, size_t i) { return float(frame) + 0.5f * float(i % 1000); };
     content.images.push_back({"mean", [&](int frame) {
                                   Image image(content.width, content.height);

@@ -35,7 +35,7 @@ class AmbientOcclusion : public Integrator {
                 }
                 // A time-resolved scene shows the same image in every frame.
                 for (int frame = 0; frame < film.frames(); ++frame)
-                    film.passPixel(frame, x, y) = Rgb(sum / float(pass.samples));
+                    film.set(frame, x, y, Rgb(sum / float(pass.samples)));
             }
         });
         statistics.add("occlusion rays", uint64_t(film.width()) * uint64_t(film.height()) * pass.samples);

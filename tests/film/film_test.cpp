@@ -32,7 +32,7 @@ Film randomFilm(int passes, int frames) {
         film.beginPass();
         for (int frame = 0; frame < frames; ++frame)
             for (int y = 0; y < 2; ++y)
-                for (int x = 0; x < 3; ++x) film.passPixel(frame, x, y) = Rgb(s.next1D(), s.next1D() * 2.0f, 1.0f);
+                for (int x = 0; x < 3; ++x) film.set(frame, x, y, Rgb(s.next1D(), s.next1D() * 2.0f, 1.0f));
         film.endPass(pass % 3 == 0 ? 2.0 : 1.0);
     }
     return film;
@@ -44,7 +44,7 @@ TEST(Film, MomentsMatchDirectFormulas) {
     double weight = 0.0, mean = 0.0, moment = 0.0;
     for (const auto& [value, w] : passes) {
         film.beginPass();
-        film.passPixel(0, 0, 0) = Rgb(float(value));
+        film.set(0, 0, 0, Rgb(float(value)));
         film.endPass(w);
         weight += w;
         mean += value * w;
@@ -78,7 +78,7 @@ TEST(Film, StandardErrorPredictsTheSpreadOfMeans) {
         for (uint32_t pass = 0; pass < 25; ++pass) {
             Sampler s(6, RandomStream::Test, pass, f);
             film.beginPass();
-            film.passPixel(0, 0, 0) = Rgb(s.next1D() * s.next1D());
+            film.set(0, 0, 0, Rgb(s.next1D() * s.next1D()));
             film.endPass(1.0);
         }
         const double mean = double(film.mean(0).at(0, 0).x);
@@ -103,10 +103,10 @@ TEST(Film, WholeGateIsTheMeanOverFrames) {
 TEST(Film, NonFiniteSamplesAreCountedAndLeaveNoTrace) {
     Film film(1, 1, 1);
     film.beginPass();
-    film.passPixel(0, 0, 0) = Rgb(std::numeric_limits<float>::quiet_NaN());
+    film.set(0, 0, 0, Rgb(std::numeric_limits<float>::quiet_NaN()));
     film.endPass(1.0);
     film.beginPass();
-    film.passPixel(0, 0, 0) = Rgb(2.0f);
+    film.set(0, 0, 0, Rgb(2.0f));
     film.endPass(1.0);
     EXPECT_EQ(film.nonFiniteSamples(), 1u);
     EXPECT_EQ(film.mean(0).at(0, 0), Rgb(1.0f));

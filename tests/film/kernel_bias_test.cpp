@@ -26,7 +26,7 @@ void addPasses(Film& film, uint32_t passes, float values, float noise, uint32_t 
         film.beginPass();
         for (int y = 0; y < Side; ++y)
             for (int x = 0; x < Side; ++x)
-                film.passPixel(0, x, y) = Rgb(((x + y) % 2 == 0 ? values : -values) + noise * gaussian(sampler));
+                film.set(0, x, y, Rgb(((x + y) % 2 == 0 ? values : -values) + noise * gaussian(sampler)));
         film.endPass(double(standsFor));
     }
 }
@@ -35,7 +35,7 @@ Film even(float value) {
     Film film(Side, Side, 1);
     film.beginPass();
     for (int y = 0; y < Side; ++y)
-        for (int x = 0; x < Side; ++x) film.passPixel(0, x, y) = Rgb(value);
+        for (int x = 0; x < Side; ++x) film.set(0, x, y, Rgb(value));
     film.endPass(1.0);
     return film;
 }
@@ -58,7 +58,7 @@ TEST(KernelBias, StandardErrorOfUnlikeWeightsIsThatOfTheirMean) {
     constexpr uint32_t Films = 600, Passes = 40;
     double squared = 0.0, claimed = 0.0, pixels = 0.0;
     for (uint32_t f = 0; f < Films; ++f) {
-        Film film(Side, Side, 1, PassWeight::Repeats);
+        Film film(Side, Side, 1, {}, PassWeight::Repeats);
         addPasses(film, Passes, 0.0f, 1.0f, f);
         claimed += film.meanSquaredError();
         for (const Rgb& pixel : film.mean(0).pixels) squared += double(pixel.x) * double(pixel.x);
@@ -74,7 +74,7 @@ TEST(KernelBias, NoiseIsTakenOff) {
     for (const float bias : {0.0f, 0.2f, 0.4f}) {
         double estimate = 0.0, noise = 0.0, above = 0.0;
         for (uint32_t f = 0; f < Films; ++f) {
-            Film biases(Side, Side, 1, PassWeight::Repeats);
+            Film biases(Side, Side, 1, {}, PassWeight::Repeats);
             addPasses(biases, 64, bias, 0.5f, 1000 + f);
             const RelativeBias relative = RelativeBias::of(film, biases);
             EXPECT_GE(relative.bound, relative.estimate);
@@ -98,7 +98,7 @@ TEST(KernelBias, IsBeyondItsBoundInOneRenderOfTwenty) {
         const Film film = even(1.0f);
         double beyond = 0.0;
         for (uint32_t f = 0; f < Films; ++f) {
-            Film biases(Side, Side, 1, PassWeight::Repeats);
+            Film biases(Side, Side, 1, {}, PassWeight::Repeats);
             addPasses(biases, 32, bias, 0.5f, 5000 + f);
             beyond += RelativeBias::of(film, biases).bound < double(bias) ? 1.0 / Films : 0.0;
         }
@@ -108,7 +108,7 @@ TEST(KernelBias, IsBeyondItsBoundInOneRenderOfTwenty) {
 
 TEST(KernelBias, IsUnknownWithoutFiveMeasuredPasses) {
     const Film film = even(1.0f);
-    Film biases(Side, Side, 1, PassWeight::Repeats);
+    Film biases(Side, Side, 1, {}, PassWeight::Repeats);
     EXPECT_TRUE(std::isnan(RelativeBias::of(film, biases).estimate));
     addPasses(biases, 4, 0.1f, 0.0f, 1);
     EXPECT_TRUE(std::isnan(RelativeBias::of(film, biases).estimate));

@@ -37,7 +37,7 @@ Promise promiseOf(const Noise& noise, int alike) {
                 for (int x = 0; x < Side; ++x) {
                     Sampler sampler(seed, RandomStream::Test, pass, uint64_t(y * Side + x / alike));
                     const double u = double(sampler.next1D());
-                    film.passPixel(0, x, y) = Rgb(float(noise(u, double(sampler.next1D()))));
+                    film.set(0, x, y, Rgb(float(noise(u, double(sampler.next1D())))));
                 }
             film.endPass(1.0);
         }
@@ -104,7 +104,7 @@ TEST(PassScatter, ASavedFilmKeepsItsBound) {
     Film film(3, 2, 1), other(3, 2, 1);
     for (uint32_t pass = 0; pass < 9; ++pass) {
         film.beginPass();
-        for (int x = 0; x < 3; ++x) film.passPixel(0, x, 1) = Rgb(float(pass * pass + uint32_t(x)));
+        for (int x = 0; x < 3; ++x) film.set(0, x, 1, Rgb(float(pass * pass + uint32_t(x))));
         film.endPass(2.0);
     }
     std::stringstream state;

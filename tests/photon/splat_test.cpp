@@ -150,8 +150,8 @@ uint64_t gatherRecord(const Gather& gather, const TimeGate& gate, const SensorRe
                                       sums);
             for (int frame = 0; frame < gate.frames; ++frame) {
                 const Vec3d& sum = sums[size_t(frame)];
-                film.passPixel(frame, int(i) % record.width, int(i) / record.width) +=
-                    Rgb(float(sum.x), float(sum.y), float(sum.z)) * piece.throughput[i];
+                film.add(frame, int(i) % record.width, int(i) / record.width,
+                         Rgb(float(sum.x), float(sum.y), float(sum.z)) * piece.throughput[i]);
             }
         }
     return gathered;

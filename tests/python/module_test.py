@@ -42,6 +42,22 @@ class Render(unittest.TestCase):
         self.file = self.folder / "scene.json"
         self.file.write_text(json.dumps(SCENE))
 
+    def test_film_of_luminance(self):
+        settings = {"seed": 3, "passes": 4}
+        whole = darts_tungsten.render(SCENE, **settings)
+        grey = darts_tungsten.render(SCENE, set={"film": {"channels": "luminance", "moments": False}}, **settings)
+        self.assertEqual(grey.mean.shape, (4, 8, 12, 1))
+        np.testing.assert_allclose(grey.mean[..., 0], whole.mean @ np.array([0.2126, 0.7152, 0.0722]), rtol=1e-4, atol=1e-7)
+        self.assertTrue(np.isnan(grey.standard_error).all())
+        self.assertAlmostEqual(grey.relative_error / whole.relative_error, 1.0, 3)  # the scene is grey
+        self.assertEqual(grey.metadata["channels"], ["Y"])
+        grey.write(self.folder / "grey.npz")
+        with np.load(self.folder / "grey.npz") as result:
+            self.assertEqual(result["mean"].shape, (4, 8, 12, 1))
+            self.assertNotIn("standard_error", result)
+        with self.assertRaisesRegex(ValueError, "film.channels.*luminance"):
+            darts_tungsten.render(SCENE, set={"film": {"channels": "luminence"}}, passes=1)
+
     def command(self, *options):
         subprocess.run([TUNGSTEN, "--quiet", "-d", self.folder, "-e", "film.npz", *options, self.file], check=True)
         return np.load(self.folder / "film.npz")

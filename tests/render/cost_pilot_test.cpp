@@ -38,8 +38,8 @@ class KnownPasses : public Integrator {
             for (int x = 0; x < film.width(); ++x) {
                 const double sign = (x + y) % 2 == 0 ? 1.0 : -1.0, wrong = kernels ? sign * left : 0.0;
                 const double noise = spread * (2.0 * double(sampler.next1D()) - 1.0);
-                film.passPixel(0, x, y) += Rgb(float(1.0 + wrong + noise));
-                if (pass.bias) pass.bias->passPixel(0, x, y) += Rgb(float(wrong + 0.3 * noise));
+                film.add(0, x, y, Rgb(float(1.0 + wrong + noise)));
+                if (pass.bias) pass.bias->add(0, x, y, Rgb(float(wrong + 0.3 * noise)));
             }
     }
 };

@@ -29,8 +29,8 @@ class FakeIntegrator : public Integrator {
                 for (int x = 0; x < film.width(); ++x) {
                     const auto path = uint64_t((frame * film.height() + y) * film.width() + x);
                     Sampler sampler(pass.seed, RandomStream::Test, pass.index, path);
-                    film.passPixel(frame, x, y) = Rgb(1.0f - noise * sampler.next1D());
-                    if (pass.bias) pass.bias->passPixel(frame, x, y) += Rgb(bias * (0.9f + 0.2f * sampler.next1D()));
+                    film.set(frame, x, y, Rgb(1.0f - noise * sampler.next1D()));
+                    if (pass.bias) pass.bias->add(frame, x, y, Rgb(bias * (0.9f + 0.2f * sampler.next1D())));
                 }
         statistics.add("fake passes", 1);
         passes.push_back(pass);

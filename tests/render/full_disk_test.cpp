@@ -101,7 +101,7 @@ TEST_F(FullDisk, ImagesAreWholeWhereverTheyAreCut) {
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = Rgb(float(i * 7919 % 1013), 1.0f, float(i));
     const fs::path png = folder.path() / "a.png", exr = folder.path() / "a.exr", npy = folder.path() / "a.npy",
                    npz = folder.path() / "a.npz", hdf5 = folder.path() / "a.h5";
-    const ResultContent content{image.width, image.height, 1, {{"mean", [&](int) { return image; }}}, {}, "{}"};
+    const ResultContent content{image.width, image.height, 1, 3, {{"mean", [&](int) { return image; }}}, {}, "{}"};
     const auto writeAll = [&](int& failures) {
         const auto attempt = [&](auto write) {
             try {

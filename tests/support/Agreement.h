@@ -6,6 +6,7 @@
 #include "support/SceneFile.h"
 
 #include "tungsten/render/Plugin.h"
+#include "tungsten/render/SceneFilm.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <algorithm>
@@ -181,7 +182,7 @@ class PassRenderer {
         EffectPlan plan = analyseScene(*scene_);
         integrator_->plan(plan);
         integrator_->prepare(plan, statistics_);
-        film_ = Film(scene.width, scene.height, scene_->transport.gate.frames);
+        film_ = filmOf(*scene_);
     }
     /// The film holds the pass until the next one.
     Film& render(const PassInfo& pass) {
@@ -229,7 +230,7 @@ class BlockFilm {
             const std::vector<Vec3d> others =
                 minus ? blockMeansOfPass(*minus, frame) : std::vector<Vec3d>(means.size());
             for (size_t block = 0; block < means.size(); ++block)
-                film_.passPixel(frame, int(block), 0) = floats(minus ? means[block] - others[block] : means[block]);
+                film_.set(frame, int(block), 0, floats(minus ? means[block] - others[block] : means[block]));
         }
         film_.endPass(1.0);
     }

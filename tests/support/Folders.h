@@ -1,5 +1,6 @@
 #pragma once
-// Where the build put the command and its plugins, and where scenes are. Defined once, so that the tests' objects do not depend on paths.
+// Where the build put the command and its plugins, and where scenes are. Defined once, so that the tests' objects do
+// not depend on paths.
 
 #include <filesystem>
 

@@ -5,6 +5,7 @@
 
 #include "tungsten/film/KernelBias.h"
 #include "tungsten/render/Integrator.h"
+#include "tungsten/render/SceneFilm.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <tbb/global_control.h>
@@ -51,9 +52,8 @@ std::unique_ptr<Rendered> render(const std::filesystem::path& file, const Render
     EffectPlan plan = analyseScene(*loaded.scene);
     integrator->plan(plan);
     integrator->prepare(plan, rendered->statistics);
-    const Camera& camera = loaded.scene->camera;
-    rendered->film = Film(camera.resolution.x, camera.resolution.y, loaded.scene->transport.gate.frames);
-    rendered->bias = Film(camera.resolution.x, camera.resolution.y, rendered->film.frames(), PassWeight::Repeats);
+    rendered->film = filmOf(*loaded.scene);
+    rendered->bias = filmOf(*loaded.scene, PassWeight::Repeats);
     for (uint32_t pass = 0; pass < options.passes; ++pass) {
         PassInfo info{pass, uint64_t(pass) * options.samplesPerPass, options.samplesPerPass, options.seed};
         const uint32_t standsFor = options.bias ? passesOfItsBias(pass) : 0;

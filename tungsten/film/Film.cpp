@@ -4,6 +4,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <istream>
 #include <limits>
@@ -16,113 +18,132 @@ namespace {
 
 constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
 constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '3'};
+constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '4'};
 
 struct StateHeader {
     char magic[8];
-    int32_t width, height, frames;
-    uint32_t passes;
-    double weight, squaredWeights;
+    int32_t width, height, frames, channels;
+    uint32_t moments, passes;
+    double weight, squaredWeights, moment2Sum;
     uint64_t nonFinite;
 };
 
-/// West's update of a weighted mean and sum of squared deviations, per channel. Returns what it adds to the sum.
-double fold(float value, double weight, double totalBefore, float& mean, float& moment2) {
+/// West's update of a weighted mean. Returns what it adds to the sum of squared deviations.
+double fold(float value, double weight, double totalBefore, float& mean) {
     const double delta = double(value) - double(mean);
     const double share = delta * weight / (totalBefore + weight);
-    const double deviation = totalBefore * delta * share;
     mean = float(double(mean) + share);
+    return totalBefore * delta * share;
+}
+
+double fold(float value, double weight, double totalBefore, float& mean, float& moment2) {
+    const double deviation = fold(value, weight, totalBefore, mean);
     moment2 = float(double(moment2) + deviation);
     return deviation;
 }
 
-double fold(const Rgb& value, double weight, double totalBefore, Rgb& mean, Rgb& moment2) {
-    double deviation = 0.0;
-    for (int c = 0; c < 3; ++c) deviation += fold(value[c], weight, totalBefore, mean[c], moment2[c]);
-    return deviation;
-}
-
-/// Standard error: the root of the second moment times `scale`.
-Image errorImage(int width, int height, const Rgb* moment2, double scale) {
-    Image image(width, height);
-    for (size_t i = 0; i < image.pixels.size(); ++i)
-        for (int c = 0; c < 3; ++c) image.pixels[i][c] = float(std::sqrt(std::max(double(moment2[i][c]), 0.0) * scale));
-    return image;
-}
-
-Image imageOf(int width, int height, const Rgb* pixels) {
-    Image image(width, height);
-    std::copy(pixels, pixels + image.pixels.size(), image.pixels.begin());
-    return image;
-}
-
-/// Over pixels and channels, of a function of their values.
+/// Of a function of the values.
 template <typename Function>
-double meanOf(const std::vector<Rgb>& pixels, const Function& function) {
+double meanOf(const LazyArray& values, const Function& function) {
     double sum = 0.0;
-    for (const Rgb& pixel : pixels)
-        for (int c = 0; c < 3; ++c) sum += function(pixel[c]);
-    return pixels.empty() ? 0.0 : sum / (3.0 * double(pixels.size()));
+    for (const float value : values) sum += function(double(value));
+    return values.empty() ? 0.0 : sum / double(values.size());
 }
 
-void writeArray(std::ostream& out, const std::vector<Rgb>& values) {
-    out.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(Rgb)));
+template <typename Values>
+void writeArray(std::ostream& out, const Values& values, size_t first, size_t count) {
+    out.write(reinterpret_cast<const char*>(values.data() + first), std::streamsize(count * sizeof(values[0])));
 }
 
-void readArray(std::istream& in, std::vector<Rgb>& values) {
-    in.read(reinterpret_cast<char*>(values.data()), std::streamsize(values.size() * sizeof(Rgb)));
+template <typename Values>
+void readArray(std::istream& in, Values& values, size_t first, size_t count) {
+    in.read(reinterpret_cast<char*>(values.data() + first), std::streamsize(count * sizeof(values[0])));
 }
 
 } // namespace
 
-Film::Film(int width, int height, int frames, PassWeight meaning)
-    : width_(width), height_(height), frames_(frames), meaning_(meaning) {
-    const double bytes = memoryFor(width, height, frames);
+Film::Film(int width, int height, int frames, FilmContents contents, PassWeight meaning)
+    : width_(width), height_(height), frames_(frames), contents_(contents), meaning_(meaning) {
+    const double bytes = memoryFor(width, height, frames, contents);
     if (bytes > LargestFilmBytes)
         throw InputError("film", std::to_string(width) + "x" + std::to_string(height) + " pixels in " +
                                      std::to_string(frames) + " frames would take " +
                                      std::to_string(int(bytes / (1024.0 * 1024 * 1024))) +
-                                     " GiB; the limit is 16 GiB: use fewer frames or a smaller --resolution");
-    const size_t pixels = size_t(width) * size_t(height);
-    mean_.assign(pixels * size_t(frames), Rgb(0.0f));
-    moment2_ = mean_;
-    pass_ = mean_;
+                                     " GiB; the limit is 16 GiB: use fewer frames, film.channels luminance, no " +
+                                     "film.moments or a smaller --resolution");
+    const size_t values = size_t(width) * size_t(height) * size_t(contents.channels);
+    mean_ = LazyArray(values * size_t(frames));
+    pass_ = LazyArray(values * size_t(frames));
+    if (contents.moments) moment2_ = LazyArray(values * size_t(frames));
+    touched_.assign(size_t(height) * size_t(frames), 0);
+    lit_ = touched_;
     if (frames > 1) {
-        totalMean_.assign(pixels, Rgb(0.0f));
+        totalMean_.assign(values, 0.0f);
         totalMoment2_ = totalMean_;
     }
 }
 
-double Film::memoryFor(int width, int height, int frames) {
-    return double(width) * double(height) * (double(frames) * 3.0 + 2.0) * double(sizeof(Rgb));
+double Film::memoryFor(int width, int height, int frames, FilmContents contents) {
+    return double(width) * double(height) * (double(frames) * contents.floats() + 2.0 * contents.channels) *
+           double(sizeof(float));
 }
 
 void Film::beginPass() {
-    std::fill(pass_.begin(), pass_.end(), Rgb(0.0f));
+    const size_t values = size_t(width_) * size_t(contents_.channels);
+    tbb::parallel_for(size_t(0), touched_.size(), [&](size_t row) {
+        if (touched_[row] != 0) std::fill_n(pass_.begin() + ptrdiff_t(row * values), values, 0.0f);
+        touched_[row] = 0;
+    });
+}
+
+void Film::setPassValues(const std::vector<float>& values) {
+    const auto rowValues = ptrdiff_t(width_ * contents_.channels);
+    for (size_t row = 0; row < touched_.size(); ++row) {
+        const auto begin = values.begin() + ptrdiff_t(row) * rowValues, end = begin + rowValues;
+        if (std::all_of(begin, end, [](float value) { return value == 0.0f; })) continue;
+        std::copy(begin, end, pass_.begin() + ptrdiff_t(row) * rowValues);
+        touched_[row] = 1;
+    }
+}
+
+double Film::foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite) {
+    const size_t values = size_t(width_) * size_t(contents_.channels), first = row * values;
+    float *pass = pass_.data() + first, *means = mean_.data() + first;
+    if (touched_[row] != 0) {
+        lit_[row] = 1;
+        for (size_t x = 0; x < values; x += size_t(contents_.channels))
+            if (!isFinite(rgb(pass + x))) {
+                ++nonFinite;
+                std::fill_n(pass + x, contents_.channels, 0.0f);
+            }
+    } else if (lit_[row] == 0) {
+        return 0.0;
+    }
+    double deviation = 0.0;
+    for (size_t i = 0; i < values; ++i) {
+        deviation += contents_.moments ? fold(pass[i], weight, weight_, means[i], moment2_[first + i])
+                                       : fold(pass[i], weight, weight_, means[i]);
+        sums[i] += pass[i];
+    }
+    return deviation;
 }
 
 void Film::endPass(double weight) {
-    const size_t pixels = size_t(width_) * size_t(height_);
-    const double before = weight_;
-    std::vector<uint32_t> rowNonFinite(size_t(height_), 0);
+    const size_t values = size_t(width_) * size_t(contents_.channels);
+    std::vector<uint64_t> rowNonFinite(size_t(height_), 0);
     std::vector<double> rowDeviation(size_t(height_), 0.0);
-    tbb::parallel_for(size_t(0), size_t(height_), [&](size_t row) {
-        for (size_t pixel = row * size_t(width_); pixel < (row + 1) * size_t(width_); ++pixel) {
-            Rgb sum(0.0f);
-            for (size_t frame = 0; frame < size_t(frames_); ++frame) {
-                const size_t i = frame * pixels + pixel;
-                if (!isFinite(pass_[i])) {
-                    ++rowNonFinite[row];
-                    pass_[i] = Rgb(0.0f);
-                }
-                rowDeviation[row] += fold(pass_[i], weight, before, mean_[i], moment2_[i]);
-                sum += pass_[i];
-            }
-            if (frames_ > 1) fold(sum / float(frames_), weight, before, totalMean_[pixel], totalMoment2_[pixel]);
-        }
+    tbb::parallel_for(size_t(0), size_t(height_), [&](size_t y) {
+        std::vector<float> sums(values, 0.0f);
+        for (int frame = 0; frame < frames_; ++frame)
+            rowDeviation[y] += foldRow(row(frame, int(y)), weight, sums.data(), rowNonFinite[y]);
+        if (frames_ == 1) return;
+        for (size_t i = 0; i < values; ++i)
+            fold(sums[i] / float(frames_), weight, weight_, totalMean_[y * values + i], totalMoment2_[y * values + i]);
     });
-    for (const uint32_t count : rowNonFinite) nonFinite_ += count;
-    if (passes_ > 0) scatter_.add(variance(std::accumulate(rowDeviation.begin(), rowDeviation.end(), 0.0), weight));
+    for (const uint64_t count : rowNonFinite) nonFinite_ += count;
+    const double deviation = std::accumulate(rowDeviation.begin(), rowDeviation.end(), 0.0);
+    if (passes_ > 0) scatter_.add(variance(deviation, weight));
+    moment2Sum_ += deviation;
     weight_ += weight;
     squaredWeights_ += weight * weight;
     ++passes_;
@@ -141,33 +162,49 @@ double Film::errorScale() const {
     return squaredWeights_ / (weight_ * (weight_ * weight_ - squaredWeights_));
 }
 
+Image Film::imageOf(const float* values) const {
+    Image image(width_, height_);
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = rgb(values + i * size_t(contents_.channels));
+    return image;
+}
+
+Image Film::errorImage(const float* moments) const {
+    Image image = imageOf(moments);
+    const double scale = errorScale();
+    for (Rgb& pixel : image.pixels)
+        for (int c = 0; c < 3; ++c) pixel[c] = float(std::sqrt(std::max(double(pixel[c]), 0.0) * scale));
+    return image;
+}
+
 Image Film::mean(int frame) const {
-    return imageOf(width_, height_, mean_.data() + size_t(frame) * size_t(width_) * size_t(height_));
+    return imageOf(mean_.data() + offset(frame, 0, 0));
 }
 
 Image Film::standardError(int frame) const {
-    const Rgb* moments = moment2_.data() + size_t(frame) * size_t(width_) * size_t(height_);
-    return errorImage(width_, height_, moments, errorScale());
+    if (contents_.moments) return errorImage(moment2_.data() + offset(frame, 0, 0));
+    Image unknown(width_, height_);
+    std::fill(unknown.pixels.begin(), unknown.pixels.end(), Rgb(float(Unknown)));
+    return unknown;
 }
 
 Image Film::meanOverFrames() const {
-    return frames_ > 1 ? imageOf(width_, height_, totalMean_.data()) : mean(0);
+    return frames_ > 1 ? imageOf(totalMean_.data()) : mean(0);
 }
 
 Image Film::standardErrorOverFrames() const {
-    return frames_ > 1 ? errorImage(width_, height_, totalMoment2_.data(), errorScale()) : standardError(0);
+    return frames_ > 1 ? errorImage(totalMoment2_.data()) : standardError(0);
 }
 
 double Film::meanValue() const {
-    return meanOf(mean_, [](float value) { return double(value); });
+    return meanOf(mean_, [](double value) { return value; });
 }
 
 double Film::meanSquare() const {
-    return meanOf(mean_, [](float value) { return double(value) * double(value); });
+    return meanOf(mean_, [](double value) { return value * value; });
 }
 
 double Film::meanSquaredError() const {
-    return errorScale() * meanOf(moment2_, [](float value) { return double(value); });
+    return mean_.empty() ? 0.0 : errorScale() * moment2Sum_ / double(mean_.size());
 }
 
 double Film::relativeStandardError() const {
@@ -176,15 +213,24 @@ double Film::relativeStandardError() const {
 }
 
 size_t Film::memoryBytes() const {
-    return (mean_.size() + moment2_.size() + pass_.size() + totalMean_.size() + totalMoment2_.size()) * sizeof(Rgb) +
-           scatter_.memoryBytes();
+    const auto lit = size_t(std::count(lit_.begin(), lit_.end(), uint8_t(1)));
+    const size_t floats = lit * size_t(width_) * size_t(contents_.floats()) + totalMean_.size() + totalMoment2_.size();
+    return floats * sizeof(float) + touched_.size() + lit_.size() + scatter_.memoryBytes();
 }
 
 void Film::write(std::ostream& out) const {
-    StateHeader header{{}, width_, height_, frames_, passes_, weight_, squaredWeights_, nonFinite_};
+    StateHeader header{{},      width_,  height_,         frames_,     contents_.channels, contents_.moments,
+                       passes_, weight_, squaredWeights_, moment2Sum_, nonFinite_};
     std::memcpy(header.magic, Magic, sizeof Magic);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    for (const auto* values : {&mean_, &moment2_, &totalMean_, &totalMoment2_}) writeArray(out, *values);
+    const size_t values = size_t(width_) * size_t(contents_.channels);
+    writeArray(out, lit_, 0, lit_.size());
+    for (size_t row = 0; row < lit_.size(); ++row) {
+        if (lit_[row] == 0) continue;
+        writeArray(out, mean_, row * values, values);
+        if (contents_.moments) writeArray(out, moment2_, row * values, values);
+    }
+    for (const auto* total : {&totalMean_, &totalMoment2_}) writeArray(out, *total, 0, total->size());
     scatter_.write(out);
 }
 
@@ -193,19 +239,29 @@ void Film::read(std::istream& in, const std::string& fileName) {
     in.read(reinterpret_cast<char*>(&header), sizeof header);
     if (!in || std::memcmp(header.magic, Magic, sizeof Magic) != 0)
         throw InputError(fileName, "not a saved render state (or truncated)");
-    if (header.width != width_ || header.height != height_ || header.frames != frames_)
-        throw InputError(fileName, "the saved state has " + std::to_string(header.width) + "x" +
-                                       std::to_string(header.height) + " pixels in " + std::to_string(header.frames) +
-                                       " frames, this render " + std::to_string(width_) + "x" +
-                                       std::to_string(height_) + " in " + std::to_string(frames_));
-    Film loaded(width_, height_, frames_, meaning_);
-    for (auto* values : {&loaded.mean_, &loaded.moment2_, &loaded.totalMean_, &loaded.totalMoment2_})
-        readArray(in, *values);
+    const auto text = [](int width, int height, int frames, int channels, bool moments) {
+        return std::to_string(width) + "x" + std::to_string(height) + " pixels in " + std::to_string(frames) +
+               " frames of " + std::to_string(channels) + (channels == 1 ? " channel" : " channels") +
+               (moments ? "" : " without moments");
+    };
+    const std::string saved = text(header.width, header.height, header.frames, header.channels, header.moments != 0);
+    const std::string mine = text(width_, height_, frames_, contents_.channels, contents_.moments);
+    if (saved != mine) throw InputError(fileName, "the saved state has " + saved + ", this render " + mine);
+    Film loaded(width_, height_, frames_, contents_, meaning_);
+    const size_t values = size_t(width_) * size_t(contents_.channels);
+    readArray(in, loaded.lit_, 0, loaded.lit_.size());
+    for (size_t row = 0; row < loaded.lit_.size(); ++row) {
+        if (loaded.lit_[row] == 0) continue;
+        readArray(in, loaded.mean_, row * values, values);
+        if (contents_.moments) readArray(in, loaded.moment2_, row * values, values);
+    }
+    for (auto* total : {&loaded.totalMean_, &loaded.totalMoment2_}) readArray(in, *total, 0, total->size());
     loaded.scatter_.read(in);
     if (!in) throw InputError(fileName, "the saved render state is truncated");
     loaded.passes_ = header.passes;
     loaded.weight_ = header.weight;
     loaded.squaredWeights_ = header.squaredWeights;
+    loaded.moment2Sum_ = header.moment2Sum;
     loaded.nonFinite_ = header.nonFinite;
     *this = std::move(loaded);
 }

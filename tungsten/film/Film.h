@@ -3,8 +3,11 @@
 // error.
 
 #include "tungsten/core/Types.h"
+#include "tungsten/film/FilmContents.h"
+#include "tungsten/film/LazyArray.h"
 #include "tungsten/film/PassScatter.h"
 
+#include <atomic>
 #include <cstdint>
 #include <iosfwd>
 #include <string>
@@ -29,34 +32,56 @@ enum class PassWeight {
     Repeats, ///< the pass stands for so many like it; all have one variance
 };
 
+/// Rec. 709, of linear RGB.
+inline float luminanceOf(const Rgb& value) {
+    return 0.2126f * value.x + 0.7152f * value.y + 0.0722f * value.z;
+}
+
 /// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
 /// (by samples per pixel). Mean and second moment follow West (1979), so adding in the same order gives the same bits.
+/// Rows of frames that no pass adds to take neither time nor memory.
 class Film {
   public:
     Film() = default;
-    Film(int width, int height, int frames, PassWeight meaning = PassWeight::Samples);
-    /// Bytes that such a film takes.
-    [[nodiscard]] static double memoryFor(int width, int height, int frames);
+    Film(int width, int height, int frames, FilmContents contents = {}, PassWeight meaning = PassWeight::Samples);
+    /// Bytes that such a film takes once every row has light.
+    [[nodiscard]] static double memoryFor(int width, int height, int frames, FilmContents contents = {});
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] int frames() const { return frames_; }
+    [[nodiscard]] const FilmContents& contents() const { return contents_; }
     [[nodiscard]] uint32_t passes() const { return passes_; }
     [[nodiscard]] double totalWeight() const { return weight_; }
 
-    /// The image of the pass in progress (zeroed by beginPass): integrators write each pixel's mean over the pass's
-    /// samples.
+    /// The image of the pass in progress is zeroed; integrators add up each pixel's mean over the pass's samples.
     void beginPass();
-    [[nodiscard]] Rgb& passPixel(int frame, int x, int y) {
-        return pass_[(size_t(frame) * size_t(height_) + size_t(y)) * size_t(width_) + size_t(x)];
+    /// To the image of the pass in progress. Threads may add to different pixels at once.
+    void add(int frame, int x, int y, const Rgb& value) {
+        if (value == Rgb(0.0f)) return;
+        float* pixel = passPixelToChange(frame, x, y);
+        if (contents_.channels == 1)
+            *pixel += luminanceOf(value);
+        else
+            for (int c = 0; c < 3; ++c) pixel[c] += value[c];
     }
+    /// Instead of what the pass in progress has there.
+    void set(int frame, int x, int y, const Rgb& value) {
+        if (touched_[row(frame, y)] != 0) std::fill_n(passPixelToChange(frame, x, y), contents_.channels, 0.0f);
+        add(frame, x, y, value);
+    }
+    /// Of the pass in progress, or the last one.
+    [[nodiscard]] Rgb passPixel(int frame, int x, int y) const { return rgb(pass_.data() + offset(frame, x, y)); }
+    /// The whole pass, frame by frame, row by row, channels innermost.
+    [[nodiscard]] const LazyArray& passValues() const { return pass_; }
+    void setPassValues(const std::vector<float>& values);
     /// Folds the pass image in with the given weight (> 0). Non-finite pixels are counted, and replaced by 0.
     void endPass(double weight);
     [[nodiscard]] uint64_t nonFiniteSamples() const { return nonFinite_; }
     void countNonFinite(uint64_t n) { nonFinite_ += n; }
 
     [[nodiscard]] Image mean(int frame) const;
-    /// Standard error of mean(frame) per pixel; NaN while it is unknown, with fewer than two passes.
+    /// Standard error of mean(frame) per pixel; NaN while it is unknown: with fewer than two passes, without moments.
     [[nodiscard]] Image standardError(int frame) const;
     /// Mean over the frames: the image of the whole gate.
     [[nodiscard]] Image meanOverFrames() const;
@@ -81,19 +106,39 @@ class Film {
     void read(std::istream& in, const std::string& fileName);
 
   private:
+    [[nodiscard]] size_t row(int frame, int y) const { return size_t(frame) * size_t(height_) + size_t(y); }
+    [[nodiscard]] size_t offset(int frame, int x, int y) const {
+        return (row(frame, y) * size_t(width_) + size_t(x)) * size_t(contents_.channels);
+    }
+    [[nodiscard]] float* passPixelToChange(int frame, int x, int y) {
+        const std::atomic_ref<uint8_t> touched(touched_[row(frame, y)]);
+        if (!touched.load(std::memory_order_relaxed)) touched.store(1, std::memory_order_relaxed);
+        return pass_.data() + offset(frame, x, y);
+    }
+    [[nodiscard]] Rgb rgb(const float* values) const {
+        return contents_.channels == 1 ? Rgb(*values) : Rgb(values[0], values[1], values[2]);
+    }
+    /// One row of the pass into the means: returns what it adds to the second moments, and adds the row to `sums`.
+    double foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite);
+    [[nodiscard]] Image imageOf(const float* values) const;
+    /// The root of the second moments times errorScale().
+    [[nodiscard]] Image errorImage(const float* moments) const;
     /// From a second moment to the squared standard error; NaN while it is unknown.
     [[nodiscard]] double errorScale() const;
     /// An estimate of the variance of one pass from what it adds to the second moment.
     [[nodiscard]] double variance(double deviation, double weight) const;
 
     int width_ = 0, height_ = 0, frames_ = 0;
+    FilmContents contents_;
     PassWeight meaning_ = PassWeight::Samples;
     uint32_t passes_ = 0;
     double weight_ = 0.0, squaredWeights_ = 0.0; ///< sums over the passes
+    double moment2Sum_ = 0.0;                    ///< of all pixels and channels
     uint64_t nonFinite_ = 0;
     PassScatter scatter_;
-    std::vector<Rgb> mean_, moment2_, pass_;
-    std::vector<Rgb> totalMean_, totalMoment2_; ///< of the mean over frames (frames > 1)
+    LazyArray mean_, moment2_, pass_;
+    std::vector<uint8_t> touched_, lit_;          ///< rows of frames to which this pass, any pass added
+    std::vector<float> totalMean_, totalMoment2_; ///< of the mean over frames (frames > 1)
 };
 
 } // namespace tungsten

@@ -72,9 +72,10 @@ void addVector(hid_t file, const ResultContent::Vector& vector) {
 }
 
 void addImages(hid_t file, const ResultContent& content, const ResultContent::Images& images) {
-    const auto width = hsize_t(content.width), height = hsize_t(content.height);
-    const hsize_t shape[] = {hsize_t(content.frames), height, width, 3}, oneFrame[] = {1, height, width, 3},
-                  tile[] = {1, std::min(height, TileSide), std::min(width, TileSide), 3};
+    const auto width = hsize_t(content.width), height = hsize_t(content.height), channels = hsize_t(content.channels);
+    const hsize_t shape[] = {hsize_t(content.frames), height, width, channels},
+                  oneFrame[] = {1, height, width, channels},
+                  tile[] = {1, std::min(height, TileSide), std::min(width, TileSide), channels};
     const Handle space(H5Screate_simple(4, shape, nullptr), H5Sclose),
         frameSpace(H5Screate_simple(4, oneFrame, nullptr), H5Sclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     checked(H5Pset_chunk(creation, 4, tile));
@@ -84,10 +85,10 @@ void addImages(hid_t file, const ResultContent& content, const ResultContent::Im
         H5Dcreate2(file, images.name.c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
     addAttribute(dataset, "axes", "frame, row, column, channel");
     for (int frame = 0; frame < content.frames; ++frame) {
-        const Image image = images.frame(frame);
+        const std::vector<float> values = valuesOf(images.frame(frame), content.channels);
         const hsize_t start[] = {hsize_t(frame), 0, 0, 0};
         checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, oneFrame, nullptr));
-        checked(H5Dwrite(dataset, H5T_NATIVE_FLOAT, frameSpace, space, H5P_DEFAULT, image.pixels.data()));
+        checked(H5Dwrite(dataset, H5T_NATIVE_FLOAT, frameSpace, space, H5P_DEFAULT, values.data()));
     }
 }
 

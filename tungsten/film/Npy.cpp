@@ -21,9 +21,9 @@ std::string npyHeader(const std::string& type, const std::string& shape) {
     return std::string("\x93NUMPY\x01\x00", 8) + char(length & 255) + char(length >> 8) + header;
 }
 
-std::string imagesHeader(size_t frames, int height, int width) {
-    return npyHeader("<f4",
-                     std::to_string(frames) + ", " + std::to_string(height) + ", " + std::to_string(width) + ", 3");
+std::string imagesHeader(size_t frames, int height, int width, int channels) {
+    return npyHeader("<f4", std::to_string(frames) + ", " + std::to_string(height) + ", " + std::to_string(width) +
+                                ", " + std::to_string(channels));
 }
 
 /// A zip in a stream. A stream that failed is left to its owner, and minizip, which leaks when it fails, not told.
@@ -93,10 +93,10 @@ void writeMembers(ZipStream& zip, const ResultContent& content) {
         zip.append(header.data(), header.size());
     };
     for (const ResultContent::Images& images : content.images) {
-        begin(images.name, imagesHeader(size_t(content.frames), content.height, content.width));
+        begin(images.name, imagesHeader(size_t(content.frames), content.height, content.width, content.channels));
         for (int frame = 0; frame < content.frames; ++frame) {
-            const Image image = images.frame(frame);
-            zip.append(image.pixels.data(), image.pixels.size() * sizeof(Rgb));
+            const std::vector<float> values = valuesOf(images.frame(frame), content.channels);
+            zip.append(values.data(), values.size() * sizeof(float));
         }
         zip.endMember();
     }
@@ -112,10 +112,18 @@ void writeMembers(ZipStream& zip, const ResultContent& content) {
 
 } // namespace
 
+std::vector<float> valuesOf(const Image& image, int channels) {
+    std::vector<float> values;
+    values.reserve(image.pixels.size() * size_t(channels));
+    for (const Rgb& pixel : image.pixels)
+        for (int c = 0; c < channels; ++c) values.push_back(pixel[c]);
+    return values;
+}
+
 void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frames) {
     const int width = frames.empty() ? 0 : frames[0].width, height = frames.empty() ? 0 : frames[0].height;
     writeAtomically(file, [&](std::ostream& out) {
-        out << imagesHeader(frames.size(), height, width);
+        out << imagesHeader(frames.size(), height, width, 3);
         for (const Image& frame : frames)
             out.write(reinterpret_cast<const char*>(frame.pixels.data()),
                       std::streamsize(frame.pixels.size() * sizeof(Rgb)));

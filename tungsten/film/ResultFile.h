@@ -24,10 +24,14 @@ struct ResultContent {
         std::vector<double> values;
     };
     int width = 0, height = 0, frames = 0;
-    std::vector<Images> images;  ///< each (frames, height, width, 3) of 32-bit floats
+    int channels = 3;            ///< 3, or 1: of the images' pixels, which are grey, the first
+    std::vector<Images> images;  ///< each (frames, height, width, channels) of 32-bit floats
     std::vector<Vector> vectors; ///< 64-bit floats
     std::string metadata;        ///< JSON
 };
+
+/// Row-major, channels innermost.
+std::vector<float> valuesOf(const Image& image, int channels);
 
 /// A zip of one NAME.npy for every array, stored, and metadata.json: what numpy.load reads. Throws InputError naming
 /// the file.

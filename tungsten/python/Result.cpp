@@ -17,15 +17,16 @@ namespace {
 template <typename Frame>
 std::vector<float> arrayOf(const Film& film, const Scene& scene, const Frame& frameOf) {
     std::vector<float> values;
-    values.reserve(size_t(film.frames()) * size_t(film.height()) * size_t(film.width()) * 3);
+    values.reserve(size_t(film.frames()) * size_t(film.height()) * size_t(film.width()) *
+                   size_t(film.contents().channels));
     for (int frame = 0; frame < film.frames(); ++frame)
-        for (const Rgb& pixel : inOutputUnits(frameOf(frame), scene, 1).pixels)
-            values.insert(values.end(), {pixel.x, pixel.y, pixel.z});
+        for (const float value : valuesOf(inOutputUnits(frameOf(frame), scene, 1), film.contents().channels))
+            values.push_back(value);
     return values;
 }
 
 py::array viewOf(const std::vector<float>& values, const Film& film, const py::object& owner) {
-    const std::vector<py::ssize_t> shape{film.frames(), film.height(), film.width(), 3};
+    const std::vector<py::ssize_t> shape{film.frames(), film.height(), film.width(), film.contents().channels};
     py::array view(py::dtype::of<float>(), shape, values.data(), owner);
     view.attr("setflags")(py::arg("write") = false);
     return view;
@@ -88,7 +89,7 @@ py::array Result::standardError(const py::object& self) {
 void declareResult(py::module_& module) {
     const auto property = [](auto get) { return py::cpp_function(get); };
     py::class_<Result>(module, "Result", "What a render left; docs/results.md says what the arrays are.")
-        .def_property_readonly("mean", property(&Result::mean), "(frames, height, width, 3), a read-only view")
+        .def_property_readonly("mean", property(&Result::mean), "(frames, height, width, channels), a read-only view")
         .def_property_readonly("standard_error", property(&Result::standardError),
                                "of mean, a read-only view; NaN while there is but one pass")
         .def_property_readonly("time_edges", edgesOf, "frames + 1 times in the scene's unit")

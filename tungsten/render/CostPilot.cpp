@@ -1,6 +1,6 @@
 #include "tungsten/render/CostPilot.h"
 
-#include "tungsten/film/Film.h"
+#include "tungsten/render/SceneFilm.h"
 
 #include <algorithm>
 #include <array>
@@ -154,8 +154,6 @@ std::optional<double> PassCosts::passesFor(double wanted) const {
 
 std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
                                        const PilotOptions& options) {
-    const Vec2i size = scene.camera.resolution;
-    const int frames = scene.transport.gate.frames;
     const bool measuresBias = integrator.leavesBias(plan);
     const double wall = wallNow(), cpu = processCpuSeconds();
     Statistics preparing;
@@ -163,8 +161,8 @@ std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrato
     const double prepareWall = wallNow() - wall, prepareCpu = processCpuSeconds() - cpu;
     std::array<Sample, Indices.size()> samples;
     for (Sample& sample : samples) {
-        sample.film = Film(size.x, size.y, frames);
-        if (measuresBias) sample.bias = Film(size.x, size.y, frames);
+        sample.film = filmOf(scene);
+        if (measuresBias) sample.bias = filmOf(scene);
     }
     const double start = wallNow();
     for (uint32_t round = 0; round < LeastRounds || wallNow() - start < options.seconds; ++round)

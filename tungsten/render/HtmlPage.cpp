@@ -22,7 +22,8 @@ FilmImages imagesOf(const Film& film, const Scene& scene) {
     FilmImages images;
     for (int frame = 0; frame < film.frames(); ++frame) {
         images.means.push_back(inOutputUnits(film.mean(frame), scene, 1));
-        if (film.passes() >= 2) images.standardErrors.push_back(inOutputUnits(film.standardError(frame), scene, 1));
+        if (film.passes() >= 2 && film.contents().moments)
+            images.standardErrors.push_back(inOutputUnits(film.standardError(frame), scene, 1));
     }
     return images;
 }

@@ -20,7 +20,7 @@ struct PassInfo {
     uint64_t firstSample = 0; ///< samples per pixel already taken by earlier passes
     uint32_t samples = 1;     ///< samples per pixel of this pass
     uint64_t seed = 0;
-    /// If any, an integrator that leavesBias adds to its passPixel(), zeroed before, about by how much kernels make
+    /// If any, an integrator that leavesBias adds to its pass, zeroed before, about by how much kernels make
     /// the pass's image wrong: what the pass would have, had it no noise, minus the truth.
     Film* bias = nullptr;
 };
@@ -40,8 +40,8 @@ class Integrator {
     [[nodiscard]] virtual bool leavesBias(const EffectPlan&) const { return false; }
     /// Width of a pass's kernels over that of the first pass's, whose square their bias follows; after prepare().
     [[nodiscard]] virtual double kernelWidth(uint32_t) const { return 1.0; }
-    /// Adds the pass's image to every frame of film.passPixel(): each pixel's mean over the pass's samples, averaged
-    /// over the gate.
+    /// Adds the pass's image to every frame of the film (Film::add): each pixel's mean over the pass's samples,
+    /// averaged over the gate.
     virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;
 };
 

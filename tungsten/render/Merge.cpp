@@ -2,6 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/render/PartialStateReader.h"
+#include "tungsten/render/SceneFilm.h"
 #include "tungsten/scene/JsonWriter.h"
 
 #include <algorithm>
@@ -90,7 +91,7 @@ MergedRender mergePartialStates(const std::vector<fs::path>& files) {
     if (!problems.empty()) throw InputError(problems);
     MergedRender merged{states.front()->identity(), {}, 0, {}};
     const Scene& scene = *merged.identity.scene;
-    merged.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
+    merged.film = filmOf(scene);
     for (const auto& state : states) {
         state->fold(merged.film);
         for (const uint32_t samples : state->samples()) merged.samples += samples;

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The last two are the version.
-constexpr char Magic[8] = {'T', 'P', 'A', 'R', 'T', 'S', '0', '1'};
+constexpr char Magic[8] = {'T', 'P', 'A', 'R', 'T', 'S', '0', '2'};
 constexpr size_t VersionAt = 6;
 
 /// Fixed part of the file's start; texts, passes, an end and the checksum follow.
@@ -27,7 +27,7 @@ struct Header {
     uint32_t firstPass;
     double gateStart, frameWidth, lengthUnit;
     float vacuumSpeed, cameraSpeed;
-    uint8_t steadyState, delta, hasResponse, cameraUnwarped, integrate, toneMap, unused[2];
+    uint8_t steadyState, delta, hasResponse, cameraUnwarped, integrate, toneMap, filmChannels, filmMoments;
 };
 
 /// Before each pass; without samples: the end, with the process's CPU seconds.
@@ -38,7 +38,7 @@ struct PassHeader {
 };
 
 size_t passBytes(const Film& film) {
-    return size_t(film.width()) * size_t(film.height()) * size_t(film.frames()) * sizeof(Rgb);
+    return film.passValues().size() * sizeof(float);
 }
 
 Header headerOf(const PartialIdentity& identity, uint32_t firstPass) {
@@ -64,6 +64,8 @@ Header headerOf(const PartialIdentity& identity, uint32_t firstPass) {
     header.cameraUnwarped = transport.cameraUnwarped;
     header.integrate = transport.integrateOverGate;
     header.toneMap = uint8_t(scene.toneMap);
+    header.filmChannels = uint8_t(scene.film.channels);
+    header.filmMoments = scene.film.moments;
     return header;
 }
 
@@ -80,6 +82,7 @@ std::shared_ptr<Scene> sceneOf(const Header& header) {
     scene->lengthUnit = header.lengthUnit;
     scene->cameraRegion.speed = header.cameraSpeed;
     scene->toneMap = ToneMap(header.toneMap);
+    scene->film = {header.filmChannels, header.filmMoments != 0};
     return scene;
 }
 
@@ -164,8 +167,8 @@ void PartialStateWriter::add(Film& film, uint32_t samples) {
     const auto bytes = uLong(passBytes(film));
     deflated.resize(compressBound(bytes));
     auto size = uLongf(deflated.size());
-    const auto* pixels = reinterpret_cast<const Bytef*>(&film.passPixel(0, 0, 0));
-    if (compress2(deflated.data(), &size, pixels, bytes, Z_BEST_SPEED) != Z_OK)
+    const auto* values = reinterpret_cast<const Bytef*>(film.passValues().data());
+    if (compress2(deflated.data(), &size, values, bytes, Z_BEST_SPEED) != Z_OK)
         throw InputError(implementation_->file, "cannot be written: out of memory");
     writeValue(implementation_->out, PassHeader{samples, 0, size, 0.0});
     implementation_->out.write(reinterpret_cast<const char*>(deflated.data()), std::streamsize(size));
@@ -216,10 +219,12 @@ void PartialStateReader::fold(Film& film) const {
         in.read(reinterpret_cast<char*>(deflated.data()), std::streamsize(deflated.size()));
         film.beginPass();
         auto bytes = uLongf(passBytes(film));
-        const int code = uncompress(reinterpret_cast<Bytef*>(&film.passPixel(0, 0, 0)), &bytes, deflated.data(),
-                                    uLong(deflated.size()));
+        std::vector<float> values(film.passValues().size());
+        const int code =
+            uncompress(reinterpret_cast<Bytef*>(values.data()), &bytes, deflated.data(), uLong(deflated.size()));
         if (!in || code != Z_OK || bytes != passBytes(film))
             throw InputError(file_.string(), "the partial state has changed while it was read");
+        film.setPassValues(values);
         film.endPass(double(samples));
     }
 }

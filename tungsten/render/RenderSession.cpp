@@ -7,6 +7,7 @@
 #include "tungsten/render/Memory.h"
 #include "tungsten/render/Progress.h"
 #include "tungsten/render/ResultDescription.h"
+#include "tungsten/render/SceneFilm.h"
 
 #include <bit>
 #include <chrono>
@@ -47,10 +48,8 @@ class Session {
                                     options_.checkpointSeconds > 0.0, loaded_.inputs});
         const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(plan);
         requireMemory(bias ? 3.0 : 2.0);
-        if (bias)
-            result_.bias = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames,
-                                PassWeight::Repeats);
-        result_.film = Film(scene.camera.resolution.x, scene.camera.resolution.y, scene.transport.gate.frames);
+        if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
+        result_.film = filmOf(scene);
         resume();
         {
             const StageTimer timer(result_.statistics, "prepare");
@@ -97,7 +96,7 @@ class Session {
     void requireMemory(double films) const {
         const Camera& camera = loaded_.scene->camera;
         const int frames = loaded_.scene->transport.gate.frames;
-        const double film = films * Film::memoryFor(camera.resolution.x, camera.resolution.y, frames);
+        const double film = films * filmMemoryOf(*loaded_.scene);
         const double tables = integrator_.memoryBytes();
         const double limit = options_.memoryLimit > 0.0 ? options_.memoryLimit : availableMemoryBytes();
         if (film + tables <= limit) return;

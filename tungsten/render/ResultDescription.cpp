@@ -64,15 +64,15 @@ std::vector<double> frameEdgesInPicoseconds(const Scene& scene) {
 }
 
 ResultContent resultContent(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata) {
-    ResultContent content{film.width(), film.height(), film.frames(), {}, {}, metadata};
-    content.images = {
-        {"mean", [&](int frame) { return inOutputUnits(film.mean(frame), scene, 1); }},
-        {"standard_error", [&](int frame) { return inOutputUnits(film.standardError(frame), scene, 1); }}};
-    if (bias.frames() > 0) {
-        content.images.push_back({"bias", [&](int frame) { return inOutputUnits(bias.mean(frame), scene, 1); }});
-        content.images.push_back(
-            {"bias_standard_error", [&](int frame) { return inOutputUnits(bias.standardError(frame), scene, 1); }});
-    }
+    ResultContent content{film.width(), film.height(), film.frames(), film.contents().channels, {}, {}, metadata};
+    const auto add = [&](const std::string& mean, const std::string& error, const Film& of) {
+        content.images.push_back({mean, [&](int frame) { return inOutputUnits(of.mean(frame), scene, 1); }});
+        if (of.contents().moments)
+            content.images.push_back(
+                {error, [&](int frame) { return inOutputUnits(of.standardError(frame), scene, 1); }});
+    };
+    add("mean", "standard_error", film);
+    if (bias.frames() > 0) add("bias", "bias_standard_error", bias);
     content.vectors = {{"time_edges", frameEdges(scene.transport.gate)}};
     if (picosecondsPerTime(scene) > 0.0) content.vectors.push_back({"time_edges_ps", frameEdgesInPicoseconds(scene)});
     return content;
@@ -90,7 +90,8 @@ std::string describeResult(const ResultOrigin& origin) {
     json.field("format version", uint64_t(ResultVersion));
     json.field("quantity", quantityText(origin.scene));
     json.field("axes", std::vector<std::string>{"frame", "row", "column", "channel"});
-    json.field("channels", std::vector<std::string>{"R", "G", "B"});
+    json.field("channels", origin.scene.film.channels == 1 ? std::vector<std::string>{"Y"}
+                                                           : std::vector<std::string>{"R", "G", "B"});
     describeTime(json, origin.scene);
     json.field("integrator", origin.integrator);
     json.field("build", buildText());

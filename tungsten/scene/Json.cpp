@@ -93,7 +93,7 @@ std::vector<std::string> memberNames(const rapidjson::Value& value) {
 
 /// What a scene may consist of, whether or not the file has it.
 const std::vector<std::string> Blocks{"media",      "bsdfs",    "primitives", "camera",
-                                      "integrator", "renderer", "length_unit"};
+                                      "integrator", "renderer", "film",       "length_unit"};
 
 [[noreturn]] void failOverride(const std::string& assignment, const std::string& step, const rapidjson::Value& at,
                                std::vector<std::string> names) {

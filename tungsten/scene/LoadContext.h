@@ -89,6 +89,8 @@ void describeCamera(const std::shared_ptr<Description>& description);
 std::vector<std::string> cameraTypes();
 /// `reader` is the renderer block.
 RendererSettings readRenderer(const ObjectReader& reader);
+/// `reader` is the film block.
+FilmContents readFilm(const ObjectReader& reader);
 /// Which integrator the block asks for.
 std::string readIntegratorType(const ObjectReader& integrator);
 /// The fields that every integrator's block shares (bounces, gate, speeds); `type` decides the defaults of the gate.

@@ -175,6 +175,19 @@ TransportSettings readTransport(const ObjectReader& reader, const std::string& t
     return transport;
 }
 
+FilmContents readFilm(const ObjectReader& reader) {
+    FilmContents film;
+    const std::string channels =
+        reader.choice("channels", "rgb", {"rgb", "luminance"},
+                      {"none", "what is kept of each pixel of each frame; luminance takes a third of the memory"});
+    film.channels = channels == "rgb" ? 3 : 1;
+    film.moments = reader.flag("moments", true,
+                               {"none", "second moments, a third of the memory: standard errors by pixel and frame; "
+                                        "without them that of the whole film is still known"});
+    reader.warnAboutUnknown();
+    return film;
+}
+
 RendererSettings readRenderer(const ObjectReader& reader) {
     RendererSettings renderer;
     renderer.outputDirectory =

@@ -4,6 +4,7 @@
 #include "tungsten/bsdf/Bsdf.h"
 #include "tungsten/camera/Camera.h"
 #include "tungsten/emitter/Emitter.h"
+#include "tungsten/film/FilmContents.h"
 #include "tungsten/film/ToneMap.h"
 #include "tungsten/geometry/SceneGeometry.h"
 #include "tungsten/medium/Medium.h"
@@ -87,6 +88,7 @@ struct Scene {
     Camera camera;
     Region cameraRegion;
     ToneMap toneMap = ToneMap::Gamma;
+    FilmContents film;
     TransportSettings transport;
     double lengthUnit = 0.0; ///< metres; 0: the scene does not say
     std::unique_ptr<SceneGeometry> geometry;

@@ -102,6 +102,7 @@ Blocks readScene(LoadContext& context, const ObjectReader& root) {
     readBsdfs(context, root);
     readPrimitives(context, root);
     readCamera(context, root, blockOf(root, "camera", {"none", "where it is seen from"}));
+    context.scene.film = readFilm(blockOf(root, "film", {"none", "what is kept of every pixel of every frame"}));
     const RendererSettings renderer =
         readRenderer(blockOf(root, "renderer", {"none", "how long, and what is written"}));
     root.warnAboutUnknown();
@@ -205,6 +206,10 @@ void describeRenderer(const std::shared_ptr<Description>& description) {
     readRenderer(ObjectReader::describing(description, ""));
 }
 
+void describeFilm(const std::shared_ptr<Description>& description) {
+    readFilm(ObjectReader::describing(description, ""));
+}
+
 std::shared_ptr<Description> described(const std::string& name, Describe describe) {
     auto description = std::make_shared<Description>();
     description->name = name;
@@ -222,7 +227,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> sceneTypes() {
 
 std::vector<DescribedKind> describeScene() {
     std::vector<DescribedKind> kinds{
-        {"blocks", {described("scene", describeRoot), described("renderer", describeRenderer)}}};
+        {"blocks",
+         {described("scene", describeRoot), described("renderer", describeRenderer), described("film", describeFilm)}}};
     for (const Kind& kind : Kinds) {
         kinds.push_back({kind.name, {}});
         for (const std::string& type : kind.types()) kinds.back().types.push_back(described(type, kind.describe));

@@ -24,7 +24,7 @@ void FilmSplats::addToRow(int y, const std::vector<Splat>& batch) const {
         const int from = std::max(int(std::ceil(splat->raster.x - reach)), 0),
                   to = std::min(int(std::floor(splat->raster.x + reach)), film_.width() - 1);
         for (int x = from; x <= to; ++x)
-            film_.passPixel(splat->frame, x, y) += splat->radiance * (weight * filter_.pdf(splat->raster.x - float(x)));
+            film_.add(splat->frame, x, y, splat->radiance * (weight * filter_.pdf(splat->raster.x - float(x))));
     }
 }
 

@@ -59,8 +59,8 @@ void ImageBand::addToFilm(int frame, Film& film) {
         for (int row = firstRow; row <= lastRow; ++row)
             for (size_t column = 0; column < width; ++column) {
                 const size_t i = begin + at(int(column), row);
-                film.passPixel(frame, int(column), row) += Rgb(piece.sums[0][i], piece.sums[1][i], piece.sums[2][i]) *
-                                                           throughput[size_t(row) * width + column];
+                const Rgb sum(piece.sums[0][i], piece.sums[1][i], piece.sums[2][i]);
+                film.add(frame, int(column), row, sum * throughput[size_t(row) * width + column]);
             }
         for (auto& channel : piece.sums) std::fill_n(channel.begin() + ptrdiff_t(begin), x.size(), 0.0f);
     }

@@ -57,7 +57,7 @@ class Sharing {
                     const Vec3d value = sums[frame] * (scale_ / double(among));
                     const Rgb radiance{float(value.x), float(value.y), float(value.z)};
                     if (isFinite(radiance))
-                        film_.passPixel(int(frame), x, y) += radiance;
+                        film_.add(int(frame), x, y, radiance);
                     else
                         ++nonFinite;
                 }

@@ -181,7 +181,7 @@ class Splatter {
                                             piece.start[pixel]) *
                        medium.phase.eval(ribbon.direction, back);
         }
-        film_.passPixel(frame, x, y) += radiance;
+        film_.add(frame, x, y, radiance);
         return 1;
     }
 

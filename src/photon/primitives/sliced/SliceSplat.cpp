@@ -131,7 +131,7 @@ class Splatter {
     void addToFilm(const FrameSums& sums, const Rgb& throughput, int x, int y) const {
         for (size_t frame = 0; frame < sums.size(); ++frame) {
             const Vec3d value = sums[frame] * scale_;
-            film_.passPixel(int(frame), x, y) += Rgb(float(value.x), float(value.y), float(value.z)) * throughput;
+            film_.add(int(frame), x, y, Rgb(float(value.x), float(value.y), float(value.z)) * throughput);
         }
     }
 
