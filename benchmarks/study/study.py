@@ -1,11 +1,15 @@
 #!/usr/bin/python3
-"""Compares methods at equal time: renders what a study file asks for, measures the images, writes report.md and report.html."""
+"""Runs a study by its name: a file of studies/*.json compares methods at equal time (report.md and report.html under
+build/study), a program of studies/*.py measures what is its own (README.md and plots under benchmarks/results)."""
 
 import argparse
 import dataclasses
+import difflib
+import importlib.util
 import sys
 from pathlib import Path
 
+from bench import Bench
 from images import ImageError
 from results import collect
 from page import write_page
@@ -15,6 +19,7 @@ from runs import check, plan, run_all
 from study_file import StudyError, load_study, require_references
 
 ROOT = Path(__file__).resolve().parents[2]
+STUDIES = Path(__file__).resolve().parent / "studies"
 EXIT_DONE, EXIT_FAILED_RUNS, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 
 
@@ -25,7 +30,8 @@ def _names(text):
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(prog="study.py", description=__doc__, epilog="An interrupted study goes on where it was: "
                                      "give the same command again. Exit codes: 0 done, 1 some runs failed, 2 bad input.")
-    parser.add_argument("study", type=Path, help="study file, such as benchmarks/study/studies/cbox-128.json")
+    parser.add_argument("study", help="a name: " + ", ".join(sorted(file.stem for file in STUDIES.glob("*.*")))
+                        + "; or a study file of your own")
     parser.add_argument("action", nargs="?", choices=["run", "report", "check", "list", "references"], default="run",
                         help="run: render what is missing, then report (default); report: from the results so far; "
                         "check: have the renderer read every scene with every method's settings; list: show the runs; "
@@ -38,6 +44,8 @@ def parse_arguments(arguments):
     parser.add_argument("--threads", type=int, help="threads instead of the study's")
     parser.add_argument("--scenes", type=_names, help='only these, as "a; b"')
     parser.add_argument("--methods", type=_names, help='only these, as "a; b"')
+    parser.add_argument("--quick", action="store_true",
+                        help="does it work? Small and short, its results under --work; of files: 2 seeds of 2 s")
     parser.add_argument("--retry-failed", action="store_true", help="run what failed once more")
     parser.add_argument("--accept-warnings", action="store_true",
                         help="do not refuse runs whose settings the renderer warns about")
@@ -54,8 +62,34 @@ def _keep(entries, names, kind):
     return [entry for entry in entries if entry.name in names]
 
 
+def resolved(name):
+    """The file of a study: as it is given, or that of its name."""
+    found = [file for file in (Path(name), STUDIES / f"{name}.json", STUDIES / f"{name}.py") if file.is_file()]
+    if not found:
+        close = difflib.get_close_matches(name, [file.stem for file in STUDIES.glob("*.*")], 1)
+        raise StudyError(f"there is no study '{name}'" + (f"; is it '{close[0]}'?" if close else "; --help lists them"))
+    return found[0]
+
+
+def perform_program(file, options):
+    """A study that is a program; exits with what its renders say."""
+    if options.action != "run":
+        raise StudyError(f"'{file.stem}' is a program: it knows 'run' alone")
+    spec = importlib.util.spec_from_file_location(file.stem.replace("-", "_"), file)
+    program = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(program)
+    base = ROOT / "build/study"
+    work = (options.work or base / file.stem).resolve()
+    renders = work / "renders" if options.work else base / "renders"
+    results = work if options.quick else ROOT / "benchmarks/results" / file.stem
+    program.run(Bench(file.stem, options.tungsten.resolve(), work, renders, results, options.quick))
+    return EXIT_DONE
+
+
 def narrowed(study, options):
     """The study with what the command line overrides or leaves out."""
+    if options.quick:
+        study = dataclasses.replace(study, seconds=[2.0], seeds=2)
     changes = {"scenes": _keep(study.scenes, options.scenes, "scene"), "methods": _keep(study.methods, options.methods, "method")}
     if options.seconds:
         if min(options.seconds) <= 0:
@@ -71,6 +105,11 @@ def narrowed(study, options):
     return dataclasses.replace(study, **changes)
 
 
+def require_renderer(options):
+    if not options.tungsten.is_file():
+        raise StudyError(f"there is no renderer {options.tungsten}: build it (scripts/setup.sh) or name it with --tungsten")
+
+
 def _state(record):
     if record is None:
         return "to do"
@@ -78,15 +117,19 @@ def _state(record):
 
 
 def perform(options):
-    study = narrowed(load_study(options.study, options.root), options)
+    file = resolved(options.study)
+    if file.suffix == ".py":
+        require_renderer(options)
+        return perform_program(file, options)
+    study = narrowed(load_study(file, options.root), options)
     work = (options.work or ROOT / "build/study" / study.name).resolve()
     runs = plan(study, work)
     if options.action == "list":
         for run in runs:
             print(f"{_state(run.record()):7}  {run.label}")
         return EXIT_DONE
-    if options.action in ("run", "check", "references") and not options.tungsten.is_file():
-        raise StudyError(f"there is no renderer {options.tungsten}: build it (scripts/setup.sh) or name it with --tungsten")
+    if options.action in ("run", "check", "references"):
+        require_renderer(options)
     if options.action == "check":
         problems = check(runs, options.tungsten)
         print("".join(f"\n{problem}\n" for problem in problems), end="")

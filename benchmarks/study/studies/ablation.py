@@ -1,0 +1,105 @@
+"""What the parts of the sampling bring: those of the paper one by one, and those of `best` each left out alone."""
+
+import json
+
+import numpy as np
+
+from bench import PRIMITIVES, Bench, Scene, panels, table
+from errors import Truth, mse
+
+TITLE = "Ablation: the parts of the sampling, with the same photons and radii"
+DARTS = "integrator.darts="
+PAPER = {
+    "vanilla": [DARTS + "off"],
+    "DA: distances only": [DARTS + '{"preset":"published","direction":"phase"}', "integrator.enable_elliptical=false"],
+    "EDA and elliptical only": [DARTS + '{"preset":"published","direction":"eda","distance":"plain"}'],
+    "published: all of it": [DARTS + '{"preset":"published","direction":"eda"}'],
+    "best": [DARTS + "best"],
+}
+# What `best` has, and the switch that takes it away.
+PARTS = {
+    "guided distances": {"distance": "plain"},
+    "guided directions": {"direction": "phase"},
+    "guided emission": {"guide_emission": False},
+    "length before direction": {"length_first": False},
+    "Green's function": {"greens_function": "none"},
+    "candidates (1)": {"candidates": 1},
+    "flat candidates": {"proposals": "exponential"},
+    "overlap with the gate": {"overlap": False},
+    "bounds by time": {"bounded": False},
+    "camera's share": {"focus": 0},
+    "roulette": {"roulette": 0},
+    "surface connections": {"surface_connections": False},
+    "glossy sensor paths": {"glossy_sensor_paths": False},
+    "bodies": {"bodies": False},
+}
+# Small passes: many of them in little time.
+PHOTONS = ["integrator.photon_count=30000", "integrator.volume_photon_count=15000"]
+
+
+def variants(primitive):
+    found = dict(PAPER)
+    found["best without control vertices"] = [DARTS + "best", "integrator.enable_elliptical=false"]
+    for part, switch in PARTS.items():
+        found[f"best without {part}"] = [DARTS + json.dumps({"preset": "best", **switch}, separators=(",", ":"))]
+    return {key: [*PRIMITIVES[primitive], *PHOTONS, *values] for key, values in found.items()}
+
+
+def groups(bench):
+    """Scene, what renders its reference, and the primitives that are taken apart."""
+    side = bench.short(64, 16)
+    paths, points = (*PRIMITIVES["paths"], DARTS + "best"), (*PRIMITIVES["points"], *PHOTONS, DARTS + "best")
+    found = [(Scene.own("cornell-fog", side), paths, ["points", "paths"])]
+    if not bench.quick:
+        found += [(Scene.others("cbox", side), paths, ["points", "paths"]), (Scene.others("dragon", side), points, ["points"]),
+                  (Scene.own("lamp-in-fog", 32), paths, ["points", "paths"])]
+    return [group for group in found if group[0]]
+
+
+def measured(renders, truth):
+    """MSE x CPU s by seed, relative standard error, mean over the reference's."""
+    costs = [max(mse(render.image(), truth), 1e-12) * render.cpu[-1] for render in renders]
+    noise = np.sqrt(np.nanmean([render.standard_errors[-1] ** 2 for render in renders]))
+    return costs, noise, np.mean([render.image().mean() for render in renders]) / truth.image.mean()
+
+
+def rows_of(found, truth):
+    figures = {key: measured(renders, truth) for key, renders in found.items()}
+    vanilla, best = (np.mean(figures[key][0]) for key in ("vanilla", "best"))
+    rows, losses = [], {}
+    for key, (costs, noise, ratio) in figures.items():
+        mean = np.mean(costs)
+        rows.append([key, f"{noise:.3f}", f"{ratio:.3f}", f"{mean:.3g} ({min(costs):.3g} to {max(costs):.3g})",
+                     f"{vanilla / mean:.3g}", f"{mean / best:.3g}"])
+        losses[key] = ([cost / best for cost in costs])
+    return rows, losses
+
+
+def run(bench: Bench):
+    text, pictures = [], []
+    for scene, by, primitives in groups(bench):
+        truth = Truth(*bench.reference(scene, bench.short(25, 2), by))
+        for primitive in primitives:
+            cells = {key: (scene, values) for key, values in variants(primitive).items()}
+            found = bench.interleaved(cells, 2, cpu=bench.short(1.0, 0.3))
+            rows, losses = rows_of(found, truth)
+            text += [f"## {scene.words()}: {primitive}", table(
+                ["variant", "standard error", "mean / reference", "MSE × CPU s (of the seeds)", "gain over vanilla", "times best's"], rows)]
+            pictures.append((f"{scene.name}, {primitive}", losses))
+    figure, axes = panels(len(pictures), 2.3, 4.6)
+    for (title, losses), panel in zip(pictures, axes):
+        for row, costs in enumerate(losses.values()):
+            panel.plot([min(costs), max(costs)], [row, row], color="tab:blue", linewidth=4, alpha=0.4)
+            panel.plot(np.mean(costs), row, marker="o", markersize=4, color="tab:blue")
+        panel.set_xscale("log")
+        panel.axvline(1, color="0.3", linewidth=0.8)
+        panel.set_title(title, fontsize=8)
+        panel.set_yticks(range(len(losses)), list(losses) if panel is axes[0] else [""] * len(losses))
+        panel.invert_yaxis()
+    axes[len(axes) // 2].set_xlabel("MSE × CPU seconds, over that of best", fontsize=9)
+    bench.plot(figure, "ablation")
+    bench.write(TITLE, "Above the line `best` the paper's parts, from none to all; below it `best` with one part off. Above 1 in the "
+                "last column: the part is worth its time. Dots: two seeds, bars: one and the other. MSE over (reference "
+                "mean)²; a heavy tail that two seeds have not seen is in no figure, and where the mean is far from the reference's (points of "
+                "lamp-in-fog) a render that shows nothing has a low MSE: there the figures rank nothing.", "![cost over that of best](ablation.svg)",
+                *text)

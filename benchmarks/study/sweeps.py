@@ -1,0 +1,71 @@
+"""Studies of one property of a scene: methods at several of its values, each against a path-traced reference of its own."""
+
+import numpy as np
+
+from bench import look, method, panels, table
+from errors import Truth, parts
+
+METHODS = ["plain points", "best points", "plain beams", "best beams", "plain paths", "best paths"]
+# Small passes: every method has several of them in a second.
+PHOTONS = {"points": ["integrator.photon_count=30000", "integrator.volume_photon_count=15000"],
+           "beams": ["integrator.photon_count=30000", "integrator.volume_photon_count=2000"], "paths": []}
+
+
+def settings(name):
+    return [*method(name), *PHOTONS[name.split(" ")[1]]]
+
+
+def sweep(bench, scenes, reference_seconds, seconds, seeds):
+    """{value: scene} to rows of figures by value and method, {method: [(value, mean cost, least, most)]}, and how well
+    references are known."""
+    rows, curves, known = [], {name: [] for name in METHODS}, []
+    for value, scene in scenes.items():
+        image, doubt = bench.reference(scene, reference_seconds)
+        truth = Truth(image, doubt)
+        known.append(np.sqrt(truth.variance / truth.scale))
+        found = bench.interleaved({name: (scene, settings(name)) for name in METHODS}, seeds, cpu=seconds)
+        for name, renders in found.items():
+            p, each = parts(renders, truth), [parts([render], truth) for render in renders]
+            costs = [max(one.cost, 1e-12) for one in each]
+            curves[name].append((value, np.mean(costs), min(costs), max(costs)))
+            ratio = np.mean([render.image().mean() for render in renders]) / image.mean()
+            rows.append([f"{value:g}", name, f"{p.passes:.0f}", f"{p.median:.3f}", f"{p.relmse99:.3g}", f"{p.variance:.3g}",
+                         f"{p.bias:.2g}", f"{ratio:.3f}", f"{p.cost:.3g}"])
+    return rows, curves, known
+
+
+def picture(bench, curves, parameter):
+    figure, axes = panels(1, 5.6, 3.8)
+    for name, points in curves.items():
+        value, cost, least, most = zip(*points)
+        axes[0].loglog(value, cost, marker="o", markersize=3, label=name, **look(name))
+        axes[0].fill_between(value, least, most, color=look(name)["color"], alpha=0.15, linewidth=0)
+    axes[0].set_xlabel(parameter, fontsize=9)
+    axes[0].set_ylabel("MSE × CPU seconds", fontsize=9)
+    axes[0].legend(fontsize=7)
+    bench.plot(figure, bench.name)
+
+
+def gains(curves):
+    """How many times cheaper best is than plain, by value, and which method is the cheapest of all."""
+    values = [point[0] for point in curves[METHODS[0]]]
+    rows = []
+    for i, value in enumerate(values):
+        cost = {name: points[i][1] for name, points in curves.items()}
+        cheapest = min(cost, key=cost.get)
+        rows.append([f"{value:g}", *(f"{cost[f'plain {kind}'] / cost[f'best {kind}']:.3g}" for kind in PHOTONS), cheapest,
+                     f"{cost[cheapest] / 0.01**2:.3g}"])
+    return rows
+
+
+def study(bench, title, about, parameter, scenes):
+    """The whole of it: renders, plot, tables."""
+    rows, curves, known = sweep(bench, scenes, bench.short(8, 1), bench.short(0.6, 0.2), 2)
+    picture(bench, curves, parameter)
+    bench.write(title, f"{about} MSE against best paths of {bench.short(8, 1)} CPU seconds, over (reference mean)², the reference's own noise "
+                f"({min(known):.1%} to {max(known):.1%} of a pixel) taken off; lines: mean of two seeds, bands: their least "
+                "and largest. Photons and radii are the same throughout.", f"![MSE times CPU seconds]({bench.name}.svg)",
+                table([parameter, "gain of best over plain: points", "beams", "paths", "cheapest",
+                       "its CPU s to 1 % (if MSE fell as 1 / time)"], gains(curves)),
+                table([parameter, "method", "passes", "error, median", "relMSE 0.99", "variance", "bias²", "mean / reference",
+                       "MSE × CPU s"], rows))
