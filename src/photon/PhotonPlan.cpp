@@ -86,9 +86,14 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
                                                 : "light paths aim at the whole sequence as one gate";
     drawsByResponse = exact && !scene.transport.response.empty();
     meetsDeltaGate = exact && gate.delta && policy.sampling.elliptical;
-    ordinaryPhotons = {!directView, directView ? "direct view: control vertices alone are complete"
-                                               : "mirrors, refraction or different speeds: both, by the balance "
-                                                 "heuristic"};
+    ordinaryPhotons.on = !directView || (policy.directView == transport::DirectView::Auto &&
+                                         !policy.sampling.published && !meetsDeltaGate && !drawsByResponse);
+    ordinaryPhotons.reason = !directView
+                                 ? "mirrors, refraction or different speeds: control vertices alone are not complete"
+                             : ordinaryPhotons.on ? "by the balance heuristic, where the gate lets as many of them pass"
+                             : meetsDeltaGate     ? "delta gate: none of them arrives on it"
+                             : drawsByResponse    ? "control vertices are drawn by the sensor's response"
+                                                  : "the preset or direct_view: control vertices alone are complete";
     const std::string obstacle = connectionObstacle(*this, settings, facts);
     connections = {obstacle.empty(), obstacle.empty()
                                          ? "light paths connect to the surface points that the camera sees in time"

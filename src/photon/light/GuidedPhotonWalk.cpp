@@ -1,5 +1,6 @@
 #include "photon/light/GuidedPhotonWalk.h"
 
+#include "photon/Tuning.h"
 #include "photon/light/EmissionDirections.h"
 
 #include "transport/Balance.h"
@@ -20,6 +21,12 @@ constexpr float InSphere = 0.25f * InvPi;
 /// Density per length, for weights, of an ordinary photon at this distance along a flight.
 float pdfPhoton(const Medium& medium, float distance) {
     return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
+}
+
+/// The part of a record that is left to control vertices, by densities per length along the flight: the balance
+/// heuristic, and all of it where hardly any ordinary photon would get.
+float shareOfVertices(float pdfVertex, float pdfPhoton) {
+    return pdfPhoton < tuning::LeastPhotons * pdfVertex ? 1.0f : transport::balance(pdfVertex, pdfPhoton);
 }
 
 } // namespace
@@ -209,13 +216,13 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points
     const auto& [medium, guide, h, surface] = flight;
     if (!guide.settings().elliptical || !path_.orderCounts(1)) return;
     const auto draw = [&](const darts::Residual& residual) { return drawConnection(guide, residual); };
-    const auto met = step_.meetControlVertex({guide, h, path_.time, storesPhotons()}, surface, draw);
+    const bool shares = guidance_.storesPhotons();
+    const auto met = step_.meetControlVertex({guide, h, path_.time, shares}, surface, draw);
     if (!met) return;
     const darts::ControlVertex& vertex = met->vertex;
     ++path_.counters.controlVertices;
     Rgb power = path_.power * medium.sigmaS() * medium.transmittance(vertex.distance) * vertex.inversePdf;
-    if (storesPhotons())
-        power = power * transport::balance(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance));
+    if (shares) power = power * shareOfVertices(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance));
     // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
     store(points, path_.context.culling, path_.ray.at(vertex.distance), power);
 }
@@ -235,10 +242,10 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<PhotonBeam>& be
 
 void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList<Photon>& points) {
     const bool elliptical = flight.guide.settings().elliptical;
-    if ((!storesPhotons() && elliptical) || !path_.orderCounts(1)) return;
+    if ((!guidance_.storesPhotons() && elliptical) || !path_.orderCounts(1)) return;
     float share = 0.0f;
     if (elliptical)
-        share = transport::balance(step_.controlVertexPdf(distance).value_or(0.0f), pdfPhoton(flight.medium, distance));
+        share = shareOfVertices(step_.controlVertexPdf(distance).value_or(0.0f), pdfPhoton(flight.medium, distance));
     store(points, *path_.culling, path_.ray.at(distance), path_.power * (1.0f - share));
 }
 

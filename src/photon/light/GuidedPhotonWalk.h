@@ -66,11 +66,6 @@ class GuidedPhotonWalk {
     [[nodiscard]] FlightChain::Rules chainRules() const;
     /// Slices: what is seen of a light in this medium, in whatever direction the path goes on.
     void leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start);
-    /// Ordinary photons share with the control vertices of this flight, by the balance heuristic: where these alone are
-    /// not complete, and in bodies that light must leave, whose directions do not follow the connections so closely.
-    [[nodiscard]] bool storesPhotons() const {
-        return !guidance_.directView() || (step_.residual().way != darts::Way::Through && !guidance_.meetsDeltaGate());
-    }
     [[nodiscard]] bool storesVertices() const {
         return path_.context.storeVolume && std::holds_alternative<DepositList<Photon>>(path_.deposits.volume);
     }

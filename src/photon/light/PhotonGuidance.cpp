@@ -8,9 +8,9 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
       camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
-      unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), choosesFrames_(plan.framesOneByOne.on),
-      drawsByResponse_(plan.drawsByResponse), meetsDeltaGate_(plan.meetsDeltaGate),
-      sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
+      unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), storesPhotons_(plan.ordinaryPhotons.on),
+      choosesFrames_(plan.framesOneByOne.on), drawsByResponse_(plan.drawsByResponse),
+      meetsDeltaGate_(plan.meetsDeltaGate), sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
     if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
     if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);

@@ -36,9 +36,10 @@ class PhotonGuidance {
         return waysOut_->leaveOdds(region, direction, hit);
     }
 
-    /// Every sensor path is one straight chain at one speed: control vertices alone are complete. Otherwise ordinary
-    /// photons share the work with them, by the balance heuristic.
+    /// Every sensor path is one straight chain at one speed: control vertices alone are complete.
     [[nodiscard]] bool directView() const { return directView_; }
+    /// Ordinary photons share the work with control vertices, by the balance heuristic.
+    [[nodiscard]] bool storesPhotons() const { return storesPhotons_; }
     /// Each light path aims at one frame; otherwise at all of them as one gate.
     [[nodiscard]] bool choosesFrames() const { return choosesFrames_; }
     [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
@@ -78,7 +79,7 @@ class PhotonGuidance {
     Vec3f camera_;
     double speed_;
     double slack_; ///< of arrival times, from the aperture
-    bool unwarped_, directView_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
+    bool unwarped_, directView_, storesPhotons_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
     transport::Sensor sensor_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;
