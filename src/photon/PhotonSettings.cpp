@@ -93,6 +93,13 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
 
 } // namespace
 
+PhotonSettings PhotonSettings::ofShare(double share) const {
+    PhotonSettings part = *this;
+    for (uint64_t* count : {&part.photonCount, &part.volumePhotonCount})
+        *count = std::max<uint64_t>(uint64_t(std::ceil(double(*count) * share)), 1);
+    return part;
+}
+
 PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene, bool progressive) {
     PhotonSettings settings;
     settings.progressive = progressive;

@@ -11,6 +11,9 @@
 namespace tungsten::photon {
 
 struct PhotonSettings {
+    /// With counts for a part of a pass (PassInfo::share).
+    [[nodiscard]] PhotonSettings ofShare(double share) const;
+
     VolumePrimitive primitive;
     std::string primitiveReason;          ///< of its choice, where the scene leaves it open
     uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store

@@ -45,7 +45,7 @@ TEST(Session, TheLastPassTakesWhatIsLeft) {
     EXPECT_DOUBLE_EQ(result.film.totalWeight(), 10.0);
 }
 
-TEST(Session, ATimeOutStopsAfterThePassInProgressAndWrites) {
+TEST(Session, ATimeOutStopsAfterAPassThatNeverPollsAndWrites) {
     SessionFixture session(tinyScene("", TenByFour));
     session.options.timeoutSeconds = 0.01;
     session.integrator.afterPass = [](const PassInfo&) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };

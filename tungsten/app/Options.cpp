@@ -156,8 +156,9 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("--passes", text.passes,
                    "render passes A to B - 1 alone, of A:B, into a partial state, NAME_passes_A-B.state beside the "
                    "image; \"tungsten merge STATES -e IMAGE\" puts such together");
-    app.add_option("--timeout", text.timeout,
-                   "stop after DURATION of passes (no unit: minutes) and write what is there");
+    app.add_option(
+        "--timeout", text.timeout,
+        "stop after DURATION of rendering (no unit: minutes), in the midst of a pass too, and write what is there");
     app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
     app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", text.hdr,
@@ -238,7 +239,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     Options options;
     OptionTexts text;
     CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
-                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice,\n"
+                 "Exit codes: 0 done, 1 bad input or not one pass in time, 2 bad usage, 130 interrupted twice,\n"
                  "before the first pass, or before the last scene.",
                  "tungsten"};
     declareOptions(app, options, text);

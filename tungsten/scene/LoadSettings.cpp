@@ -207,7 +207,7 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.checkpointSeconds = reader.durationSeconds(
         "checkpoint_interval", 0.0, {"duration", "how often images and state are saved; no unit: minutes"});
     renderer.timeoutSeconds =
-        reader.durationSeconds("timeout", 0.0, {"duration", "after which passes stop; no unit: minutes"});
+        reader.durationSeconds("timeout", 0.0, {"duration", "of preparing and rendering; no unit: minutes"});
     for (const ObjectReader& buffer : reader.blocks("output_buffers", {"none", "further files"}))
         readOutputBuffer(buffer, renderer);
     // Choices of the format that make no difference here.
