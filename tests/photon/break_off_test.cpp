@@ -67,8 +67,7 @@ class Render {
   private:
     std::unique_ptr<Integrator> make() const {
         const std::string& type = loaded_.integratorType;
-        if (type == "path_tracer")
-            return std::make_unique<path::PathTracer>(loaded_.scene, loaded_.integratorSettings);
+        if (type == "path_tracer") return std::make_unique<path::PathTracer>(loaded_.scene, loaded_.integratorSettings);
         if (type == "light_tracer")
             return std::make_unique<path::LightTracer>(loaded_.scene, loaded_.integratorSettings);
         return std::make_unique<photon::PhotonIntegrator>(loaded_.scene, loaded_.integratorSettings, true);
@@ -92,8 +91,10 @@ struct Case {
 };
 
 const std::string Gate = R"(, "max_bounces": 8, "start_time": 3, "transient_time_width": 0.5, "frame_num": 4)";
-const std::string Maps = R"("type": "progressive_transient_photon_map", "photon_count": 4000, "volume_photon_count": 4000,
-                            "gather_radius": 0.3)" + Gate;
+const std::string Maps =
+    R"("type": "progressive_transient_photon_map", "photon_count": 4000, "volume_photon_count": 4000,
+                            "gather_radius": 0.3)" +
+    Gate;
 
 const std::vector<Case> Cases{
     {"plain paths", R"("type": "path_tracer")" + Gate, {"camera paths"}},
@@ -110,8 +111,7 @@ class BreakOff : public testing::TestWithParam<Case> {};
 TEST_P(BreakOff, EveryStageIsPolled) {
     Render render(foggyBox(GetParam().integrator));
     ASSERT_TRUE(render.pass());
-    for (const std::string& stage : GetParam().stages)
-        EXPECT_TRUE(render.stages().contains(stage)) << stage;
+    for (const std::string& stage : GetParam().stages) EXPECT_TRUE(render.stages().contains(stage)) << stage;
     EXPECT_GT(render.polls(), 40u);
 }
 

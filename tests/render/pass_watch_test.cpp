@@ -123,6 +123,18 @@ TEST(PassWatch, SamplesAreCutWhereLightPathsCanBe) {
     EXPECT_EQ(samples.size(), 64u);
 }
 
+TEST(PassWatch, WhatIsThrownWithinAPassEndsTheRender) {
+    SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
+    int calls = 0;
+    session.options.duringPass = [&] {
+        if (++calls == 2) throw UsageError("mine");
+    };
+    hangIn(session, 1);
+    EXPECT_THROW(session.run(), UsageError);
+    EXPECT_EQ(calls, 2);
+    EXPECT_FALSE(session.has("TungstenRender.png"));
+}
+
 TEST(PassWatch, PartialStatesHaveWholePassesOrNone) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
     session.options.timeoutSeconds = 0.2;

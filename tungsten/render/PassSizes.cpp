@@ -25,6 +25,16 @@ void PassSizes::cut(double fraction) {
     parts_ = std::min(parts_ * parts, cutsLightPaths_ ? double(step_) / LeastShare : std::exp2(32.0));
 }
 
+std::string PassSizes::text() const {
+    const uint32_t samples = samplesOfPass();
+    std::string text =
+        "passes are cut to " + std::to_string(samples) + (samples > 1 ? " samples" : " sample") + " per pixel";
+    if (cutsLightPaths_)
+        text += " and 1/" + std::to_string(std::llround(parts_)) +
+                " of the light paths; radii that follow the photons are the larger for it";
+    return text;
+}
+
 PassSize PassSizes::next(double done) const {
     const uint32_t samples = std::min(samplesOfPass(), uint32_t(std::ceil(std::max(samples_ - done, 1.0))));
     const bool cut = parts_ > 1.0 && cutsLightPaths_;

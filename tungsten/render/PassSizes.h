@@ -2,6 +2,7 @@
 // How much of a render one pass takes.
 
 #include <cstdint>
+#include <string>
 
 namespace tungsten {
 
@@ -11,8 +12,8 @@ struct PassSize {
     double weight = 1.0;  ///< samples per pixel of the render that are done by it
 };
 
-/// Passes of `step` samples per pixel, and smaller ones where even the first does not end in time. Where light paths can
-/// be cut, so many cut passes trace as many light paths as the whole ones that they are made of.
+/// Passes of `step` samples per pixel, and smaller ones where even the first does not end in time. Where light paths
+/// can be cut, so many cut passes trace as many light paths as the whole ones that they are made of.
 class PassSizes {
   public:
     PassSizes(uint64_t samples, uint64_t step, bool cutsLightPaths)
@@ -23,6 +24,8 @@ class PassSizes {
     /// Makes all passes from now on smaller, if they can be: a quarter of what was done of one, `fraction`, or about.
     void cut(double fraction);
     [[nodiscard]] double share() const { return 1.0 / parts_; }
+    /// "passes are cut to 1 sample per pixel".
+    [[nodiscard]] std::string text() const;
     /// Of the next pass after passes of this weight in all.
     [[nodiscard]] PassSize next(double done) const;
     /// Passes that are left after passes of this weight in all.

@@ -26,7 +26,7 @@ struct PassProgress {
 /// Of one pass, on the side of whoever renders it. Threads of the pass may call poll() at once.
 class PassMonitor {
   public:
-    /// `stops` is asked by every poll, in any thread of the pass; what it throws ends the pass, too.
+    /// `stops` is asked by every poll, in any thread of the pass, and must not throw.
     explicit PassMonitor(std::function<bool()> stops) : stops_(std::move(stops)) {}
 
     void stage(const char* name, uint64_t units, double from, double to);

@@ -146,7 +146,9 @@ class Session {
                             PassWatch(monitor)};
         result_.film.beginPass();
         if (pass.bias) result_.bias.beginPass();
-        if (!tryPass(pass, monitor)) return false;
+        const bool whole = tryPass(pass, monitor);
+        if (failed_) std::rethrow_exception(failure_);
+        if (!whole) return false;
         if (partial_) partial_->add(result_.film, size.samples);
         result_.film.endPass(size.weight);
         if (pass.bias) result_.bias.endPass(double(standsFor));
@@ -177,7 +179,7 @@ class Session {
     /// Of a pass in progress; any of its threads.
     bool stopsPass() {
         if (std::this_thread::get_id() == thread_) showPass();
-        return interrupted() || secondsSince(begin_) >= deadline();
+        return failed_.load(std::memory_order_relaxed) || interrupted() || secondsSince(begin_) >= deadline();
     }
 
     void showPass() {
@@ -185,7 +187,14 @@ class Session {
         const auto now = Clock::now();
         if (now - lastShown_ < Between) return;
         lastShown_ = now;
-        if (options_.duringPass) options_.duringPass();
+        if (failed_) return;
+        try {
+            if (options_.duringPass) options_.duringPass();
+        } catch (...) { // later: thrown here it would not end other threads' parts of the pass
+            failure_ = std::current_exception();
+            failed_ = true;
+            return;
+        }
         if (!reporter_.due()) return;
         const PassSize size = sizes_.next(result_.film.totalWeight());
         ProgressState progress = state();
@@ -212,23 +221,9 @@ class Session {
             return true;
         }
         sizes_.cut(brokenAt_);
-        std::fprintf(stderr, "warning: %s\n", cutText().c_str());
+        std::fprintf(stderr, "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
+                     loaded_.diagnostics->file.c_str(), FirstPassPart * options_.timeoutSeconds, sizes_.text().c_str());
         return false;
-    }
-
-    [[nodiscard]] std::string cutText() const {
-        char text[320];
-        std::snprintf(text, sizeof text,
-                      "%s: the first pass did not end within %.3g s, a quarter of the time-out: passes are cut to %u "
-                      "%s per pixel%s",
-                      loaded_.diagnostics->file.c_str(), FirstPassPart * options_.timeoutSeconds,
-                      sizes_.next(0.0).samples, sizes_.next(0.0).samples > 1 ? "samples" : "sample",
-                      integrator_.cutsLightPaths()
-                          ? (" and 1/" + std::to_string(std::llround(1.0 / sizes_.share())) +
-                             " of the light paths; radii that follow the photons are the larger for it")
-                                .c_str()
-                          : "");
-        return text;
     }
 
     [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted->load(); }
@@ -272,6 +267,8 @@ class Session {
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
     PassSizes sizes_;
+    std::atomic<bool> failed_{false};
+    std::exception_ptr failure_;           ///< of duringPass, if failed_
     bool endedAPass_ = false;              ///< in this run
     const PassMonitor* monitor_ = nullptr; ///< of the pass in progress
     double brokenAt_ = 0.0;                ///< where the last pass that was broken off was

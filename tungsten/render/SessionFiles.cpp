@@ -18,7 +18,9 @@ void SessionFiles::resume() {
 }
 
 void SessionFiles::checkpointIfDue() {
-    if (options_.checkpointSeconds <= 0.0 || Clock::now() - lastCheckpoint_ < std::chrono::duration<double>(options_.checkpointSeconds)) return;
+    if (options_.checkpointSeconds <= 0.0 ||
+        Clock::now() - lastCheckpoint_ < std::chrono::duration<double>(options_.checkpointSeconds))
+        return;
     const StageTimer timer(result_.statistics, "checkpoint");
     // The images so far are worth more than the checkpoint: the render goes on.
     for (const Problem& problem : write(CheckpointSuffix))
