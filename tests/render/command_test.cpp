@@ -222,7 +222,7 @@ TEST(Command, AnInterruptWritesWhatIsThere) {
     const CommandResult result = command.wait();
     EXPECT_EQ(result.exitCode, 0) << result.all();
     EXPECT_TRUE(fs::exists(folder / "box.png"));
-    EXPECT_TRUE(fs::exists(folder / "TungstenRenderState.dat"));
+    EXPECT_TRUE(fs::exists(folder / "boxState.dat"));
     EXPECT_NE(contentOf(folder / "stats.json").find("\"stopped because\": \"interrupted\""), std::string::npos);
 }
 

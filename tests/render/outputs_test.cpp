@@ -40,7 +40,7 @@ TEST(Outputs, NamesAreRelativeToTheOutputDirectoryOfTheScene) {
     const OutputFiles outputs = resolveOutputs(renderer, "scenes/box/scene.json", {});
     EXPECT_EQ(outputs.ldr, "scenes/box/out/a.png");
     EXPECT_EQ(outputs.hdr, "scenes/box/out/sub/b.exr");
-    EXPECT_EQ(outputs.state, "scenes/box/out/TungstenRenderState.dat");
+    EXPECT_EQ(outputs.state, "scenes/box/out/aState.dat");
     ASSERT_EQ(outputs.series.size(), 1u);
     EXPECT_EQ(outputs.series[0].ldrFile, "scenes/box/out/frames/f.png");
     EXPECT_EQ(outputs.series[0].hdrFile, "");
@@ -56,7 +56,7 @@ TEST(Outputs, TheCommandLineWins) {
     const OutputFiles outputs = resolveOutputs(settings("a.png", "b.pfm"), "scenes/s.json", overrides);
     EXPECT_EQ(outputs.ldr, "there/mine.png") << "-d rebases -o";
     EXPECT_EQ(outputs.hdr, "there/b.pfm") << "and the scene's names";
-    EXPECT_EQ(outputs.state, "there/TungstenRenderState.dat");
+    EXPECT_EQ(outputs.state, "there/mineState.dat");
 }
 
 TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {

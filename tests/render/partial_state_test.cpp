@@ -143,7 +143,7 @@ TEST_F(Partial, WhatIsNoStateIsRefused) {
     std::ofstream(damaged, std::ios::binary) << changed;
     refusesToMerge({damaged}, 1, {"of another version"});
     ASSERT_EQ(run({"-c", "1h"}).exitCode, 0);
-    refusesToMerge({(out() / "TungstenRenderState.dat").string()}, 1, {"not a partial state"});
+    refusesToMerge({(out() / "boxState.dat").string()}, 1, {"not a partial state"});
     refusesToMerge({(out() / "nothing.state").string(), damaged}, 1, {"nothing.state", "of another version"});
 }
 

@@ -32,8 +32,8 @@ TEST_F(Robustness, ScenesAndStatesAreRegularFiles) {
         EXPECT_NE(result.err.find("not a file"), std::string::npos) << result.err;
     }
     fs::create_directories(out());
-    ASSERT_EQ(::mkfifo((out() / "TungstenRenderState.dat").c_str(), 0600), 0);
-    refuses({"-c", "1h"}, BadInput, {"TungstenRenderState.dat", "a device or a pipe has this name"});
+    ASSERT_EQ(::mkfifo((out() / "boxState.dat").c_str(), 0600), 0);
+    refuses({"-c", "1h"}, BadInput, {"boxState.dat", "a device or a pipe has this name"});
 }
 
 TEST_F(Robustness, OutputsReplaceNothingButOutputs) {
@@ -102,6 +102,18 @@ TEST_F(Robustness, TwoScenesDoNotShareOutputs) {
     const SceneFile second(foggyBox(test::Paths));
     refuses({second.path().string()}, BadUsage, {scene.path().string(), second.path().string(), "box.png"});
     EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Robustness, ScenesOfOneCommandHaveStatesOfTheirOwn) {
+    std::string other = foggyBox(test::PathFrames);
+    for (size_t at = 0; (at = other.find("\"box.", at)) != std::string::npos; at += 5) other.replace(at, 5, "\"other.");
+    const SceneFile second(other);
+    for (const char* run : {"first", "resumed"}) {
+        const CommandResult result = test::tungsten(
+            {"--quiet", "-d", out().string(), "-c", "1h", scene.path().string(), second.path().string()});
+        EXPECT_EQ(result.exitCode, 0) << run << result.all();
+    }
+    EXPECT_TRUE(fs::exists(out() / "boxState.dat") && fs::exists(out() / "otherState.dat"));
 }
 
 TEST_F(Robustness, TemporaryFilesOfKilledRendersAreRemoved) {

@@ -86,6 +86,17 @@ TEST(Session, ATargetErrorIsLookedAtWheneverThePassesHaveDoubled) {
     EXPECT_EQ(result.film.passes(), 256u);
 }
 
+TEST(Session, ATargetErrorThatTheSamplesDoNotReachIsSaid) {
+    SessionFixture session(tinyScene("", R"("spp": 32, "spp_step": 1)"));
+    session.options.targetError = 0.001;
+    testing::internal::CaptureStderr();
+    const SessionResult& result = session.run();
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("target error of 0.1 % was not reached: 32 samples"), std::string::npos) << said;
+    EXPECT_NE(statisticsJson(session.loaded, session.options, result).find("\"target error reached\": false"),
+              std::string::npos);
+}
+
 /// Two passes that happen to be alike say nothing about the error.
 TEST(Session, ATargetErrorNeedsSomePasses) {
     SessionFixture session(tinyScene("", R"("spp": 100000, "spp_step": 1)"));

@@ -230,10 +230,11 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
     OutputFiles outputs;
     outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile);
     outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile);
-    outputs.state = rebase(renderer.resumeFile);
     if (overrides.statistics) outputs.statistics = *overrides.statistics;
     if (overrides.page) outputs.page = *overrides.page;
     if (outputs.ldr.empty()) outputs.ldr = rebase("TungstenRender.png");
+    // Scenes of one command have different images, and so different states.
+    outputs.state = rebase(renderer.resumeFile.value_or(outputs.ldr.stem().string() + "State.dat"));
     if (!renderer.overwriteOutputFiles && !overrides.ldr) outputs.ldr = freeName(outputs.ldr);
     if (!renderer.overwriteOutputFiles && !overrides.hdr && !outputs.hdr.empty()) outputs.hdr = freeName(outputs.hdr);
     const auto resolved = [&](const OutputBuffer& buffer) {

@@ -28,7 +28,19 @@ void SessionFiles::checkpointIfDue() {
     lastCheckpoint_ = Clock::now();
 }
 
+/// Only the samples have come to an end, and nobody may have thought of them.
+void SessionFiles::warnAboutTarget() const {
+    if (options_.targetError <= 0.0 || result_.reason != StopReason::Finished ||
+        result_.errorBound() <= options_.targetError)
+        return;
+    std::fprintf(stderr,
+                 "warning: %s: the target error of %.3g %% was not reached: %lld samples per pixel, the scene's spp or "
+                 "--spp, ended the render before; a larger --spp lets it go on\n",
+                 loaded_.diagnostics->file.c_str(), 100.0 * options_.targetError, static_cast<long long>(options_.spp));
+}
+
 void SessionFiles::finish() {
+    warnAboutTarget();
     const StageTimer timer(result_.statistics, "write");
     const std::vector<Problem> problems = write("");
     if (!problems.empty()) throw InputError(problems);

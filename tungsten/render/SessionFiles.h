@@ -25,6 +25,7 @@ class SessionFiles {
   private:
     using Clock = std::chrono::steady_clock;
 
+    void warnAboutTarget() const;
     std::vector<Problem> write(const std::string& suffix);
 
     const LoadedScene& loaded_;

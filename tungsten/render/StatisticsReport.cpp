@@ -37,6 +37,10 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
                                     : json.field("samples per pixel", taken);
     json.field("resumed samples per pixel", result.resumedSamples);
     json.field("stopped because", toString(result.reason));
+    if (options.targetError > 0.0) {
+        json.field("target error", options.targetError);
+        json.field("target error reached", result.errorBound() <= options.targetError);
+    }
     json.field("relative standard error", result.film.relativeStandardError());
     json.field("relative error bound", result.film.relativeErrorBound());
     if (result.estimatesBias()) {

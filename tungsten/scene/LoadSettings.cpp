@@ -226,8 +226,10 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.hdrOutputFile = reader.text(
         "hdr_output_file", "",
         {"none", "linear image (.exr with standard error, .npz or .h5 with all that is known, .pfm or .npy)"});
-    renderer.resumeFile =
-        reader.text("resume_render_file", renderer.resumeFile, {"none", "where a render's state goes"});
+    const std::string state =
+        reader.text("resume_render_file", "",
+                    {"none", "where a render's state goes", "output_file with State.dat for its extension"});
+    if (reader.has("resume_render_file")) renderer.resumeFile = state;
     renderer.overwriteOutputFiles =
         reader.flag("overwrite_output_files", true, {"none", "false: where the file exists a free name is taken"});
     renderer.enableResume =

@@ -22,7 +22,7 @@ struct RendererSettings {
     std::string outputDirectory;
     std::string outputFile = "TungstenRender.png";
     std::string hdrOutputFile;
-    std::string resumeFile = "TungstenRenderState.dat";
+    std::optional<std::string> resumeFile; ///< none: named after the image
     bool overwriteOutputFiles = true;
     bool enableResume = false;
     int64_t spp = 32;
