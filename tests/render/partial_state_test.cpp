@@ -62,7 +62,7 @@ TEST_F(Partial, SevenStatesOfPathsAreWhatOneRunGivesBitForBit) {
     const CommandResult result = tungsten(merge);
     ASSERT_EQ(result.exitCode, 0) << result.all();
     (void)whole(".pfm", frames);
-    for (const std::string name : {".pfm", ".png", "_0.pfm", "_3.pfm", "_2.png", ".npy"}) {
+    for (const std::string name : {".pfm", ".png", "_00.pfm", "_03.pfm", "_02.png", ".npy"}) {
         EXPECT_FALSE(contentOf(target(name)).empty()) << name;
         EXPECT_EQ(contentOf(target(name)), contentOf(out() / ("whole" + name))) << name;
     }

@@ -59,10 +59,10 @@ TEST_F(Robustness, NamesAreCheckedBeforeRendering) {
     refuses({"-o", std::string(252, 'n') + ".png"}, BadInput, {"the name has 256 bytes"});
     // Only the frames' or the checkpoint's names are too long.
     refuses({"-o", std::string(251, 'n') + ".png", "--set", frames, "--set", width}, BadInput,
-            {"the name has 257 bytes"});
+            {"the name has 258 bytes"});
     refuses({"-o", std::string(250, 'n') + ".png", "-c", "1h"}, BadInput, {"the name has 265 bytes"});
-    fs::create_directories(out() / "f_1.png" / "x");
-    refuses({"-o", "f.png", "--set", frames, "--set", width}, BadInput, {"f_1.png", "a folder has this name"});
+    fs::create_directories(out() / "f_01.png" / "x");
+    refuses({"-o", "f.png", "--set", frames, "--set", width}, BadInput, {"f_01.png", "a folder has this name"});
     refuses({"-c", "1h", "--set", "renderer.resume_render_file=\"\""}, BadInput, {"resume_render_file is empty"});
     // The longest name that fits is written.
     EXPECT_EQ(render({"-o", std::string(251, 'n') + ".png"}).exitCode, 0);

@@ -156,7 +156,10 @@ void requireOutputsOfTheirOwn(const Options& options) {
         written.push_back(files.statistics);
         for (const auto& file : written) {
             if (file.empty()) continue;
-            const auto [writer, added] = writers.emplace(std::filesystem::weakly_canonical(file), i);
+            std::error_code ignored; // what names cannot be is said before the scene is rendered
+            const auto folder =
+                std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path(), ignored);
+            const auto [writer, added] = writers.emplace(folder / file.filename(), i);
             if (!added && writer->second != i)
                 throw UsageError(scene.string() + " would write " + file.string() + ", as " +
                                  options.scenes[writer->second].string() +

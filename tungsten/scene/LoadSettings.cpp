@@ -177,6 +177,16 @@ void useResponse(const ObjectReader& reader, TransportSettings& transport) {
     transport.gate = {false, false, start, end - start, 1};
 }
 
+std::optional<ExposureChoice> readExposure(const ObjectReader& reader) {
+    constexpr Meaning meaning{"stops", "factor 2^stops on 8-bit images; auto: the brightest of each is about white"};
+    reader.declare("exposure", "a number from -100 to 100, or auto", "auto with a gate, 0 in steady state", meaning);
+    if (!reader.has("exposure")) return std::nullopt;
+    if (!reader.isText("exposure"))
+        return ExposureChoice{false, reader.number("exposure", 0.0, meaning, {-MostStops, MostStops})};
+    (void)reader.choice("exposure", "auto", {"auto"}, meaning);
+    return ExposureChoice{};
+}
+
 } // namespace
 
 std::string readIntegratorType(const ObjectReader& integrator) {
@@ -226,6 +236,7 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.hdrOutputFile = reader.text(
         "hdr_output_file", "",
         {"none", "linear image (.exr with standard error, .npz or .h5 with all that is known, .pfm or .npy)"});
+    renderer.exposure = readExposure(reader);
     const std::string state =
         reader.text("resume_render_file", "",
                     {"none", "where a render's state goes", "output_file with State.dat for its extension"});
