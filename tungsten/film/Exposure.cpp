@@ -35,7 +35,8 @@ float AutomaticExposure::factor() const {
     const auto below = uint64_t(std::ceil(Percentile * double(lit_)));
     uint64_t seen = 0;
     size_t bin = 0;
-    for (; bin < counts_.size() && (seen += counts_[bin]) < below; ++bin) {}
+    for (; bin < counts_.size() && (seen += counts_[bin]) < below; ++bin) {
+    }
     const double value = std::exp2((double(bin) + 0.5) / PerOctave - 0.5 * Octaves);
     return float(White / value);
 }

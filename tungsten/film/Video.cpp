@@ -69,7 +69,8 @@ class WithoutBrokenPipes {
     }
     ~WithoutBrokenPipes() {
         constexpr timespec now{};
-        while (::sigtimedwait(&pipe_, nullptr, &now) > 0) {}
+        while (::sigtimedwait(&pipe_, nullptr, &now) > 0) {
+        }
         ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
     }
     WithoutBrokenPipes(const WithoutBrokenPipes&) = delete;
@@ -81,13 +82,24 @@ class WithoutBrokenPipes {
 
 std::vector<std::string> arguments(const fs::path& program, const std::string& extension, const Vec2i& size,
                                    int frames) {
-    std::vector<std::string> words{program.string(), "-v",      "error", "-nostdin", "-f", "rawvideo",
-                                   "-pix_fmt",       "rgb24",   "-s",    std::to_string(size.x) + "x" + std::to_string(size.y),
-                                   "-r",             std::to_string(framesPerSecond(frames)),
-                                   "-i",             "pipe:0"};
+    std::vector<std::string> words{program.string(),
+                                   "-v",
+                                   "error",
+                                   "-nostdin",
+                                   "-f",
+                                   "rawvideo",
+                                   "-pix_fmt",
+                                   "rgb24",
+                                   "-s",
+                                   std::to_string(size.x) + "x" + std::to_string(size.y),
+                                   "-r",
+                                   std::to_string(framesPerSecond(frames)),
+                                   "-i",
+                                   "pipe:0"};
     // MP4 in fragments: nothing has to be gone back to.
-    const std::vector<std::string> mp4{"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "16",
-                                       "-pix_fmt", "yuv420p", "-movflags", "frag_keyframe+empty_moov", "-f", "mp4"};
+    const std::vector<std::string> mp4{
+        "-vf",       "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "16", "-pix_fmt", "yuv420p",
+        "-movflags", "frag_keyframe+empty_moov",      "-f",   "mp4"};
     const std::vector<std::string> gif{"-filter_complex", "[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse", "-f",
                                        "gif"};
     const auto& format = extension == ".gif" ? gif : mp4;
@@ -137,7 +149,8 @@ class Encoder {
         if (process_ < 0) return false;
         ::close(input_);
         int status = 0;
-        while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {}
+        while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+        }
         process_ = -1;
         return WIFEXITED(status) && WEXITSTATUS(status) == 0;
     }

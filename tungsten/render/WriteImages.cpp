@@ -58,8 +58,7 @@ class ImageWriter {
     }
     /// 8-bit images of frames have one exposure, so that they can be compared; that of the whole gate has its own.
     void writeShown(const PlannedImage& image) {
-        if (image.linear)
-            return writePng(image.file, wholeImage(), ToneMap::Linear);
+        if (image.linear) return writePng(image.file, wholeImage(), ToneMap::Linear);
         const auto shown = [this](int frame) { return exposed(overFrame(film_.mean(frame)), framesFactor()); };
         if (image.content == Content::Video)
             writeVideo(image.file, {film_.width(), film_.height()}, film_.frames(),
