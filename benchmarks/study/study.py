@@ -11,15 +11,17 @@ from pathlib import Path
 
 from bench import Bench
 from images import ImageError
+from new_study import write_study
 from results import collect
 from page import write_page
 from report import write_report
 from references import SECONDS, SEEDS, render_references
 from runs import check, plan, run_all
-from study_file import StudyError, load_study, require_references
+from study_file import StudyError, load_study, missing_references, require_references
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDIES = Path(__file__).resolve().parent / "studies"
+ACTIONS = ["run", "report", "check", "list", "references"]
 EXIT_DONE, EXIT_FAILED_RUNS, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 
 
@@ -31,10 +33,10 @@ def parse_arguments(arguments):
     parser = argparse.ArgumentParser(prog="study.py", description=__doc__, epilog="An interrupted study goes on where it was: "
                                      "give the same command again. Exit codes: 0 done, 1 some runs failed, 2 bad input.")
     parser.add_argument("study", help="a name: " + ", ".join(sorted(file.stem for file in STUDIES.glob("*.*")))
-                        + "; or a study file of your own")
-    parser.add_argument("action", nargs="?", choices=["run", "report", "check", "list", "references"], default="run",
+                        + "; or a study file of your own; or new, with a scene: writes a study of it beside it")
+    parser.add_argument("action", nargs="?", default="run", metavar="{run,report,check,list,references} | SCENE",
                         help="run: render what is missing, then report (default); report: from the results so far; "
-                        "check: have the renderer read every scene with every method's settings; list: show the runs; "
+                        "check: whether there are references, and the renderer reads every scene with every method's settings; list: show the runs; "
                         f"references: render those of the study's own, {SEEDS} seeds of {SECONDS} s each unless told otherwise")
     parser.add_argument("--tungsten", type=Path, default=ROOT / "build/bin/tungsten", help="the renderer (default: %(default)s)")
     parser.add_argument("--work", type=Path, help="folder of results (default: build/study/STUDY)")
@@ -49,7 +51,12 @@ def parse_arguments(arguments):
     parser.add_argument("--retry-failed", action="store_true", help="run what failed once more")
     parser.add_argument("--accept-warnings", action="store_true",
                         help="do not refuse runs whose settings the renderer warns about")
-    return parser.parse_intermixed_args(arguments)
+    options = parser.parse_intermixed_args(arguments)
+    if options.study == "new" and options.action == "run":
+        parser.error("new: expected a scene")
+    if options.study != "new" and options.action not in ACTIONS:
+        parser.error(f"'{options.action}' is no action; there are: {', '.join(ACTIONS)}")
+    return options
 
 
 def _keep(entries, names, kind):
@@ -116,7 +123,16 @@ def _state(record):
     return "FAILED" if record["error"] else "skipped" if record.get("skipped") else "done"
 
 
+def perform_new(options):
+    require_renderer(options)
+    file = write_study(Path(options.action), options.tungsten.resolve())
+    print(f"{file}\nnext:\n  {sys.argv[0]} {file} references    # {SEEDS} x {SECONDS} s\n  {sys.argv[0]} {file}")
+    return EXIT_DONE
+
+
 def perform(options):
+    if options.study == "new":
+        return perform_new(options)
     file = resolved(options.study)
     if file.suffix == ".py":
         require_renderer(options)
@@ -131,7 +147,7 @@ def perform(options):
     if options.action in ("run", "check", "references"):
         require_renderer(options)
     if options.action == "check":
-        problems = check(runs, options.tungsten)
+        problems = missing_references(study) + check(runs, options.tungsten)
         print("".join(f"\n{problem}\n" for problem in problems), end="")
         return EXIT_FAILED_RUNS if problems else EXIT_DONE
     if options.action == "references":

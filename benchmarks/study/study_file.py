@@ -235,15 +235,24 @@ def _methods(study, known, scenes, where):
     return methods
 
 
-def require_references(study):
-    """Not needed to list or check a study: those of our own are rendered once (references.sh)."""
+def missing_references(study):
+    """Messages about scenes whose reference is not there. Not needed to list a study."""
+    messages = []
     for scene in study.scenes:
         own = ""
         if scene.reference_by:
             own = "; the action 'references' renders it"
         elif scene.reference.parent.name == "reference" and scene.reference.suffix == ".exr":
             own = "; benchmarks/study/references.sh renders it"
-        _require(scene.reference.is_file(), f"scene '{scene.name}'", f"there is no reference {scene.reference}{own}")
+        if not scene.reference.is_file():
+            messages.append(f"scene '{scene.name}': there is no reference {scene.reference}{own}")
+    return messages
+
+
+def require_references(study):
+    """Before anything is rendered."""
+    for message in missing_references(study):
+        raise StudyError(message)
 
 
 def load_study(path, root):
@@ -260,6 +269,9 @@ def load_study(path, root):
     seconds = study.get("seconds", 30)
     seconds = sorted(seconds) if isinstance(seconds, list) else [seconds]
     _require(seconds and seconds[0] > 0, where, "'seconds' is a positive number, or a list of them")
+    block = _whole(study, "block", 8, where)
+    for scene in scenes:
+        _require(all(side % block == 0 for side in scene.resolution), where, f"scene '{scene.name}': blocks of {block} pixels "
+                 f"('block') do not divide {scene.resolution[0]} x {scene.resolution[1]}")
     return Study(path.stem, study.get("title", path.stem), scenes, methods, baseline, seconds,
-                 _whole(study, "threads", 2, where), _whole(study, "seeds", 3, where), _whole(study, "block", 8, where),
-                 study.get("limit_seconds"))
+                 _whole(study, "threads", 2, where), _whole(study, "seeds", 3, where), block, study.get("limit_seconds"))

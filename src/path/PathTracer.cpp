@@ -13,6 +13,8 @@ namespace tungsten::path {
 namespace {
 
 constexpr size_t TileSide = 8;
+constexpr uint32_t SamplesPerPoll = 16;
+constexpr double LightPathsPart = 0.1; ///< of a pass
 
 void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("camera paths", counters.paths);
@@ -88,17 +90,18 @@ void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
 void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     if (plan_.lightVertices.on) {
         const StageTimer timer(statistics, "light paths");
-        lightPaths_.trace(*scene_, *targets_, pass, statistics);
+        lightPaths_.trace(*scene_, *targets_, pass.part(0.0, LightPathsPart), statistics);
     }
     const StageTimer timer(statistics, "camera pass");
+    const PassInfo rest = pass.part(plan_.lightVertices.on ? LightPathsPart : 0.0, 1.0);
     if (plan_.guidance.on)
-        renderGuided(pass, film, statistics);
+        renderGuided(rest, film, statistics);
     else if (plan_.timeResolved)
-        plan_.media ? renderPlainly<true, true>(pass, film, statistics)
-                    : renderPlainly<true, false>(pass, film, statistics);
+        plan_.media ? renderPlainly<true, true>(rest, film, statistics)
+                    : renderPlainly<true, false>(rest, film, statistics);
     else
-        plan_.media ? renderPlainly<false, true>(pass, film, statistics)
-                    : renderPlainly<false, false>(pass, film, statistics);
+        plan_.media ? renderPlainly<false, true>(rest, film, statistics)
+                    : renderPlainly<false, false>(rest, film, statistics);
 }
 
 template <typename Trace>
@@ -120,13 +123,17 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             const Ray ray = camera.generateRay({x, y}, uFilter, uLens);
             float u = targets_->several() ? radicalInverse(sample) + rotation : 0.0f;
             u -= u >= 1.0f ? 1.0f : 0.0f;
+            pass.watch.pollWithin(SamplesPerPoll, s + 1);
             trace(ray, sink, counters, sampler, u);
         }
     };
+    pass.watch.stage("camera paths", width * height);
     tbb::parallel_for(tbb::blocked_range2d<size_t>(0, height, TileSide, 0, width, TileSide), [&](const auto& tile) {
         PathCounters counters;
-        for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
+        for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y) {
             for (size_t x = tile.cols().begin(); x < tile.cols().end(); ++x) renderPixel(int(x), int(y), counters);
+            pass.watch.poll(tile.cols().size());
+        }
         report(counters, statistics);
     });
 }

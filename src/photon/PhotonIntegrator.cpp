@@ -10,6 +10,9 @@ namespace tungsten::photon {
 
 namespace {
 
+/// Where stages end, about, for progress alone: of a pass, of what comes before its samples, and of one sample.
+constexpr double ImagePart = 0.6, RecordPart = 0.1, PhotonPart = 0.8, SharingPart = 0.1, SplatPart = 0.5;
+
 /// Camera paths per pixel that look for surface points. One leaves the noise of lines that a narrow gate lights; more
 /// cost little in small images alone, and in large ones there are more points than clusters can keep.
 uint32_t surfaceSamples(const Vec2i& resolution) {
@@ -63,7 +66,8 @@ double PhotonIntegrator::kernelWidth(uint32_t pass) const {
 }
 
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {
-    return settings_.progressive ? pass.index : 0;
+    // Parts of a pass that make a whole one in all have its radii.
+    return settings_.progressive ? uint32_t(double(pass.index) * pass.share) : 0;
 }
 
 TimeGate PhotonIntegrator::gate(uint32_t step, float kernel) const {
@@ -89,7 +93,7 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
     const auto build = [&]<typename Primitive>(const Primitive& primitive) {
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;
-        Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass));
+        Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass), pass.watch);
         structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->culling(),
                                                                     std::move(store), std::move(radii), rays);
     };
@@ -103,8 +107,9 @@ void PhotonIntegrator::splat(const GatherStructures& structures, const SensorRec
     const double perSample = (gate.steadyState ? 1.0 : gate.frameWidth) * double(pass.samples);
     std::visit(Overloaded{[](std::monostate) {},
                           [&](const auto& gather) {
-                              statistics.add(gather.GatheredCounter,
-                                             gather.splat(record, double(gather.scale()) / perSample, film));
+                              statistics.add(
+                                  gather.GatheredCounter,
+                                  gather.splat(record, double(gather.scale()) / perSample, film, pass.watch));
                           }},
                structures.volume);
 }
@@ -114,15 +119,16 @@ SensorRecord PhotonIntegrator::record(const PassInfo& pass, uint32_t sample, Sta
     const bool points = plan_.connections.on && sample == 0;
     return recordSensorPaths(*scene_, rules_, pass.seed, uint32_t(pass.firstSample + sample),
                              {points, points ? surfaceSamples(scene_->camera.resolution) : 1, plan_.looksAgain},
-                             statistics);
+                             statistics, pass.watch);
 }
 
 void PhotonIntegrator::look(const GatherStructures& structures, const SensorRecord* record, const PassInfo& pass,
                             Film& film, Statistics& statistics) const {
-    if (structures.splatted) splat(structures, *record, pass, film, statistics);
+    const double splatted = !structures.splatted ? 0.0 : record && !plan_.looksAgain ? 1.0 : SplatPart;
+    if (structures.splatted) splat(structures, *record, pass.part(0.0, splatted), film, statistics);
     if (record && !plan_.looksAgain) return;
     const StageTimer timer(statistics, "sensor pass");
-    renderSensorPass(*scene_, structures, record, pass, film, statistics);
+    renderSensorPass(*scene_, structures, record, pass.part(splatted, 1.0), film, statistics);
 }
 
 void PhotonIntegrator::see(const GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
@@ -134,12 +140,15 @@ void PhotonIntegrator::see(const GatherStructures& structures, const PhotonMaps&
                                         settings_.gatherRadius, factor);
         if (scene_->transport.gate.delta) kernel.time = structures.kernel;
         const auto asTraced = transport::Sensor::of(*scene_, gate(step(pass)));
-        shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics);
+        shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,
+                   pass.watch.part(0.0, SharingPart));
     }
-    look(structures, first, pass, film, statistics);
+    const double begin = plan_.connections.on ? SharingPart : 0.0, each = (1.0 - begin) / double(pass.samples);
+    look(structures, first, pass.part(begin, first ? begin + each : 1.0), film, statistics);
     for (uint32_t s = 1; first && s < pass.samples; ++s) {
-        const SensorRecord further = record(pass, s, statistics);
-        look(structures, &further, pass, film, statistics);
+        const PassInfo part = pass.part(begin + s * each, begin + (s + 1) * each);
+        const SensorRecord further = record(part, s, statistics);
+        look(structures, &further, part, film, statistics);
     }
 }
 
@@ -157,6 +166,7 @@ void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMa
     // The bias is as the square of the kernel's width.
     const float extrapolation = 1.0f / (1.0f - sqr(structures.kernel));
     tbb::parallel_for(0, film.height(), [&](int y) {
+        pass.watch.poll(0);
         for (int frame = 0; frame < film.frames(); ++frame)
             for (int x = 0; x < film.width(); ++x) {
                 const Rgb narrow = bias.passPixel(frame, x, y);
@@ -169,7 +179,9 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
     std::optional<SensorRecord> first;
-    if (plan_.records()) first = record(pass, 0, statistics);
+    const double begin = 1.0 / double(1 + pass.samples);
+    const PassInfo image = pass.part(0.0, pass.bias ? ImagePart : 1.0), before = image.part(0.0, begin);
+    if (plan_.records()) first = record(before.part(0.0, RecordPart), 0, statistics);
     std::unique_ptr<SurfaceConnections> connections;
     if (plan_.connections.on) {
         const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
@@ -179,19 +191,19 @@ void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& 
     {
         const StageTimer timer(statistics, "photon pass");
         photonPass_->setGate(sensor.gate);
-        maps = photonPass_->trace(pass, connections.get(), statistics);
+        maps = photonPass_->trace(before.part(RecordPart, PhotonPart), connections.get(), statistics);
     }
     GatherStructures structures{
         maps.surface, sensor,        plan_.splats(),        settings_.includeSurfaces,
         rules_,       glossy_.get(), settings_.gatherCount, settings_.gatherRadius * surfaceFactor};
-    gatherVolume(std::move(maps.volume), pass, structures, statistics);
+    gatherVolume(std::move(maps.volume), before.part(PhotonPart, 1.0), structures, statistics);
     if (!maps.surface.records.empty()) {
         const StageTimer timer(statistics, "build");
         structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
     }
     const SensorRecord* recorded = first ? &*first : nullptr;
-    see(structures, maps, recorded, pass, film, statistics);
-    if (pass.bias) estimateBias(structures, maps, recorded, pass, film, statistics);
+    see(structures, maps, recorded, image.part(begin, 1.0), film, statistics);
+    if (pass.bias) estimateBias(structures, maps, recorded, pass.part(ImagePart, 1.0), film, statistics);
 }
 
 } // namespace tungsten::photon

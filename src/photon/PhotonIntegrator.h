@@ -19,6 +19,7 @@ class PhotonIntegrator : public Integrator {
     [[nodiscard]] double memoryBytes() const override;
     [[nodiscard]] bool leavesBias(const EffectPlan& plan) const override;
     /// Of the volume's kernels, where there are any, else of surfaces'.
+    [[nodiscard]] bool cutsLightPaths() const override { return true; }
     [[nodiscard]] double kernelWidth(uint32_t pass) const override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 

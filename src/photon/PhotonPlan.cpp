@@ -136,6 +136,7 @@ void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, Ef
         plan.describe(name, choice.on, choice.reason);
     };
     add(std::visit([](const auto& p) { return p.Effect; }, settings.primitive), volume);
+    if (volume.on && !settings.radiusReason.empty()) plan.describe("default radius", true, settings.radiusReason);
     add("temporal kernel", temporalKernel);
     if (guidance.on) add("glossy sensor paths", glossyPaths);
     add("surface photons", surfacePhotons);

@@ -1,6 +1,7 @@
 #include "photon/PhotonSettings.h"
 
 #include "photon/AutoPrimitive.h"
+#include "photon/DefaultRadius.h"
 #include "photon/Tuning.h"
 
 namespace tungsten::photon {
@@ -41,8 +42,18 @@ bool readShortFlights(const ObjectReader& block) {
     return length == "short";
 }
 
+/// Radii that the scene leaves open are made to suit it.
+void requireRadius(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
+    if (settings.volumeRadius < Unbounded || block.describes()) return;
+    if (block.has("volume_gather_radius"))
+        return block.problem("volume_gather_radius", "beams and fixed radii must be below 1e30");
+    const DefaultRadius chosen = DefaultRadius::of(scene);
+    settings.volumeRadius = chosen.radius;
+    settings.radiusReason = chosen.reason;
+}
+
 /// What slices cannot do, and which classes they make.
-void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSettings& settings, Slices& slices) {
+void readSlices(const ObjectReader& block, const Scene& scene, PhotonSettings& settings, Slices& slices) {
     const std::string type = sliceName(slices.kind).type;
     const bool steadyState = scene.transport.gate.steadyState;
     if (steadyState && !sliceName(slices.kind).steadyState)
@@ -53,19 +64,19 @@ void readSlices(const ObjectReader& block, const Scene& scene, const PhotonSetti
     slices.classes.shortFlights = settings.shortFlights;
     const bool beams = slicesNeedBeams(scene, slices.classes);
     if (beams) slices.classes.share = tuning::ShareBesideBeams;
-    if (beams && settings.volumeRadius >= Unbounded)
-        block.problem("volume_gather_radius",
-                      "what scatters once after a surface or a beam of light are beams, also with '" + type +
-                          "': they need a volume_gather_radius or gather_radius");
+    if (beams) requireRadius(block, scene, settings);
 }
 
 /// The primitive, radius and temporal kernel of the volume store.
 void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
     const auto primitive = readPrimitive(block);
-    settings.volumeRadius = float(
-        block.number("volume_gather_radius", settings.gatherRadius,
-                     {"length", "radius in media: of beams, and of points with fixed_volume_radius", "gather_radius"},
-                     Range::positive()));
+    settings.volumeRadius = float(block.number(
+        "volume_gather_radius", settings.gatherRadius,
+        {"length",
+         "radius in media: of beams, and of points with fixed_volume_radius; by default gather_radius, else of the "
+         "scene's making (--explain)",
+         "gather_radius"},
+        Range::positive()));
     if (primitive) {
         settings.primitive = *primitive;
     } else {
@@ -76,12 +87,8 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
     const bool beams = std::holds_alternative<Beams>(settings.primitive);
     settings.fixedVolumeRadius = block.flag(
         "fixed_volume_radius", false, {"none", "points: one radius, instead of one that follows the photons' density"});
-    if (beams && settings.volumeRadius >= Unbounded)
-        block.problem("volume_gather_radius", "beams need a volume_gather_radius or gather_radius");
     const bool points = std::holds_alternative<Points>(settings.primitive);
-    if (points && settings.fixedVolumeRadius && settings.volumeRadius >= Unbounded)
-        block.problem("volume_gather_radius",
-                      "a fixed radius (fixed_volume_radius) needs a volume_gather_radius or gather_radius");
+    if (beams || (points && settings.fixedVolumeRadius)) requireRadius(block, scene, settings);
     if (!scene.transport.gate.delta) return;
     settings.temporalRadius =
         0.5 * block.number("transient_time_width", 0.1, {"time", "width of the temporal kernel in the first pass"},
@@ -92,6 +99,13 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
 }
 
 } // namespace
+
+PhotonSettings PhotonSettings::ofShare(double share) const {
+    PhotonSettings part = *this;
+    for (uint64_t* count : {&part.photonCount, &part.volumePhotonCount})
+        *count = std::max<uint64_t>(uint64_t(std::ceil(double(*count) * share)), 1);
+    return part;
+}
 
 PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene, bool progressive) {
     PhotonSettings settings;

@@ -11,11 +11,15 @@
 namespace tungsten::photon {
 
 struct PhotonSettings {
+    /// With counts for a part of a pass (PassInfo::share).
+    [[nodiscard]] PhotonSettings ofShare(double share) const;
+
     VolumePrimitive primitive;
     std::string primitiveReason;          ///< of its choice, where the scene leaves it open
     uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
     uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store, points or beams
     uint32_t gatherCount = 20;            ///< nearest surface photons used
+    std::string radiusReason;             ///< of volumeRadius, where the scene leaves it open
     float gatherRadius = 1e30f;           ///< largest distance of a gathered surface photon
     float volumeRadius = 1e30f;           ///< radius of the point kernel, when fixed, and of the beam kernel
     double temporalRadius = 0.0;          ///< half-width of a delta gate's temporal kernel in the first pass

@@ -197,7 +197,10 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
     const uint32_t first = record ? record->sample : uint32_t(pass.firstSample), samples = record ? 1 : pass.samples;
     const auto renderPixel = [&](int x, int y, Workspace& workspace, SensorCounters& counters) {
         std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));
-        for (uint32_t s = 0; s < samples; ++s) addSample(x, y, first + s, workspace, counters);
+        for (uint32_t s = 0; s < samples; ++s) {
+            pass.watch.pollWithin(1, s);
+            addSample(x, y, first + s, workspace, counters);
+        }
         for (int frame = 0; frame < gate.frames; ++frame) {
             const Vec3d value = workspace.sums[size_t(frame)] * scale;
             const Rgb pixel{float(value.x), float(value.y), float(value.z)};
@@ -207,12 +210,15 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                 ++counters.nonFinite;
         }
     };
+    pass.watch.stage("gather", width * height);
     tbb::parallel_for(tbb::blocked_range2d<size_t>(0, height, TileSide, 0, width, TileSide), [&](const auto& tile) {
         SensorCounters counters;
         Workspace workspace{FrameSums(size_t(gate.frames)), FrameSums(size_t(gate.frames)), {}};
-        for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y)
+        for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y) {
             for (size_t x = tile.cols().begin(); x < tile.cols().end(); ++x)
                 renderPixel(int(x), int(y), workspace, counters);
+            pass.watch.poll(tile.cols().size());
+        }
         statistics.add("rays", counters.rays);
         statistics.add("gathered photons", counters.gathered);
         std::visit(

@@ -68,7 +68,7 @@ class Results(unittest.TestCase):
         edges = scene["start_time"] + scene["transient_time_width"] * np.arange(5)
         np.testing.assert_allclose(self.npz["time_edges"], edges, rtol=1e-14)
         np.testing.assert_allclose(self.about["time"]["edges"], edges, rtol=1e-14)
-        speed = scene.get("vaccum_speed_of_light", 1)
+        speed = scene.get("vacuum_speed_of_light", scene.get("vaccum_speed_of_light", 1))
         np.testing.assert_allclose(self.npz["time_edges_ps"], edges * speed * 0.01 * PICOSECONDS, rtol=1e-12)
 
     def test_metadata_say_what_was_rendered(self):

@@ -190,8 +190,11 @@ TEST(ImageIo, FailedWritesKeepTheOldFile) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(ImageIo, FrameNamesAreNotPadded) {
-    EXPECT_EQ(framePath("out/result.pfm", 7), std::filesystem::path("out/result_7.pfm"));
+TEST(ImageIo, FrameNamesSortAsFramesDo) {
+    EXPECT_EQ(framePath("out/result.pfm", 7, 8), "out/result_07.pfm");
+    EXPECT_EQ(framePath("out/result.pfm", 99, 100), "out/result_99.pfm");
+    EXPECT_EQ(framePath("out/result.pfm", 99, 101), "out/result_099.pfm");
+    EXPECT_EQ(framePath("out/result.pfm", 1000, 1001), "out/result_1000.pfm");
 }
 
 TEST(ToneMap, Values) {

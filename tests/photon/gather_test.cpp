@@ -109,5 +109,25 @@ TEST(NearestPhotons, EmptyAndSingleStores) {
     EXPECT_TRUE(found.empty());
 }
 
+/// In clusters and alone, in no order: whatever a search starts from, it ends with the nearest.
+TEST(AdaptiveRadii, FollowTheThirtiethNearest) {
+    std::vector<Photon> photons(3000);
+    for (size_t i = 0; i < photons.size(); ++i) {
+        Sampler sampler(7, RandomStream::Test, 0, i);
+        const float size = i % 3 == 0 ? 100.0f : i % 3 == 1 ? 1.0f : 1e-4f;
+        for (int axis = 0; axis < 3; ++axis) photons[i].position[axis] = size * (sampler.next1D() - 0.5f);
+    }
+    const std::vector<float> radii = adaptiveRadii(photons);
+    ASSERT_EQ(radii.size(), photons.size());
+    for (size_t i = 0; i < photons.size(); i += 7) {
+        std::vector<float> squared;
+        for (const Photon& other : photons) squared.push_back((other.position - photons[i].position).length2());
+        std::nth_element(squared.begin(), squared.begin() + 29, squared.end());
+        EXPECT_FLOAT_EQ(radii[i], std::sqrt(squared[29] * 0.05f * std::sqrt(3000.0f) / 30.0f)) << i;
+    }
+    EXPECT_TRUE(adaptiveRadii({}).empty());
+    EXPECT_GT(adaptiveRadii({Photon{}, Photon{}})[0], 0.0f) << "two in one place";
+}
+
 } // namespace
 } // namespace tungsten::photon

@@ -167,6 +167,19 @@ class Render(unittest.TestCase):
         thread.join()
         self.assertEqual(len(ticks), 20)
 
+    def test_passes_are_broken_off(self):
+        endless = {"renderer.spp_step": 10 ** 6, "renderer.spp": 10 ** 6, "camera.resolution": [256, 256]}
+        interrupt = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        interrupt.start()
+        with self.assertRaises(KeyboardInterrupt):
+            darts_tungsten.render(SCENE, set=endless, seconds=600)
+        interrupt.join()
+        with self.assertRaisesRegex(TimeoutError, "not one pass"):
+            darts_tungsten.render(SCENE, set={**endless, "renderer.spp_step": 1, "camera.resolution": [2048, 2048]}, seconds=0.001)
+        result = darts_tungsten.render(SCENE, set=endless, seconds=2)
+        self.assertEqual(result.reason, "time-out")
+        self.assertGreater(result.passes, 0)
+
     def test_plan_and_describe(self):
         plan = darts_tungsten.plan(SCENE)
         self.assertEqual(plan["integrator"], "path_tracer")

@@ -17,7 +17,7 @@ using test::contentOf;
 using test::foggyBox;
 using test::SceneFile;
 
-const int BadInput = 1, BadUsage = 2, InterruptedTwice = 130;
+const int BadInput = 1, BadUsage = 2, Interrupted = 130;
 
 struct Mistake {
     std::vector<std::string> arguments;
@@ -104,6 +104,10 @@ TEST(Command, HelpAndVersionAnswerAndStop) {
                                "--seed",
                                "--output-file",
                                "--hdr-output-file",
+                               "--exposure",
+                               "--no-frames",
+                               "--sheet",
+                               "--video",
                                "--time-center",
                                "--set",
                                "--resolution",
@@ -222,22 +226,59 @@ TEST(Command, AnInterruptWritesWhatIsThere) {
     const CommandResult result = command.wait();
     EXPECT_EQ(result.exitCode, 0) << result.all();
     EXPECT_TRUE(fs::exists(folder / "box.png"));
-    EXPECT_TRUE(fs::exists(folder / "TungstenRenderState.dat"));
+    EXPECT_TRUE(fs::exists(folder / "boxState.dat"));
     EXPECT_NE(contentOf(folder / "stats.json").find("\"stopped because\": \"interrupted\""), std::string::npos);
 }
 
-TEST(Command, ASecondInterruptLeavesAtOnce) {
+/// One pass that would take hours.
+const std::vector<std::string> EndlessPass{"--spp",        "1000000", "--set", "renderer.spp_step=1000000",
+                                           "--resolution", "512x512"};
+
+TEST(Command, AnInterruptInTheFirstPassWritesNothing) {
+    for (const char* const integrator : {test::Paths, test::Photons}) {
+        const SceneFile scene(foggyBox(integrator));
+        std::vector<std::string> arguments = EndlessPass;
+        arguments.push_back(scene.path().string());
+        Command command(arguments);
+        ASSERT_TRUE(command.handles(SIGTERM));
+        std::this_thread::sleep_for(std::chrono::milliseconds(300)); // loading takes less
+        EXPECT_TRUE(command.running());
+        command.send(SIGINT);
+        const CommandResult result = command.wait();
+        EXPECT_EQ(result.exitCode, Interrupted);
+        EXPECT_NE(result.all().find("nothing was written"), std::string::npos) << result.all();
+        EXPECT_FALSE(fs::exists(scene.path().parent_path() / "box.png"));
+    }
+}
+
+/// Seconds that the command takes with a time-out.
+double secondsWithTimeOut(const std::string& timeOut, std::vector<std::string> arguments, CommandResult& result) {
+    arguments.insert(arguments.begin(), {"--timeout", timeOut});
+    const auto start = std::chrono::steady_clock::now();
+    result = test::tungsten(arguments);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(Command, ATimeOutIsKeptInsideAPassAndPassesAreCutToFit) {
+    for (const char* const integrator : {test::Paths, test::Photons}) {
+        const SceneFile scene(foggyBox(integrator));
+        std::vector<std::string> arguments = EndlessPass;
+        arguments.push_back(scene.path().string());
+        CommandResult result;
+        EXPECT_LT(secondsWithTimeOut("4s", arguments, result), 8.0) << "with all the machine may be busy with";
+        EXPECT_EQ(result.exitCode, 0) << result.all();
+        EXPECT_NE(result.err.find("the first pass did not end within 1 s"), std::string::npos) << result.err;
+        EXPECT_TRUE(fs::exists(scene.path().parent_path() / "box.png"));
+    }
+}
+
+TEST(Command, ATimeOutWithoutOnePassIsAnError) {
     const SceneFile scene(foggyBox(test::Paths));
-    // One pass that would take hours.
-    Command command(
-        {"--spp", "1000000", "--set", "renderer.spp_step=1000000", "--resolution", "512x512", scene.path().string()});
-    ASSERT_TRUE(command.handles(SIGTERM));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300)); // loading takes less
-    command.send(SIGINT);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    EXPECT_TRUE(command.running()) << "the first interrupt lets the pass finish";
-    command.send(SIGINT);
-    EXPECT_EQ(command.wait().exitCode, InterruptedTwice);
+    CommandResult result;
+    secondsWithTimeOut("1ms", {"--set", "renderer.spp_step=1", "--resolution", "2048x2048", scene.path().string()},
+                       result);
+    EXPECT_EQ(result.exitCode, BadInput);
+    EXPECT_NE(result.err.find("not one pass ended within 0.001 s"), std::string::npos) << result.err;
     EXPECT_FALSE(fs::exists(scene.path().parent_path() / "box.png"));
 }
 

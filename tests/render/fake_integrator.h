@@ -19,10 +19,12 @@ class FakeIntegrator : public Integrator {
     float noise = 1.0f; ///< pixels are uniform in [1 - noise, 1]
     float bias = 0.0f;  ///< that it says it leaves, with a noise of its own; 0: it leaves none
     bool prepared = false;
+    bool cutsPaths = false; ///< that it says it can
 
     void plan(EffectPlan& plan) const override { plan.describe("fake", true, "a test"); }
     void prepare(const EffectPlan&, Statistics&) override { prepared = true; }
     [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return bias > 0.0f; }
+    [[nodiscard]] bool cutsLightPaths() const override { return cutsPaths; }
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {
         for (int frame = 0; frame < film.frames(); ++frame)
             for (int y = 0; y < film.height(); ++y)

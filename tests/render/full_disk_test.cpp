@@ -67,7 +67,7 @@ template <typename Render, typename Shortage>
 void expectTheEarlierOnesKept(const fs::path& out, const Render& render, const Shortage& shortage,
                               const std::string& image = "box.exr") {
     ASSERT_EQ(render("8x8").exitCode, 0);
-    const std::vector<fs::path> names{"box.png", image, "TungstenRenderState.dat"};
+    const std::vector<fs::path> names{"box.png", image, "boxState.dat"};
     std::vector<std::string> before;
     for (const fs::path& name : names) before.push_back(contentOf(out / name));
     const CommandResult result = shortage();

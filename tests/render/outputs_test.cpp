@@ -40,7 +40,7 @@ TEST(Outputs, NamesAreRelativeToTheOutputDirectoryOfTheScene) {
     const OutputFiles outputs = resolveOutputs(renderer, "scenes/box/scene.json", {});
     EXPECT_EQ(outputs.ldr, "scenes/box/out/a.png");
     EXPECT_EQ(outputs.hdr, "scenes/box/out/sub/b.exr");
-    EXPECT_EQ(outputs.state, "scenes/box/out/TungstenRenderState.dat");
+    EXPECT_EQ(outputs.state, "scenes/box/out/aState.dat");
     ASSERT_EQ(outputs.series.size(), 1u);
     EXPECT_EQ(outputs.series[0].ldrFile, "scenes/box/out/frames/f.png");
     EXPECT_EQ(outputs.series[0].hdrFile, "");
@@ -56,7 +56,7 @@ TEST(Outputs, TheCommandLineWins) {
     const OutputFiles outputs = resolveOutputs(settings("a.png", "b.pfm"), "scenes/s.json", overrides);
     EXPECT_EQ(outputs.ldr, "there/mine.png") << "-d rebases -o";
     EXPECT_EQ(outputs.hdr, "there/b.pfm") << "and the scene's names";
-    EXPECT_EQ(outputs.state, "there/TungstenRenderState.dat");
+    EXPECT_EQ(outputs.state, "there/mineState.dat");
 }
 
 TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {
@@ -117,10 +117,10 @@ TEST(Outputs, ASequenceBecomesAMultiPartExrACubeAndASeries) {
     ASSERT_EQ(exrPartCount(session.outputs.hdr), 3);
     for (int frame = 0; frame < 3; ++frame)
         EXPECT_EQ(readExr(session.outputs.hdr, frame).pixels, result.film.mean(frame).pixels);
-    for (const char* name : {"TungstenRender.png", "TungstenRender_0.png", "TungstenRender_2.png", "image.npy"})
+    for (const char* name : {"TungstenRender.png", "TungstenRender_00.png", "TungstenRender_02.png", "image.npy"})
         EXPECT_TRUE(session.has(name)) << name;
-    EXPECT_FALSE(session.has("TungstenRender_3.png"));
-    EXPECT_FALSE(session.has("image_0.exr")) << "the EXR file holds every frame";
+    EXPECT_FALSE(session.has("TungstenRender_03.png"));
+    EXPECT_FALSE(session.has("image_00.exr")) << "the EXR file holds every frame";
     EXPECT_EQ(result.written.size(), 7u) << "and metadata beside the cube";
     // 128 bytes of header at most, then 3 frames of 4 x 6 pixels of 3 floats.
     EXPECT_EQ(fs::file_size(session.folder() / "image.npy") % 64, (3 * 4 * 6 * 3 * 4) % 64);
@@ -150,7 +150,7 @@ TEST(Outputs, APfmSequenceIsASeriesAndTheMeanOverTheGate) {
     SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "spp_step": 2, "hdr_output_file": "image.pfm")"));
     const SessionResult& result = session.run();
     EXPECT_EQ(readPfm(session.folder() / "image.pfm").pixels, result.film.meanOverFrames().pixels);
-    EXPECT_EQ(readPfm(session.folder() / "image_1.pfm").pixels, result.film.mean(1).pixels);
+    EXPECT_EQ(readPfm(session.folder() / "image_01.pfm").pixels, result.film.mean(1).pixels);
     EXPECT_TRUE(session.has("image.npy"));
 }
 
@@ -158,10 +158,10 @@ TEST(Outputs, TransientsBuffersNameTheSeries) {
     SessionFixture session(tinyScene(ThreeFrames, R"("spp": 4, "spp_step": 2, "output_buffers": [{"type": "transients",
         "ldr_output_file": "t/ldr.png", "hdr_output_file": "t/hdr.exr"}])"));
     const SessionResult& result = session.run();
-    EXPECT_TRUE(session.has("t/ldr_2.png"));
-    EXPECT_EQ(readExr(session.folder() / "t" / "hdr_2.exr").pixels, result.film.mean(2).pixels);
-    EXPECT_EQ(readExr(session.folder() / "t" / "hdr_2.exr", 0, "stderr.").pixels, result.film.standardError(2).pixels);
-    EXPECT_FALSE(session.has("TungstenRender_0.png"));
+    EXPECT_TRUE(session.has("t/ldr_02.png"));
+    EXPECT_EQ(readExr(session.folder() / "t" / "hdr_02.exr").pixels, result.film.mean(2).pixels);
+    EXPECT_EQ(readExr(session.folder() / "t" / "hdr_02.exr", 0, "stderr.").pixels, result.film.standardError(2).pixels);
+    EXPECT_FALSE(session.has("TungstenRender_00.png"));
 }
 
 TEST(Outputs, ColorBuffersAreFurtherFilesOfTheImageWithoutItsToneMap) {
@@ -186,7 +186,7 @@ TEST(Outputs, IntegralsAreMeansTimesTheFrameWidth) {
             "transient_time_width": )" + std::to_string(width),
                                          renderer));
         const SessionResult& result = session.run();
-        const Image frame = readPfm(session.folder() / "image_1.pfm"), whole = readPfm(session.folder() / "image.pfm");
+        const Image frame = readPfm(session.folder() / "image_01.pfm"), whole = readPfm(session.folder() / "image.pfm");
         for (size_t i = 0; i < frame.pixels.size(); ++i) {
             EXPECT_FLOAT_EQ(frame.pixels[i].x, width * result.film.mean(1).pixels[i].x);
             EXPECT_FLOAT_EQ(whole.pixels[i].x, 3 * width * result.film.meanOverFrames().pixels[i].x);

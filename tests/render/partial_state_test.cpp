@@ -62,7 +62,7 @@ TEST_F(Partial, SevenStatesOfPathsAreWhatOneRunGivesBitForBit) {
     const CommandResult result = tungsten(merge);
     ASSERT_EQ(result.exitCode, 0) << result.all();
     (void)whole(".pfm", frames);
-    for (const std::string name : {".pfm", ".png", "_0.pfm", "_3.pfm", "_2.png", ".npy"}) {
+    for (const std::string name : {".pfm", ".png", "_00.pfm", "_03.pfm", "_02.png", ".npy"}) {
         EXPECT_FALSE(contentOf(target(name)).empty()) << name;
         EXPECT_EQ(contentOf(target(name)), contentOf(out() / ("whole" + name))) << name;
     }
@@ -143,7 +143,7 @@ TEST_F(Partial, WhatIsNoStateIsRefused) {
     std::ofstream(damaged, std::ios::binary) << changed;
     refusesToMerge({damaged}, 1, {"of another version"});
     ASSERT_EQ(run({"-c", "1h"}).exitCode, 0);
-    refusesToMerge({(out() / "TungstenRenderState.dat").string()}, 1, {"not a partial state"});
+    refusesToMerge({(out() / "boxState.dat").string()}, 1, {"not a partial state"});
     refusesToMerge({(out() / "nothing.state").string(), damaged}, 1, {"nothing.state", "of another version"});
 }
 

@@ -32,8 +32,8 @@ TEST_F(Robustness, ScenesAndStatesAreRegularFiles) {
         EXPECT_NE(result.err.find("not a file"), std::string::npos) << result.err;
     }
     fs::create_directories(out());
-    ASSERT_EQ(::mkfifo((out() / "TungstenRenderState.dat").c_str(), 0600), 0);
-    refuses({"-c", "1h"}, BadInput, {"TungstenRenderState.dat", "a device or a pipe has this name"});
+    ASSERT_EQ(::mkfifo((out() / "boxState.dat").c_str(), 0600), 0);
+    refuses({"-c", "1h"}, BadInput, {"boxState.dat", "a device or a pipe has this name"});
 }
 
 TEST_F(Robustness, OutputsReplaceNothingButOutputs) {
@@ -59,10 +59,10 @@ TEST_F(Robustness, NamesAreCheckedBeforeRendering) {
     refuses({"-o", std::string(252, 'n') + ".png"}, BadInput, {"the name has 256 bytes"});
     // Only the frames' or the checkpoint's names are too long.
     refuses({"-o", std::string(251, 'n') + ".png", "--set", frames, "--set", width}, BadInput,
-            {"the name has 257 bytes"});
+            {"the name has 258 bytes"});
     refuses({"-o", std::string(250, 'n') + ".png", "-c", "1h"}, BadInput, {"the name has 265 bytes"});
-    fs::create_directories(out() / "f_1.png" / "x");
-    refuses({"-o", "f.png", "--set", frames, "--set", width}, BadInput, {"f_1.png", "a folder has this name"});
+    fs::create_directories(out() / "f_01.png" / "x");
+    refuses({"-o", "f.png", "--set", frames, "--set", width}, BadInput, {"f_01.png", "a folder has this name"});
     refuses({"-c", "1h", "--set", "renderer.resume_render_file=\"\""}, BadInput, {"resume_render_file is empty"});
     // The longest name that fits is written.
     EXPECT_EQ(render({"-o", std::string(251, 'n') + ".png"}).exitCode, 0);
@@ -102,6 +102,18 @@ TEST_F(Robustness, TwoScenesDoNotShareOutputs) {
     const SceneFile second(foggyBox(test::Paths));
     refuses({second.path().string()}, BadUsage, {scene.path().string(), second.path().string(), "box.png"});
     EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Robustness, ScenesOfOneCommandHaveStatesOfTheirOwn) {
+    std::string other = foggyBox(test::PathFrames);
+    for (size_t at = 0; (at = other.find("\"box.", at)) != std::string::npos; at += 5) other.replace(at, 5, "\"other.");
+    const SceneFile second(other);
+    for (const char* run : {"first", "resumed"}) {
+        const CommandResult result = test::tungsten(
+            {"--quiet", "-d", out().string(), "-c", "1h", scene.path().string(), second.path().string()});
+        EXPECT_EQ(result.exitCode, 0) << run << result.all();
+    }
+    EXPECT_TRUE(fs::exists(out() / "boxState.dat") && fs::exists(out() / "otherState.dat"));
 }
 
 TEST_F(Robustness, TemporaryFilesOfKilledRendersAreRemoved) {

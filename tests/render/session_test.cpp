@@ -45,7 +45,7 @@ TEST(Session, TheLastPassTakesWhatIsLeft) {
     EXPECT_DOUBLE_EQ(result.film.totalWeight(), 10.0);
 }
 
-TEST(Session, ATimeOutStopsAfterThePassInProgressAndWrites) {
+TEST(Session, ATimeOutStopsAfterAPassThatNeverPollsAndWrites) {
     SessionFixture session(tinyScene("", TenByFour));
     session.options.timeoutSeconds = 0.01;
     session.integrator.afterPass = [](const PassInfo&) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
@@ -84,6 +84,17 @@ TEST(Session, ATargetErrorIsLookedAtWheneverThePassesHaveDoubled) {
     EXPECT_LT(result.film.relativeStandardError(), result.film.relativeErrorBound());
     // Uniform on (0, 1]: relative standard error sqrt(1/12) / (0.5 sqrt(n)), below the target from n = 165 on.
     EXPECT_EQ(result.film.passes(), 256u);
+}
+
+TEST(Session, ATargetErrorThatTheSamplesDoNotReachIsSaid) {
+    SessionFixture session(tinyScene("", R"("spp": 32, "spp_step": 1)"));
+    session.options.targetError = 0.001;
+    testing::internal::CaptureStderr();
+    const SessionResult& result = session.run();
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("target error of 0.1 % was not reached: 32 samples"), std::string::npos) << said;
+    EXPECT_NE(statisticsJson(session.loaded, session.options, result).find("\"target error reached\": false"),
+              std::string::npos);
 }
 
 /// Two passes that happen to be alike say nothing about the error.

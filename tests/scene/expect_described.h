@@ -13,8 +13,8 @@ namespace tungsten::test {
 /// Each field has a known unit, a one-line meaning, a default and what it accepts; nothing is looked up undeclared.
 inline void expectDescribed(const Description& description) {
     static const std::set<std::string> units{
-        "none",   "length", "1/length",        "time",     "length/time",    "degrees",  "radians",
-        "pixels", "power",  "power/steradian", "radiance", "power/length^2", "duration", "samples/pixel"};
+        "none",  "length",          "1/length", "time",           "length/time", "degrees",       "radians", "pixels",
+        "power", "power/steradian", "radiance", "power/length^2", "duration",    "samples/pixel", "stops"};
     EXPECT_TRUE(!description.fields.empty() || !description.note.empty()) << description.name;
     for (const Field& field : description.fields) {
         const std::string where = description.name + "." + field.name;

@@ -58,5 +58,64 @@ TEST(SceneWarnings, WhatIsNotDoneIsSaid) {
         EXPECT_EQ(warningsOf(gate + more).find("steady state"), std::string::npos) << more;
 }
 
+TEST(SceneWarnings, TimesThatAreNotLookedAtAreSaid) {
+    const std::string gate = R"({"primitives": [{"type": "point", "emission": 1}],
+                                 "integrator": {"type": "path_tracer", )";
+    const std::string film = gate + R"("transient_time_width": 0.5, "frame_num": 2, "start_time": 1.25)";
+    EXPECT_EQ(warningsOf(film + "}}"), "");
+    EXPECT_NE(warningsOf(film + R"(, "transient_time_center": 3}})")
+                  .find("integrator.transient_time_center: not looked at beside frame_num: the first frame starts at "
+                        "start_time (1.25)"),
+              std::string::npos);
+    EXPECT_NE(warningsOf(film + R"(, "transient_time_center": 3, "delta_time_gate": true}})")
+                  .find("integrator.frame_num: not looked at beside delta_time_gate"),
+              std::string::npos);
+    const std::string centre = warningsOf(gate + R"("transient_time_center": 3}})");
+    EXPECT_NE(centre.find("integrator.transient_time_center: no gate without a transient_time_width"),
+              std::string::npos)
+        << centre;
+    EXPECT_EQ(warningsOf(gate + R"("transient_time_center": -1}})"), "");
+    EXPECT_EQ(warningsOf(gate + R"("transient_time_center": 1, "temporal_response": {"type": "box"}}})"), "");
+    EXPECT_EQ(warningsOf(gate + R"("transient_time_center": 1, "delta_time_gate": true, "darts": "best"}})"), "");
+}
+
+std::string sceneOfSpeeds(const std::string& integrator, const std::string& medium) {
+    return R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 1)" + medium + R"(}],
+               "primitives": [{"type": "point", "emission": 1, "ext_medium": "fog"}], "camera": {"medium": "fog"},
+               "integrator": {"type": "path_tracer")" +
+           integrator + "}}";
+}
+
+TEST(SceneWarnings, MediaWithoutASpeedBesideAnotherVacuumAreWarnedAbout) {
+    const std::string gate = R"(, "transient_time_width": 0.5, "transient_time_center": 3)";
+    const std::string slow = gate + R"(, "vacuum_speed_of_light": 0.3)";
+    EXPECT_NE(warningsOf(sceneOfSpeeds(slow, ""))
+                  .find("media[0].speed_of_light: not given: light travels at 1 here, and at 0.3 outside media"),
+              std::string::npos);
+    EXPECT_EQ(warningsOf(sceneOfSpeeds(slow, R"(, "speed_of_light": 1)")), "");
+    EXPECT_EQ(warningsOf(sceneOfSpeeds(gate, "")), "");
+    EXPECT_EQ(warningsOf(sceneOfSpeeds(R"(, "vacuum_speed_of_light": 0.3)", "")), "")
+        << "in steady state it is all one";
+}
+
+TEST(SceneLoader, BothSpellingsOfTheVacuumAreRead) {
+    const auto speedOf = [](const std::string& fields) {
+        const SceneFile file(sceneOfSpeeds(fields, ""));
+        return loadScene(file.path()).scene->transport.vacuumSpeed;
+    };
+    EXPECT_EQ(speedOf(""), 1.0f);
+    EXPECT_EQ(speedOf(R"(, "vacuum_speed_of_light": 0.3)"), 0.3f);
+    EXPECT_EQ(speedOf(R"(, "vaccum_speed_of_light": 0.3)"), 0.3f);
+    EXPECT_EQ(speedOf(R"(, "vacuum_speed_of_light": 0.3, "vaccum_speed_of_light": 0.3)"), 0.3f);
+    try {
+        speedOf(R"(, "vacuum_speed_of_light": 0.3, "vaccum_speed_of_light": 0.31)");
+        FAIL() << "two speeds";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("integrator.vacuum_speed_of_light: is 0.3, but vaccum_speed_of_light"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 } // namespace
 } // namespace tungsten

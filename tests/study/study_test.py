@@ -149,6 +149,51 @@ class TinyStudy(unittest.TestCase):
         self.assertGreater(float((self.folder / "own/fog.blockvar").read_text()), 0)
         self.assertIn("3 of 3 runs are already there", call("references", "--seconds", "0.2", "--seeds", "3").stdout)
 
+    def test_check_looks_for_references_and_blocks(self):
+        file = self.folder / "odd.json"
+
+        def call(action, **scene):
+            file.write_text(json.dumps({**self.study, "scenes": [{**self.study["scenes"][0], **scene}]}))
+            return subprocess.run([sys.executable, STUDY, file, action, "--tungsten", TUNGSTEN, "--methods", "paths"],
+                                  capture_output=True, text=True)
+
+        missing = call("check", reference=str(self.folder / "nowhere.exr"))
+        self.assertEqual(missing.returncode, 1)
+        self.assertIn("scene 'fog': there is no reference", missing.stdout)
+        odd = call("check", resolution=[SIZE, SIZE + 2])
+        self.assertEqual(odd.returncode, 2)
+        self.assertIn("blocks of 4 pixels ('block') do not divide 32 x 34", odd.stderr)
+        self.assertEqual(call("check").returncode, 0)
+        self.assertIn("'chekc' is no action", call("chekc").stderr)
+
+    def test_new_studies_run(self):
+        """Of a scene with frames: references, check, a run."""
+        scene = self.folder / "room.json"
+        scene.write_text((PROJECT / "data/scenes/cornell-fog/scene.json").read_text())
+        film = self.folder / "film.json"
+        film.write_text((PROJECT / "data/scenes/two-pulses/scene.json").read_text())
+
+        def call(*arguments):
+            done = subprocess.run([sys.executable, STUDY, *arguments, "--tungsten", TUNGSTEN], capture_output=True, text=True)
+            return done.returncode, done.stdout + done.stderr
+
+        self.assertEqual(call("new", film)[0], 0)
+        study = load_study(self.folder / "film-study.json", PROJECT)
+        self.assertEqual((study.scenes[0].gate, study.scenes[0].resolution), ((4.7, 9.7), (160, 120)))
+        self.assertIn("integrator.frame_num=0", study.scenes[0].overrides["*"])
+        code, text = call("new", scene)
+        self.assertEqual(code, 0, text)
+        self.assertIn("references", text)
+        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "4"]
+        self.assertEqual(call(file, "check")[0], 1)
+        self.assertEqual(call(file, "references", *options, "--seeds", "2")[0], 0)
+        self.assertEqual(call(file, "check")[0], 0)
+        code, text = call(file, "run", *options, "--seeds", "1", "--methods", "plain paths; best paths")
+        self.assertEqual(code, 0, text)
+        self.assertTrue((self.folder / "room-work/report.md").is_file())
+        self.assertEqual(call("new", scene)[0], 2)
+        self.assertIn("there is no scene", call("new", self.folder / "none.json")[1])
+
     def test_interrupted_runs_leave_no_result(self):
         work = self.folder / "interrupted"
         process = subprocess.Popen([sys.executable, STUDY, self.folder / "tiny.json", "--seconds", "600", "--methods", "points",

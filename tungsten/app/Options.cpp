@@ -80,9 +80,9 @@ PassRange passesOption(const std::string& text) {
 void requireNothingElse(const Options& options) {
     if (!options.passes) return;
     const OutputOverrides& outputs = options.outputs;
-    if (outputs.hdr || outputs.page || outputs.statistics || !options.trace.empty())
-        throw UsageError("--passes: writes a partial state alone, without -e, --stats, --html and --trace; images are "
-                         "what tungsten merge writes");
+    if (outputs.hdr || outputs.page || outputs.statistics || outputs.sheet || outputs.video || !options.trace.empty())
+        throw UsageError("--passes: writes a partial state alone, without -e, --stats, --html, --sheet, --video and "
+                         "--trace; images are what tungsten merge writes");
     if (options.checkpointSeconds || options.restart || options.targetError > 0.0 || options.bias || options.planCost)
         throw UsageError("--passes: goes without -c, -r, --target-error, --bias and --plan-cost");
 }
@@ -136,7 +136,7 @@ std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
 /// Options as they are written, before they are understood.
 struct OptionTexts {
     std::string memoryLimit, checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre,
-        describe, page, passes;
+        describe, page, passes, sheet, video, exposure;
     int64_t spp = 0;
     const CLI::Option* description = nullptr; ///< --describe, which may have no value
 };
@@ -156,12 +156,18 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("--passes", text.passes,
                    "render passes A to B - 1 alone, of A:B, into a partial state, NAME_passes_A-B.state beside the "
                    "image; \"tungsten merge STATES -e IMAGE\" puts such together");
-    app.add_option("--timeout", text.timeout,
-                   "stop after DURATION of passes (no unit: minutes) and write what is there");
+    app.add_option(
+        "--timeout", text.timeout,
+        "stop after DURATION of rendering (no unit: minutes), in the midst of a pass too, and write what is there");
     app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
     app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", text.hdr,
                    "linear image: .exr with standard error, .npz or .h5 with all that is known, .pfm, or .npy");
+    app.add_option("--exposure", text.exposure,
+                   "stops that 8-bit images are brightened by, or auto (default: the scene's; auto with a time gate)");
+    app.add_flag("--no-frames", options.outputs.noFrames, "no 8-bit image of each frame of a sequence");
+    app.add_option("--sheet", text.sheet, "frames of a sequence at a glance (.png)");
+    app.add_option("--video", text.video, "a sequence as .mp4 or .gif, by ffmpeg");
     app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
     app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
         ->allow_extra_args(false);
@@ -229,6 +235,13 @@ void understand(const OptionTexts& text, Options& options) {
     if (!text.hdr.empty()) options.outputs.hdr = text.hdr;
     if (!text.statistics.empty()) options.outputs.statistics = text.statistics;
     if (!text.page.empty()) options.outputs.page = text.page;
+    if (!text.sheet.empty()) options.outputs.sheet = text.sheet;
+    if (!text.video.empty()) options.outputs.video = text.video;
+    if (!text.exposure.empty()) {
+        options.outputs.exposure = ExposureChoice::read(text.exposure);
+        if (!options.outputs.exposure)
+            throw UsageError("--exposure " + text.exposure + ": expected auto or a number of stops, from -100 to 100");
+    }
     if (text.description->count() > 0) options.describe = text.describe;
 }
 
@@ -238,7 +251,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     Options options;
     OptionTexts text;
     CLI::App app{"Renders Tungsten scenes, time-resolved where they ask for it.\n"
-                 "Exit codes: 0 done, 1 bad input, 2 bad usage, 130 interrupted twice,\n"
+                 "Exit codes: 0 done, 1 bad input or not one pass in time, 2 bad usage, 130 interrupted twice,\n"
                  "before the first pass, or before the last scene.",
                  "tungsten"};
     declareOptions(app, options, text);
@@ -250,7 +263,11 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
         throw UsageError("--plan-cost: takes one scene at a time with --stats");
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
     if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");
-    if (options.outputs.page && options.scenes.size() > 1) throw UsageError("--html: takes one scene at a time");
+    if (options.scenes.size() > 1)
+        for (const auto& [given, name] : {std::pair{options.outputs.page.has_value(), "--html"},
+                                          {options.outputs.sheet.has_value(), "--sheet"},
+                                          {options.outputs.video.has_value(), "--video"}})
+            if (given) throw UsageError(std::string(name) + ": takes one scene at a time");
     if (options.scenes.empty() && !options.list && !options.describe)
         throw UsageError("no scene file given (--help lists the options)");
     return options;

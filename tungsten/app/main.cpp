@@ -35,7 +35,7 @@ constexpr int ExitBadInput = 1, ExitBadUsage = 2, ExitInterrupted = 130;
 
 std::atomic<bool> interrupted{false};
 
-/// First signal: finish the pass and write. Second: leave at once.
+/// First signal: break the pass off and write what those before it gave. Second: leave at once.
 void onInterrupt(int) {
     if (interrupted.exchange(true)) _exit(ExitInterrupted);
 }
@@ -71,11 +71,11 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
 
 void printSummary(const SessionResult& result) {
     if (result.film.passes() == 0) {
-        std::printf("interrupted before the first pass: nothing was written\n");
+        std::printf("interrupted before the first pass had ended: nothing was written\n");
         return;
     }
-    std::printf("%u passes, %llu samples per pixel in %.1f s (%s)", result.film.passes(),
-                static_cast<unsigned long long>(result.samples), result.renderSeconds, toString(result.reason).c_str());
+    std::printf("%u passes, %.10g samples per pixel in %.1f s (%s)", result.film.passes(), result.film.totalWeight(),
+                result.renderSeconds, toString(result.reason).c_str());
     const double error = result.film.relativeStandardError();
     if (!std::isnan(error))
         std::printf(", %s", errorText(error, result.film.relativeErrorBound(), result.relativeBias()).c_str());
@@ -85,6 +85,14 @@ void printSummary(const SessionResult& result) {
         std::printf("wrote %s\n", result.written[i].c_str());
     if (result.written.size() > MostListed) std::printf("and %zu more files\n", result.written.size() - MostListed);
     std::fflush(stdout);
+}
+
+[[noreturn]] void failWithoutPass(const std::filesystem::path& file, const SessionOptions& session) {
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.3g", session.timeoutSeconds);
+    throw InputError(file.string(), "time-out: not one pass ended within " + std::string(seconds) +
+                                        " s, and nothing was written; give it more time, a smaller --resolution, "
+                                        "fewer samples in a pass (renderer.spp_step) or fewer photons");
 }
 
 /// Exit code: 0, or 130 when interrupted before there was anything to write.
@@ -106,7 +114,9 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
         return 0;
     }
     const OutputFiles outputs = resolveOutputs(loaded.renderer, file, options.outputs);
-    runSession(loaded, *job.integrator, job.plan, outputs, sessionOptions(options, loaded.renderer), result);
+    const SessionOptions session = sessionOptions(options, loaded.renderer);
+    runSession(loaded, *job.integrator, job.plan, outputs, session, result);
+    if (result.film.passes() == 0 && result.reason == StopReason::TimedOut) failWithoutPass(file, session);
     if (!options.quiet) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }
@@ -146,7 +156,10 @@ void requireOutputsOfTheirOwn(const Options& options) {
         written.push_back(files.statistics);
         for (const auto& file : written) {
             if (file.empty()) continue;
-            const auto [writer, added] = writers.emplace(std::filesystem::weakly_canonical(file), i);
+            std::error_code ignored; // what names cannot be is said before the scene is rendered
+            const auto folder =
+                std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path(), ignored);
+            const auto [writer, added] = writers.emplace(folder / file.filename(), i);
             if (!added && writer->second != i)
                 throw UsageError(scene.string() + " would write " + file.string() + ", as " +
                                  options.scenes[writer->second].string() +

@@ -32,11 +32,16 @@ void writeRow(std::ostream& out, const Image& image, int y) {
 
 } // namespace
 
-void writePng(const std::filesystem::path& file, const Image& image, ToneMap toneMap) {
+std::vector<uint8_t> toneMapped(const Image& image, ToneMap toneMap) {
     std::vector<uint8_t> bytes;
     bytes.reserve(image.pixels.size() * 3);
     for (const Rgb& pixel : image.pixels)
         for (const uint8_t byte : toLdr(applyToneMap(toneMap, pixel))) bytes.push_back(byte);
+    return bytes;
+}
+
+void writePng(const std::filesystem::path& file, const Image& image, ToneMap toneMap) {
+    const std::vector<uint8_t> bytes = toneMapped(image, toneMap);
     writeAtomically(file, [&](std::ostream& out) {
         const auto append = [](void* stream, void* data, int size) {
             static_cast<std::ostream*>(stream)->write(static_cast<const char*>(data), size);
@@ -85,8 +90,11 @@ void writeTextFile(const std::filesystem::path& file, const std::string& text) {
     writeAtomically(file, [&](std::ostream& out) { out << text; });
 }
 
-std::filesystem::path framePath(const std::filesystem::path& file, int frame) {
-    return file.parent_path() / (file.stem().string() + "_" + std::to_string(frame) + file.extension().string());
+std::filesystem::path framePath(const std::filesystem::path& file, int frame, int frames) {
+    const size_t digits = std::max<size_t>(std::to_string(std::max(frames - 1, 0)).size(), 2);
+    const std::string number = std::to_string(frame);
+    const std::string padded = std::string(digits - std::min(digits, number.size()), '0') + number;
+    return file.parent_path() / (file.stem().string() + "_" + padded + file.extension().string());
 }
 
 } // namespace tungsten

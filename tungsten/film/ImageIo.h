@@ -12,6 +12,7 @@
 namespace tungsten {
 
 /// 8-bit RGB, row 0 at the top.
+std::vector<uint8_t> toneMapped(const Image& image, ToneMap toneMap);
 void writePng(const std::filesystem::path& file, const Image& image, ToneMap toneMap);
 
 /// `PF`, little-endian floats, rows bottom to top.
@@ -43,7 +44,8 @@ void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frame
 /// Writes text by way of a temporary file and rename.
 void writeTextFile(const std::filesystem::path& file, const std::string& text);
 
-/// `<folder>/<base>_<frame><extension>`, not padded: how the transient forks name per-frame files.
-std::filesystem::path framePath(const std::filesystem::path& file, int frame);
+/// `<folder>/<base>_<frame><extension>`, of so many frames: padded with zeros to two digits, or as many as the last
+/// frame has, so that names sort as frames do.
+std::filesystem::path framePath(const std::filesystem::path& file, int frame, int frames);
 
 } // namespace tungsten

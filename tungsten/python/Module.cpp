@@ -81,11 +81,17 @@ py::dict stateOf(const SessionResult& session, const SessionOptions& options) {
     return state;
 }
 
-/// Between passes: Ctrl-C becomes KeyboardInterrupt, and `progress` is called; where it says False, the render stops.
-void listen(const SessionResult& session, const SessionOptions& options, const py::object& progress,
-            std::atomic<bool>& interrupted) {
+/// Ctrl-C becomes KeyboardInterrupt.
+void lookForSignals() {
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+/// Between passes `progress` is called; where it says False, the render stops.
+void listen(const SessionResult& session, const SessionOptions& options, const py::object& progress,
+            std::atomic<bool>& interrupted) {
+    lookForSignals();
+    const py::gil_scoped_acquire gil;
     if (!PyCallable_Check(progress.ptr())) return;
     const py::object answer = progress(stateOf(session, options));
     if (answer.is(py::bool_(false))) interrupted = true;
@@ -102,12 +108,19 @@ Result render(const py::object& scene, const py::dict& set, const Limits& limits
     options.quiet = !progress.is(py::bool_(true));
     options.interrupted = &interrupted;
     options.afterPass = [&](const SessionResult& session) { listen(session, options, progress, interrupted); };
+    options.duringPass = lookForSignals;
     const py::gil_scoped_release released;
     using tbb::global_control;
     const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
     const global_control parallelism(global_control::max_allowed_parallelism, threads ? size_t(*threads) : all);
     auto session = std::make_unique<SessionResult>();
     runSession(job.loaded, *job.integrator, job.plan, {}, options, *session);
+    if (session->film.passes() == 0 && session->reason == StopReason::TimedOut) {
+        const py::gil_scoped_acquire gil;
+        PyErr_SetString(PyExc_TimeoutError, "not one pass ended in time: give it more seconds, a smaller resolution, a "
+                                            "smaller renderer.spp_step or fewer photons");
+        throw py::error_already_set();
+    }
     return {job.loaded, options, std::move(session)};
 }
 
@@ -182,13 +195,16 @@ void declareErrors(py::module_& module) {
 
 constexpr const char* RenderText =
     "Renders a scene, the name of a file or a dict, and writes nothing.\n\n"
-    "set: {\"media.fog.sigma_s\": 0.3} as --set. It stops after `seconds` of passes, `passes`, `samples` per pixel "
+    "set: {\"media.fog.sigma_s\": 0.3} as --set. It stops after `seconds`, `passes`, `samples` per pixel "
     "(default:\n"
     "the scene's spp) or when the relative error is at most `target_error`, whichever comes first. `progress`: True "
     "for the\n"
     "command's bar, or a function that is called with a dict after each pass and may return False to stop. `folder`: "
     "where\n"
-    "the scene's files are, if not beside it. Ctrl-C takes effect after the pass in progress.";
+    "the scene's files are, if not beside it. A pass in progress is broken off when the seconds are over "
+    "(TimeoutError: not "
+    "one has\n"
+    "ended) and at Ctrl-C.";
 
 } // namespace
 

@@ -3,6 +3,7 @@
 
 #include "tungsten/film/Film.h"
 #include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/PassWatch.h"
 #include "tungsten/render/Statistics.h"
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
@@ -23,6 +24,16 @@ struct PassInfo {
     /// If any, an integrator that leavesBias adds to its pass, zeroed before, about by how much kernels make
     /// the pass's image wrong: what the pass would have, had it no noise, minus the truth.
     Film* bias = nullptr;
+    /// Of the light paths that a pass traces, what this one is to trace: less than 1 only where cutsLightPaths().
+    double share = 1.0;
+    PassWatch watch{}; ///< polled about every millisecond, so that a pass can be broken off
+
+    /// The same for what is about the part from..to (0 to 1) of the pass's work.
+    [[nodiscard]] PassInfo part(double from, double to) const {
+        PassInfo part = *this;
+        part.watch = watch.part(from, to);
+        return part;
+    }
 };
 
 /// Renders passes. A pass must depend only on (scene, settings, pass): no state is carried from pass to pass, so a
@@ -40,8 +51,11 @@ class Integrator {
     [[nodiscard]] virtual bool leavesBias(const EffectPlan&) const { return false; }
     /// Width of a pass's kernels over that of the first pass's, whose square their bias follows; after prepare().
     [[nodiscard]] virtual double kernelWidth(uint32_t) const { return 1.0; }
+    /// Whether a pass can trace fewer light paths than the scene's settings say (PassInfo::share), as one that has
+    /// fewer samples can trace fewer camera paths.
+    [[nodiscard]] virtual bool cutsLightPaths() const { return false; }
     /// Adds the pass's image to every frame of the film (Film::add): each pixel's mean over the pass's samples,
-    /// averaged over the gate.
+    /// averaged over the gate. Throws PassBrokenOff where the pass's watch does.
     virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;
 };
 

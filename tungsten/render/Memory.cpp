@@ -1,5 +1,8 @@
 #include "tungsten/render/Memory.h"
 
+#include "tungsten/render/SceneFilm.h"
+#include "tungsten/scene/SceneLoader.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -47,6 +50,20 @@ std::string memoryText(double bytes) {
     char text[48];
     std::snprintf(text, sizeof text, "%.3g %s", bytes, units[unit]);
     return text;
+}
+
+void requireMemory(const LoadedScene& loaded, double films, double integratorBytes, double limit) {
+    const Vec2i size = loaded.scene->camera.resolution;
+    const double film = films * filmMemoryOf(*loaded.scene), all = film + integratorBytes;
+    const double most = limit > 0.0 ? limit : availableMemoryBytes();
+    if (all <= most) return;
+    throw InputError(loaded.diagnostics->file,
+                     "needs about " + memoryText(all) + " of memory (" + memoryText(film) + " for " +
+                         std::to_string(size.x) + "x" + std::to_string(size.y) + " pixels in " +
+                         std::to_string(loaded.scene->transport.gate.frames) + " frames, " +
+                         memoryText(integratorBytes) + " for the integrator), " +
+                         (limit > 0.0 ? "--memory-limit is " : "there are ") + memoryText(most) +
+                         "; use fewer frames, photons or a smaller --resolution");
 }
 
 void limitMemory(double bytes, unsigned threads) {

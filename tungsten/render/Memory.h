@@ -12,6 +12,12 @@ double availableMemoryBytes();
 /// "1.5 GiB".
 std::string memoryText(double bytes);
 
+struct LoadedScene;
+
+/// Throws InputError unless `films` films of the scene and the integrator's bytes fit into `limit` (0: what is
+/// available).
+void requireMemory(const LoadedScene& loaded, double films, double integratorBytes, double limit);
+
 /// From now on allocations beyond so many bytes fail (std::bad_alloc), instead of having the kernel end the process.
 /// What the libraries and the threads' stacks take comes on top: without it they end the process themselves.
 void limitMemory(double bytes, unsigned threads);

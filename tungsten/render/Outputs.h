@@ -1,6 +1,7 @@
 #pragma once
 // Which files a render writes, and writing them.
 
+#include "tungsten/film/Exposure.h"
 #include "tungsten/film/Film.h"
 #include "tungsten/scene/SceneLoader.h"
 
@@ -19,14 +20,20 @@ struct OutputFiles {
     std::filesystem::path state;      ///< resume state
     std::filesystem::path statistics; ///< JSON; empty: none
     std::filesystem::path page;       ///< HTML; empty: none
+    std::filesystem::path sheet{};    ///< PNG of all frames; empty: none
+    std::filesystem::path video{};    ///< .mp4 or .gif; empty: none
+    bool frames = true;               ///< each as an 8-bit image, beside `ldr`
+    std::optional<ExposureChoice> exposure{}; ///< of 8-bit images; none: automatic where there is a gate, else 0
 
     /// Of --passes A:B, named after the main image: NAME_passes_A-B.state.
     [[nodiscard]] std::filesystem::path partialState(uint32_t first, uint32_t end) const;
 };
 
-/// What the command line says about files (-d, -o, -e, --stats, --html).
+/// What the command line says about files (-d, -o, -e, --stats, --html, --sheet, --video, --exposure, --no-frames).
 struct OutputOverrides {
-    std::optional<std::filesystem::path> directory, ldr, hdr, statistics, page;
+    std::optional<std::filesystem::path> directory, ldr, hdr, statistics, page, sheet, video;
+    std::optional<ExposureChoice> exposure;
+    bool noFrames = false;
     bool allowOutside = false; ///< a scene's names may lead out of the output folder
 };
 

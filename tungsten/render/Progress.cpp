@@ -31,6 +31,12 @@ std::string figureText(const std::string& name, double relative, double bound) {
     return name + text;
 }
 
+/// "radii 42 %, ".
+std::string stageText(const PassProgress& pass) {
+    if (pass.stage.empty()) return "";
+    return pass.stage + " " + std::to_string(int(100.0 * pass.ofStage)) + " %, ";
+}
+
 } // namespace
 
 std::string errorText(double relative, double bound, const RelativeBias& bias) {
@@ -40,7 +46,8 @@ std::string errorText(double relative, double bound, const RelativeBias& bias) {
 
 double progressFraction(const ProgressState& state) {
     const int64_t remaining = state.totalSamples - state.resumedSamples;
-    double fraction = remaining > 0 ? double(state.samples - state.resumedSamples) / double(remaining) : 1.0;
+    const double done = double(state.samples - state.resumedSamples) + state.pass.ofPass * state.samplesOfPass;
+    double fraction = remaining > 0 ? done / double(remaining) : 1.0;
     if (state.timeoutSeconds > 0.0) fraction = std::max(fraction, state.elapsedSeconds / state.timeoutSeconds);
     // The error falls with the square root of the work.
     const double bound = std::hypot(state.errorBound, state.bias.bound);
@@ -55,8 +62,8 @@ std::string progressLine(const ProgressState& state) {
     std::string line = "[" + std::string(size_t(filled), '#') + std::string(size_t(Width - filled), '.') + "] ";
     const double left = fraction > 0.0 ? state.elapsedSeconds * (1.0 - fraction) / fraction : 0.0;
     line += "pass " + std::to_string(state.passes) + "/" + std::to_string(state.totalPasses) + ", " +
-            std::to_string(state.samples) + "/" + std::to_string(state.totalSamples) + " spp, " +
-            clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) + " left, " +
+            stageText(state.pass) + std::to_string(state.samples) + "/" + std::to_string(state.totalSamples) +
+            " spp, " + clockText(state.elapsedSeconds) + " elapsed, " + clockText(left) + " left, " +
             errorText(state.relativeError, state.errorBound, state.bias);
     return line;
 }

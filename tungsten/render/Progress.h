@@ -2,6 +2,7 @@
 // What a person sees while a render runs: passes, time left, standard error.
 
 #include "tungsten/film/KernelBias.h"
+#include "tungsten/render/PassWatch.h"
 
 #include <chrono>
 #include <cstdint>
@@ -21,6 +22,8 @@ struct ProgressState {
     RelativeBias bias{0.0, 0.0};                                     ///< 0: none is estimated
     double targetError = 0.0;                                        ///< 0: none
     int64_t resumedSamples = 0;                                      ///< taken before this run started
+    PassProgress pass{};                                             ///< in progress; no stage: none is
+    double samplesOfPass = 0.0;                                      ///< per pixel
 };
 
 /// Fraction of the render that is done, by whichever limit comes first.

@@ -2,16 +2,17 @@
 
 #include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/ImageIo.h"
-#include "tungsten/render/Checkpoint.h"
 #include "tungsten/render/HtmlPage.h"
 #include "tungsten/render/Memory.h"
+#include "tungsten/render/PassSizes.h"
 #include "tungsten/render/Progress.h"
-#include "tungsten/render/ResultDescription.h"
 #include "tungsten/render/SceneFilm.h"
+#include "tungsten/render/SessionFiles.h"
 
 #include <bit>
 #include <chrono>
 #include <cstdio>
+#include <thread>
 
 namespace tungsten {
 
@@ -25,6 +26,9 @@ bool checksError(uint32_t passes) {
     return passes >= LeastPassesForTargetError && std::has_single_bit(passes);
 }
 
+/// Keys of samples that are rendered in parts; whole ones come before.
+constexpr uint64_t FirstPartialSample = uint64_t(1) << 31;
+
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -34,9 +38,9 @@ class Session {
   public:
     Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs,
             const SessionOptions& options, SessionResult& result)
-        : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options),
-          result_(result), identity_{loaded.hash, options.seed, options.sppStep},
-          firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
+        : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options), result_(result),
+          files_(loaded, outputs, options, result), firstPass_(options.passes ? options.passes->first : 0),
+          spp_(samplesOf(options)), sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()),
           trace_(options.trace, *loaded.scene, options.seed), reporter_(options.quiet) {}
 
     void run(const EffectPlan& plan) {
@@ -47,10 +51,11 @@ class Session {
             checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
                                     options_.checkpointSeconds > 0.0, loaded_.inputs});
         const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(plan);
-        requireMemory(bias ? 3.0 : 2.0);
+        // Film, that of its bias, and one more copy of its images while they are written.
+        requireMemory(loaded_, bias ? 3.0 : 2.0, integrator_.memoryBytes(), options_.memoryLimit);
         if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
         result_.film = filmOf(scene);
-        resume();
+        files_.resume();
         {
             const StageTimer timer(result_.statistics, "prepare");
             integrator_.prepare(plan, result_.statistics);
@@ -58,7 +63,7 @@ class Session {
         if (stopBeforeFirstPass()) return;
         if (options_.passes) return renderPartially();
         renderPasses();
-        finish();
+        if (result_.film.passes() > 0) files_.finish();
     }
 
   private:
@@ -82,81 +87,146 @@ class Session {
     void renderPartially() {
         const std::filesystem::path file = partialState();
         const PartialIdentity identity = PartialIdentity::of(loaded_, options_.seed, options_.sppStep);
-        writeAtomically(file, [&](std::ostream& out) {
-            PartialStateWriter writer(out, file.string(), identity, firstPass_);
-            partial_ = &writer;
-            renderPasses();
-            writer.finish(statisticsJson(loaded_, options_, result_), processCpuSeconds());
-        });
-        result_.written = {file};
-    }
-
-    /// Film, that of its bias, one more copy of its images while they are written (`films` in all), and what the
-    /// integrator says.
-    void requireMemory(double films) const {
-        const Camera& camera = loaded_.scene->camera;
-        const int frames = loaded_.scene->transport.gate.frames;
-        const double film = films * filmMemoryOf(*loaded_.scene);
-        const double tables = integrator_.memoryBytes();
-        const double limit = options_.memoryLimit > 0.0 ? options_.memoryLimit : availableMemoryBytes();
-        if (film + tables <= limit) return;
-        throw InputError(loaded_.diagnostics->file,
-                         "needs about " + memoryText(film + tables) + " of memory (" + memoryText(film) + " for " +
-                             std::to_string(camera.resolution.x) + "x" + std::to_string(camera.resolution.y) +
-                             " pixels in " + std::to_string(frames) + " frames, " + memoryText(tables) +
-                             " for the integrator), " +
-                             (options_.memoryLimit > 0.0 ? "--memory-limit is " : "there are ") + memoryText(limit) +
-                             "; use fewer frames, photons or a smaller --resolution");
-    }
-
-    void resume() {
-        if (!options_.resumeEnabled || options_.restart) return;
-        if (const auto point = readCheckpoint(outputs_.state, identity_, result_.film, result_.bias))
-            result_.samples = point->samples;
-        result_.resumedSamples = result_.samples;
-        if (result_.samples > 0 && !options_.quiet)
-            std::fprintf(stderr, "resuming after %llu samples per pixel from %s\n",
-                         static_cast<unsigned long long>(result_.samples), outputs_.state.c_str());
+        try {
+            writeAtomically(file, [&](std::ostream& out) {
+                PartialStateWriter writer(out, file.string(), identity, firstPass_);
+                partial_ = &writer;
+                renderPasses();
+                if (result_.film.passes() == 0) throw PassBrokenOff();
+                writer.finish(statisticsJson(loaded_, options_, result_), processCpuSeconds());
+            });
+            result_.written = {file};
+        } catch (const PassBrokenOff&) { // the first: no file
+        }
     }
 
     /// Interrupted while loading: there is nothing to write.
     bool stopBeforeFirstPass() {
-        const bool stop = options_.interrupted && options_.interrupted->load();
-        if (stop) result_.reason = StopReason::Interrupted;
-        return stop;
+        if (interrupted()) result_.reason = StopReason::Interrupted;
+        return interrupted();
     }
 
     void renderPasses() {
         const StageTimer timer(result_.statistics, "passes");
-        start_ = lastCheckpoint_ = Clock::now();
+        start_ = Clock::now();
         trace_.start();
         bool stop = result_.samples >= spp_;
         while (!stop) {
-            renderOnePass();
+            if (!renderOnePass()) {
+                stop = afterBreak();
+                continue;
+            }
             if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
             trace_.record(result_.film, result_.bias, result_.samples, stop);
             if (stop || reporter_.due()) reporter_.show(state(), stop);
-            if (!stop) checkpointIfDue();
+            if (!stop) files_.checkpointIfDue();
         }
         result_.renderSeconds = secondsSince(start_);
         result_.trace = trace_.entries();
     }
 
-    void renderOnePass() {
-        const uint64_t left = spp_ - result_.samples, before = firstPass_ * uint64_t(options_.sppStep);
-        const auto samples = uint32_t(std::min(uint64_t(options_.sppStep), left));
-        const uint32_t done = result_.film.passes(), standsFor = result_.estimatesBias() ? passesOfItsBias(done) : 0;
-        const PassInfo pass{firstPass_ + done, before + result_.samples, samples, options_.seed,
-                            standsFor > 0 ? &result_.bias : nullptr};
+    /// False: it was broken off.
+    bool renderOnePass() {
+        const double done = result_.film.totalWeight();
+        const PassSize size = sizes_.next(done);
+        const uint64_t before = firstPass_ * uint64_t(options_.sppStep);
+        const uint32_t passes = result_.film.passes(),
+                       standsFor = result_.estimatesBias() ? passesOfItsBias(passes) : 0;
+        // Parts of one sample look at pixels in places of their own.
+        const bool partial = size.weight < double(size.samples);
+        const uint64_t firstSample = partial ? FirstPartialSample + passes : before + result_.samples;
+        PassMonitor monitor([this] { return stopsPass(); });
+        const PassInfo pass{firstPass_ + passes,
+                            firstSample,
+                            size.samples,
+                            options_.seed,
+                            standsFor > 0 ? &result_.bias : nullptr,
+                            size.share,
+                            PassWatch(monitor)};
         result_.film.beginPass();
         if (pass.bias) result_.bias.beginPass();
-        integrator_.renderPass(pass, result_.film, result_.statistics);
-        if (partial_) partial_->add(result_.film, samples);
-        result_.film.endPass(double(samples));
+        const bool whole = tryPass(pass, monitor);
+        if (failed_) std::rethrow_exception(failure_);
+        if (!whole) return false;
+        if (partial_) partial_->add(result_.film, size.samples);
+        result_.film.endPass(size.weight);
         if (pass.bias) result_.bias.endPass(double(standsFor));
-        result_.samples += samples;
+        result_.samples = uint64_t(result_.film.totalWeight());
+        endedAPass_ = true;
+        return true;
     }
+
+    /// Figures of a pass that is broken off are left out, but for the time.
+    bool tryPass(const PassInfo& pass, const PassMonitor& monitor) {
+        monitor_ = &monitor;
+        passStart_ = Clock::now();
+        Statistics statistics;
+        std::optional<StageTimer> timer(std::in_place, result_.statistics, "passes broken off");
+        try {
+            integrator_.renderPass(pass, result_.film, statistics);
+            timer->discard();
+        } catch (const PassBrokenOff&) {
+            brokenAt_ = monitor.progress().ofPass;
+            monitor_ = nullptr;
+            return false;
+        }
+        monitor_ = nullptr;
+        result_.statistics.add(statistics);
+        return true;
+    }
+
+    /// Of a pass in progress; any of its threads.
+    bool stopsPass() {
+        if (std::this_thread::get_id() == thread_) showPass();
+        return failed_.load(std::memory_order_relaxed) || interrupted() || secondsSince(begin_) >= deadline();
+    }
+
+    void showPass() {
+        constexpr std::chrono::milliseconds Between(50);
+        const auto now = Clock::now();
+        if (now - lastShown_ < Between) return;
+        lastShown_ = now;
+        if (failed_) return;
+        try {
+            if (options_.duringPass) options_.duringPass();
+        } catch (...) { // later: thrown here it would not end other threads' parts of the pass
+            failure_ = std::current_exception();
+            failed_ = true;
+            return;
+        }
+        if (!reporter_.due()) return;
+        const PassSize size = sizes_.next(result_.film.totalWeight());
+        ProgressState progress = state();
+        progress.pass = monitor_->progress();
+        progress.samplesOfPass = size.weight;
+        reporter_.show(progress, false);
+    }
+
+    /// Before a pass of this run has ended; a partial state has whole passes.
+    [[nodiscard]] bool mayCut() const { return !endedAPass_ && !options_.passes && sizes_.canCut(); }
+
+    /// When the pass in progress is to end, in seconds since begin_.
+    [[nodiscard]] double deadline() const {
+        if (options_.timeoutSeconds <= 0.0) return std::numeric_limits<double>::infinity();
+        if (!mayCut()) return options_.timeoutSeconds;
+        const double started = std::chrono::duration<double>(passStart_ - begin_).count();
+        return std::min(options_.timeoutSeconds, started + FirstPassPart * options_.timeoutSeconds);
+    }
+
+    /// Whether the render ends with the pass that was broken off; else passes are smaller from now on.
+    bool afterBreak() {
+        if (interrupted() || secondsSince(begin_) >= options_.timeoutSeconds) {
+            result_.reason = interrupted() ? StopReason::Interrupted : StopReason::TimedOut;
+            return true;
+        }
+        sizes_.cut(brokenAt_);
+        std::fprintf(stderr, "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
+                     loaded_.diagnostics->file.c_str(), FirstPassPart * options_.timeoutSeconds, sizes_.text().c_str());
+        return false;
+    }
+
+    [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted->load(); }
 
     bool shouldStop() {
         const auto because = [&](StopReason reason) {
@@ -164,59 +234,18 @@ class Session {
             return true;
         };
         if (result_.samples >= spp_) return because(StopReason::Finished);
-        if (options_.interrupted && options_.interrupted->load()) return because(StopReason::Interrupted);
-        if (options_.timeoutSeconds > 0.0 && secondsSince(start_) >= options_.timeoutSeconds)
+        if (interrupted()) return because(StopReason::Interrupted);
+        if (options_.timeoutSeconds > 0.0 && secondsSince(begin_) >= options_.timeoutSeconds)
             return because(StopReason::TimedOut);
         if (options_.targetError <= 0.0 || !checksError(result_.film.passes())) return false;
         return result_.errorBound() <= options_.targetError && because(StopReason::TargetReached);
     }
 
-    void checkpointIfDue() {
-        if (options_.checkpointSeconds <= 0.0 || secondsSince(lastCheckpoint_) < options_.checkpointSeconds) return;
-        const StageTimer timer(result_.statistics, "checkpoint");
-        // The images so far are worth more than the checkpoint: the render goes on.
-        for (const Problem& problem : write(CheckpointSuffix))
-            std::fprintf(stderr, "warning: checkpoint: %s\n", problem.text().c_str());
-        lastCheckpoint_ = Clock::now();
-    }
-
-    void finish() {
-        const StageTimer timer(result_.statistics, "write");
-        const std::vector<Problem> problems = write("");
-        if (!problems.empty()) throw InputError(problems);
-    }
-
-    /// Images and state; a failure of one does not keep the other from being written.
-    std::vector<Problem> write(const std::string& suffix) {
-        std::vector<Problem> problems;
-        const auto attempt = [&](const auto& action) {
-            try {
-                action();
-            } catch (const InputError& error) {
-                problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-            }
-        };
-        attempt([&] {
-            const std::string metadata = describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text,
-                                                         options_.command, statisticsJson(loaded_, options_, result_)});
-            auto files = writeImages(result_.film, result_.bias, *loaded_.scene, outputs_, metadata, suffix);
-            if (suffix.empty()) result_.written = std::move(files);
-        });
-        if (options_.resumeEnabled)
-            attempt([&] {
-                makeFolderOf(outputs_.state);
-                writeCheckpoint(outputs_.state, identity_, {result_.samples}, result_.film, result_.bias);
-            });
-        return problems;
-    }
-
     /// Costs a sweep over the film (the standard error): made only when it is shown.
     [[nodiscard]] ProgressState state() const {
-        const uint64_t left = spp_ - std::min(result_.samples, spp_);
-        const uint64_t step = uint64_t(options_.sppStep);
         ProgressState progress;
         progress.passes = result_.film.passes();
-        progress.totalPasses = progress.passes + uint32_t((left + step - 1) / step);
+        progress.totalPasses = progress.passes + sizes_.left(result_.film.totalWeight());
         progress.samples = int64_t(result_.samples);
         progress.totalSamples = int64_t(spp_);
         progress.elapsedSeconds = secondsSince(start_);
@@ -234,30 +263,24 @@ class Session {
     const OutputFiles& outputs_;
     const SessionOptions& options_;
     SessionResult& result_;
-    RenderIdentity identity_;
+    SessionFiles files_;
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
+    PassSizes sizes_;
+    std::atomic<bool> failed_{false};
+    std::exception_ptr failure_;           ///< of duringPass, if failed_
+    bool endedAPass_ = false;              ///< in this run
+    const PassMonitor* monitor_ = nullptr; ///< of the pass in progress
+    double brokenAt_ = 0.0;                ///< where the last pass that was broken off was
+    std::thread::id thread_ = std::this_thread::get_id();
+    Clock::time_point begin_ = Clock::now(), passStart_ = begin_, lastShown_ = begin_;
     PartialStateWriter* partial_ = nullptr;
     Trace trace_;
     ProgressReporter reporter_;
-    Clock::time_point start_, lastCheckpoint_;
+    Clock::time_point start_;
 };
 
 } // namespace
-
-std::string toString(StopReason reason) {
-    switch (reason) {
-    case StopReason::Finished:
-        return "all samples taken";
-    case StopReason::TimedOut:
-        return "time-out";
-    case StopReason::TargetReached:
-        return "target error reached";
-    case StopReason::Interrupted:
-        return "interrupted";
-    }
-    return "";
-}
 
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result) {

@@ -29,7 +29,7 @@ struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
     int64_t spp = 32, sppStep = 16;
     std::optional<PassRange> passes; ///< of the render; they go into a partial state, and no images are written
-    double timeoutSeconds = 0.0;     ///< 0: none
+    double timeoutSeconds = 0.0;     ///< of preparing and rendering; 0: none
     double checkpointSeconds = 0.0;  ///< 0: none
     bool resumeEnabled = false;      ///< write and read the state file
     bool restart = false;            ///< ignore a saved state
@@ -39,9 +39,11 @@ struct SessionOptions {
     bool quiet = false;              ///< no progress bar
     std::filesystem::path trace;     ///< folder of the render's trace; empty: none
     std::string command;             ///< that started the render, for its page
-    const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: finish the pass, write, stop
+    const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: break the pass off, write, stop
     /// Called after every pass, before it is decided whether to go on. What it throws ends the render.
     std::function<void(const SessionResult&)> afterPass;
+    /// Called some twenty times a second within passes, by the thread that renders. What it throws ends the render.
+    std::function<void()> duringPass;
 };
 
 struct SessionResult {
@@ -50,7 +52,7 @@ struct SessionResult {
     Film bias; ///< by pixel, of measured passes; without pixels where none is estimated
     Statistics statistics;
     double renderSeconds = 0.0;    ///< passes of this run, not counting loading and writing
-    uint64_t samples = 0;          ///< per pixel, resumed ones included
+    uint64_t samples = 0;          ///< whole ones per pixel, resumed ones included
     uint64_t resumedSamples = 0;   ///< of them, taken by earlier runs
     std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
@@ -64,8 +66,12 @@ struct SessionResult {
     [[nodiscard]] double errorBound() const { return std::hypot(film.relativeErrorBound(), relativeBias().bound); }
 };
 
-/// Renders and writes every output. `plan` is complete (Integrator::plan was called). Throws InputError before the
-/// first pass when an output cannot be written. Interrupted before the first pass, it writes nothing.
+/// Part of a time-out that the first pass may take before passes are cut (PassSizes).
+inline constexpr double FirstPassPart = 0.25;
+
+/// Renders and writes every output. A pass that a time-out or an interrupt finds in progress is broken off: the film
+/// holds whole passes alone. Where not one has ended, nothing is written. `plan` is complete (Integrator::plan was
+/// called). Throws InputError before the first pass when an output cannot be written.
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result);
 

@@ -17,6 +17,17 @@ void Statistics::addStage(const std::string& stage, double wallSeconds, double c
     ++entry.runs;
 }
 
+void Statistics::add(const Statistics& others) {
+    const std::scoped_lock lock(mutex_, others.mutex_);
+    for (const auto& [name, amount] : others.counters_) counters_[name] += amount;
+    for (const auto& [name, stage] : others.stages_) {
+        Stage& entry = stages_[name];
+        entry.wallSeconds += stage.wallSeconds;
+        entry.cpuSeconds += stage.cpuSeconds;
+        entry.runs += stage.runs;
+    }
+}
+
 std::map<std::string, uint64_t> Statistics::counters() const {
     const std::scoped_lock lock(mutex_);
     return counters_;
@@ -51,6 +62,7 @@ StageTimer::StageTimer(Statistics& statistics, std::string stage)
       cpuStart_(processCpuSeconds()) {}
 
 StageTimer::~StageTimer() {
+    if (discarded_) return;
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - wallStart_;
     statistics_.addStage(stage_, wall.count(), processCpuSeconds() - cpuStart_);
 }

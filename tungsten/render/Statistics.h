@@ -21,6 +21,7 @@ class Statistics {
 
     void add(const std::string& counter, uint64_t amount);
     void addStage(const std::string& stage, double wallSeconds, double cpuSeconds);
+    void add(const Statistics& others);
     [[nodiscard]] std::map<std::string, uint64_t> counters() const;
     [[nodiscard]] std::map<std::string, Stage> stages() const;
     [[nodiscard]] uint64_t counter(const std::string& name) const; ///< 0 when never counted
@@ -41,12 +42,14 @@ class StageTimer {
   public:
     StageTimer(Statistics& statistics, std::string stage);
     ~StageTimer();
+    void discard() { discarded_ = true; } ///< nothing is added
     StageTimer(const StageTimer&) = delete;
     StageTimer& operator=(const StageTimer&) = delete;
 
   private:
     Statistics& statistics_;
     std::string stage_;
+    bool discarded_ = false;
     std::chrono::steady_clock::time_point wallStart_;
     double cpuStart_;
 };

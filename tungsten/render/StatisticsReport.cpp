@@ -7,6 +7,20 @@
 
 namespace tungsten {
 
+std::string toString(StopReason reason) {
+    switch (reason) {
+    case StopReason::Finished:
+        return "all samples taken";
+    case StopReason::TimedOut:
+        return "time-out";
+    case StopReason::TargetReached:
+        return "target error reached";
+    case StopReason::Interrupted:
+        return "interrupted";
+    }
+    return "";
+}
+
 std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result) {
     const Scene& scene = *loaded.scene;
     JsonWriter json;
@@ -18,9 +32,15 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     json.field("seed", options.seed);
     json.field("threads", uint64_t(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
     json.field("passes", uint64_t(result.film.passes()));
-    json.field("samples per pixel", result.samples);
+    const double taken = result.film.totalWeight(); // parts of samples where passes were cut
+    taken == double(result.samples) ? json.field("samples per pixel", result.samples)
+                                    : json.field("samples per pixel", taken);
     json.field("resumed samples per pixel", result.resumedSamples);
     json.field("stopped because", toString(result.reason));
+    if (options.targetError > 0.0) {
+        json.field("target error", options.targetError);
+        json.field("target error reached", result.errorBound() <= options.targetError);
+    }
     json.field("relative standard error", result.film.relativeStandardError());
     json.field("relative error bound", result.film.relativeErrorBound());
     if (result.estimatesBias()) {

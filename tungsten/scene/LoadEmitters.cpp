@@ -10,7 +10,7 @@ namespace {
 constexpr Meaning PowerMeaning{"power", "all that is emitted, instead of `emission`", "none"};
 constexpr Meaning SurroundingsMeaning{"none", "medium in which its light starts", "vacuum"};
 constexpr Meaning SurroundingSpeedMeaning{"length/time", "speed of light around it, where there is no medium",
-                                          "vaccum_speed_of_light"};
+                                          "vacuum_speed_of_light"};
 
 /// `power` wins over `emission`; the flag says which was given.
 struct Strength {

@@ -68,8 +68,21 @@ Medium readMedium(const ObjectReader& reader) {
     return medium;
 }
 
+/// A speed that is left out is 1, whatever it is elsewhere.
+void warnAboutSpeed(const ObjectReader& reader, const Medium& medium, const TransportSettings& transport) {
+    if (transport.gate.steadyState || reader.has("speed_of_light") || transport.vacuumSpeed == medium.speedOfLight)
+        return;
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "not given: light travels at %g here, and at %g outside media (vacuum_speed_of_light); say it for both",
+        double(medium.speedOfLight), double(transport.vacuumSpeed));
+    reader.warn("speed_of_light", text);
+}
+
 int addMedium(LoadContext& context, const ObjectReader& reader) {
     context.scene.media.push_back(readMedium(reader));
+    warnAboutSpeed(reader, context.scene.media.back(), context.scene.transport);
     const int index = int(context.scene.media.size()) - 1;
     const std::string& name = context.scene.media.back().name;
     if (!name.empty()) context.media.emplace(name, index);

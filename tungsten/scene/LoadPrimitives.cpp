@@ -75,10 +75,10 @@ void readRegions(LoadContext& context, const ObjectReader& reader, Primitive& pr
     const int outside = readMediumReference(context, reader, "ext_medium", {"none", "before its normal"});
     const double insideSpeed = readSpeedOrNone(
         reader, "int_speed_of_light",
-        {"length/time", "speed of light behind its normal, where there is no medium", "vaccum_speed_of_light"});
+        {"length/time", "speed of light behind its normal, where there is no medium", "vacuum_speed_of_light"});
     const double outsideSpeed = readSpeedOrNone(
         reader, "ext_speed_of_light",
-        {"length/time", "speed of light before its normal, where there is no medium", "vaccum_speed_of_light"});
+        {"length/time", "speed of light before its normal, where there is no medium", "vacuum_speed_of_light"});
     primitive.boundsMedium = reader.has("int_medium") || reader.has("ext_medium");
     primitive.boundsRegion = primitive.boundsMedium || insideSpeed > 0.0 || outsideSpeed > 0.0;
     primitive.inside = regionOn(context, inside, insideSpeed);

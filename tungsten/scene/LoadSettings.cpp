@@ -11,6 +11,13 @@ namespace {
 
 constexpr double MostFrames = 1e6;
 
+/// "0.3".
+std::string numberText(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
 void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
     static const std::vector<std::string> types{"color", "depth", "normal", "albedo", "visibility", "transients"};
     const std::string type = buffer.choice(
@@ -62,13 +69,19 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
     const int frames =
         int(reader.integer("frame_num", 0, {"none", "frames of a sequence; 0: one gate"}, {0, MostFrames}));
     const bool delta = reader.flag("delta_time_gate", false, {"none", "the gate is a single moment, its centre"});
+    const auto without = [&](const char* field, const char* with, const std::string& what) {
+        if (reader.has(field)) reader.warn(field, std::string("not looked at beside ") + with + ": " + what);
+    };
     TimeGate gate;
     if (delta) {
+        if (frames > 0) without("frame_num", "delta_time_gate", "a single moment has one frame");
         gate = {false, true, centre, 0.0, 1};
     } else if (frames > 0) {
         if (width <= 0.0)
             reader.problem("transient_time_width", "a sequence (frame_num > 0) needs a frame width above 0");
         gate = {false, false, start, width, frames};
+        without("transient_time_center", "frame_num",
+                "the first frame starts at start_time (" + numberText(start) + ")");
     } else if (width > 0.0 && (centre >= 0.0 || transient)) {
         gate = {false, false, centre - 0.5 * width, width, 1};
     } else if (transient) {
@@ -76,8 +89,26 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
     } else if (width > 0.0 && !reader.has("temporal_response")) {
         reader.warn("transient_time_width",
                     "no gate without a transient_time_center of at least 0, or frame_num: rendered in steady state");
+    } else if (centre >= 0.0 && !reader.has("temporal_response")) {
+        reader.warn("transient_time_center",
+                    "no gate without a transient_time_width above 0: rendered in steady state");
     }
     return gate;
+}
+
+/// The format misspells it; both spellings are read.
+float readVacuumSpeed(const ObjectReader& reader) {
+    const char *const format = "vaccum_speed_of_light", *const right = "vacuum_speed_of_light";
+    const Range range = Range::positiveMeasure();
+    const double speed = reader.number(
+        right, 1.0, {"length/time", "speed of light outside media; media have a speed_of_light of their own"}, range);
+    const double formats =
+        reader.number(format, speed, {"length/time", "the same, as the format spells it", right}, range);
+    if (reader.has(right) && formats != speed)
+        reader.problem(right, "is " + numberText(speed) + ", but " + format +
+                                  ", the format's spelling of the same, is " + numberText(formats) +
+                                  "; say one of them");
+    return float(formats);
 }
 
 TemporalResponse gaussianResponse(double centre, double sigma) {
@@ -146,6 +177,16 @@ void useResponse(const ObjectReader& reader, TransportSettings& transport) {
     transport.gate = {false, false, start, end - start, 1};
 }
 
+std::optional<ExposureChoice> readExposure(const ObjectReader& reader) {
+    constexpr Meaning meaning{"stops", "factor 2^stops on 8-bit images; auto: the brightest of each is about white"};
+    reader.declare("exposure", "a number from -100 to 100, or auto", "auto with a gate, 0 in steady state", meaning);
+    if (!reader.has("exposure")) return std::nullopt;
+    if (!reader.isText("exposure"))
+        return ExposureChoice{false, reader.number("exposure", 0.0, meaning, {-MostStops, MostStops})};
+    (void)reader.choice("exposure", "auto", {"auto"}, meaning);
+    return ExposureChoice{};
+}
+
 } // namespace
 
 std::string readIntegratorType(const ObjectReader& integrator) {
@@ -170,8 +211,7 @@ TransportSettings readTransport(const ObjectReader& reader, const std::string& t
         reader.choice("time_normalization", "average", {"average", "integral"},
                       {"none", "a pixel is the mean of radiance over its frame, or its integral"}) == "integral";
     if (!isSteadyPhotonMap(type)) useResponse(reader, transport);
-    transport.vacuumSpeed = float(reader.number(
-        "vaccum_speed_of_light", 1.0, {"length/time", "speed of light outside media"}, Range::positiveMeasure()));
+    transport.vacuumSpeed = readVacuumSpeed(reader);
     return transport;
 }
 
@@ -196,8 +236,11 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.hdrOutputFile = reader.text(
         "hdr_output_file", "",
         {"none", "linear image (.exr with standard error, .npz or .h5 with all that is known, .pfm or .npy)"});
-    renderer.resumeFile =
-        reader.text("resume_render_file", renderer.resumeFile, {"none", "where a render's state goes"});
+    renderer.exposure = readExposure(reader);
+    const std::string state =
+        reader.text("resume_render_file", "",
+                    {"none", "where a render's state goes", "output_file with State.dat for its extension"});
+    if (reader.has("resume_render_file")) renderer.resumeFile = state;
     renderer.overwriteOutputFiles =
         reader.flag("overwrite_output_files", true, {"none", "false: where the file exists a free name is taken"});
     renderer.enableResume =
@@ -207,7 +250,7 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.checkpointSeconds = reader.durationSeconds(
         "checkpoint_interval", 0.0, {"duration", "how often images and state are saved; no unit: minutes"});
     renderer.timeoutSeconds =
-        reader.durationSeconds("timeout", 0.0, {"duration", "after which passes stop; no unit: minutes"});
+        reader.durationSeconds("timeout", 0.0, {"duration", "of preparing and rendering; no unit: minutes"});
     for (const ObjectReader& buffer : reader.blocks("output_buffers", {"none", "further files"}))
         readOutputBuffer(buffer, renderer);
     // Choices of the format that make no difference here.

@@ -1,6 +1,7 @@
 #pragma once
 // Scene files in, typed scenes out.
 
+#include "tungsten/film/Exposure.h"
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 
@@ -22,7 +23,8 @@ struct RendererSettings {
     std::string outputDirectory;
     std::string outputFile = "TungstenRender.png";
     std::string hdrOutputFile;
-    std::string resumeFile = "TungstenRenderState.dat";
+    std::optional<ExposureChoice> exposure; ///< of 8-bit images; none: left to the gate
+    std::optional<std::string> resumeFile;  ///< none: named after the image
     bool overwriteOutputFiles = true;
     bool enableResume = false;
     int64_t spp = 32;

@@ -23,7 +23,7 @@ SCENES = {
 
 def strip(folder, frames):
     """Frames in rows of four."""
-    images = [Image.open(folder / f"image_{frame}.png").convert("RGB") for frame in frames]
+    images = [Image.open(folder / f"image_{frame:02}.png").convert("RGB") for frame in frames]
     width, height = (side // 2 for side in images[0].size)
     sheet = Image.new("RGB", (4 * width, -(-len(images) // 4) * height))
     for i, image in enumerate(images):

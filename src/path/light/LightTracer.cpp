@@ -11,6 +11,8 @@ namespace tungsten::path {
 
 namespace {
 
+constexpr uint64_t PathsPerPoll = 16;
+
 /// Of the first surface that mirrors or refracts; none if there is no such.
 const Primitive* firstSpecular(const Scene& scene) {
     for (const Primitive& primitive : scene.primitives)
@@ -95,6 +97,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
     if (!(emitters_.total() > 0.0)) return;
     const LightWalkContext context{*scene_,         limits_, sensor_, bounds_, emitters_, {*scene_, forwardBoundaries_},
                                    russianRoulette_};
+    pass.watch.stage("light paths", paths);
     const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
     for (uint64_t traced = 0; traced < paths; traced += tuning::PathsPerBatch * tuning::BatchesPerWave) {
         const uint64_t wave = std::min(paths - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
@@ -106,6 +109,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
             for (uint64_t path = first; path < last; ++path) {
                 // As many paths as pixels make a sample: but for rounding the image does not depend on
                 // how samples are cut into passes.
+                pass.watch.pollEvery(PathsPerPoll, path);
                 const auto sample = uint32_t(pass.firstSample + path / pixels);
                 LightWalk(context, Sampler(pass.seed, RandomStream::Photon, sample, path % pixels), batches[b],
                           counters)
@@ -114,7 +118,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
             FilmSplats::sortByRow(batches[b]);
             report(counters, statistics);
         });
-        splats.add(batches);
+        splats.add(batches, pass.watch);
     }
     statistics.add("light paths", paths);
 }

@@ -40,7 +40,9 @@ void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, float p
                              const PassInfo& pass) {
     std::vector<std::optional<LightVertex>> found(paths);
     const auto stream = uint64_t(&emitter - scene.emitters.data()) << 32;
+    pass.watch.stage("light paths", paths);
     tbb::parallel_for(size_t(0), paths, [&](size_t i) {
+        pass.watch.pollEvery(256, i);
         Sampler sampler(pass.seed, RandomStream::LightVertex, pass.index, stream | i);
         found[i] = traceLightVertex(scene, emitter, probability, sampler);
     });

@@ -68,7 +68,9 @@ void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, floa
     constexpr size_t Block = 1024;
     std::vector<std::vector<ReflectedVertex>> found((paths + Block - 1) / Block);
     const auto stream = uint64_t(&emitter - scene.emitters.data()) << 32;
+    pass.watch.stage("reflected light", found.size());
     tbb::parallel_for(size_t(0), found.size(), [&](size_t block) {
+        pass.watch.poll();
         for (size_t i = block * Block; i < std::min(paths, (block + 1) * Block); ++i)
             traceReflection(scene, emitter, probability, flights,
                             Sampler(pass.seed, RandomStream::ReflectedLight, pass.index, stream | i), found[block]);

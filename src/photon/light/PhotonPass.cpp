@@ -110,14 +110,15 @@ void PhotonPass::setGate(const TimeGate& gate) {
     if (guidance_) guidance_->setGate(gate);
 }
 
-void PhotonPass::setLightPerConnection(const PassInfo& pass, SurfaceConnections& connections,
-                                       Statistics& statistics) const {
+void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings,
+                                       SurfaceConnections& connections, Statistics& statistics) const {
     // Paths of their own: it must not depend on the paths that it is for.
-    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings_, culling_, frameCullings_, 0.0f, emitters_, false, storeVolume_};
+    const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
+    const WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, storeVolume_};
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths, Batch(settings_.primitive));
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
+        pass.watch.poll(0);
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         Batch& pilot = pilots[path];
         const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
@@ -133,7 +134,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, SurfaceConnections&
     }
     // Paths until the store of photons or beams is full.
     const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
-    const double expected = std::min(double(settings_.volumePhotonCount) * perDeposit, double(settings_.photonCount));
+    const double expected = std::min(double(settings.volumePhotonCount) * perDeposit, double(settings.photonCount));
     const double perPath =
         std::clamp(tuning::ConnectionsPerPass / std::max(expected, 1.0), tuning::LeastPerPath, tuning::MostPerPath);
     connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
@@ -149,6 +150,7 @@ std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, Statist
                               false,  true,      false,    false, false, worth.get()};
     Batch pilot(settings_.primitive);
     for (uint64_t path = 0; path < paths; ++path) {
+        pass.watch.poll(0);
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
     }
@@ -158,7 +160,8 @@ std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, Statist
 }
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
-    if (connections) setLightPerConnection(pass, *connections, statistics);
+    const PhotonSettings settings = settings_.ofShare(pass.share);
+    if (connections) setLightPerConnection(pass, settings, *connections, statistics);
     const auto worth = sliceWorth(pass, statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
@@ -173,12 +176,13 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
     const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     const auto finished = [&] { return volumeFull() && (connections ? traced >= least : maps.surface.full); };
-    while (traced < settings_.photonCount && !finished()) {
-        const uint64_t wave = std::min(settings_.photonCount - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
+    pass.watch.stage("photons", settings.photonCount);
+    while (traced < settings.photonCount && !finished()) {
+        const uint64_t wave = std::min(settings.photonCount - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
         std::vector<Batch> batches((wave + tuning::PathsPerBatch - 1) / tuning::PathsPerBatch,
                                    Batch(settings_.primitive));
         const WalkContext context{scene_,
-                                  settings_,
+                                  settings,
                                   culling_,
                                   frameCullings_,
                                   frameShift,
@@ -194,6 +198,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                            last = std::min(first + tuning::PathsPerBatch, traced + wave);
             Batch& batch = batches[b];
             for (uint64_t path = first; path < last; ++path) {
+                pass.watch.pollWithin(1, path);
                 const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
                 if (guidance_)
                     GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.deposits, batch.counters)
@@ -202,10 +207,11 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                     PhotonWalk(context, sampler, batch.deposits, batch.counters).run();
                 batch.deposits.endPath();
             }
+            pass.watch.poll(last - first);
         });
-        if (traced == 0) reserveStores(maps, batches, settings_);
+        if (traced == 0) reserveStores(maps, batches, settings);
         for (const Batch& batch : batches) {
-            append(maps, batch.deposits, settings_, thinning);
+            append(maps, batch.deposits, settings, thinning);
             report(batch.counters, statistics);
         }
         traced += wave;

@@ -38,7 +38,8 @@ class PhotonPass {
 
   private:
     /// Tells connections what each of them is to bring, from what a few paths find.
-    void setLightPerConnection(const PassInfo& pass, SurfaceConnections& connections, Statistics& statistics) const;
+    void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, SurfaceConnections& connections,
+                               Statistics& statistics) const;
 
     /// Guided slices: how many records a base leaves, from what a few paths find.
     [[nodiscard]] std::unique_ptr<SliceWorth> sliceWorth(const PassInfo& pass, Statistics& statistics) const;

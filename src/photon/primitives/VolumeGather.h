@@ -53,8 +53,8 @@ class VolumeGather {
     /// On the records' power: 1 / number of paths.
     [[nodiscard]] float scale() const { return scale_; }
     /// Adds what straight rays see to the pass image; returns the records that it met.
-    uint64_t splat(const SensorRecord& record, double scale, Film& film) const {
-        return Primitive::splat(scene_, sensor_, record, straight_ ? *straight_ : all_, scale, film);
+    uint64_t splat(const SensorRecord& record, double scale, Film& film, const PassWatch& watch) const {
+        return Primitive::splat(scene_, sensor_, record, straight_ ? *straight_ : all_, scale, film, watch);
     }
     /// Adds what a segment meets to the sums; returns how many records that were.
     uint64_t gather(const CameraSegment& segment, bool folded, FrameSums& sums) const {

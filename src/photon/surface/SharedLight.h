@@ -7,6 +7,7 @@
 #include "transport/Sensor.h"
 
 #include "tungsten/film/Film.h"
+#include "tungsten/render/PassWatch.h"
 
 namespace tungsten::photon {
 
@@ -25,6 +26,6 @@ struct SharingKernel {
 /// reflected by its own BSDF, times `scale`.
 void shareLight(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                 const std::vector<ReceivedLight>& received, const SharingKernel& kernel, double scale, Film& film,
-                Statistics& statistics);
+                Statistics& statistics, const PassWatch& watch = {});
 
 } // namespace tungsten::photon

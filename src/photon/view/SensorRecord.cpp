@@ -83,7 +83,7 @@ void append(Recorder& row, size_t pixels, SensorRecord& record) {
 } // namespace
 
 SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
-                               const SensorWishes& wishes, Statistics& statistics) {
+                               const SensorWishes& wishes, Statistics& statistics, const PassWatch& watch) {
     SensorRecord record;
     record.sample = sample;
     record.samples = wishes.samples;
@@ -94,9 +94,11 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
     for (auto* component : {&record.x, &record.y, &record.z}) component->resize(pixels);
     if (!scene.camera.hasSinglePosition()) record.origins.resize(pixels);
     std::vector<Recorder> rows(size_t(record.height), Recorder{scene, wishes, {}, {}, {}});
+    watch.stage("camera paths", rows.size());
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
         uint64_t rays = 0;
         for (int x = 0; x < record.width; ++x) {
+            watch.pollWithin(64, uint64_t(x));
             const size_t pixel = y * size_t(record.width) + size_t(x);
             Sampler sampler(seed, RandomStream::Camera, sample, pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
@@ -118,6 +120,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             }
         }
         statistics.add("rays", rays);
+        watch.poll();
     });
     size_t points = 0;
     for (const Recorder& row : rows) points += row.points.size();

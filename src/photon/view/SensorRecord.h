@@ -75,6 +75,6 @@ struct SensorRecord {
 
 /// Traces one camera path per pixel: the sample with this index.
 SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
-                               const SensorWishes& wishes, Statistics& statistics);
+                               const SensorWishes& wishes, Statistics& statistics, const PassWatch& watch = {});
 
 } // namespace tungsten::photon

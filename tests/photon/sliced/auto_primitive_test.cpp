@@ -30,9 +30,10 @@ struct Planned {
     PhotonPlan plan;
     [[nodiscard]] const Slices* slices() const { return std::get_if<Slices>(&settings.primitive); }
 };
-Planned planOf(const std::string& json, std::vector<std::string> overrides) {
+Planned planOf(const std::string& json, const std::vector<std::string>& further) {
     const test::SceneFile file(json);
-    overrides.insert(overrides.begin(), "integrator.volume_photon_type=auto");
+    std::vector<std::string> overrides{"integrator.volume_photon_type=auto"};
+    overrides.insert(overrides.end(), further.begin(), further.end());
     const LoadedScene loaded = loadScene(file.path(), {{}, overrides});
     const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, *loaded.scene, true);
     return {settings, PhotonPlan::of(*loaded.scene, settings, analyseScene(*loaded.scene))};

@@ -198,11 +198,15 @@ class Splatter {
 } // namespace
 
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film) {
+                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
+                    const PassWatch& watch) {
     const Splatter splatter(scene, sensor, record, radius, scale, film);
     const size_t bands = ImageBand::count(record.height);
     std::vector<std::optional<Ribbon>> ribbons(beams.size());
-    tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) { ribbons[i] = splatter.ribbon(beams[i]); });
+    tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) {
+        watch.pollWithin(1024, i);
+        ribbons[i] = splatter.ribbon(beams[i]);
+    });
     // Beams by band, in their own order: the sums do not depend on the threads.
     std::vector<std::vector<uint32_t>> byBand(bands);
     for (size_t i = 0; i < ribbons.size(); ++i)
@@ -211,16 +215,19 @@ uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const S
                  ++band)
                 byBand[size_t(band)].push_back(uint32_t(i));
     std::vector<uint64_t> gathered(bands, 0);
+    watch.stage("splat", bands);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
         if (drawn.empty()) return;
         ImageBand band(record, number);
         for (size_t i = 0; i < drawn.size(); ++i) {
+            watch.pollWithin(64, i);
             prefetch(*ribbons[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
             gathered[number] += splatter.draw(*ribbons[drawn[i]], band);
         }
         // With several frames nothing has been collected.
         band.addToFilm(0, film);
+        watch.poll();
     });
     uint64_t total = 0;
     for (const uint64_t count : gathered) total += count;

@@ -13,6 +13,7 @@ namespace tungsten::photon {
 /// visits the pixels that its ribbon covers. Returns the number of beams gathered, one per pixel and beam. `sensor` has
 /// the pass's gate.
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film);
+                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
+                    const PassWatch& watch = {});
 
 } // namespace tungsten::photon

@@ -10,7 +10,8 @@ float Beams::reach(const PhotonSettings& settings) {
     return settings.volumeRadius;
 }
 
-Radii Beams::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step) {
+Radii Beams::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step,
+                   const PassWatch&) {
     return settings.volumeRadius *
            (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
 }
@@ -33,8 +34,8 @@ double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& rad
 }
 
 uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                      const Selection<PhotonBeam>& beams, double scale, Film& film) {
-    return splatBeams(scene, sensor, record, beams.records, beams.radii[0], scale, film);
+                      const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch) {
+    return splatBeams(scene, sensor, record, beams.records, beams.radii[0], scale, film, watch);
 }
 
 } // namespace tungsten::photon

@@ -6,7 +6,8 @@
 
 namespace tungsten {
 class Film;
-}
+class PassWatch;
+} // namespace tungsten
 
 namespace tungsten::photon {
 
@@ -27,12 +28,12 @@ struct Beams {
 
     static float reach(const PhotonSettings& settings);
     static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
-                       uint32_t step);
+                       uint32_t step, const PassWatch& watch);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
     static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                          const Selection<PhotonBeam>& beams, double scale, Film& film);
+                          const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch);
 };
 
 } // namespace tungsten::photon

@@ -54,6 +54,19 @@ void evaluate(Query& query, uint32_t index) {
     ++query.gathered;
 }
 
+constexpr float Everywhere = 1e18f;
+
+/// From photons to their nearest, had they been spread evenly over a cube about them.
+float usualDistance(const std::vector<Photon>& photons) {
+    Vec3f low(Infinity), high(-Infinity);
+    for (const Photon& photon : photons)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], photon.position[axis]);
+            high[axis] = std::max(high[axis], photon.position[axis]);
+        }
+    return photons.empty() ? 0.0f : maxComponent(high - low) / std::cbrt(float(photons.size()));
+}
+
 } // namespace
 
 PointGather::PointGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<Photon>& photons,
@@ -73,15 +86,29 @@ uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) cons
     return query.gathered;
 }
 
-std::vector<float> adaptiveRadii(const std::vector<Photon>& photons) {
+std::vector<float> adaptiveRadii(const std::vector<Photon>& photons, const PassWatch& watch) {
     constexpr size_t Neighbours = 30;
     const auto count = uint32_t(std::min(Neighbours, photons.size()));
     const NearestPhotons nearest(photons);
     std::vector<float> radii(photons.size());
     const float factor = 0.05f * std::sqrt(float(photons.size())) / float(std::max(count, 1u));
-    tbb::parallel_for(size_t(0), photons.size(), [&](size_t i) {
+    const float guess = usualDistance(photons);
+    watch.stage("radii", photons.size());
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, photons.size(), 256), [&](const auto& range) {
         std::vector<NearestPhotons::Neighbour> found;
-        radii[i] = std::max(std::sqrt(nearest.find(photons[i].position, 1e18f, count, found) * factor), 1e-12f);
+        float distance = guess;
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+            watch.pollEvery(256, i);
+            // Wherever photons are dense, a wide search meets many that the nearest then replace.
+            float search = std::max(1.5f * distance, 1e-12f), squared = 0.0f;
+            do {
+                search = std::min(search, Everywhere);
+                squared = nearest.find(photons[i].position, search, count, found);
+                search *= 2.0f;
+            } while (found.size() < count && search < Everywhere);
+            distance = std::sqrt(squared);
+            radii[i] = std::max(std::sqrt(squared * factor), 1e-12f);
+        }
     });
     return radii;
 }

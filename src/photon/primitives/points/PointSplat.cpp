@@ -219,11 +219,16 @@ std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, c
 } // namespace
 
 uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                      const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film) {
+                      const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
+                      const PassWatch& watch) {
     const Splatter splatter(scene, sensor, record, scale);
     std::vector<Disc> discs(photons.size());
-    tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) { discs[i] = splatter.disc(photons[i], radii[i]); });
+    tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) {
+        watch.pollWithin(1024, i);
+        discs[i] = splatter.disc(photons[i], radii[i]);
+    });
     const auto byBand = discsByBand(discs, record);
+    watch.stage("splat", byBand.size());
     std::atomic<uint64_t> total = 0;
     tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {
         const auto& drawn = byBand[number];
@@ -231,12 +236,14 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
         ImageBand band(record, number);
         uint64_t gathered = 0;
         for (size_t i = 0; i < drawn.size(); ++i) {
+            watch.pollWithin(64, i);
             prefetch(discs[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
             const int frame = discs[drawn[i]].frame;
             gathered += splatter.draw(discs[drawn[i]], band);
             if (i + 1 == drawn.size() || discs[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
         }
         total += gathered;
+        watch.poll();
     });
     return total;
 }

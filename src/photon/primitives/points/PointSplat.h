@@ -15,6 +15,7 @@ namespace tungsten::photon {
 /// traversal per ray (benchmarks/micro, gather). Returns the number of photons
 /// gathered, one per pixel and photon. `sensor` has the pass's gate.
 uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                      const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film);
+                      const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
+                      const PassWatch& watch = {});
 
 } // namespace tungsten::photon

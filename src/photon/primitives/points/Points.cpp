@@ -11,10 +11,11 @@ float Points::reach(const PhotonSettings& settings) {
     return settings.fixedVolumeRadius ? settings.volumeRadius : Infinity;
 }
 
-Radii Points::radii(const PhotonSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step) {
+Radii Points::radii(const PhotonSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step,
+                    const PassWatch& watch) {
     const float factor = pointRadiusFactor(step, settings.volumeAlpha);
     if (settings.fixedVolumeRadius) return settings.volumeRadius * factor;
-    std::vector<float> radii = adaptiveRadii(photons);
+    std::vector<float> radii = adaptiveRadii(photons, watch);
     // The schedule's cube root acts on the squared radius here (docs/scene-format.md, section 10.5).
     for (float& radius : radii) radius *= std::sqrt(factor);
     return radii;
@@ -43,8 +44,8 @@ double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radi
 }
 
 uint64_t Points::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                       const Selection<Photon>& photons, double scale, Film& film) {
-    return splatPhotons(scene, sensor, record, photons.records, photons.radii, scale, film);
+                       const Selection<Photon>& photons, double scale, Film& film, const PassWatch& watch) {
+    return splatPhotons(scene, sensor, record, photons.records, photons.radii, scale, film, watch);
 }
 
 } // namespace tungsten::photon

@@ -7,7 +7,8 @@
 
 namespace tungsten {
 class Film;
-}
+class PassWatch;
+} // namespace tungsten
 
 namespace tungsten::photon {
 
@@ -29,14 +30,14 @@ struct Points {
     /// is full, and what is stored makes the density.
     static float reach(const PhotonSettings& settings);
     static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
-                       uint32_t step);
+                       uint32_t step, const PassWatch& watch);
     /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<Photon>& photons, const Radii& radii);
     /// The part that folded rays need where straight ones have theirs splatted (FoldedMeeting).
     static double foldedShare(const std::vector<Photon>& photons, const Radii& radii);
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                          const Selection<Photon>& photons, double scale, Film& film);
+                          const Selection<Photon>& photons, double scale, Film& film, const PassWatch& watch);
 };
 
 } // namespace tungsten::photon

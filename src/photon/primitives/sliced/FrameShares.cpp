@@ -7,11 +7,13 @@
 
 namespace tungsten::photon {
 
-FrameShares::FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records)
+FrameShares::FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records,
+                         const PassWatch& watch)
     : frames_(size_t(gate.frames)) {
     if (frames_ == 1) return;
     factors_.resize(records.size() * frames_);
     tbb::parallel_for(size_t(0), records.size(), [&](size_t i) {
+        watch.pollWithin(64, i);
         for (size_t f = 0; f < frames_; ++f) {
             const bool open = gate.frameStart(int(f) + 1) > records[i].time;
             factors_[i * frames_ + f] = open ? sliceWorth(scene, records[i], gate.frameStart(int(f))) : 0.0f;

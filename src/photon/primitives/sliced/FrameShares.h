@@ -3,6 +3,7 @@
 
 #include "photon/primitives/sliced/CollapsedFlights.h"
 
+#include "tungsten/render/PassWatch.h"
 #include "tungsten/scene/Scene.h"
 
 #include <span>
@@ -14,7 +15,8 @@ namespace tungsten::photon {
 /// what its light calls for.
 class FrameShares {
   public:
-    FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records);
+    FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records,
+                const PassWatch& watch = {});
 
     /// By frame, what a record's power is multiplied by: 0 where it is not drawn. Empty: all are drawn.
     [[nodiscard]] std::span<const float> of(size_t record) const {

@@ -210,13 +210,15 @@ bool oneSpeed(const Scene& scene) {
 } // namespace
 
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                     const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film) {
+                     const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
+                     const PassWatch& watch) {
     const Splatter splatter(scene, sensor, record, scale, film);
     const SliceFootprints footprints(scene, sensor, scale);
     const size_t bands = ImageBand::count(record.height);
-    const FrameShares shares(scene, sensor.gate, records);
+    const FrameShares shares(scene, sensor.gate, records, watch);
     std::vector<std::optional<ImageSlice>> slices(records.size());
     tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
+        watch.pollWithin(256, i);
         if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i], shares.of(i));
     });
     // Records by band, in their own order: the sums do not depend on the threads.
@@ -231,16 +233,21 @@ uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const 
     std::optional<BeamGather> beamGather;
     if (!beams.empty() && !drawBeams) beamGather.emplace(scene, sensor, beams, radius);
     std::vector<uint64_t> gathered(bands, 0);
+    watch.stage("splat", bands);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
         ImageBand band(record, number, sensor.gate.frames);
         BandRays rays = splatter.originsOf(band);
         splatter.findDoses(slices, drawn, band, rays);
-        for (const uint32_t i : drawn) gathered[number] += splatter.draw(*slices[i], band, rays);
+        for (size_t i = 0; i < drawn.size(); ++i) {
+            watch.pollWithin(16, i);
+            gathered[number] += splatter.draw(*slices[drawn[i]], band, rays);
+        }
         for (int frame = 0; frame < sensor.gate.frames; ++frame) band.addToFilm(frame, film);
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
+        watch.poll();
     });
-    uint64_t total = drawBeams ? splatBeams(scene, sensor, record, beams, radius[0], scale, film) : 0;
+    uint64_t total = drawBeams ? splatBeams(scene, sensor, record, beams, radius[0], scale, film, watch) : 0;
     for (const uint64_t count : gathered) total += count;
     return total;
 }

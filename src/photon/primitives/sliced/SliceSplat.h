@@ -11,6 +11,7 @@ namespace tungsten::photon {
 /// Adds what the recorded rays see of the records, times `scale`, to the pass image; returns how many meetings brought
 /// something. `radius`: of the beams among them.
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                     const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film);
+                     const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
+                     const PassWatch& watch = {});
 
 } // namespace tungsten::photon

@@ -6,16 +6,16 @@
 
 namespace tungsten::photon {
 
-Radii Slices::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&,
-                    uint32_t step) {
+Radii Slices::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&, uint32_t step,
+                    const PassWatch&) {
     // Of the beams among them.
     return settings.volumeRadius *
            (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
 }
 
 uint64_t Slices::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                       const Selection<CollapsedFlights>& slices, double scale, Film& film) {
-    return splatSlices(scene, sensor, record, slices.records, slices.radii, scale, film);
+                       const Selection<CollapsedFlights>& slices, double scale, Film& film, const PassWatch& watch) {
+    return splatSlices(scene, sensor, record, slices.records, slices.radii, scale, film, watch);
 }
 
 } // namespace tungsten::photon

@@ -10,7 +10,8 @@
 
 namespace tungsten {
 class Film;
-}
+class PassWatch;
+} // namespace tungsten
 
 namespace tungsten::photon {
 
@@ -32,7 +33,7 @@ struct Slices {
 
     static float reach(const PhotonSettings&) { return Infinity; }
     static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
-                       uint32_t step);
+                       uint32_t step, const PassWatch& watch);
     /// All.
     static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,
                                                                const std::vector<CollapsedFlights>&, const Radii&) {
@@ -41,7 +42,7 @@ struct Slices {
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
     /// Any camera.
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                          const Selection<CollapsedFlights>& slices, double scale, Film& film);
+                          const Selection<CollapsedFlights>& slices, double scale, Film& film, const PassWatch& watch);
 };
 
 } // namespace tungsten::photon
