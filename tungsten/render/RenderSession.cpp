@@ -51,7 +51,9 @@ class Session {
         if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
         result_.film = filmOf(scene);
         resume();
-        {
+        result_.effects = plan.effects;
+        black_ = plan.nothingArrives;
+        if (!black_) {
             const StageTimer timer(result_.statistics, "prepare");
             integrator_.prepare(plan, result_.statistics);
         }
@@ -145,13 +147,15 @@ class Session {
 
     void renderOnePass() {
         const uint64_t left = spp_ - result_.samples, before = firstPass_ * uint64_t(options_.sppStep);
-        const auto samples = uint32_t(std::min(uint64_t(options_.sppStep), left));
+        // A black image is there at once; partial states hold every pass all the same.
+        const bool atOnce = black_ && !partial_;
+        const auto samples = uint32_t(std::min(atOnce ? uint64_t(UINT32_MAX) : uint64_t(options_.sppStep), left));
         const uint32_t done = result_.film.passes(), standsFor = result_.estimatesBias() ? passesOfItsBias(done) : 0;
         const PassInfo pass{firstPass_ + done, before + result_.samples, samples, options_.seed,
                             standsFor > 0 ? &result_.bias : nullptr};
         result_.film.beginPass();
         if (pass.bias) result_.bias.beginPass();
-        integrator_.renderPass(pass, result_.film, result_.statistics);
+        if (!black_) integrator_.renderPass(pass, result_.film, result_.statistics);
         if (partial_) partial_->add(result_.film, samples);
         result_.film.endPass(double(samples));
         if (pass.bias) result_.bias.endPass(double(standsFor));
@@ -238,6 +242,7 @@ class Session {
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
     PartialStateWriter* partial_ = nullptr;
+    bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;
     ProgressReporter reporter_;
     Clock::time_point start_, lastCheckpoint_;

@@ -29,6 +29,7 @@ Strength readStrength(LoadContext& context, const ObjectReader& reader, const Me
 void addEmitter(LoadContext& context, const ObjectReader& reader, EmitterModel model) {
     Emitter emitter;
     emitter.name = reader.text("name", "", NameMeaning);
+    emitter.path = reader.path();
     emitter.model = std::move(model);
     emitter.emissionTime = readEmissionTime(reader);
     emitter.medium = readMediumReference(context, reader, "ext_medium", SurroundingsMeaning);
