@@ -27,8 +27,11 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
 ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
     : bounds_(scene.transport.gate, plan), highestSpeed_(plan.highestSpeed) {
     // Environments never arrive; single directions are never found.
-    for (const Emitter& emitter : scene.emitters)
-        if (!emitter.isInfinite() && !emitter.isDelta()) sources_.push_back(sourceOf(emitter));
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const Emitter& emitter = scene.emitters[i];
+        const bool late = !plan.late.empty() && plan.late[i];
+        if (!late && !emitter.isInfinite() && !emitter.isDelta()) sources_.push_back(sourceOf(emitter));
+    }
     if (sources_.size() > MostSources) sources_ = {merged(sources_)};
     for (Source& source : sources_) source.radius += 1e-6f * (source.centre.length() + source.radius);
 }

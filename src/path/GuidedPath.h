@@ -19,6 +19,13 @@ struct PathGuides {
     std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
     std::vector<darts::Guide> view;     ///< for flights from the camera
     std::vector<darts::Guide> plain;    ///< bounds in time alone, where refraction hides where light goes
+
+    /// Of directions, in use: one for every medium that has one.
+    [[nodiscard]] size_t tables() const {
+        return size_t(std::count_if(media.begin(), media.end(), [](const darts::Guide& guide) {
+            return guide.settings().direction == darts::Direction::Eda;
+        }));
+    }
 };
 
 /// What guided walks share.

@@ -2,7 +2,10 @@
 
 #include "path/techniques/LightPaths.h"
 
+#include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
+
+#include "tungsten/render/SceneUses.h"
 
 namespace tungsten::path {
 
@@ -29,13 +32,25 @@ std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const 
     return {};
 }
 
+/// Media whose directions come from a table.
+Choice tablesOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
+    if (!guidance.on) return {false, "paths are not guided"};
+    const darts::Scheme& scheme = settings.policy.sampling;
+    const auto tabled = [&](const Medium& medium) {
+        const auto of = scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
+        return medium.scatters() && of.direction == darts::Direction::Eda && (of.elliptical || scheme.direction);
+    };
+    const bool any = std::any_of(scene.media.begin(), scene.media.end(), tabled);
+    return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
+}
+
 } // namespace
 
 PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
     PathPlan plan;
     plan.timeResolved = facts.timeResolved;
-    plan.media = !scene.media.empty();
-    plan.forwardBoundaries = facts.forwardBoundaries;
+    plan.media = !scene.media.empty() || facts.everything;
+    plan.forwardBoundaries = facts.forwardBoundaries || facts.everything;
     const bool single = std::any_of(scene.emitters.begin(), scene.emitters.end(),
                                     [](const Emitter& emitter) { return emitter.isDelta(); });
     plan.firstScatteringInView = {
@@ -48,6 +63,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
                                                                "DARTS sampling of scattering media"};
     plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
                                                                         : "off by default in time-resolved renders"};
+    plan.edaTable = tablesOf(scene, settings, plan.guidance);
     plan.chooseLightPaths(scene, settings, facts);
     return plan;
 }
@@ -63,15 +79,26 @@ void PathPlan::chooseLightPaths(const Scene& scene, const PathSettings& settings
 }
 
 void PathPlan::describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const {
-    const auto add = [&](const std::string& name, const Choice& choice) {
-        plan.describe(name, choice.on, choice.reason);
+    const auto add = [&](const std::string& name, const Choice& choice, const std::vector<std::string>& causes,
+                         const std::vector<std::string>& counters = {}) {
+        plan.describe(name, choice.on, choice.reason, causes, counters);
     };
+    countArrivals(plan);
     if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
-    if (!guidance.on) add("Russian roulette", roulette);
-    add("guided paths", guidance);
+    if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
+    add("guided paths", guidance, {"integrator.darts"}, {"control vertices"});
+    add("EDA table", edaTable, {"integrator.darts"}, {"direction tables"});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);
-    add("light vertices", lightVertices);
-    add("reflected light", reflectedLight);
+    add("light vertices", lightVertices, {"integrator.darts"}, {"light vertex connections", "light paths"});
+    add("reflected light", reflectedLight, lobeUses(scene, lobe::GlossyReflection | lobe::SpecularReflection).causes(),
+        {"reflected light connections"});
+}
+
+void countArrivals(EffectPlan& plan) {
+    transport::countSteps(plan);
+    plan.count("time of flight", {"arrivals inside the gate"});
+    plan.count("frames", {"arrivals in later frames"});
+    plan.count("temporal response", {"arrivals weighed by the response"});
 }
 
 } // namespace tungsten::path

@@ -20,6 +20,7 @@ struct PathPlan {
     Choice guidance;              ///< walks aim at emitters inside the gate
     Choice lightVertices;         ///< walks connect to surface points that light reaches first
     Choice reflectedLight;        ///< and to where glossy surfaces throw light
+    Choice edaTable;              ///< directions come from tables of media
 
     bool timeResolved = false;
     bool media = false;             ///< any: absorption alone needs free flights too, they carry the transmittance
@@ -28,5 +29,8 @@ struct PathPlan {
   private:
     void chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
 };
+
+/// Names in the plan the counters of steps and arrivals that every integrator of this plugin keeps.
+void countArrivals(EffectPlan& plan);
 
 } // namespace tungsten::path

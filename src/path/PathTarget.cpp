@@ -6,16 +6,19 @@ namespace tungsten::path {
 
 namespace {
 
-Distribution1D targetDistribution(const Scene& scene, TargetChoice::Emitters emitters) {
+Distribution1D targetDistribution(const Scene& scene, TargetChoice::Emitters emitters,
+                                  const std::vector<bool>& leftOut) {
     if (emitters == TargetChoice::Emitters::SingleDirections)
-        return emitterDistribution(scene, [](const Emitter& emitter) { return emitter.isDelta(); });
-    return emitterDistribution(scene, [](const Emitter& emitter) { return !emitter.isInfinite(); });
+        return emitterDistribution(
+            scene, [](const Emitter& emitter) { return emitter.isDelta(); }, leftOut);
+    return emitterDistribution(
+        scene, [](const Emitter& emitter) { return !emitter.isInfinite(); }, leftOut);
 }
 
 } // namespace
 
-TargetChoice::TargetChoice(const Scene& scene, Emitters emitters)
-    : scene_(scene), distribution_(targetDistribution(scene, emitters)) {
+TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vector<bool>& leftOut)
+    : scene_(scene), distribution_(targetDistribution(scene, emitters, leftOut)) {
     for (const Emitter& emitter : scene.emitters) radii_.push_back(2.0f * boundingSphere(emitter).radius);
     for (size_t i = 0; any() && i < radii_.size(); ++i) count_ += probability(i) > 0.0f ? 1 : 0;
 }

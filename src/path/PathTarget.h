@@ -39,7 +39,8 @@ struct PathTarget {
 class TargetChoice {
   public:
     enum class Emitters { All, SingleDirections };
-    TargetChoice(const Scene& scene, Emitters emitters);
+    /// `leftOut`: by emitter; empty: none.
+    TargetChoice(const Scene& scene, Emitters emitters, const std::vector<bool>& leftOut = {});
 
     /// Several emitters to choose from.
     [[nodiscard]] bool several() const { return count_ > 1; }

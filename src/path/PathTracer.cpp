@@ -3,6 +3,8 @@
 #include "path/Tuning.h"
 #include "path/plain/PathWalk.h"
 
+#include "tungsten/render/EarliestArrival.h"
+
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
@@ -20,13 +22,15 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("camera paths", counters.paths);
     statistics.add("rays", counters.rays);
     statistics.add("shadow rays", counters.shadowRays);
-    statistics.add("medium events", counters.mediumEvents);
-    statistics.add("surface events", counters.surfaceEvents);
     statistics.add("control vertices", counters.controlVertices);
     statistics.add("light vertex connections", counters.lightVertices);
     statistics.add("reflected light connections", counters.reflectedLight);
     statistics.add("connections", counters.connections);
     statistics.add("arrivals while the sensor is open", counters.arrivals);
+    statistics.add("arrivals inside the gate", counters.timed);
+    statistics.add("arrivals in later frames", counters.laterFrames);
+    statistics.add("arrivals weighed by the response", counters.weighed);
+    transport::reportSteps(counters, statistics);
     statistics.add("non-finite samples", counters.nonFinite);
 }
 
@@ -69,20 +73,23 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
     : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)),
-      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)), lights_(*scene_) {}
+      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)) {}
 
 void PathTracer::plan(EffectPlan& plan) const {
+    leaveOutLate(*scene_, lastTime(*scene_), plan);
     PathPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
 }
 
 void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
     plan_ = PathPlan::of(*scene_, settings_, plan);
     bound_.emplace(*scene_, plan);
+    lights_.emplace(*scene_, plan.late);
     using Emitters = TargetChoice::Emitters;
-    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections);
+    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late);
     if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
     guides_ = makeGuides(*scene_, settings_.policy.sampling);
+    if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
     if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, statistics);
 }
@@ -140,7 +147,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{*scene_, settings_, lights_, *bound_, plan_.forwardBoundaries};
+    const WalkContext context{*scene_, settings_, *lights_, *bound_, plan_.forwardBoundaries};
     const bool lasers = targets_->any();
     renderTiles(
         pass, film, statistics,

@@ -27,7 +27,7 @@ class PathTracer : public Integrator {
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
     transport::Sensor sensor_;
-    LightChoice lights_;
+    std::optional<LightChoice> lights_; ///< from prepare() on
     PathPlan plan_;
     std::optional<TargetChoice>
         targets_; ///< of guided paths; in plain ones, of light that starts in a single direction

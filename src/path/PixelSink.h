@@ -2,15 +2,17 @@
 // Where a path's contributions go: the frame their time falls in, weighed as the sensor does.
 
 #include "transport/Sensor.h"
+#include "transport/StepCounters.h"
 
 #include "tungsten/film/Film.h"
 
 namespace tungsten::path {
 
 /// What happened, counted by one worker.
-struct PathCounters {
-    uint64_t rays = 0, shadowRays = 0, paths = 0, mediumEvents = 0, surfaceEvents = 0, controlVertices = 0,
-             lightVertices = 0, reflectedLight = 0, connections = 0, arrivals = 0, nonFinite = 0;
+struct PathCounters : transport::StepCounters {
+    uint64_t rays = 0, shadowRays = 0, paths = 0, controlVertices = 0, lightVertices = 0, reflectedLight = 0,
+             connections = 0, nonFinite = 0;
+    uint64_t arrivals = 0, timed = 0, laterFrames = 0, weighed = 0; ///< timed: at a sensor that is not always open
 };
 
 /// Adds contributions to one pixel of the pass image.
@@ -32,13 +34,20 @@ class PixelSink {
     }
 
   private:
+    void count(int frame) {
+        ++counters_.arrivals;
+        if (!sensor_.gate.steadyState) ++counters_.timed;
+        if (sensor_.response) ++counters_.weighed;
+        if (frame > 0) ++counters_.laterFrames;
+    }
+
     void put(const Rgb& radiance, double time, int frame) {
         if (!isFinite(radiance)) {
             ++counters_.nonFinite;
             return;
         }
         const float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
-        if (weight > 0.0f) ++counters_.arrivals;
+        if (weight > 0.0f) count(frame);
         film_.add(frame, x_, y_, radiance * weight);
     }
 

@@ -4,6 +4,8 @@
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/surface/SharedLight.h"
 
+#include "tungsten/render/EarliestArrival.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -29,13 +31,16 @@ PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const Obj
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
 void PhotonIntegrator::plan(EffectPlan& plan) const {
+    // The temporal kernel of a delta gate reaches beyond it, in the first pass the most.
+    leaveOutLate(*scene_, lastTime(*scene_) + (scene_->transport.gate.delta ? settings_.temporalRadius : 0.0), plan);
     PhotonPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
 }
 
-void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics&) {
+void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics& statistics) {
     plan_ = PhotonPlan::of(*scene_, settings_, plan);
-    forwardBoundaries_ = plan.forwardBoundaries;
+    forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_);
+    if (plan_.edaTable.on) statistics.add("direction tables", photonPass_->guidance()->tables());
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
 }
@@ -107,9 +112,10 @@ void PhotonIntegrator::splat(const GatherStructures& structures, const SensorRec
     const double perSample = (gate.steadyState ? 1.0 : gate.frameWidth) * double(pass.samples);
     std::visit(Overloaded{[](std::monostate) {},
                           [&](const auto& gather) {
-                              statistics.add(
-                                  gather.GatheredCounter,
-                                  gather.splat(record, double(gather.scale()) / perSample, film, pass.watch));
+                              const uint64_t met =
+                                  gather.splat(record, double(gather.scale()) / perSample, film, pass.watch);
+                              statistics.add(gather.GatheredCounter, met);
+                              statistics.add("splatted records", met);
                           }},
                structures.volume);
 }

@@ -5,11 +5,30 @@
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
+#include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
+
+#include "tungsten/render/SceneUses.h"
 
 namespace tungsten::photon {
 
 namespace {
+
+constexpr const char* OutOfTime = "what surfaces show arrives after the sensor has closed";
+
+/// Media whose directions come from a table.
+Choice tablesOf(const Scene& scene, const PhotonSettings& settings, const Choice& guidance) {
+    if (!guidance.on) return {false, "light paths are not guided"};
+    if (scene.transport.cameraUnwarped) return {false, "camera_unwarped: there is nothing to aim at"};
+    const auto tabled = [&](const Medium& medium) {
+        return medium.scatters() &&
+               settings.policy.sampling
+                       .settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase)
+                       .direction == darts::Direction::Eda;
+    };
+    const bool any = std::any_of(scene.media.begin(), scene.media.end(), tabled);
+    return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
+}
 
 bool anyGlossyOnly(const Scene& scene) {
     const auto glossy = [](const BsdfPtr& bsdf) { return isGlossyOnly(*bsdf); };
@@ -36,6 +55,7 @@ std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings,
 
 std::string connectionObstacle(const PhotonPlan& plan, const PhotonSettings& settings, const EffectPlan& facts) {
     if (!plan.guidance.on) return plan.guidance.reason;
+    if (facts.surfacesOutOfTime) return OutOfTime;
     if (!settings.includeSurfaces || !facts.surfaceScattering) return "no surface is gathered";
     if (!plan.straightRays) return "a thin lens, or different speeds of light";
     return settings.policy.connectsSurfaces() ? "" : "the preset or surface_connections leaves surfaces to photons";
@@ -46,11 +66,13 @@ std::string connectionObstacle(const PhotonPlan& plan, const PhotonSettings& set
 PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
     PhotonPlan plan;
     plan.highestSpeed = facts.highestSpeed;
+    plan.lateEmitters = facts.late;
     plan.oneSpeed = !facts.speedsDiffer;
     plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
     const std::string obstacle = guidanceObstacle(scene, settings, facts);
     plan.guidance = {obstacle.empty(), obstacle.empty() ? "the scene asks for DARTS" : obstacle};
+    plan.edaTable = tablesOf(scene, settings, plan.guidance);
     plan.chooseSensorPaths(scene, settings, facts);
     plan.chooseGuidance(scene, settings, facts);
     plan.chooseStores(scene, settings, facts);
@@ -61,10 +83,12 @@ void PhotonPlan::chooseSensorPaths(const Scene& scene, const PhotonSettings& set
     const bool any = anyGlossyOnly(scene);
     // Time without camera segments ends at the first surface that is no mirror.
     const bool unwarped = scene.transport.cameraUnwarped;
-    glossyPaths.on = guidance.on && any && settings.includeSurfaces && !unwarped && settings.policy.followsGlossy();
+    glossyPaths.on = guidance.on && any && !facts.surfacesOutOfTime && settings.includeSurfaces && !unwarped &&
+                     settings.policy.followsGlossy();
     glossyPaths.reason = !any             ? "no surface is glossy without being diffuse"
                          : glossyPaths.on ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
                          : !settings.includeSurfaces ? "include_surfaces is false"
+                         : facts.surfacesOutOfTime   ? OutOfTime
                          : unwarped ? "camera_unwarped: time stops at glossy surfaces, which are left to photons"
                                     : "the preset or glossy_sensor_paths leaves glossy surfaces to photons";
     folds = facts.specularSensorPaths || glossyPaths.on;
@@ -117,8 +141,9 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     temporalKernel = {delta, !delta                         ? "the gate has a width, or none"
                              : meetsDeltaGate && atVertices ? kernel + "; control vertices lie on the gate itself"
                                                             : kernel};
-    surfacePhotons.on = settings.includeSurfaces && facts.surfaceScattering;
+    surfacePhotons.on = settings.includeSurfaces && facts.surfaceScattering && !facts.surfacesOutOfTime;
     surfacePhotons.reason = !settings.includeSurfaces ? "include_surfaces is false"
+                            : facts.surfacesOutOfTime ? OutOfTime
                             : !surfacePhotons.on      ? "no surface has a smooth lobe"
                             : connections.on          ? "for what connections cannot bring: light by way of mirrors or "
                                                         "refraction or of a single direction, and to glossy surfaces"
@@ -131,28 +156,65 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
                                 "gathered";
 }
 
+void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan) const {
+    const std::vector<std::string> type{"integrator.volume_photon_type"};
+    forEachPrimitive(settings.primitive, [&](const auto& p) {
+        using Primitive = std::decay_t<decltype(p)>;
+        const bool used = std::holds_alternative<Primitive>(settings.primitive);
+        const std::string other = std::visit([](const auto& q) { return std::string(q.Effect); }, settings.primitive);
+        plan.describe(p.Effect, used && volume.on, used ? volume.reason : "volumes store " + other, type, {p.Stored});
+    });
+    if (volume.on && !settings.radiusReason.empty())
+        plan.describe("default radius", true, settings.radiusReason, {"integrator.volume_gather_radius"});
+    const bool splatted = volume.on && splats(), gathered = volume.on && (!splats() || folds);
+    plan.describe("splatting", splatted,
+                  !volume.on ? volume.reason
+                  : splatted ? "straight rays: every record visits the pixels that see it"
+                             : "rays are not straight, or not of one speed",
+                  {"camera"}, {"splatted records"});
+    plan.describe("gathering", gathered,
+                  !volume.on ? volume.reason
+                  : gathered ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
+                             : "all rays are straight: records are splatted",
+                  {"camera"}, {"gathered records"});
+}
+
+void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+    const std::vector<std::string> darts{"integrator.darts"};
+    const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
+    plan.describe("guided light paths", guidance.on, guidance.reason, darts,
+                  atVertices ? std::vector<std::string>{"control vertices"} : std::vector<std::string>{});
+    plan.describe("EDA table", edaTable.on, edaTable.reason, darts, {"direction tables"});
+    plan.describe("surface connections", connections.on, connections.reason, darts, {"surface connections"});
+    plan.describe("sharing", connections.on,
+                  connections.on ? "what a surface point receives is shared among neighbouring pixels"
+                                 : connections.reason,
+                  darts, {"surface connections"});
+    const bool glossy = guidance.on && glossyPaths.on;
+    plan.describe("glossy sensor paths", glossy, guidance.on ? glossyPaths.reason : guidance.reason,
+                  bsdfUses(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).causes(),
+                  {"glossy sensor reflections"});
+    if (!guidance.on) return;
+    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
+    const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
+    plan.describe("light towards bodies", bodies > 0,
+                  bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
+                                   (bodies > 1 ? " bodies" : " body") + " of it"
+                             : "no body of fog in what does not scatter, or left alone",
+                  darts);
+    if (scene.transport.gate.frames > 1)
+        plan.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts);
+    plan.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
+}
+
 void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
-    const auto add = [&](const std::string& name, const Choice& choice) {
-        plan.describe(name, choice.on, choice.reason);
-    };
-    add(std::visit([](const auto& p) { return p.Effect; }, settings.primitive), volume);
-    if (volume.on && !settings.radiusReason.empty()) plan.describe("default radius", true, settings.radiusReason);
-    add("temporal kernel", temporalKernel);
-    if (guidance.on) add("glossy sensor paths", glossyPaths);
-    add("surface photons", surfacePhotons);
-    add("guided light paths", guidance);
-    if (guidance.on) {
-        if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
-        const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
-        plan.describe("light towards bodies", bodies > 0,
-                      bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
-                                       (bodies > 1 ? " bodies" : " body") + " of it"
-                                 : "no body of fog in what does not scatter, or left alone");
-        if (scene.transport.gate.frames > 1) add("frames one by one", framesOneByOne);
-        add("photons beside control vertices", ordinaryPhotons);
-        add("surface connections", connections);
-    }
-    add("exact arrival culling", exactCulling);
+    transport::countSteps(plan);
+    describeVolume(settings, plan);
+    plan.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
+    plan.describe("surface photons", surfacePhotons.on, surfacePhotons.reason, lobeUses(scene, lobe::Smooth).causes(),
+                  {"stored surface photons", "photons gathered on surfaces"});
+    describeGuidance(scene, settings, plan);
+    plan.describe("exact arrival culling", exactCulling.on, exactCulling.reason, {"integrator"});
 }
 
 } // namespace tungsten::photon

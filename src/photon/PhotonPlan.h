@@ -26,6 +26,9 @@ struct PhotonPlan {
     Choice ordinaryPhotons; ///< beside control vertices, by the balance heuristic
     Choice connections;     ///< guided light paths connect to visible surface points
     Choice exactCulling;    ///< what arrives outside the gate is known and not stored
+    Choice edaTable;        ///< directions come from tables of media
+
+    std::vector<bool> lateEmitters; ///< EffectPlan::late
 
     float highestSpeed = 1.0f; ///< of light, wherever a path can get
     bool oneSpeed = true;
@@ -48,6 +51,8 @@ struct PhotonPlan {
     [[nodiscard]] bool records() const { return splats() || connections.on; }
 
   private:
+    void describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
+    void describeVolume(const PhotonSettings& settings, EffectPlan& plan) const;
     void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

@@ -13,7 +13,8 @@ namespace {
 constexpr size_t TileSide = 8;
 
 struct SensorCounters {
-    uint64_t rays = 0, gathered = 0, gatheredInVolumes = 0, nonFinite = 0;
+    SensorSteps steps;
+    uint64_t gathered = 0, gatheredInVolumes = 0, nonFinite = 0;
 };
 
 /// Buffers that a worker reuses from pixel to pixel.
@@ -66,7 +67,8 @@ class SensorGather {
         if (surface.primitive->emitter >= 0 && state.glossy)
             addEmission(state, surface, share * structures_.glossy->emissionWeight(state, surface));
         if (!isGlossyOnly(*surface.bsdf)) return;
-        const auto light = structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.rays);
+        const auto light =
+            structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.steps.rays);
         if (light) add(light->radiance * share, light->time);
     }
 
@@ -179,7 +181,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
         const auto follow = [&](Sampler& sampler, auto&& visitor) {
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = scene.camera.generateRay({x, y}, uFilter, uLens);
-            counters.rays += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
+            counters.steps += followSensorPath(scene, {ray, scene.cameraRegion}, structures.rules, sampler, visitor);
         };
         const Sampler lights(pass.seed, RandomStream::Emitter, sample, pixel);
         const bool oversampled = structures.glossy && structures.glossy->oversampled(pixel);
@@ -219,8 +221,10 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                 renderPixel(int(x), int(y), workspace, counters);
             pass.watch.poll(tile.cols().size());
         }
-        statistics.add("rays", counters.rays);
+        report(counters.steps, statistics);
         statistics.add("gathered photons", counters.gathered);
+        statistics.add("photons gathered on surfaces", counters.gathered);
+        statistics.add("gathered records", counters.gatheredInVolumes);
         std::visit(
             Overloaded{[](std::monostate) {},
                        [&](const auto& gather) { statistics.add(gather.GatheredCounter, counters.gatheredInVolumes); }},

@@ -187,6 +187,9 @@ class Render(unittest.TestCase):
         explained = subprocess.run([TUNGSTEN, "--explain", self.file], check=True, capture_output=True, text=True).stdout
         for effect in plan["effects"]:
             self.assertIn(effect["reason"], explained)
+        causes = {effect["name"]: effect["causes"] for effect in plan["effects"]}
+        self.assertEqual(causes["medium scattering"], ["media[0]"])
+        self.assertEqual(plan["lacks"], [])
         fields = {field["name"]: field for field in darts_tungsten.describe("homogeneous")[0]["fields"]}
         self.assertEqual(fields["sigma_s"]["unit"], "1/length")
         with self.assertRaisesRegex(darts_tungsten.UsageError, "homogeneous"):

@@ -2,7 +2,7 @@
 
 #include "support/SceneFile.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/PlanReport.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <gtest/gtest.h>

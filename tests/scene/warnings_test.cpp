@@ -45,6 +45,20 @@ TEST(SceneWarnings, LightsInAMediumTheyDoNotNameAreWarnedAbout) {
     }
 }
 
+TEST(SceneWarnings, LightsInThePlaneOfASurfaceAreWarnedAbout) {
+    const auto warnings = [](const std::string& type, const std::string& height) {
+        return warningsOf(R"({"primitives": [{"name": "ceiling", "type": "quad", "transform": {"position": [0, 2, 0]}},
+            {"name": "bulb", "emission": 1, "type": ")" +
+                          type + R"(", "transform": {"position": [0.1, )" + height + R"(, 0]}}]})");
+    };
+    for (const std::string type : {"point", "spot", "directional_point"}) {
+        const std::string warning = warnings(type, "2");
+        for (const char* part : {"primitives[1].transform", "'bulb'", "'ceiling'", "rounding"})
+            EXPECT_NE(warning.find(part), std::string::npos) << part << " in " << warning;
+        EXPECT_EQ(warnings(type, "1.999"), "");
+    }
+}
+
 TEST(SceneWarnings, WhatIsNotDoneIsSaid) {
     const std::string lamp = R"({"primitives": [{"type": "point", "emission": 1}], )";
     const std::string lens = lamp + R"("camera": {"type": "thinlens", "cateye": )";

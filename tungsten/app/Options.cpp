@@ -136,7 +136,7 @@ std::vector<std::string> reversedArguments(int argc, const char* const* argv) {
 /// Options as they are written, before they are understood.
 struct OptionTexts {
     std::string memoryLimit, checkpoint, timeout, resolution, seed, directory, ldr, hdr, statistics, timeCentre,
-        describe, page, passes, sheet, video, exposure;
+        describe, page, passes, sheet, video, exposure, explain, effects;
     int64_t spp = 0;
     const CLI::Option* description = nullptr; ///< --describe, which may have no value
 };
@@ -189,7 +189,12 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
                    "refuse what needs more than SIZE (512M, 16G), and fail at more (default: what is available)");
     app.add_flag("--allow-outside", options.outputs.allowOutside,
                  "let scenes read and write outside their folder and the output folder");
-    app.add_flag("--explain", options.explain, "print which effects the scene calls for, and why; render nothing");
+    app.add_flag("--explain{text}", text.explain,
+                 "print which effects the scene calls for, and why; render nothing; --explain=json: as JSON, with the "
+                 "elements of the scene behind them");
+    app.add_option("--effects", text.effects,
+                   "auto: what the scene calls for; all: whatever can run, and nothing left out; the image is the same")
+        ->check(CLI::IsMember({"auto", "all"}));
     app.add_flag(
         "--plan-cost", options.planCost,
         "print what errors of 10, 3, 1 and 0.3 % cost in seconds by points, beams, sliced primitives and paths, "
@@ -242,6 +247,11 @@ void understand(const OptionTexts& text, Options& options) {
         if (!options.outputs.exposure)
             throw UsageError("--exposure " + text.exposure + ": expected auto or a number of stops, from -100 to 100");
     }
+    if (!text.explain.empty() && text.explain != "text" && text.explain != "json")
+        throw UsageError("--explain=" + text.explain + ": expected json or text");
+    options.explain = !text.explain.empty();
+    options.explainAsJson = text.explain == "json";
+    options.everything = text.effects == "all";
     if (text.description->count() > 0) options.describe = text.describe;
 }
 
@@ -262,6 +272,8 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     if (options.planCost && options.outputs.statistics && options.scenes.size() > 1)
         throw UsageError("--plan-cost: takes one scene at a time with --stats");
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
+    if (options.explainAsJson && options.scenes.size() > 1)
+        throw UsageError("--explain=json: takes one scene at a time");
     if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");
     if (options.scenes.size() > 1)
         for (const auto& [given, name] : {std::pair{options.outputs.page.has_value(), "--html"},

@@ -27,6 +27,7 @@ struct Options {
     int threads = 0;          ///< 0: all
     bool restart = false, quiet = false;
     bool bias = false;
+    bool explainAsJson = false, everything = false; ///< --explain=json, --effects all
     bool explain = false, list = false, planCost = false;
     std::optional<std::string> describe; ///< a type or kind; empty: all
     bool markdown = false;

@@ -9,6 +9,7 @@
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Job.h"
 #include "tungsten/render/Memory.h"
+#include "tungsten/render/PlanReport.h"
 #include "tungsten/render/Progress.h"
 #include "tungsten/render/RenderSession.h"
 
@@ -103,11 +104,15 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
     }
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
-    const Job job =
-        makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins);
+    const Job job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}},
+                            plugins, options.everything);
     const LoadedScene& loaded = job.loaded;
     printWarnings(loaded.diagnostics->warnings, loaded.diagnostics->moreWarnings);
     loading.reset();
+    if (options.explainAsJson) {
+        std::cout << planJson(*loaded.scene, loaded.integratorType, job.plan) << '\n';
+        return 0;
+    }
     if (options.explain) {
         std::cout << file.string() << " (" << loaded.integratorType << ")\n";
         printPlan(job.plan, std::cout);

@@ -75,6 +75,7 @@ struct Emitter {
     double emissionTime = 0.0; ///< when its pulse starts
     int medium = -1;           ///< medium that surrounds it (ext_medium), -1 for vacuum
     float vacuumSpeed = -1.0f; ///< ext_speed_of_light where positive
+    std::string path = {};     ///< in the scene file, as problems have it
 
     /// Light from infinitely far away, in every direction.
     [[nodiscard]] bool isInfinite() const {

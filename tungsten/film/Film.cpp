@@ -1,5 +1,7 @@
 #include "tungsten/film/Film.h"
 
+#include <bit>
+
 #include "tungsten/core/Errors.h"
 
 #include <tbb/parallel_for.h>
@@ -28,17 +30,34 @@ struct StateHeader {
     uint64_t nonFinite;
 };
 
+/// Bits below a float's mantissa in a double's.
+constexpr int BelowFloat = 29;
+
+/// Even bits that depend on the pass and the place of the value alone.
+uint64_t evenBits(uint64_t pass, uint64_t place) {
+    uint64_t bits = (place + 1) * 0x9E3779B97F4A7C15u ^ (pass + 1) * 0xD1B54A32D192ED03u;
+    bits = (bits ^ (bits >> 32)) * 0xBF58476D1CE4E5B9u;
+    return bits ^ (bits >> 29);
+}
+
+/// One of the two neighbouring floats, the farther from 0 with the odds of the remainder: a mean of many passes moves
+/// by less than its last bit, and what is rounded to the nearest is lost, the small shares rather than the large ones.
+float roundEvenly(double value, uint64_t bits) {
+    constexpr uint64_t Mask = (uint64_t(1) << BelowFloat) - 1;
+    return float(std::bit_cast<double>((std::bit_cast<uint64_t>(value) + (bits & Mask)) & ~Mask));
+}
+
 /// West's update of a weighted mean. Returns what it adds to the sum of squared deviations.
-double fold(float value, double weight, double totalBefore, float& mean) {
+double fold(float value, double weight, double totalBefore, uint64_t bits, float& mean) {
     const double delta = double(value) - double(mean);
     const double share = delta * weight / (totalBefore + weight);
-    mean = float(double(mean) + share);
+    mean = roundEvenly(double(mean) + share, bits);
     return totalBefore * delta * share;
 }
 
-double fold(float value, double weight, double totalBefore, float& mean, float& moment2) {
-    const double deviation = fold(value, weight, totalBefore, mean);
-    moment2 = float(double(moment2) + deviation);
+double fold(float value, double weight, double totalBefore, uint64_t bits, float& mean, float& moment2) {
+    const double deviation = fold(value, weight, totalBefore, bits, mean);
+    moment2 = roundEvenly(double(moment2) + deviation, bits >> BelowFloat);
     return deviation;
 }
 
@@ -121,8 +140,9 @@ double Film::foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite
     }
     double deviation = 0.0;
     for (size_t i = 0; i < values; ++i) {
-        deviation += contents_.moments ? fold(pass[i], weight, weight_, means[i], moment2_[first + i])
-                                       : fold(pass[i], weight, weight_, means[i]);
+        const uint64_t bits = evenBits(passes_, first + i);
+        deviation += contents_.moments ? fold(pass[i], weight, weight_, bits, means[i], moment2_[first + i])
+                                       : fold(pass[i], weight, weight_, bits, means[i]);
         sums[i] += pass[i];
     }
     return deviation;
@@ -138,7 +158,8 @@ void Film::endPass(double weight) {
             rowDeviation[y] += foldRow(row(frame, int(y)), weight, sums.data(), rowNonFinite[y]);
         if (frames_ == 1) return;
         for (size_t i = 0; i < values; ++i)
-            fold(sums[i] / float(frames_), weight, weight_, totalMean_[y * values + i], totalMoment2_[y * values + i]);
+            fold(sums[i] / float(frames_), weight, weight_, evenBits(passes_, ~uint64_t(y * values + i)),
+                 totalMean_[y * values + i], totalMoment2_[y * values + i]);
     });
     for (const uint64_t count : rowNonFinite) nonFinite_ += count;
     const double deviation = std::accumulate(rowDeviation.begin(), rowDeviation.end(), 0.0);

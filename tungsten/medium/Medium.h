@@ -31,6 +31,7 @@ struct Medium {
     int maxBounces = 1024;    ///< distances sampled since the last surface before a path ends
     bool guided = false;      ///< `guided_homo`: asks for DARTS distance sampling
     bool guidedPhase = false; ///< phase function `ida` / `integrated_da`: asks for EDA direction sampling
+    std::string path = {};    ///< in the scene file, as problems have it
 
     /// Its coefficients are the same everywhere. Guidance, splats and photon beams take that for granted: plans decline
     /// them elsewhere.

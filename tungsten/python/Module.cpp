@@ -133,11 +133,14 @@ py::dict planOf(const py::object& scene, const py::dict& set, const std::filesys
         entry["name"] = effect.name;
         entry["on"] = effect.on;
         entry["reason"] = effect.reason;
+        entry["causes"] = effect.causes;
+        entry["counters"] = effect.counters;
         effects.append(entry);
     }
     py::dict plan;
     plan["integrator"] = job.loaded.integratorType;
     plan["effects"] = effects;
+    plan["lacks"] = job.plan.lacks;
     return plan;
 }
 

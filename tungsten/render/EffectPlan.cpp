@@ -1,8 +1,8 @@
 #include "tungsten/render/EffectPlan.h"
 
+#include "tungsten/render/SceneUses.h"
+
 #include <algorithm>
-#include <iomanip>
-#include <ostream>
 #include <set>
 
 namespace tungsten {
@@ -24,139 +24,146 @@ std::string describeGate(const TimeGate& gate) {
                : "one gate " + interval;
 }
 
-/// "name", or "#index" for the nameless.
-std::string nameOf(const std::string& name, size_t index) {
-    return name.empty() ? "#" + std::to_string(index) : "'" + name + "'";
-}
-
-/// First primitive with a lobe of `mask`, by name, and how many.
-struct LobeUse {
-    size_t count = 0;
-    std::string first;
-};
-LobeUse usesOf(const Scene& scene, LobeMask mask) {
-    LobeUse use;
-    for (size_t i = 0; i < scene.primitives.size(); ++i) {
-        const auto& bsdfs = scene.primitives[i].bsdfs;
-        if (!std::any_of(bsdfs.begin(), bsdfs.end(), [mask](const BsdfPtr& b) { return (b->lobes() & mask) != 0; }))
-            continue;
-        if (use.count++ == 0) use.first = nameOf(scene.primitives[i].name, i);
+void planTime(const Scene& scene, EffectPlan& plan) {
+    const TimeGate& gate = scene.transport.gate;
+    const TemporalResponse& response = scene.transport.response;
+    plan.timeResolved = !gate.steadyState;
+    plan.multipleFrames = gate.frames > 1;
+    plan.describe("time of flight", plan.timeResolved, describeGate(gate), {"integrator"});
+    plan.describe("frames", plan.multipleFrames,
+                  plan.multipleFrames ? std::to_string(gate.frames) + " images" : "a single image",
+                  {"integrator.frame_num"});
+    plan.describe("delta gate", plan.timeResolved && gate.delta,
+                  !plan.timeResolved ? "no time gate: steady state"
+                  : gate.delta       ? "the gate has no width"
+                                     : "the gate has a width",
+                  {"integrator.delta_time_gate"});
+    plan.describe("temporal response", !response.empty(),
+                  response.empty()
+                      ? "times of arrival count alike"
+                      : "times of arrival are weighed by " + std::to_string(response.times.size()) + " values",
+                  {"integrator.temporal_response"});
+    Uses delayed;
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const Emitter& emitter = scene.emitters[i];
+        if (emitter.emissionTime != 0.0) delayed.add(nameOf(emitter.name, i), emitter.path + ".emission_time");
     }
-    return use;
-}
-
-std::string because(const LobeUse& use, const std::string& what, const std::string& otherwise) {
-    if (use.count == 0) return otherwise;
-    return std::to_string(use.count) + (use.count == 1 ? " surface " : " surfaces ") + what + ", first " + use.first;
-}
-
-/// Media that some path can be in: the camera's, the lights', and those that surfaces bound.
-std::set<int> reachableMedia(const Scene& scene) {
-    std::set<int> media{scene.cameraRegion.medium};
-    for (const Emitter& emitter : scene.emitters) media.insert(emitter.medium);
-    for (const Primitive& primitive : scene.primitives)
-        if (primitive.boundsMedium) media.insert({primitive.inside.medium, primitive.outside.medium});
-    media.erase(-1);
-    return media;
-}
-
-std::set<float> speedsOf(const Scene& scene) {
-    std::set<float> speeds{scene.cameraRegion.speed};
-    for (const Emitter& emitter : scene.emitters) speeds.insert(scene.regionOf(emitter).speed);
-    for (const Primitive& primitive : scene.primitives)
-        if (primitive.boundsRegion) speeds.insert({primitive.inside.speed, primitive.outside.speed});
-    return speeds;
+    const bool counts = plan.timeResolved && delayed.any();
+    plan.describe("emission times", counts,
+                  counts          ? "pulses that do not start at 0: " + delayed.names()
+                  : delayed.any() ? "steady state: it does not matter when pulses start"
+                                  : "all pulses start at 0",
+                  delayed.causes());
 }
 
 void planMedia(const Scene& scene, EffectPlan& plan) {
-    std::string scattering, coloured;
+    Uses scattering, absorbing, coloured, varying, anisotropic;
     for (const int index : reachableMedia(scene)) {
         const Medium& medium = scene.media[size_t(index)];
-        if (medium.scatters()) scattering += (scattering.empty() ? "" : ", ") + nameOf(medium.name, size_t(index));
-        if (!medium.isHomogeneous())
-            plan.heterogeneousMedia +=
-                (plan.heterogeneousMedia.empty() ? "" : ", ") + nameOf(medium.name, size_t(index));
-        if (!medium.isGrey()) coloured += (coloured.empty() ? "" : ", ") + nameOf(medium.name, size_t(index));
+        const std::string name = nameOf(medium.name, size_t(index));
+        if (medium.scatters()) scattering.add(name, medium.path);
+        if (!medium.scatters() && !medium.isVacuum()) absorbing.add(name, medium.path);
+        if (!medium.isHomogeneous()) varying.add(name, medium.path);
+        if (!medium.isGrey()) coloured.add(name, medium.path);
+        const bool isotropic = std::holds_alternative<Isotropic>(medium.phase.model);
+        if (medium.scatters() && !isotropic) anisotropic.add(name, medium.path + ".phase_function");
     }
-    plan.mediumScattering = !scattering.empty();
-    plan.greyMedia = coloured.empty();
-    plan.describe("medium scattering", plan.mediumScattering,
-                  scattering.empty() ? "no reachable medium scatters" : "scattering media: " + scattering);
-    plan.describe("coloured media", !plan.greyMedia,
-                  coloured.empty() ? "every medium has the same coefficients in R, G and B" : "coloured: " + coloured);
+    plan.mediumScattering = scattering.any();
+    plan.greyMedia = !coloured.any();
+    plan.heterogeneousMedia = varying.names();
+    plan.describe("medium scattering", scattering.any(),
+                  scattering.any() ? "scattering media: " + scattering.names() : "no reachable medium scatters",
+                  scattering.causes());
+    plan.describe("absorption only", absorbing.any(),
+                  absorbing.any() ? "absorbing media that scatter nothing: " + absorbing.names()
+                                  : "no reachable medium absorbs without scattering",
+                  absorbing.causes());
+    plan.describe("coloured media", coloured.any(),
+                  coloured.any() ? "coloured: " + coloured.names()
+                                 : "every medium has the same coefficients in R, G and B",
+                  coloured.causes());
+    plan.describe("anisotropic scattering", anisotropic.any(),
+                  anisotropic.any() ? "phase functions with preferred directions: " + anisotropic.names()
+                                    : "every phase function is isotropic",
+                  anisotropic.causes());
 }
 
 void planEmission(const Scene& scene, EffectPlan& plan) {
-    std::string areas, skies;
+    Uses areas, skies;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
-        const auto surface = emitter.primitive();
-        if (!surface && !emitter.isInfinite()) continue;
-        std::string& names = surface ? areas : skies;
-        const std::string name = surface ? scene.primitives[*surface].name : emitter.name;
-        names += (names.empty() ? "" : ", ") + nameOf(name, surface.value_or(i));
+        if (const auto surface = emitter.primitive())
+            areas.add(nameOf(scene.primitives[*surface].name, *surface), emitter.path);
+        else if (emitter.isInfinite())
+            skies.add(nameOf(emitter.name, i), emitter.path);
     }
-    plan.surfaceEmission = !areas.empty();
-    plan.environment = !skies.empty();
-    plan.describe("emission from surfaces", plan.surfaceEmission,
-                  areas.empty() ? "no area emitter: emission is never seen" : "area emitters: " + areas);
-    plan.describe("environment", plan.environment,
-                  skies.empty() ? "no infinite emitter: escaping rays end" : "escaping rays see " + skies);
+    plan.surfaceEmission = areas.any();
+    plan.environment = skies.any();
+    plan.describe("emission from surfaces", areas.any(),
+                  areas.any() ? "area emitters: " + areas.names() : "no area emitter: emission is never seen",
+                  areas.causes());
+    plan.describe("environment", skies.any(),
+                  skies.any() ? "escaping rays see " + skies.names() : "no infinite emitter: escaping rays end",
+                  skies.causes());
 }
 
-bool hasTextures(const Scene& scene) {
-    for (const Primitive& primitive : scene.primitives)
-        for (const BsdfPtr& bsdf : primitive.bsdfs)
-            if (!bsdf->albedo.isConstant() || bsdf->bump) return true;
-    return false;
+void planSurfaces(const Scene& scene, EffectPlan& plan) {
+    const auto describe = [&](const std::string& name, LobeMask mask, const std::string& what,
+                              const std::string& otherwise) {
+        const Uses uses = lobeUses(scene, mask);
+        plan.describe(name, uses.any(), uses.any() ? uses.counted("surface", what) : otherwise, uses.causes());
+        return uses.any();
+    };
+    plan.surfaceScattering = describe("surface scattering", lobe::Smooth, "with diffuse or glossy lobes",
+                                      "every surface is specular, forward or black");
+    plan.specularSensorPaths = describe("specular sensor paths", lobe::Specular, "with lobes that mirror or refract",
+                                        "no mirror or smooth dielectric");
+    describe("refraction", lobe::Transmissive, "with lobes that refract", "no surface refracts");
+    plan.forwardBoundaries = describe("index-matched boundaries", lobe::Forward,
+                                      "with lobes that light passes straight", "no forward or transparent surface");
+}
+
+void planSpeeds(const Scene& scene, EffectPlan& plan) {
+    const Speeds speeds = reachableSpeeds(scene);
+    const bool several = speeds.lowest < speeds.highest;
+    plan.speedsDiffer = plan.timeResolved && several;
+    plan.highestSpeed = speeds.highest;
+    plan.describe("several speeds of light", plan.speedsDiffer,
+                  several ? std::to_string(speeds.count) + " speeds, from " + formatted(double(speeds.lowest)) +
+                                " to " + formatted(double(speeds.highest))
+                          : "one speed everywhere: " + formatted(double(speeds.highest)),
+                  speeds.causes);
+}
+
+void planTextures(const Scene& scene, EffectPlan& plan) {
+    const Uses varying = textureUses(scene), transparent = transparencyUses(scene);
+    plan.textures = varying.any();
+    plan.describe("textures", varying.any(),
+                  varying.any() ? varying.counted("surface", "with parameters that vary over it")
+                                : "every surface parameter is constant",
+                  varying.causes());
+    plan.describe("alpha", transparent.any(),
+                  transparent.any() ? transparent.counted("surface", "of partial opacity")
+                                    : "no surface has an opacity",
+                  transparent.causes());
 }
 
 } // namespace
 
-EffectPlan analyseScene(const Scene& scene) {
-    EffectPlan plan;
-    plan.timeResolved = !scene.transport.gate.steadyState;
-    plan.multipleFrames = scene.transport.gate.frames > 1;
-    plan.describe("time of flight", plan.timeResolved, describeGate(scene.transport.gate));
-    const TemporalResponse& response = scene.transport.response;
-    if (!response.empty())
-        plan.describe("temporal response", true,
-                      "times of arrival are weighed by " + std::to_string(response.times.size()) + " values");
-    planMedia(scene, plan);
-
-    const LobeUse smooth = usesOf(scene, lobe::Smooth), specular = usesOf(scene, lobe::Specular),
-                  forward = usesOf(scene, lobe::Forward);
-    plan.surfaceScattering = smooth.count > 0;
-    plan.specularSensorPaths = specular.count > 0;
-    plan.forwardBoundaries = forward.count > 0;
-    plan.describe("surface scattering", plan.surfaceScattering,
-                  because(smooth, "with diffuse or glossy lobes", "every surface is specular, forward or black"));
-    plan.describe("specular sensor paths", plan.specularSensorPaths,
-                  because(specular, "that mirror or refract", "no mirror or smooth dielectric"));
-    plan.describe("index-matched boundaries", plan.forwardBoundaries,
-                  because(forward, "that light passes straight", "no forward or transparent surface"));
-
-    const std::set<float> speeds = speedsOf(scene);
-    plan.speedsDiffer = plan.timeResolved && speeds.size() > 1;
-    plan.highestSpeed = *speeds.rbegin();
-    plan.describe("several speeds of light", plan.speedsDiffer,
-                  speeds.size() > 1
-                      ? std::to_string(speeds.size()) + " speeds, from " + formatted(double(*speeds.begin())) + " to " +
-                            formatted(double(*speeds.rbegin()))
-                      : "one speed everywhere: " + formatted(double(*speeds.begin())));
-    planEmission(scene, plan);
-    plan.textures = hasTextures(scene);
-    plan.describe("textures", plan.textures,
-                  plan.textures ? "albedo or bump varies over some surface" : "every surface parameter is constant");
-    return plan;
+std::string nameOf(const std::string& name, size_t index) {
+    return name.empty() ? "#" + std::to_string(index) : "'" + name + "'";
 }
 
-void printPlan(const EffectPlan& plan, std::ostream& out) {
-    size_t width = 0;
-    for (const Effect& effect : plan.effects) width = std::max(width, effect.name.size());
-    for (const Effect& effect : plan.effects)
-        out << "  " << (effect.on ? "on " : "off") << "  " << std::left << std::setw(int(width)) << effect.name << "  "
-            << effect.reason << '\n';
+EffectPlan analyseScene(const Scene& scene, bool everything) {
+    EffectPlan plan;
+    plan.everything = everything;
+    planTime(scene, plan);
+    planMedia(scene, plan);
+    planSurfaces(scene, plan);
+    planSpeeds(scene, plan);
+    planEmission(scene, plan);
+    planTextures(scene, plan);
+    return plan;
 }
 
 } // namespace tungsten

@@ -3,17 +3,18 @@
 
 #include "tungsten/scene/Scene.h"
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 namespace tungsten {
 
-/// One effect and why it is on or off.
+/// One effect: whether it is on, why, what in the scene is behind it, and what tells its work.
 struct Effect {
     std::string name;
     bool on = false;
     std::string reason;
+    std::vector<std::string> causes = {};   ///< paths as problems have them, such as `primitives[3]`; none when off
+    std::vector<std::string> counters = {}; ///< of Statistics; each is 0 after a render with the effect off
 };
 
 struct EffectPlan {
@@ -31,6 +32,12 @@ struct EffectPlan {
     bool environment = false;
     bool textures = false;
 
+    /// `--effects all`: stages run that the scene does not call for, and nothing is left out. The image is the same.
+    bool everything = false;
+    std::vector<bool> late;         ///< by emitter: its light arrives after the gate; empty: none is known to
+    bool nothingArrives = false;    ///< all emitters are late: the image is black, and not rendered
+    bool surfacesOutOfTime = false; ///< whatever surfaces show arrives after the gate
+
     /// Why nothing may take a medium's coefficients for constant; empty where it may.
     [[nodiscard]] std::string heterogeneity() const {
         return heterogeneousMedia.empty() ? "" : "coefficients vary from place to place in " + heterogeneousMedia;
@@ -41,17 +48,22 @@ struct EffectPlan {
     /// Light of the scene that the image will lack, each with a reason; empty where it will have all.
     std::vector<std::string> lacks;
 
-    void describe(const std::string& name, bool on, const std::string& reason) {
-        effects.push_back({name, on, reason});
+    void describe(const std::string& name, bool on, const std::string& reason,
+                  const std::vector<std::string>& causes = {}, const std::vector<std::string>& counters = {}) {
+        effects.push_back({name, on, reason, on ? causes : std::vector<std::string>{}, counters});
     }
     void lack(const std::string& light, const std::string& reason) {
         describe(light, false, reason);
         lacks.push_back(light + ": " + reason);
     }
+    /// Counters by which an integrator tells the work of an effect that is described already.
+    void count(const std::string& effect, const std::vector<std::string>& counters);
 };
 
-EffectPlan analyseScene(const Scene& scene);
-/// The plan as text, for `--explain`.
-void printPlan(const EffectPlan& plan, std::ostream& out);
+/// What the scene calls for, whatever the integrator. `everything`: EffectPlan::everything.
+EffectPlan analyseScene(const Scene& scene, bool everything = false);
+
+/// "name", or "#index" for the nameless.
+std::string nameOf(const std::string& name, size_t index);
 
 } // namespace tungsten

@@ -26,13 +26,21 @@ std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plug
     return integrator;
 }
 
+void warnAboutBlackImage(const Job& job) {
+    for (const Effect& effect : job.plan.effects)
+        if (effect.name == "black image")
+            job.loaded.diagnostics->warnings.push_back(
+                {job.loaded.diagnostics->file, "integrator", "the image is black: " + effect.reason});
+}
+
 } // namespace
 
-Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins) {
+Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins, bool everything) {
     Job job{loadScene(file, options), nullptr, {}};
     job.integrator = makeIntegrator(job.loaded, plugins);
-    job.plan = analyseScene(*job.loaded.scene);
+    job.plan = analyseScene(*job.loaded.scene, everything);
     job.integrator->plan(job.plan);
+    if (job.plan.nothingArrives) warnAboutBlackImage(job);
     return job;
 }
 

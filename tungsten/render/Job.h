@@ -21,6 +21,8 @@ struct Job {
 };
 
 /// Throws what loadScene throws, and InputError for an integrator that nobody registers or that refuses its settings.
-Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins);
+/// `everything`: EffectPlan::everything.
+Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins,
+            bool everything = false);
 
 } // namespace tungsten

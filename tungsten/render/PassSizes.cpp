@@ -41,6 +41,11 @@ PassSize PassSizes::next(double done) const {
     return {samples, cut ? share() : 1.0, cut ? double(step_) * share() : double(samples)};
 }
 
+PassSize PassSizes::rest(double done) const {
+    const auto samples = uint32_t(std::clamp(std::ceil(samples_ - done), 1.0, 4e9));
+    return {samples, 1.0, double(samples)};
+}
+
 uint32_t PassSizes::left(double done) const {
     const double each = cutsLightPaths_ ? double(step_) * share() : double(samplesOfPass());
     return uint32_t(std::min(std::ceil(std::max(samples_ - done, 0.0) / each), 4e9));

@@ -28,6 +28,8 @@ class PassSizes {
     [[nodiscard]] std::string text() const;
     /// Of the next pass after passes of this weight in all.
     [[nodiscard]] PassSize next(double done) const;
+    /// Everything that is left after passes of this weight in all, as one pass.
+    [[nodiscard]] PassSize rest(double done) const;
     /// Passes that are left after passes of this weight in all.
     [[nodiscard]] uint32_t left(double done) const;
 

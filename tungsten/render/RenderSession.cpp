@@ -56,7 +56,9 @@ class Session {
         if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
         result_.film = filmOf(scene);
         files_.resume();
-        {
+        result_.effects = plan.effects;
+        black_ = plan.nothingArrives;
+        if (!black_) {
             const StageTimer timer(result_.statistics, "prepare");
             integrator_.prepare(plan, result_.statistics);
         }
@@ -129,7 +131,8 @@ class Session {
     /// False: it was broken off.
     bool renderOnePass() {
         const double done = result_.film.totalWeight();
-        const PassSize size = sizes_.next(done);
+        // A black image is there at once; partial states hold every pass all the same.
+        const PassSize size = black_ && !partial_ ? sizes_.rest(done) : sizes_.next(done);
         const uint64_t before = firstPass_ * uint64_t(options_.sppStep);
         const uint32_t passes = result_.film.passes(),
                        standsFor = result_.estimatesBias() ? passesOfItsBias(passes) : 0;
@@ -164,7 +167,7 @@ class Session {
         Statistics statistics;
         std::optional<StageTimer> timer(std::in_place, result_.statistics, "passes broken off");
         try {
-            integrator_.renderPass(pass, result_.film, statistics);
+            if (!black_) integrator_.renderPass(pass, result_.film, statistics);
             timer->discard();
         } catch (const PassBrokenOff&) {
             brokenAt_ = monitor.progress().ofPass;
@@ -275,6 +278,7 @@ class Session {
     std::thread::id thread_ = std::this_thread::get_id();
     Clock::time_point begin_ = Clock::now(), passStart_ = begin_, lastShown_ = begin_;
     PartialStateWriter* partial_ = nullptr;
+    bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;
     ProgressReporter reporter_;
     Clock::time_point start_;

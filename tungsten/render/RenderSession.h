@@ -56,6 +56,7 @@ struct SessionResult {
     uint64_t resumedSamples = 0;   ///< of them, taken by earlier runs
     std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
+    std::vector<Effect> effects; ///< of the plan
 
     [[nodiscard]] bool estimatesBias() const { return bias.frames() > 0; }
     /// Of the film's mean; 0 where none is estimated.

@@ -1,5 +1,6 @@
 // The report of `--stats`.
 
+#include "tungsten/render/PlanReport.h"
 #include "tungsten/render/RenderSession.h"
 #include "tungsten/scene/JsonWriter.h"
 
@@ -53,6 +54,7 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     json.field("render wall seconds", result.renderSeconds);
     json.field("process CPU seconds", processCpuSeconds());
     json.field("peak memory bytes", peakMemoryBytes());
+    writeEffects(result.effects, result.statistics, json);
     json.beginObject("counters");
     for (const auto& [name, value] : result.statistics.counters()) json.field(name, value);
     json.endObject();

@@ -8,13 +8,15 @@
 namespace tungsten {
 
 /// Emitters that shine and for which `takesPart`, half by power and half uniformly: few paths are lost on weak ones,
-/// and none is left out. A total of 0: there are no such emitters.
-Distribution1D emitterDistribution(const Scene& scene, bool (*takesPart)(const Emitter&));
+/// and none is left out but those in `leftOut`, by emitter (empty: none). A total of 0: there are no such emitters.
+Distribution1D emitterDistribution(const Scene& scene, bool (*takesPart)(const Emitter&),
+                                   const std::vector<bool>& leftOut = {});
 
 /// Emitters that can be connected to.
 class LightChoice {
   public:
-    explicit LightChoice(const Scene& scene);
+    /// `leftOut`: by emitter; empty: none.
+    explicit LightChoice(const Scene& scene, const std::vector<bool>& leftOut = {});
 
     struct Choice {
         const Emitter* emitter;

@@ -19,6 +19,8 @@ double readEmissionTime(const ObjectReader& reader);
 void finishEmitters(LoadContext& context, const ObjectReader& root);
 /// Warns about lights in a medium that they do not name; once the geometry is there.
 void warnAboutMediaOfEmitters(const LoadContext& context);
+/// Warns about point-like lights in the plane of a surface; once the geometry is there.
+void warnAboutLightsOnSurfaces(const LoadContext& context);
 
 /// A speed of light; 0 or less: the vacuum's.
 double readSpeedOrNone(const ObjectReader& reader, const std::string& field, const Meaning& meaning);

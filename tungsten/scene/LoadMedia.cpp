@@ -40,6 +40,7 @@ Medium readMedium(const ObjectReader& reader) {
     Medium medium;
     const std::string type = reader.choice("type", "homogeneous", mediumTypes(), {"none", "which medium", "required"});
     medium.name = reader.text("name", "", NameMeaning);
+    medium.path = reader.path();
     if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(mediumTypes()));
     const float density =
         float(reader.number("density", 1.0, {"none", "factor on both coefficients"}, Range::nonNegative()));

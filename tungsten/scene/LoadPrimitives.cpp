@@ -113,6 +113,7 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     const Transform transform = reader.transform("transform", PlacementMeaning);
     Primitive primitive;
     primitive.name = reader.text("name", "", NameMeaning);
+    primitive.path = reader.path();
     primitive.shape = readShape(context, reader, transform);
     if (!isPlaced(primitive.shape))
         reader.problem("transform", "the surface reaches beyond coordinates of " + brief(double(LargestCoordinate)));
@@ -132,6 +133,7 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     stored.emitter = int(context.scene.emitters.size());
     Emitter emitter;
     emitter.name = stored.name;
+    emitter.path = stored.path;
     emitter.emissionTime = emissionTime;
     emitter.medium = stored.outside.medium;
     emitter.vacuumSpeed = stored.outside.medium < 0 ? stored.outside.speed : -1.0f;

@@ -35,6 +35,7 @@ struct Primitive {
     /// The surface names a medium on some side. If it names speeds only, a path inside a medium stays in it.
     bool boundsMedium = false;
     Region inside, outside;
+    std::string path; ///< in the scene file, as problems have it
 };
 
 /// The time the sensor is open: one gate, a sequence of frames, a delta gate, or always (steady state).

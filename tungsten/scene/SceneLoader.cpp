@@ -137,6 +137,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
 
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
+    warnAboutLightsOnSurfaces(context);
     std::vector<std::filesystem::path> inputs = context.resources;
     const uint64_t text = hashText(*document);
     if (!options.text) inputs.insert(inputs.begin(), file);

@@ -67,8 +67,10 @@ bool GuidedPathWalk::crossEmpty() {
     ++state.counters.rays;
     const auto hit = scene_.geometry->intersect(state.ray);
     if (!hit) return false;
-    if (const Medium* medium = scene_.medium(state.region))
+    if (const Medium* medium = scene_.medium(state.region)) {
+        state.counters.fly(*medium);
         state.throughput = state.throughput * medium->transmittance(hit->t);
+    }
     findAt(*hit, state.throughput);
     return !isBlack(state.throughput) && scatterOnSurface(*hit);
 }

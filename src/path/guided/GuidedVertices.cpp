@@ -75,7 +75,7 @@ void GuidedPathWalk::connectToLightPaths(const transport::Vertex& here) {
 
 bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
     CameraPath& state = path_.state;
-    ++state.counters.mediumEvents;
+    state.counters.scatter(medium);
     state.time = state.timeAfter(distance);
     ++state.interactions;
     ++state.mediumScatters;
@@ -152,6 +152,7 @@ bool GuidedPathWalk::leaveGuided(const transport::Vertex& here, const darts::Gui
     connectToLightPaths(here);
     if (!path_.step.residual().alive()) return leavePlainly(surface);
     path_.step.startWay();
+    state.counters.leave(lobe::DiffuseReflection);
     const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, state.sampler});
     state.ray = surface.hit.leave(darts::to<Vec3f>(sample.direction));
     state.throughput = state.throughput * here.scattering(state.ray.direction) * sample.inversePdf;
@@ -166,6 +167,7 @@ bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
     if (!exit) return false;
     state.throughput = state.throughput * exit->weight;
     if (isBlack(state.throughput)) return false;
+    state.counters.leave(exit->lobe);
     if ((exit->lobe & lobe::Smooth) != 0) {
         state.scattered = true;
         path_.last.kind = LastVertex::Kind::Surface;

@@ -1,8 +1,10 @@
 #include "path/light/LightTracer.h"
 
+#include "path/PathPlan.h"
 #include "path/PathSettings.h"
 #include "path/Tuning.h"
 
+#include "tungsten/render/EarliestArrival.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include <tbb/parallel_for.h>
@@ -53,8 +55,10 @@ void readRest(const ObjectReader& block, const Scene& scene) {
 void report(const LightWalkCounters& counters, Statistics& statistics) {
     statistics.add("rays", counters.rays);
     statistics.add("shadow rays", counters.shadowRays);
-    statistics.add("medium events", counters.mediumEvents);
-    statistics.add("surface events", counters.surfaceEvents);
+    transport::reportSteps(counters, statistics);
+    statistics.add("arrivals inside the gate", counters.timed);
+    statistics.add("arrivals in later frames", counters.laterFrames);
+    statistics.add("arrivals weighed by the response", counters.weighed);
     statistics.add("connections", counters.connections);
     statistics.add("non-finite samples", counters.nonFinite);
 }
@@ -70,9 +74,12 @@ LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader&
 }
 
 void LightTracer::plan(EffectPlan& plan) const {
+    leaveOutLate(*scene_, lastTime(*scene_), plan);
+    countArrivals(plan);
     plan.describe("light paths", emitters_.total() > 0.0,
                   emitters_.total() > 0.0 ? "one for every sample of a pixel, connected to the camera at each vertex"
-                                          : "nothing shines");
+                                          : "nothing shines",
+                  {"integrator.type"}, {"light paths"});
     plan.describe("emission in view", plan.surfaceEmission,
                   plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
     if (plan.environment)
@@ -87,7 +94,9 @@ void LightTracer::plan(EffectPlan& plan) const {
 }
 
 void LightTracer::prepare(const EffectPlan& plan, Statistics&) {
-    forwardBoundaries_ = plan.forwardBoundaries;
+    forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
+    emitters_ = emitterDistribution(
+        *scene_, [](const Emitter&) { return true; }, plan.late);
     bounds_ = {scene_->transport.gate, plan};
 }
 

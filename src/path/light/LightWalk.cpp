@@ -42,6 +42,7 @@ bool LightWalk::crossMedium(const Medium& medium) {
     if (medium.scatters() && ++flights_ > medium.maxBounces) return false;
     const FlightSample flight = sampleFlight(medium, Infinity, sampler_);
     ray_.tMax = flight.distance;
+    counters_.fly(medium);
     ++counters_.rays;
     const auto hit = scene_.geometry->intersect(ray_);
     if (!hit && flight.exited) return false;
@@ -64,7 +65,7 @@ bool LightWalk::arrive(const Vec3f& position, float length) {
 }
 
 bool LightWalk::scatterInMedium(const Medium& medium, float distance) {
-    ++counters_.mediumEvents;
+    counters_.scatter(medium);
     ++mediumScatters_;
     inARow_ = flights_; // those before have scattered here, too
     const Vec3f position = ray_.at(distance), before = ray_.direction;
@@ -84,6 +85,7 @@ bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
         sampleExit(surface, surface.query(TransportMode::Photons), scene_.transport.consistencyChecks, sampler_);
     if (!exit) return false;
     throughput_ = throughput_ * exit->weight;
+    counters_.leave(exit->lobe);
     if (!exit->straight()) throughput_ = throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction);
     region_ = regionBeyond(surface, exit->direction, region_);
     ray_ = hit.leave(exit->direction);
@@ -108,10 +110,14 @@ void LightWalk::connect(const Vertex& vertex, const Rgb& power) {
     const int frame = context_.sensor.frameOf(time);
     if (frame < 0) return;
     const Rgb radiance = connection->throughput * float(context_.sensor.density(time));
-    if (isFinite(radiance))
-        splats_.push_back({sensor->raster, frame, radiance});
-    else
+    if (!isFinite(radiance)) {
         ++counters_.nonFinite;
+        return;
+    }
+    if (!context_.sensor.gate.steadyState) ++counters_.timed;
+    if (context_.sensor.response) ++counters_.weighed;
+    if (frame > 0) ++counters_.laterFrames;
+    splats_.push_back({sensor->raster, frame, radiance});
 }
 
 bool LightWalk::inView(const Vec2f& raster) const {

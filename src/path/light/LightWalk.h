@@ -6,6 +6,7 @@
 #include "transport/Connection.h"
 #include "transport/GateBounds.h"
 #include "transport/Sensor.h"
+#include "transport/StepCounters.h"
 
 namespace tungsten::path {
 
@@ -21,8 +22,9 @@ struct LightWalkContext {
 };
 
 /// What happened, counted by one worker.
-struct LightWalkCounters {
-    uint64_t rays = 0, shadowRays = 0, mediumEvents = 0, surfaceEvents = 0, connections = 0, nonFinite = 0;
+struct LightWalkCounters : transport::StepCounters {
+    uint64_t rays = 0, shadowRays = 0, connections = 0, nonFinite = 0;
+    uint64_t timed = 0, laterFrames = 0, weighed = 0; ///< of what arrives, timed: at a sensor that is not always open
 };
 
 class LightWalk {

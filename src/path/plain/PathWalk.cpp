@@ -31,6 +31,7 @@ bool PathWalk<TimeResolved, Media>::crossMedium(const Medium& medium) {
     // The free flight comes first: the ray need not look beyond its collision.
     const FlightSample flight = sampleFlight(medium, Infinity, path_.sampler);
     path_.ray.tMax = flight.distance;
+    path_.counters.fly(medium);
     ++path_.counters.rays;
     const auto hit = scene_.geometry->intersect(path_.ray);
     if (!hit && !flight.exited) {
@@ -75,7 +76,7 @@ bool PathWalk<TimeResolved, Media>::continueRoulette() {
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float distance) {
-    ++path_.counters.mediumEvents;
+    path_.counters.scatter(medium);
     advanceClock(distance);
     ++path_.interactions;
     ++path_.mediumScatters;
@@ -109,6 +110,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     if (!exit) return false;
     path_.throughput = path_.throughput * exit->weight;
     if (isBlack(path_.throughput)) return false;
+    path_.counters.leave(exit->lobe);
     if ((exit->lobe & lobe::Smooth) != 0) {
         path_.scattered = true;
         weighted_ = settings_.lightSampling;

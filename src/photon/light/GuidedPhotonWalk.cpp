@@ -59,8 +59,10 @@ void GuidedPhotonWalk::goOn() {
         ++path_.counters.rays;
         const auto hit = scene_.geometry->intersect(path_.ray);
         if (!hit) return;
-        if (const Medium* medium = scene_.medium(path_.region))
+        if (const Medium* medium = scene_.medium(path_.region)) {
+            path_.counters.fly(*medium);
             path_.power = path_.power * medium->transmittance(hit->t);
+        }
         step_.leave();
         if (!meetSurface(*hit)) return;
     }

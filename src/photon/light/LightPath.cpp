@@ -14,6 +14,7 @@ bool LightPath::emitFrom(const Emitter& emitter, float probability, const Vec2f&
 }
 
 void LightPath::collide(const Vec3f& position, double length) {
+    if (const Medium* medium = context.scene.medium(region)) counters.scatter(*medium);
     time += length / double(region.speed);
     ++bounce;
     ++consecutiveMedium;
@@ -41,6 +42,7 @@ void LightPath::depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium
 }
 
 bool LightPath::arriveOnSurface(const SurfaceHit& hit) {
+    ++counters.surfaceEvents;
     time += double(hit.t) / double(region.speed);
     ++bounce;
     flights = 0;
@@ -66,6 +68,7 @@ bool LightPath::leaveSurface() {
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Photons), context.scene.transport.consistencyChecks, sampler);
     if (!exit) return false;
+    counters.leave(exit->lobe);
     const Region ahead = regionBeyond(surface, exit->direction, region);
     if (!exit->straight()) {
         power = power * surface.photonShadingFactor(-ray.direction, exit->direction);

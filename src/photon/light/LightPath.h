@@ -5,6 +5,7 @@
 #include "photon/light/Deposits.h"
 #include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
+#include "transport/StepCounters.h"
 
 #include "tungsten/scene/Interaction.h"
 
@@ -12,7 +13,7 @@
 
 namespace tungsten::photon {
 
-struct WalkCounters {
+struct WalkCounters : transport::StepCounters {
     uint64_t rays = 0, controlVertices = 0;
     /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
     uint64_t volumeDeposits = 0, countingDeposits = 0;

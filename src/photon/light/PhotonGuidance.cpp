@@ -31,6 +31,12 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
     }
 }
 
+uint64_t PhotonGuidance::tables() const {
+    return uint64_t(std::count_if(guides_.begin(), guides_.end(), [](const auto& guide) {
+        return guide && guide->settings().direction == darts::Direction::Eda;
+    }));
+}
+
 void PhotonGuidance::setGate(const TimeGate& gate) {
     frames_ = {gate.start, gate.frameWidth, gate.frames};
     gate_ = {frames_.all().begin - slack_, frames_.all().end + slack_};

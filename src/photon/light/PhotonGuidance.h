@@ -45,6 +45,8 @@ class PhotonGuidance {
     [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
     /// The gate of paths that aim at all frames, with the aperture's slack.
     [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
+    /// Of directions, in use: one for every medium that has one.
+    [[nodiscard]] uint64_t tables() const;
     /// Aims at this gate from now on (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);
     /// For connections from a vertex reached at `elapsed`, where a straight way to the camera's one position tells the

@@ -32,9 +32,12 @@ size_t countOf(const VolumeDeposits& deposits) {
     return std::visit([](const auto& list) { return list.records.size(); }, deposits);
 }
 
-Distribution1D powerDistribution(const Scene& scene) {
+Distribution1D powerDistribution(const Scene& scene, const std::vector<bool>& leftOut) {
     std::vector<float> powers;
-    for (const Emitter& emitter : scene.emitters) powers.push_back(meanComponent(emitterPower(emitter)));
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const bool left = !leftOut.empty() && leftOut[i];
+        powers.push_back(left ? 0.0f : meanComponent(emitterPower(scene.emitters[i])));
+    }
     return Distribution1D(powers);
 }
 
@@ -75,6 +78,7 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
 }
 
 void report(const WalkCounters& counters, Statistics& statistics) {
+    transport::reportSteps(counters, statistics);
     statistics.add("rays", counters.rays);
     statistics.add("control vertices", counters.controlVertices);
     statistics.add("non-finite samples", counters.nonFinite);
@@ -98,8 +102,8 @@ void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Stat
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan)
     : scene_(scene), settings_(settings), culling_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
       guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan) : nullptr),
-      emitters_(powerDistribution(scene)), storeVolume_(plan.volume.on), storeSurface_(plan.surfacePhotons.on),
-      glossySensorPaths_(plan.glossyPaths.on),
+      emitters_(powerDistribution(scene, plan.lateEmitters)), storeVolume_(plan.volume.on),
+      storeSurface_(plan.surfacePhotons.on), glossySensorPaths_(plan.glossyPaths.on),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameCullings_.push_back(culling_.ofFrame(frame));

@@ -13,6 +13,7 @@ void PhotonWalk::goOn() {
         const auto hit = scene_.geometry->intersect(path_.ray);
         if (const Medium* medium = scene_.medium(path_.region)) {
             const float reach = hit ? hit->t : Infinity;
+            path_.counters.fly(*medium);
             if (medium->scatters() && ++path_.flights > medium->maxBounces) return;
             if (path_.context.storeVolume && medium->scatters())
                 std::visit([&](auto& list) { depositFlight(list, *medium, reach); }, path_.deposits.volume);

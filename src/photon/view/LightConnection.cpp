@@ -5,7 +5,8 @@
 namespace tungsten::photon {
 
 LightConnector::LightConnector(const Scene& scene, const EffectPlan& plan)
-    : scene_(scene), lights_(scene), connector_(scene, plan.forwardBoundaries), bounds_(scene.transport.gate, plan) {}
+    : scene_(scene), lights_(scene, plan.late), connector_(scene, plan.forwardBoundaries || plan.everything),
+      bounds_(scene.transport.gate, plan) {}
 
 std::optional<LightConnection> LightConnector::connect(const transport::Sensor& sensor, const SensorState& state,
                                                        const SurfaceInteraction& surface, Sampler& sampler,

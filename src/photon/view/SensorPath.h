@@ -2,6 +2,8 @@
 // A camera path of the sensor pass: straight through forward surfaces and along specular lobes. What is done on the way
 // is a visitor's: gathering photons, or recording where photons are wanted.
 
+#include "transport/StepCounters.h"
+
 #include "tungsten/scene/Interaction.h"
 
 namespace tungsten::photon {
@@ -42,6 +44,18 @@ struct SensorState {
     Vec3f glossyVertex{0.0f};
 };
 
+/// What following a path took.
+struct SensorSteps : transport::StepCounters {
+    uint64_t rays = 0, glossy = 0; ///< glossy: surfaces left along a glossy lobe
+
+    SensorSteps& operator+=(const SensorSteps& other) {
+        StepCounters::operator+=(other);
+        rays += other.rays;
+        glossy += other.glossy;
+        return *this;
+    }
+};
+
 /// Shows a visitor what lies ahead of `state`, up to `hit` if there is one. The visitor has
 ///   segment(state, hit): the ray ahead, up to the surface if there is one, in state.region
 ///   surface(state, interaction): the end of the segment; the throughput includes the way there, the time does not
@@ -60,24 +74,28 @@ std::optional<SurfaceInteraction> visitLeg(const Scene& scene, SensorState& stat
     return surface;
 }
 
-/// Follows the path from `state`, leg by leg. Returns the number of rays.
+/// Follows the path from `state`, leg by leg.
 template <typename Visitor>
-uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPathRules& rules, Sampler& sampler,
-                          Visitor&& visitor) {
-    uint64_t rays = 0;
+SensorSteps followSensorPath(const Scene& scene, SensorState state, const SensorPathRules& rules, Sampler& sampler,
+                             Visitor&& visitor) {
+    SensorSteps steps;
     while (state.interactions < scene.transport.maxBounces) {
-        ++rays;
+        ++steps.rays;
         const auto hit = scene.geometry->intersect(state.ray);
+        if (const Medium* medium = scene.medium(state.region)) steps.fly(*medium);
         const auto found = visitLeg(scene, state, hit, visitor);
-        if (!found) return rays;
+        if (!found) return steps;
         const SurfaceInteraction& surface = *found;
         state.time += double(hit->t) / double(state.region.speed);
         ++state.interactions;
+        ++steps.surfaceEvents;
         const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, rules.followed(*surface.bsdf)),
                                      scene.transport.consistencyChecks, sampler);
-        if (!exit) return rays;
+        if (!exit) return steps;
+        steps.leave(exit->lobe);
         state.folded = state.folded || !exit->straight();
         if ((exit->lobe & lobe::Smooth) != 0) {
+            ++steps.glossy;
             state.glossy = true;
             state.glossyPdf = exit->pdf;
             state.glossyVertex = hit->position;
@@ -88,7 +106,13 @@ uint64_t followSensorPath(const Scene& scene, SensorState state, const SensorPat
         state.region = regionBeyond(surface, exit->direction, state.region);
         state.ray = hit->leave(exit->direction);
     }
-    return rays;
+    return steps;
+}
+
+inline void report(const SensorSteps& steps, Statistics& statistics) {
+    statistics.add("rays", steps.rays);
+    statistics.add("glossy sensor reflections", steps.glossy);
+    transport::reportSteps(steps, statistics);
 }
 
 /// A visitor of surfaces alone: `look(state, interaction)`.

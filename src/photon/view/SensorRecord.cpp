@@ -96,7 +96,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
     std::vector<Recorder> rows(size_t(record.height), Recorder{scene, wishes, {}, {}, {}});
     watch.stage("camera paths", rows.size());
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
-        uint64_t rays = 0;
+        SensorSteps steps;
         for (int x = 0; x < record.width; ++x) {
             watch.pollWithin(64, uint64_t(x));
             const size_t pixel = y * size_t(record.width) + size_t(x);
@@ -108,7 +108,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             record.z[pixel] = ray.direction.z;
             if (!record.origins.empty()) record.origins[pixel] = ray.origin;
             rows[y].begin(uint32_t(pixel));
-            rays += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
+            steps += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y]);
             rows[y].end();
             const SurfaceVisitor recordPoint{
                 [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
@@ -116,10 +116,10 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             for (uint32_t s = 1; s < wishes.samples; ++s) {
                 const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
                 const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
-                rays += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint);
+                steps += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint);
             }
         }
-        statistics.add("rays", rays);
+        report(steps, statistics);
         watch.poll();
     });
     size_t points = 0;

@@ -1,0 +1,70 @@
+#pragma once
+// What a walk did on its way, counted by one worker: the work of the plan's effects.
+
+#include "tungsten/bsdf/Bsdf.h"
+#include "tungsten/medium/Medium.h"
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/Statistics.h"
+
+namespace tungsten::transport {
+
+struct StepCounters {
+    uint64_t mediumEvents = 0, anisotropicEvents = 0, colouredEvents = 0; ///< scatterings in media; of them
+    uint64_t absorbing = 0;                                               ///< flights through media that only absorb
+    uint64_t surfaceEvents = 0;                                           ///< surfaces met
+    uint64_t scattered = 0, mirrored = 0, refracted = 0, straight = 0;    ///< and left by these lobes
+
+    StepCounters& operator+=(const StepCounters& other) {
+        mediumEvents += other.mediumEvents;
+        anisotropicEvents += other.anisotropicEvents;
+        colouredEvents += other.colouredEvents;
+        absorbing += other.absorbing;
+        surfaceEvents += other.surfaceEvents;
+        scattered += other.scattered;
+        mirrored += other.mirrored;
+        refracted += other.refracted;
+        straight += other.straight;
+        return *this;
+    }
+    void scatter(const Medium& medium) {
+        ++mediumEvents;
+        if (!std::holds_alternative<Isotropic>(medium.phase.model)) ++anisotropicEvents;
+        if (!medium.isGrey()) ++colouredEvents;
+    }
+    void fly(const Medium& medium) {
+        if (!medium.scatters() && !medium.isVacuum()) ++absorbing;
+    }
+    /// A surface is left by this lobe.
+    void leave(LobeMask lobe) {
+        if ((lobe & lobe::Smooth) != 0) ++scattered;
+        if ((lobe & lobe::SpecularReflection) != 0) ++mirrored;
+        if ((lobe & lobe::Transmissive) != 0) ++refracted;
+        if ((lobe & lobe::Forward) != 0) ++straight;
+    }
+};
+
+inline void reportSteps(const StepCounters& counters, Statistics& statistics) {
+    statistics.add("medium events", counters.mediumEvents);
+    statistics.add("scatterings with preferred directions", counters.anisotropicEvents);
+    statistics.add("scatterings in coloured media", counters.colouredEvents);
+    statistics.add("flights through absorbing media", counters.absorbing);
+    statistics.add("surface events", counters.surfaceEvents);
+    statistics.add("surface scatterings", counters.scattered);
+    statistics.add("mirror reflections", counters.mirrored);
+    statistics.add("refractions", counters.refracted);
+    statistics.add("straight passages", counters.straight);
+}
+
+/// Names those counters in the plan.
+inline void countSteps(EffectPlan& plan) {
+    plan.count("medium scattering", {"medium events"});
+    plan.count("anisotropic scattering", {"scatterings with preferred directions"});
+    plan.count("coloured media", {"scatterings in coloured media"});
+    plan.count("absorption only", {"flights through absorbing media"});
+    plan.count("surface scattering", {"surface scatterings"});
+    plan.count("specular sensor paths", {"mirror reflections"});
+    plan.count("refraction", {"refractions"});
+    plan.count("index-matched boundaries", {"straight passages"});
+}
+
+} // namespace tungsten::transport

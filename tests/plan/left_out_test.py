@@ -1,0 +1,172 @@
+#!/usr/bin/python3
+"""What is left out because it cannot arrive sends nothing that arrives: random scenes whose lamps are each rendered alone, by a
+renderer that leaves nothing out (`--effects all`). The renderer is named by the environment's TUNGSTEN."""
+
+import copy
+import json
+import os
+import random
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+TUNGSTEN = os.environ.get("TUNGSTEN", str(Path(__file__).resolve().parents[2] / "build/bin/tungsten"))
+SCENES = 48
+SEED = 20261123
+COUNTS = {"photon_count": 3000, "volume_photon_count": 3000, "gather_radius": 0.5, "volume_gather_radius": 0.5}
+
+
+def vector(generator, size=1.0):
+    return [round(generator.uniform(-size, size), 3) for _ in range(3)]
+
+
+def lamp(generator, name):
+    kind = generator.choice(["point", "spot", "quad", "sphere", "disk"])
+    position = [4 * x for x in vector(generator)]
+    made = {"name": name, "type": kind, "emission_time": generator.choice([0, 0, 1.5, -1, 3]),
+            "emission": 50 if kind in ("point", "spot") else 10,
+            "transform": {"position": position, "scale": 0.4, "look_at": [0, 0, 0], "up": [0.1, 1, 0.2]}}
+    if kind not in ("point", "spot"):
+        made["bsdf"] = {"type": "lambert", "albedo": 0.5}
+    return made
+
+
+def surface(generator, i):
+    """Walls, mirrors and panes, some of them right before the sensor."""
+    bsdf = generator.choice([{"type": "lambert", "albedo": 0.8}, {"type": "mirror"}, {"type": "dielectric", "ior": 1.5},
+                             {"type": "forward"}, {"type": "rough_conductor", "roughness": 0.3}])
+    near = generator.random() < 0.4
+    made = {"name": f"wall {i}", "type": generator.choice(["quad", "cube"]), "bsdf": bsdf,
+            "transform": {"position": vector(generator, 0.3) if near else [3 * x for x in vector(generator)],
+                          "scale": 0.5 if near else 3, "rotation": [180 * x for x in vector(generator)]}}
+    if bsdf["type"] in ("forward", "dielectric") and made["type"] == "cube":
+        made |= generator.choice([{}, {"int_medium": "fast", "ext_medium": "fog"}, {"int_medium": "fog", "ext_medium": "fog"}])
+    return made
+
+
+def gate(generator):
+    kind = generator.choice(["gate", "gate", "frames", "response", "delta"])
+    if kind == "frames":
+        return {"start_time": generator.uniform(0, 3), "transient_time_width": 0.4, "frame_num": 5}
+    if kind == "response":
+        start = generator.uniform(0.5, 4)
+        return {"temporal_response": {"times": [start, start + 0.5, start + 1, start + 9], "values": [0, 1, 0, 0]}}
+    centre = generator.uniform(1, 6)
+    return {"transient_time_center": centre, "transient_time_width": generator.uniform(0.2, 2), "delta_time_gate": kind == "delta"}
+
+
+def random_scene(generator):
+    when = gate(generator)
+    kinds = ["transient_photon_map"] if when.get("delta_time_gate") else ["path_tracer", "light_tracer", "transient_photon_map"]
+    integrator = {"type": generator.choice(kinds), "max_bounces": 6, "camera_unwarped": generator.random() < 0.4, **when}
+    if integrator["type"] == "transient_photon_map":
+        integrator |= COUNTS
+    if integrator["type"] != "light_tracer":
+        integrator["darts"] = generator.choice(["off", "best"])
+    camera = {"type": generator.choice(["pinhole", "pinhole", "thinlens", "orthographic"]), "resolution": [4, 4], "fov": 90,
+              "medium": "fog", "transform": {"position": [0, 0, 0], "look_at": vector(generator), "up": [0.3, 1, 0.1]}}
+    if camera["type"] == "thinlens":
+        camera |= {"aperture_size": 0.4, "focus_distance": 2}
+    return {"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3, "speed_of_light": generator.choice([0.5, 1, 1])},
+                      {"name": "fast", "type": "homogeneous", "sigma_a": 0.1, "speed_of_light": 2}],
+            "primitives": [lamp(generator, f"lamp {i}") | {"ext_medium": "fog"} for i in range(3)]
+            + [surface(generator, i) for i in range(generator.randint(0, 3))],
+            "camera": camera, "integrator": integrator, "renderer": {"spp": 16, "spp_step": 8}}
+
+
+class LeftOut(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.file = Path(self.folder.name) / "scene.json"
+
+    def command(self, scene, *options):
+        self.file.write_text(json.dumps(scene))
+        done = subprocess.run([TUNGSTEN, "--quiet", "-t", "1", *options, str(self.file)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def effects(self, scene, *options):
+        listed = json.loads(self.command(scene, "--explain=json", *options).stdout)["effects"]
+        return {effect["name"]: effect for effect in listed}
+
+    def image(self, scene, *options):
+        self.command(scene, "-d", self.folder.name, "-e", "film.npz", *options)
+        return np.load(Path(self.folder.name) / "film.npz")["mean"]
+
+    def alone(self, scene, kept):
+        one = copy.deepcopy(scene)
+        for primitive in one["primitives"]:
+            if primitive["name"].startswith("lamp") and primitive["name"] != kept:
+                primitive.pop("emission")
+                if primitive["type"] in ("point", "spot"):
+                    primitive["emission"] = 0
+        return one
+
+    def test_late_lamps_send_nothing(self):
+        generator = random.Random(SEED)
+        late, lit = 0, 0
+        for number in range(SCENES):
+            scene = random_scene(generator)
+            listed = self.effects(scene)
+            black = listed["black image"]["on"]
+            out = listed["black image" if black else "late emitters left out"]["causes"]
+            for i in range(3):
+                left = f"primitives[{i}]" in out
+                light = float(np.abs(self.image(self.alone(scene, f"lamp {i}"), "--effects", "all")).max())
+                if left:
+                    self.assertEqual(light, 0, f"scene {number}, lamp {i}: {json.dumps(scene)}")
+                late, lit = late + left, lit + (light > 0)
+        self.assertGreater(late, SCENES // 4)
+        self.assertGreater(lit, SCENES // 2)
+
+    def scene(self, **integrator):
+        generator = random.Random(3)
+        scene = random_scene(generator)
+        scene["primitives"] = [{"name": "lamp 0", "type": "point", "emission": 9, "transform": {"position": [0, 1, 1]}, "ext_medium": "fog"},
+                               {"name": "lamp 1", "type": "point", "emission": 9, "transform": {"position": [0, 1, 9]}, "ext_medium": "fog"},
+                               {"name": "floor", "type": "quad", "transform": {"position": [0, -1, 0], "scale": 9}}]
+        scene["camera"] |= {"type": "pinhole", "transform": {"position": [0, 0, 0], "look_at": [0, 0, 1], "up": [0, 1, 0]}}
+        scene["media"][0]["speed_of_light"] = 1
+        scene["integrator"] = {"type": "path_tracer", "max_bounces": 5, "transient_time_center": 4, "transient_time_width": 2} | integrator
+        return scene
+
+    def test_all_shows_the_same(self):
+        """Within errors where a lamp is left out; bit for bit where none is."""
+        for kind in ({}, {"type": "light_tracer"}, {"darts": "best"}, {"type": "transient_photon_map", **COUNTS}):
+            scene = self.scene(**kind)
+            self.assertEqual(self.effects(scene)["late emitters left out"]["causes"], ["primitives[1]"])
+            self.assertFalse(self.effects(scene, "--effects", "all")["late emitters left out"]["on"])
+            few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
+                          for options in ([], ["--effects", "all"]))
+            np.testing.assert_allclose(few, every, rtol=0.06)
+            del scene["primitives"][1]
+            if "photon_map" not in scene["integrator"]["type"]:
+                np.testing.assert_array_equal(self.image(scene), self.image(scene, "--effects", "all"))
+
+    def test_a_black_image_is_there_at_once_and_says_why(self):
+        scene = self.scene(transient_time_center=0.4, transient_time_width=0.4)
+        scene["renderer"]["spp"] = 10 ** 9
+        done = self.command(scene, "-d", self.folder.name, "-e", "film.npz", "--stats", str(self.file.with_name("stats.json")))
+        self.assertIn("the image is black: no light can arrive: the sensor closes at 0.6, light of 'lamp 0' not before 1.414", done.stderr)
+        self.assertIn("'lamp 1' not before 9.05", done.stderr)
+        self.assertEqual(float(np.abs(np.load(Path(self.folder.name) / "film.npz")["mean"]).max()), 0)
+        statistics = json.loads(self.file.with_name("stats.json").read_text())
+        self.assertEqual(statistics["counters"].get("rays", 0), 0)
+        self.assertLess(statistics["render wall seconds"], 1)
+
+    def test_surfaces_out_of_time_store_nothing(self):
+        scene = self.scene(type="transient_photon_map", transient_time_center=1.6, transient_time_width=0.2, darts="best", **COUNTS)
+        scene["primitives"][2]["transform"]["position"] = [0, -3, 0]
+        self.assertFalse(self.effects(scene)["surfaces in time"]["on"])
+        self.assertTrue(self.effects(scene, "--effects", "all")["surfaces in time"]["on"])
+        few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
+                      for options in ([], ["--effects", "all"]))
+        np.testing.assert_allclose(few, every, rtol=0.06)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,195 @@
+#!/usr/bin/python3
+"""The plan of `--explain=json`: for every effect a scene that has it and one that lacks it. The plan names the element behind it; after
+a render its counters have counted, and are zero where it is off. The renderer is named by the environment's TUNGSTEN."""
+
+import copy
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+TUNGSTEN = os.environ.get("TUNGSTEN", str(Path(__file__).resolve().parents[2] / "build/bin/tungsten"))
+
+PATHS = {"type": "path_tracer", "max_bounces": 6, "transient_time_center": 4, "transient_time_width": 4}
+PHOTONS = {**PATHS, "type": "progressive_transient_photon_map", "photon_count": 2000, "volume_photon_count": 2000,
+           "gather_radius": 0.2, "volume_gather_radius": 0.2}
+ROOM = {
+    "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.5}],
+    "bsdfs": [{"name": "glass", "type": "dielectric", "ior": 1.5}],
+    "primitives": [
+        {"name": "floor", "type": "quad", "bsdf": {"type": "lambert", "albedo": 0.6}, "transform": {"scale": 4}},
+        {"name": "lamp", "type": "point", "emission": 8, "transform": {"position": [0.5, 1.8, 0.6]}}],
+    "camera": {"type": "pinhole", "resolution": [8, 8], "fov": 60,
+               "transform": {"position": [0, 1, 2.5], "look_at": [0, 0.4, 0], "up": [0, 1, 0]}},
+    "integrator": PATHS, "renderer": {"spp": 2, "spp_step": 2}}
+
+
+def room(integrator=None, surface=None, medium=None, **changes):
+    """The room with a further surface (a cube), with fog or another medium, or with fields by path."""
+    scene = copy.deepcopy(ROOM)
+    scene["integrator"] = dict(integrator or PATHS)
+    if surface:
+        scene["primitives"].append({"name": "thing", "type": "cube", "transform": {"position": [0.1, 0.5, 0]}, **surface})
+    if medium is not None:
+        scene["media"][0].update(medium)
+        scene["camera"]["medium"] = "fog"
+        scene["primitives"][1]["ext_medium"] = "fog"
+    for path, value in changes.items():
+        at = scene
+        *parts, last = path.split("__")
+        for part in parts:
+            at = at[int(part) if part.isdigit() else part]
+        at[last] = value
+    return scene
+
+
+def foggy(integrator=None, **changes):
+    return room(integrator, medium={}, **changes)
+
+
+def best(integrator=PHOTONS, **darts):
+    return {**integrator, "darts": {"preset": "best", **darts} if darts else "best"}
+
+
+LAMP = {"type": "quad", "emission": 1, "transform": {"position": [0, 1.9, 0], "rotation": [180, 0, 0]}}
+GLOSSY = {"bsdf": {"type": "rough_conductor", "roughness": 0.2}}
+STEADY = {"transient_time_width": 0, "transient_time_center": 0}
+CHECKER = {"type": "checker", "on_color": 0.8, "off_color": 0.2}
+OTHER_PULSE = {"name": "late", "type": "point", "emission": 8, "emission_time": 9, "transform": {"position": [0, 1, 0]}}
+
+# effect, a scene that has it, an element behind it, a scene that lacks it
+EFFECTS = [
+    ("time of flight", room(), "integrator", room({**PATHS, **STEADY})),
+    ("frames", room({**PATHS, "start_time": 2, "transient_time_width": 1, "frame_num": 4}), "integrator.frame_num", room()),
+    ("delta gate", foggy({**PHOTONS, "delta_time_gate": True}), "integrator.delta_time_gate", room()),
+    ("temporal response", room({k: v for k, v in PATHS.items() if "transient" not in k}
+                               | {"temporal_response": {"times": [2, 4, 6], "values": [0, 1, 0]}}),
+     "integrator.temporal_response", room()),
+    ("emission times", room(primitives__1__emission_time=0.5), "primitives[1].emission_time", room()),
+    ("medium scattering", foggy(), "media[0]", room()),
+    ("medium scattering", foggy(PHOTONS), "media[0]", room(PHOTONS)),
+    ("absorption only", room(medium={"sigma_s": 0, "sigma_a": 0.3}), "media[0]", foggy()),
+    ("absorption only", room(PHOTONS, medium={"sigma_s": 0, "sigma_a": 0.3}), "media[0]", foggy(PHOTONS)),
+    ("coloured media", room(medium={"sigma_s": [0.3, 0.5, 0.7]}), "media[0]", foggy()),
+    ("anisotropic scattering", room(medium={"phase_function": {"type": "henyey_greenstein", "g": 0.5}}),
+     "media[0].phase_function", foggy()),
+    ("surface scattering", room(), "primitives[0].bsdf", room(primitives__0__bsdf={"type": "null"})),
+    ("specular sensor paths", room(surface={"bsdf": {"type": "mirror"}}), "primitives[2].bsdf", room(surface=GLOSSY)),
+    ("specular sensor paths", room(PHOTONS, surface={"bsdf": "glass"}), "bsdfs.glass", room(PHOTONS)),
+    ("refraction", room(surface={"bsdf": "glass"}), "bsdfs.glass", room(surface={"bsdf": {"type": "mirror"}})),
+    ("refraction", room(PHOTONS, surface={"bsdf": "glass"}), "bsdfs.glass", room(PHOTONS)),
+    ("index-matched boundaries", room(surface={"bsdf": {"type": "forward"}}), "primitives[2].bsdf", room()),
+    ("several speeds of light", room(surface={"bsdf": {"type": "forward"}, "int_speed_of_light": 0.5, "ext_speed_of_light": 1}),
+     "primitives[2]", room()),
+    ("emission from surfaces", room(surface=LAMP), "primitives[2]", room()),
+    ("environment", room({**PATHS, **STEADY}, surface={"type": "infinite_sphere", "emission": 1}), "primitives[2]",
+     room({**PATHS, **STEADY})),
+    ("textures", room(primitives__0__bsdf={"type": "lambert", "albedo": CHECKER}), "primitives[0].bsdf", room()),
+    ("textures", room(surface=LAMP | {"emission": CHECKER}), "primitives[2]", room(surface=LAMP)),
+    ("alpha", room(surface={"bsdf": {"type": "transparency", "base": {"type": "lambert"}, "alpha": 0.5}}), "primitives[2].bsdf",
+     room(surface=GLOSSY)),
+    ("late emitters left out", room(surface=OTHER_PULSE), "primitives[2]", room(surface=OTHER_PULSE | {"emission_time": 1})),
+    ("black image", room(primitives__1__emission_time=9), "primitives[1]", room()),
+    ("frames before all light", room({**PATHS, "start_time": 0, "transient_time_width": 1, "frame_num": 9}), "integrator.start_time",
+     room({**PATHS, "start_time": 2, "transient_time_width": 1, "frame_num": 4})),
+    ("surfaces in time", room(), "primitives", foggy({**PATHS, "transient_time_width": 0.2, "transient_time_center": 2.5},
+                                                     primitives__0__transform={"position": [0, -9, 0]})),
+    ("Russian roulette", room({**PATHS, "enable_rr": True}), "integrator.enable_rr", room()),
+    ("guided paths", foggy(best(PATHS)), "integrator.darts", foggy()),
+    ("EDA table", foggy(best(PATHS, direction="eda")), "integrator.darts", foggy(best(PATHS, direction="connection"))),
+    ("light vertices", foggy(best(PATHS)), "integrator.darts", foggy(best(PATHS, surface_connections=False))),
+    ("reflected light", foggy(best(PATHS), surface=GLOSSY), "primitives[2].bsdf", foggy(best(PATHS))),
+    ("light paths", room({**PATHS, "type": "light_tracer"}), "integrator.type", room()),
+    ("volume photon points", foggy(PHOTONS), "integrator.volume_photon_type", room(PHOTONS)),
+    ("photon beams", foggy({**PHOTONS, "volume_photon_type": "beams"}), "integrator.volume_photon_type", foggy(PHOTONS)),
+    ("splatting", foggy(PHOTONS), "camera", room(PHOTONS)),
+    ("gathering", foggy(PHOTONS, camera__type="thinlens", camera__aperture_size=0.05), "camera", foggy(PHOTONS)),
+    ("temporal kernel", foggy({**PHOTONS, "delta_time_gate": True}), "integrator.delta_time_gate", foggy(PHOTONS)),
+    ("surface photons", room(PHOTONS), "primitives[0].bsdf", room({**PHOTONS, "include_surfaces": False})),
+    ("surface photons", room(PHOTONS), "primitives[0].bsdf",
+     foggy({**PHOTONS, "transient_time_width": 0.2, "transient_time_center": 2.5}, primitives__0__transform={"position": [0, -9, 0]})),
+    ("guided light paths", foggy(best()), "integrator.darts", foggy(PHOTONS)),
+    ("EDA table", foggy(best(direction="eda")), "integrator.darts", foggy(best(direction="connection"))),
+    ("surface connections", foggy(best()), "integrator.darts", foggy(best(surface_connections=False))),
+    ("sharing", foggy(best()), "integrator.darts", foggy(PHOTONS)),
+    ("glossy sensor paths", foggy(best(), surface=GLOSSY), "primitives[2].bsdf", foggy(best(glossy_sensor_paths=False), surface=GLOSSY)),
+    ("exact arrival culling", foggy(PHOTONS), "integrator", foggy(PHOTONS, surface={"bsdf": {"type": "mirror"}})),
+] + [("sliced primitives", foggy({**PHOTONS, "volume_photon_type": kind}), "integrator.volume_photon_type",
+      foggy({**PHOTONS, "volume_photon_type": "beams"}))
+     for kind in ("planes", "volumes", "balls", "volumes_balls", "mis_volumes_balls", "hypervolumes")]
+
+
+class Plan(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def run_on(self, scene, *options):
+        file = Path(self.folder.name) / "scene.json"
+        file.write_text(json.dumps(scene))
+        done = subprocess.run([TUNGSTEN, "--quiet", *options, str(file)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def plan(self, scene):
+        return json.loads(self.run_on(scene, "--explain=json").stdout)
+
+    def effect(self, effects, name):
+        found = [effect for effect in effects if effect["name"] == name]
+        self.assertLessEqual(len(found), 1, "effects are described once")
+        return found[0] if found else None
+
+    def rendered(self, scene):
+        folder = Path(self.folder.name)
+        self.run_on(scene, "-d", str(folder), "--stats", str(folder / "stats.json"), "-s", "3")
+        return json.loads((folder / "stats.json").read_text())["effects"]
+
+    def test_every_effect_is_on_where_it_is_called_for_and_off_elsewhere(self):
+        for name, has, element, lacks in EFFECTS:
+            with self.subTest(effect=name):
+                on, off = (self.effect(self.plan(scene)["effects"], name) for scene in (has, lacks))
+                self.assertTrue(on["on"], on)
+                self.assertIn(element, on["causes"])
+                self.assertTrue(on["reason"])
+                if off is None:
+                    continue
+                self.assertFalse(off["on"], off)
+                self.assertEqual(off["causes"], [])
+                self.assertNotEqual(on["reason"], off["reason"])
+
+    def test_what_is_off_counts_nothing(self):
+        for name, has, _, lacks in EFFECTS:
+            with self.subTest(effect=name):
+                on, off = self.effect(self.rendered(has), name), self.effect(self.rendered(lacks), name)
+                if on["counters"]:
+                    self.assertGreater(sum(on["counters"].values()), 0, on)
+                if off is not None:
+                    self.assertEqual(sum(off["counters"].values()), 0, off)
+
+    def test_every_effect_of_every_plan_that_is_off_counts_nothing(self):
+        for integrator in (PATHS, PHOTONS, best(PATHS), best(), {**PATHS, "type": "light_tracer"}):
+            for scene in (room(integrator), foggy(integrator), foggy(integrator, surface=GLOSSY)):
+                for effect in self.rendered(scene):
+                    if not effect["on"]:
+                        self.assertEqual(sum(effect["counters"].values()), 0, effect)
+
+    def test_text_and_json_say_the_same(self):
+        scene = foggy(best())
+        text = self.run_on(scene, "--explain").stdout.splitlines()[1:]
+        effects = self.plan(scene)["effects"]
+        self.assertEqual(len(text), len(effects))
+        for line, effect in zip(text, effects):
+            self.assertTrue(line.startswith("  on  " if effect["on"] else "  off "), line)
+            self.assertIn(effect["name"], line)
+            self.assertTrue(line.endswith(effect["reason"]), line)
+
+    def test_what_an_image_lacks_is_said(self):
+        laser = {"type": "directional_point", "emission": 1}
+        self.assertIn("light of a single direction in view", self.plan(foggy(surface=laser))["lacks"][0])
+        self.assertEqual(self.plan(room())["lacks"], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

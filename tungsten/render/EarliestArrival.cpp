@@ -1,0 +1,140 @@
+#include "tungsten/render/EarliestArrival.h"
+
+#include "tungsten/render/SceneUses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tungsten {
+
+namespace {
+
+constexpr double Never = std::numeric_limits<double>::infinity();
+
+/// Rounding of positions, and of the lengths that walks add up: far more than either.
+constexpr double Slack = 1e-5;
+
+std::string formatted(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", number);
+    return text;
+}
+
+/// No less than this lies between the sensor and a point within `radius` of `centre`.
+double gapToSensor(const Scene& scene, const Vec3f& centre, float radius) {
+    const Camera& camera = scene.camera;
+    if (scene.transport.cameraUnwarped || camera.hasParallelRays()) return 0.0;
+    const Vec3f from = camera.position();
+    const Vec3d way = Vec3d(double(centre.x), double(centre.y), double(centre.z)) -
+                      Vec3d(double(from.x), double(from.y), double(from.z));
+    const double rounding = Slack * (way.length() + double(centre.length()) + double(from.length()) + double(radius));
+    const double gap = way.length() - double(radius) - double(camera.aperture()) - rounding;
+    return std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
+}
+
+/// How far the box is from the sensor at least.
+double gapToSensor(const Scene& scene, const Imath::Box3f& box) {
+    if (box.isEmpty()) return Never;
+    const Vec3f from = scene.camera.position();
+    const Vec3f nearest(std::clamp(from.x, box.min.x, box.max.x), std::clamp(from.y, box.min.y, box.max.y),
+                        std::clamp(from.z, box.min.z, box.max.z));
+    return gapToSensor(scene, nearest, 0.0f);
+}
+
+double firstPulse(const Scene& scene) {
+    double first = Never;
+    for (const Emitter& emitter : scene.emitters) first = std::min(first, emitter.emissionTime);
+    return first;
+}
+
+void planEmitters(const Scene& scene, const std::vector<double>& earliest, double end, EffectPlan& plan) {
+    const std::string until = "the sensor closes at " + formatted(end);
+    Uses late;
+    for (size_t i = 0; i < earliest.size(); ++i)
+        if (earliest[i] > end)
+            late.add(nameOf(scene.emitters[i].name, i) + " not before " + formatted(earliest[i]),
+                     scene.emitters[i].path);
+    plan.nothingArrives = late.count() == earliest.size() && !plan.everything;
+    // Where all are late nothing is rendered, and integrators need no emitter to be left.
+    const bool leaves = late.any() && !plan.nothingArrives && !plan.everything;
+    if (leaves)
+        for (const double time : earliest) plan.late.push_back(time > end);
+    plan.describe("late emitters left out", leaves,
+                  !late.any()           ? "light of every emitter may arrive: " + until
+                  : plan.everything     ? "nothing shall be left out"
+                  : plan.nothingArrives ? "light of no emitter arrives: " + until
+                                        : until + ", light of " + late.names(),
+                  late.causes());
+    plan.describe("black image", plan.nothingArrives,
+                  plan.nothingArrives ? "no light can arrive: " + until + ", light of " + late.names()
+                                      : "some light may arrive",
+                  late.causes());
+}
+
+void planFrames(const Scene& scene, double first, EffectPlan& plan) {
+    const TimeGate& gate = scene.transport.gate;
+    int dark = 0;
+    while (dark < gate.frames && gate.frameStart(dark + 1) < first) ++dark;
+    const bool some = gate.frames > 1 && dark > 0;
+    plan.describe("frames before all light", some,
+                  some ? "the first " + std::to_string(dark) + " frames end before " + formatted(first) +
+                             ", when light can arrive at the soonest"
+                  : gate.frames > 1 ? "light may arrive in the first frame"
+                                    : "a single image",
+                  {"integrator.start_time"});
+}
+
+} // namespace
+
+std::vector<double> earliestArrivals(const Scene& scene, const EffectPlan& plan) {
+    std::vector<double> earliest;
+    for (const Emitter& emitter : scene.emitters) {
+        const BoundingSphere sphere = boundingSphere(emitter);
+        const double gap = emitter.isInfinite() ? 0.0 : gapToSensor(scene, sphere.centre, sphere.radius);
+        const double start = emitter.emissionTime;
+        earliest.push_back(start + gap / double(plan.highestSpeed) - Slack * std::abs(start));
+    }
+    return earliest;
+}
+
+double earliestFromSurfaces(const Scene& scene, const EffectPlan& plan) {
+    double gap = Never;
+    for (const Primitive& primitive : scene.primitives)
+        gap = std::min(gap, gapToSensor(scene, boundsOf(primitive.shape)));
+    const double start = firstPulse(scene);
+    return start == Never || gap == Never ? Never : start + gap / double(plan.highestSpeed) - Slack * std::abs(start);
+}
+
+double lastTime(const Scene& scene) {
+    const TimeGate& gate = scene.transport.gate;
+    if (gate.steadyState) return Never;
+    const TemporalResponse& response = scene.transport.response;
+    for (size_t i = response.times.size(); i-- > 1;)
+        if (response.values[i] > 0.0 || response.values[i - 1] > 0.0) return std::min(response.times[i], gate.end());
+    return gate.delta ? gate.start : gate.end();
+}
+
+void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
+    if (!plan.timeResolved) {
+        for (const char* name : {"late emitters left out", "black image", "frames before all light"})
+            plan.describe(name, false, "steady state");
+        plan.describe("surfaces in time", !scene.primitives.empty(),
+                      scene.primitives.empty() ? "there is no surface" : "steady state: all count", {"primitives"});
+        return;
+    }
+    const std::vector<double> earliest = earliestArrivals(scene, plan);
+    planEmitters(scene, earliest, end, plan);
+    planFrames(scene, earliest.empty() ? Never : *std::min_element(earliest.begin(), earliest.end()), plan);
+    const double surfaces = earliestFromSurfaces(scene, plan);
+    plan.surfacesOutOfTime = surfaces > end && !plan.everything;
+    const bool some = !scene.primitives.empty() && !plan.surfacesOutOfTime;
+    plan.describe("surfaces in time", some,
+                  scene.primitives.empty() ? "there is no surface"
+                  : some ? "what the nearest surface shows may arrive before the sensor closes at " + formatted(end)
+                         : "what surfaces show does not arrive before " + formatted(surfaces) +
+                               ", the sensor closes at " + formatted(end),
+                  {"primitives"});
+}
+
+} // namespace tungsten
