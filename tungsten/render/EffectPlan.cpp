@@ -111,6 +111,27 @@ bool hasTextures(const Scene& scene) {
     return false;
 }
 
+std::string spanOf(const TimeProfile& profile) {
+    return formatted(profile.times.front()) + " to " + formatted(profile.times.back());
+}
+
+/// What sensor and lights do with time beyond frames and flashes.
+void describeTimes(const Scene& scene, EffectPlan& plan) {
+    const TimeProfile &response = scene.transport.response, &delay = scene.transport.delay;
+    if (!response.empty())
+        plan.describe("temporal response", true,
+                      "times of arrival are weighed by " + std::to_string(response.times.size()) + " values");
+    if (!delay.empty())
+        plan.describe("temporal response", true, "light is recorded " + spanOf(delay) + " after its arrival");
+    std::string pulses;
+    for (const Emitter& emitter : scene.emitters)
+        if (!emitter.pulse.empty())
+            pulses += (pulses.empty() ? "'" : ", '") + emitter.name + "' shines from " + spanOf(emitter.pulse);
+    if (pulses.empty()) return;
+    plan.describe("pulses", plan.timeResolved,
+                  plan.timeResolved ? pulses + " after its emission_time" : "in steady state all light counts at once");
+}
+
 } // namespace
 
 EffectPlan analyseScene(const Scene& scene) {
@@ -118,10 +139,7 @@ EffectPlan analyseScene(const Scene& scene) {
     plan.timeResolved = !scene.transport.gate.steadyState;
     plan.multipleFrames = scene.transport.gate.frames > 1;
     plan.describe("time of flight", plan.timeResolved, describeGate(scene.transport.gate));
-    const TemporalResponse& response = scene.transport.response;
-    if (!response.empty())
-        plan.describe("temporal response", true,
-                      "times of arrival are weighed by " + std::to_string(response.times.size()) + " values");
+    describeTimes(scene, plan);
     planMedia(scene, plan);
 
     const LobeUse smooth = usesOf(scene, lobe::Smooth), specular = usesOf(scene, lobe::Specular),

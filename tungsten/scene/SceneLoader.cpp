@@ -66,7 +66,12 @@ void checkReach(const Scene& scene, const ObjectReader& root) {
     for (const Medium& medium : scene.media) speed = std::max(speed, double(medium.speedOfLight));
     for (const Primitive& primitive : scene.primitives)
         speed = std::max({speed, double(primitive.inside.speed), double(primitive.outside.speed)});
-    for (const Emitter& emitter : scene.emitters) delay = std::max(delay, std::abs(emitter.emissionTime));
+    const auto longest = [](const TimeProfile& profile) {
+        return profile.empty() ? 0.0 : std::max(std::abs(profile.times.front()), std::abs(profile.times.back()));
+    };
+    for (const Emitter& emitter : scene.emitters)
+        delay = std::max(delay, std::abs(emitter.emissionTime) + longest(emitter.pulse));
+    delay += longest(scene.transport.delay);
     const double reach =
         speed * (std::max(std::abs(scene.transport.gate.start), std::abs(scene.transport.gate.end())) + delay);
     if (reach > Range::measure().high)
