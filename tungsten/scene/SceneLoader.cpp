@@ -94,7 +94,7 @@ double readLengthUnit(const ObjectReader& root) {
 struct Blocks {
     RendererSettings renderer;
     std::string integratorType;
-    ObjectReader integrator;
+    ObjectReader integrator, camera;
 };
 
 /// Reads all blocks in the order in which they need one another.
@@ -106,12 +106,13 @@ Blocks readScene(LoadContext& context, const ObjectReader& root) {
     readMedia(context, root);
     readBsdfs(context, root);
     readPrimitives(context, root);
-    readCamera(context, root, blockOf(root, "camera", {"none", "where it is seen from"}));
+    const ObjectReader camera = blockOf(root, "camera", {"none", "where it is seen from"});
+    readCamera(context, root, camera);
     context.scene.film = readFilm(blockOf(root, "film", {"none", "what is kept of every pixel of every frame"}));
     const RendererSettings renderer =
         readRenderer(blockOf(root, "renderer", {"none", "how long, and what is written"}));
     root.warnAboutUnknown();
-    return {renderer, type, integrator};
+    return {renderer, type, integrator, camera};
 }
 
 } // namespace
@@ -142,6 +143,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
 
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
+    warnAboutBlindDetectors(context, blocks.camera);
     std::vector<std::filesystem::path> inputs = context.resources;
     const uint64_t text = hashText(*document);
     if (!options.text) inputs.insert(inputs.begin(), file);
