@@ -26,6 +26,56 @@ TemporalResponse TemporalResponse::tabulated(std::vector<double> times, std::vec
     return {std::move(times), std::move(values)};
 }
 
+namespace {
+
+/// Where the convolution of two piecewise linear densities may bend: sums of their ends. Few of them, evenly spread,
+/// where there are many.
+std::vector<double> bendsOfConvolution(const std::vector<double>& a, const std::vector<double>& b) {
+    constexpr size_t Most = 4096, MostPairs = size_t(1) << 20;
+    const double first = a.front() + b.front(), last = a.back() + b.back();
+    std::vector<double> sums, bends;
+    if (a.size() * b.size() > MostPairs) {
+        for (size_t i = 0; i <= Most; ++i) sums.push_back(first + (last - first) * double(i) / double(Most));
+    } else {
+        for (const double s : a)
+            for (const double t : b) sums.push_back(s + t);
+        std::sort(sums.begin(), sums.end());
+    }
+    const double least = (last - first) / double(Most);
+    for (const double sum : sums)
+        if (bends.empty() || sum >= bends.back() + least) bends.push_back(sum);
+    bends.back() = last;
+    return bends;
+}
+
+} // namespace
+
+double TemporalResponse::convolvedPdf(const TemporalResponse& other, double time) const {
+    std::vector<double> ends;
+    for (const double s : times_) ends.push_back(s);
+    for (const double s : other.times_) ends.push_back(time - s);
+    std::sort(ends.begin(), ends.end());
+    double sum = 0.0;
+    for (size_t k = 0; k + 1 < ends.size(); ++k) {
+        const double low = std::max(ends[k], begin()), width = std::min(ends[k + 1], end()) - low;
+        if (!(width > 0.0)) continue;
+        // Between ends a parabola, which Gauss's two points integrate exactly; they lie inside, where densities that
+        // begin with a step are continuous.
+        constexpr double Point = 0.21132486540518713;
+        for (const double share : {Point, 1.0 - Point}) {
+            const double s = low + share * width;
+            sum += 0.5 * width * pdf(s) * other.pdf(time - s);
+        }
+    }
+    return sum;
+}
+
+TemporalResponse TemporalResponse::convolved(const TemporalResponse& a, const TemporalResponse& b) {
+    std::vector<double> times = bendsOfConvolution(a.times_, b.times_), values;
+    for (const double time : times) values.push_back(a.convolvedPdf(b, time));
+    return {std::move(times), std::move(values)};
+}
+
 TemporalResponse::TemporalResponse(std::vector<double> times, std::vector<double> values)
     : times_(std::move(times)), densities_(std::move(values)), distribution_(times_.size(), 0.0) {
     if (times_.size() < 2 || times_.size() != densities_.size())

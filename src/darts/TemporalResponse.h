@@ -18,6 +18,9 @@ class TemporalResponse {
     /// Throws std::invalid_argument otherwise.
     static TemporalResponse tabulated(std::vector<double> times, std::vector<double> values);
 
+    /// Of the sum of two times drawn independently: their convolution, exact where pieces meet and linear between.
+    static TemporalResponse convolved(const TemporalResponse& a, const TemporalResponse& b);
+
     [[nodiscard]] double begin() const { return times_.front(); }
     [[nodiscard]] double end() const { return times_.back(); }
     /// Density per time; 0 outside [begin, end).
@@ -29,6 +32,7 @@ class TemporalResponse {
 
   private:
     TemporalResponse(std::vector<double> times, std::vector<double> values);
+    [[nodiscard]] double convolvedPdf(const TemporalResponse& other, double time) const;
     [[nodiscard]] std::size_t piece(const std::vector<double>& grid, double value) const;
 
     std::vector<double> times_, densities_, distribution_;

@@ -1,5 +1,7 @@
 #include "path/ArrivalBound.h"
 
+#include "transport/Delays.h"
+
 namespace tungsten::path {
 
 namespace {
@@ -25,7 +27,7 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
 }
 
 ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
-    : bounds_(scene.transport.gate, plan), highestSpeed_(plan.highestSpeed) {
+    : bounds_(transport::Delays::of(scene).arrivals(scene.transport.gate), plan), highestSpeed_(plan.highestSpeed) {
     // Environments never arrive; single directions are never found.
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];

@@ -11,7 +11,7 @@ std::optional<transport::Connection> GuidedPath::connectInRegion(const transport
 }
 
 LengthsInGate GuidedPath::lengthsInGate() const {
-    const TimeGate& gate = context.sensor.gate;
+    const TimeGate& gate = context.sensor.arrivals;
     const double speed = double(state.region.speed), elapsed = state.time + target->start;
     return {float(speed * (gate.start - elapsed)), float(speed * (gate.end() - elapsed))};
 }

@@ -22,14 +22,14 @@ class PixelSink {
         : film_(film), sensor_(sensor), x_(x), y_(y), scale_(float(1.0 / (double(samples) * sensor.evenWidth()))),
           counters_(counters) {}
 
-    /// `time` is the total time of flight, emission time included; ignored in steady state.
-    void add(const Rgb& radiance, double time) {
-        const int frame = sensor_.frameOf(time);
-        if (frame >= 0) put(radiance, time, frame);
+    /// Light of an emitter; `time` is the total time of flight, emission time included; ignored in steady state.
+    void add(const Rgb& radiance, double time, const Emitter& emitter) {
+        sensor_.spread(time, emitter, [&](int frame, float share) { put(radiance * share, time, frame); });
     }
     /// The same for a time that was drawn inside the gate: rounding at its ends drops nothing, and a delta gate, which
     /// no time meets, takes it with weight 1.
-    void addInside(const Rgb& radiance, double time) {
+    void addInside(const Rgb& radiance, double time, const Emitter& emitter) {
+        if (sensor_.delays.any()) return add(radiance, time, emitter);
         put(radiance, time, sensor_.gate.frames > 1 ? sensor_.gate.nearestFrame(time) : 0);
     }
 

@@ -49,7 +49,7 @@ std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings,
         return "the phase function's forward peak: guided slices are noisier than plain ones";
     // Slices without camera time are aimed at nothing: only bounded in time.
     if (scene.camera.hasParallelRays() && !(slices && scene.transport.cameraUnwarped))
-        return "an orthographic camera has no position to aim at";
+        return "parallel rays, or detectors, have no one position to aim at";
     return {};
 }
 

@@ -100,12 +100,13 @@ class SensorGather {
             workspace_.sums[frame] += workspace_.volume[frame] * weight;
     }
 
+    /// `time` is that of its record: photons and connections were delayed.
     void add(const Rgb& radiance, double time) {
-        const transport::Sensor& sensor = structures_.sensor;
-        const int frame = sensor.frameOf(time);
-        if (frame < 0) return;
-        const Rgb weighed = radiance * sensor.weight(time);
-        workspace_.sums[size_t(frame)] += Vec3d(double(weighed.x), double(weighed.y), double(weighed.z));
+        const int frame = structures_.sensor.frameOf(time);
+        if (frame >= 0) add(radiance * structures_.sensor.weight(time), frame);
+    }
+    void add(const Rgb& radiance, int frame) {
+        workspace_.sums[size_t(frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
     }
 
     [[nodiscard]] bool rendered(int interactions) const {
@@ -118,8 +119,9 @@ class SensorGather {
         const Emitter& emitter = scene_.emitters[size_t(surface.primitive->emitter)];
         const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -state.ray.direction);
         const double time = state.time + double(hit.t) / double(state.region.speed);
-        add(state.throughput * radiance * weight,
-            emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time));
+        const double arrival = emitter.emissionTime + (scene_.transport.cameraUnwarped ? 0.0 : time);
+        const Rgb seen = state.throughput * radiance * (weight * structures_.sensor.weight(arrival));
+        structures_.sensor.spread(arrival, emitter, [&](int frame, float share) { add(seen * share, frame); });
     }
 
     /// Density estimate with a constant kernel over the k nearest photons (docs/scene-format.md, section 10.4), or over

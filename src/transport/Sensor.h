@@ -1,13 +1,7 @@
 #pragma once
 // When the sensor is open, and how it weighs times of arrival.
 
-#include "darts/ResidualRange.h"
-#include "darts/TemporalResponse.h"
-
-#include "tungsten/scene/Scene.h"
-
-#include <memory>
-#include <vector>
+#include "transport/Delays.h"
 
 namespace tungsten::transport {
 
@@ -17,13 +11,20 @@ struct Sensor {
     TimeGate gate;
     std::shared_ptr<const darts::TemporalResponse> response; ///< null: evenly
     std::vector<darts::TimeGate> openTimes;                  ///< where the response is above 0; empty without one
+    Delays delays;                                           ///< between arrival and record; none with a response
+    TimeGate arrivals;                                       ///< when what is recorded in the gate arrives
 
     Sensor(const TimeGate& openDuring, std::shared_ptr<const darts::TemporalResponse> weighedBy = nullptr)
-        : gate(openDuring), response(std::move(weighedBy)) {}
+        : gate(openDuring), response(std::move(weighedBy)), arrivals(openDuring) {}
     /// As the scene says; `gate` is the pass's, which is the scene's or a delta gate's temporal kernel.
     static Sensor of(const Scene& scene, const TimeGate& gate) {
-        const TemporalResponse& r = scene.transport.response;
-        if (r.empty()) return {gate};
+        const TimeProfile& r = scene.transport.response;
+        if (r.empty()) {
+            Sensor sensor{gate};
+            sensor.delays = Delays::of(scene);
+            sensor.arrivals = sensor.delays.arrivals(gate);
+            return sensor;
+        }
         Sensor sensor{gate,
                       std::make_shared<darts::TemporalResponse>(darts::TemporalResponse::tabulated(r.times, r.values))};
         auto& open = sensor.openTimes;
@@ -37,6 +38,26 @@ struct Sensor {
 
     /// Frame of a time; 0 in steady state, -1 while the sensor is closed.
     [[nodiscard]] int frameOf(double time) const { return gate.steadyState ? 0 : gate.frameOf(time); }
+    /// Calls put(frame, share) for every frame that records a part of what arrives at `time` from this emitter: the
+    /// integral of its delay's density over the frame. All of it in one where there is no delay.
+    template <typename Put>
+    void spread(double time, const Emitter& emitter, const Put& put) const {
+        const darts::TemporalResponse* delay = delays.density(emitter);
+        if (!delay) {
+            const int frame = frameOf(time);
+            if (frame >= 0) put(frame, 1.0f);
+            return;
+        }
+        if (!(time + delay->end() > gate.start) || !(time + delay->begin() < gate.end())) return;
+        const int last = gate.nearestFrame(time + delay->end());
+        int frame = gate.nearestFrame(time + delay->begin());
+        double before = delay->distribution(gate.frameStart(frame) - time);
+        for (; frame <= last; ++frame) {
+            const double until = delay->distribution(gate.frameStart(frame + 1) - time);
+            if (until > before) put(frame, float(until - before));
+            before = until;
+        }
+    }
     /// Per unit of time: what light that arrives then counts in the mean over its frame. 1 in steady state and at a
     /// delta gate.
     [[nodiscard]] double density(double time) const { return response ? response->pdf(time) : 1.0 / evenWidth(); }

@@ -72,6 +72,38 @@ TEST(TemporalResponse, DensityDistributionAndQuantileBelongTogether) {
     }
 }
 
+TEST(TemporalResponse, ConvolutionIsTheDensityOfASum) {
+    // Two boxes: a trapezoid, exactly.
+    const TemporalResponse ramp =
+        TemporalResponse::convolved(TemporalResponse::box(1.0, 2.0), TemporalResponse::box(-0.5, 2.5));
+    EXPECT_DOUBLE_EQ(ramp.begin(), 0.5);
+    EXPECT_DOUBLE_EQ(ramp.end(), 4.5);
+    for (int i = 0; i <= 100; ++i) {
+        const double t = 0.5 + 0.04 * i;
+        EXPECT_NEAR(ramp.pdf(t), std::clamp(std::min(t - 0.5, 4.5 - t), 0.0, 1.0) / 3.0, 1e-12) << t;
+    }
+    // Gaussians: a gaussian.
+    const TemporalResponse sum =
+        TemporalResponse::convolved(TemporalResponse::gaussian(1.0, 0.3), TemporalResponse::gaussian(2.0, 0.4));
+    for (double t = 1.6; t < 4.4; t += 0.07)
+        EXPECT_NEAR(sum.distribution(t), 0.5 * std::erfc((3.0 - t) / (0.5 * std::sqrt(2.0))), 5e-4) << t;
+    // Any two: quantiles of each, added.
+    const TemporalResponse step = TemporalResponse::tabulated({0.0, 1.0, 4.0}, {1.0, 2.0, 0.5});
+    const TemporalResponse both = TemporalResponse::convolved(TwoPeaks, step);
+    constexpr int Samples = 200000;
+    std::array<int, 8> below{};
+    for (int i = 0; i < Samples; ++i) {
+        Sampler s(5, RandomStream::Test, 0, uint64_t(i));
+        const double time = TwoPeaks.quantile(s.nextDouble()) + step.quantile(s.nextDouble());
+        for (size_t k = 0; k < below.size(); ++k) below[k] += time < 1.2 + 0.5 * double(k) ? 1 : 0;
+    }
+    for (size_t k = 0; k < below.size(); ++k) {
+        const double expected = both.distribution(1.2 + 0.5 * double(k));
+        EXPECT_NEAR(below[k] / double(Samples), expected,
+                    4.5 * std::sqrt(expected * (1.0 - expected) / Samples) + 1e-5);
+    }
+}
+
 TEST(TemporalResponse, RefusesWhatIsNoResponse) {
     EXPECT_THROW(TemporalResponse::tabulated({0, 1}, {0, 0}), std::invalid_argument);
     EXPECT_THROW(TemporalResponse::tabulated({0, 0}, {1, 1}), std::invalid_argument);

@@ -144,6 +144,13 @@ TEST(LightTracer, WeighsTimeByTheSensorsResponse) {
     expectAgreement(room(response), {}, {192, 256});
 }
 
+TEST(LightTracer, StartsLightPathsWithDelays) {
+    const std::string frames = R"(, "start_time": 4, "transient_time_width": 1, "frame_num": 3,
+        "temporal_response": {"type": "exponential", "decay": 0.7})";
+    expectAgreement(room(frames), {"primitives.3.pulse={\"type\": \"box\", \"start\": -0.5, \"end\": 0.8}"},
+                    {256, 384});
+}
+
 TEST(LightTracer, ShowsFogBehindAnIndexMatchedBoundary) {
     const std::string fog = fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.5);
     expectAgreement(fog, {"integrator.transient_time_center=-1"}, {512, 128});

@@ -31,9 +31,9 @@ def run(name, code):
 
 FOLDER.mkdir(parents=True, exist_ok=True)
 outputs = {name: run(name, code) for name, code in SNIPPET.findall((PROJECT / "docs/python.md").read_text())}
-assert sorted(outputs) == ["dict.py", "distances.py", "histogram.py"], sorted(outputs)
+assert sorted(outputs) == ["dict.py", "distances.py", "histogram.py", "instruments.py"], sorted(outputs)
 
-for file in ("histogram.png", "film.npz"):
+for file in ("histogram.png", "instruments.png", "film.npz"):
     assert (FOLDER / file).stat().st_size > 1000, file
     os.remove(FOLDER / file)
 share = float(re.search(r"absorption leaves (\S+)", outputs["dict.py"])[1])
@@ -43,3 +43,5 @@ for preset in ("published", "best"):
     mean, error, exact = map(float, re.search(rf"{preset}: .* transmittance (\S+) \+- (\S+), exactly (\S+)",
                                               outputs["distances.py"]).groups())
     assert abs(mean - exact) < 4.5 * error + 1e-4, (preset, mean, error, exact)
+whole, piled, undone = map(float, re.search(r"mean time (\S+), piled up (\S+), corrected (\S+)", outputs["instruments.py"]).groups())
+assert piled < whole - 0.05 and abs(undone - whole) < 0.05, (whole, piled, undone)

@@ -119,7 +119,9 @@ TEST(Command, HelpAndVersionAnswerAndStop) {
                                "--list",
                                "--describe",
                                "--markdown",
-                               "--quiet"})
+                               "--quiet",
+                               "--manual",
+                               "--completion"})
         EXPECT_NE(help.out.find(option), std::string::npos) << option;
     EXPECT_EQ(test::tungsten({"-h"}).out, help.out);
     const CommandResult version = test::tungsten({"-v"});

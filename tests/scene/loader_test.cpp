@@ -99,50 +99,6 @@ TEST(SceneLoader, GatesOfEveryKind) {
     EXPECT_TRUE(gate({"integrator.delta_time_gate=true", "integrator.type=progressive_transient_photon_map"}).delta);
 }
 
-TEST(SceneLoader, AResponseBringsItsOwnGate) {
-    const SceneFile file(Fog);
-    const auto transport = [&](const std::string& response) {
-        return loadScene(file.path(), {{}, {"integrator.temporal_response=" + response}}).scene->transport;
-    };
-    const TransportSettings tabulated = transport(R"({"times": [1, 2, 4], "values": [0, 3, 0]})");
-    EXPECT_DOUBLE_EQ(tabulated.gate.start, 1.0);
-    EXPECT_DOUBLE_EQ(tabulated.gate.end(), 4.0);
-    EXPECT_EQ(tabulated.response.values, (std::vector<double>{0, 3, 0}));
-    const TransportSettings gaussian = transport(R"({"type": "gaussian", "center": 5, "sigma": 0.5})");
-    EXPECT_DOUBLE_EQ(gaussian.gate.start, 3.0);
-    EXPECT_DOUBLE_EQ(gaussian.gate.end(), 7.0);
-    EXPECT_DOUBLE_EQ(gaussian.response.values[32], 1.0);
-    EXPECT_NEAR(gaussian.response.values[40], std::exp(-0.5), 1e-12);
-    EXPECT_DOUBLE_EQ(transport(R"({"type": "box", "start": 2, "end": 2.5})").gate.frameWidth, 0.5);
-    EXPECT_TRUE(loadScene(file.path()).scene->transport.response.empty());
-}
-
-TEST(SceneLoader, BadResponsesAreErrors) {
-    const auto problems = [](const std::string& fields) {
-        return problemsOf(
-            R"({"primitives": [{"type": "point", "emission": 1}], "integrator": {"transient_time_center": 1,
-                              "transient_time_width": 1, )" +
-            fields + "}}");
-    };
-    const std::string good = R"("temporal_response": {"times": [0, 1], "values": [1, 1]})";
-    EXPECT_EQ(problems(good), "");
-    const std::vector<std::pair<std::string, std::string>> bad{
-        {R"("temporal_response": {"times": [0], "values": [1]})",
-         "integrator.temporal_response.times: expected as many"},
-        {R"("temporal_response": {"times": [0, 1], "values": [1]})", "at least two"},
-        {R"("temporal_response": {"times": [0, 1, 1], "values": [1, 2, 1]})", "increasing times"},
-        {R"("temporal_response": {"times": [0, 1], "values": [1, -1]})", "no negative value"},
-        {R"("temporal_response": {"times": [0, 1], "values": [0, 0]})", "zero at all times"},
-        {R"("temporal_response": {"type": "box", "start": 2, "end": 1})", "temporal_response.end: expected increasing"},
-        {R"("temporal_response": {"type": "gaussian", "sigma": 0})", "temporal_response.sigma"},
-        {R"("temporal_response": {"type": "gausian"})", "did you mean 'gaussian'?"},
-        {R"("frame_num": 3, )" + good, "describes a single gate"},
-        {R"("delta_time_gate": true, )" + good, "describes a single gate"},
-        {R"("time_normalization": "integral", )" + good, "time_normalization"}};
-    for (const auto& [fields, expected] : bad)
-        EXPECT_NE(problems(fields).find(expected), std::string::npos) << fields << "\n" << problems(fields);
-}
-
 TEST(SceneLoader, EveryProblemIsListedWithItsPath) {
     const std::string text = problemsOf(R"({
         "media": [{"name": "fog", "type": "homogenous", "sigma_s": -1}],

@@ -22,15 +22,21 @@ struct MergeOptions {
     bool quiet = false;
 };
 
-/// False: --help has been answered.
-bool parse(int argc, const char* const* argv, MergeOptions& options) {
-    CLI::App app{"Puts the partial states of --passes together: the images that one run gives.", "tungsten merge"};
+constexpr const char* Purpose = "Puts the partial states of --passes together: the images that one run gives.";
+
+void declareOptions(CLI::App& app, MergeOptions& options) {
     app.add_option("states", options.states, "all passes of one render, from its first on, each once")->required();
     app.add_option("-o,--output-file", options.outputs.ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", options.outputs.hdr, "linear image: .exr, .npz, .h5, .pfm or .npy");
     app.add_option("--stats", options.outputs.statistics,
                    "write what was measured, of every state too, to this JSON file");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
+}
+
+/// False: --help has been answered.
+bool parse(int argc, const char* const* argv, MergeOptions& options) {
+    CLI::App app{Purpose, "tungsten merge"};
+    declareOptions(app, options);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -45,6 +51,13 @@ bool parse(int argc, const char* const* argv, MergeOptions& options) {
 }
 
 } // namespace
+
+void withMergeOptions(const std::function<void(const CLI::App&)>& use) {
+    MergeOptions options;
+    CLI::App app{Purpose, "tungsten merge"};
+    declareOptions(app, options);
+    use(app);
+}
 
 int mergeCommand(int argc, const char* const* argv) {
     MergeOptions options;

@@ -1,5 +1,7 @@
 #include "tungsten/app/Options.h"
 
+#include "tungsten/app/Manual.h"
+#include "tungsten/app/Merge.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/scene/Duration.h"
 
@@ -208,6 +210,16 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
             ->option_text("[TYPE]");
     app.add_flag("--markdown", options.markdown, "--describe prints a page of tables");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
+    const auto print = [&app](bool completion) {
+        withMergeOptions([&](const CLI::App& merge) {
+            std::cout << (completion ? bashCompletion(app, merge) : manualPage(app, merge, Version));
+        });
+        throw CLI::Success();
+    };
+    app.add_flag_callback(
+        "--manual", [print] { print(false); }, "print the manual page");
+    app.add_flag_callback(
+        "--completion", [print] { print(true); }, "print completion for bash");
 }
 
 /// False: --help or --version has been answered.

@@ -19,6 +19,20 @@ Vec2f rasterOf(const Vec3f& onPlane, const Vec2i& resolution) {
     return {0.5f * w * (1.0f + onPlane.x), 0.5f * (h - w * onPlane.y)};
 }
 
+/// A connection to any place of any detector: one of them, all alike, then a point of its disc.
+std::optional<SensorSample> sampleDetector(const Detectors& detectors, const Vec3f& point, const Vec2f& u) {
+    const float count = float(detectors.row.size()), scaled = u.x * count;
+    const auto index = std::min(size_t(scaled), detectors.row.size() - 1);
+    const Detector& detector = detectors.row[index];
+    const Vec3f offset = detector.samplePoint({std::min(scaled - float(index), 1.0f), u.y}) - point;
+    const float distance = offset.length();
+    const Vec3f direction = offset / distance;
+    if (!(distance > 0.0f) || !detector.accepts(-direction)) return std::nullopt;
+    const float area = Pi * sqr(detector.radius), cosine = -direction.dot(detector.frame.n);
+    const float weight = count * area * cosine / (sqr(distance) * float(detector.etendue()));
+    return SensorSample{direction, distance, weight, {float(index), 0.0f}};
+}
+
 } // namespace
 
 Transform cameraTransform(const Transform& sceneTransform) {
@@ -28,6 +42,8 @@ Transform cameraTransform(const Transform& sceneTransform) {
 }
 
 Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const {
+    if (const auto* detectors = std::get_if<Detectors>(&model))
+        return detectors->row[size_t(pixel.x)].sampleRay(uLens, uFilter);
     const Vec2f offset = filter.sample(uFilter);
     const Vec2f corner(float(pixel.x) + offset.x, float(pixel.y) + offset.y);
     const Vec2f centre(corner.x + 0.5f, corner.y + 0.5f);
@@ -49,7 +65,8 @@ Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& u
                        const float halfWidth = 0.5f * step * float(resolution.x);
                        const Vec3f local(-halfWidth + centre.x * step, orthographic.size - centre.y * step, 0.0f);
                        return {toWorld.point(local), forward()};
-                   }},
+                   },
+                   [](const Detectors&) { return Ray(); }},
         model);
 }
 
@@ -86,14 +103,15 @@ std::optional<SensorSample> Camera::sampleSensor(const Vec3f& point, const Vec2f
                 const Vec2f raster(local.x / step + 0.5f * float(resolution.x),
                                    0.5f * float(resolution.y) - local.y / step);
                 return SensorSample{-forward(), local.z * depth, depth / (sqr(step) * volume), raster - Vec2f(0.5f)};
-            }},
+            },
+            [&](const Detectors& detectors) { return sampleDetector(detectors, point, uLens); }},
         model);
 }
 
 std::optional<Vec2f> Camera::project(const Vec3f& point) const {
     const Frame frame = toWorld.rotation();
     const Vec3f local = frame.toLocal(point - position());
-    if (local.z <= 0.0f) return std::nullopt;
+    if (local.z <= 0.0f || std::holds_alternative<Detectors>(model)) return std::nullopt;
     const float w = float(resolution.x), h = float(resolution.y);
     return std::visit(Overloaded{[&](const OneOf<Pinhole, ThinLens> auto& fov) {
                                      const float scale = fov.planeDistance / local.z;
@@ -103,14 +121,15 @@ std::optional<Vec2f> Camera::project(const Vec3f& point) const {
                                  [&](const Orthographic& orthographic) {
                                      const float step = 2.0f * orthographic.size / h;
                                      return Vec2f(local.x / step + 0.5f * w, 0.5f * h - local.y / step);
-                                 }},
+                                 },
+                                 [](const Detectors&) { return Vec2f(0.0f); }},
                       model);
 }
 
 std::optional<FieldOfView> Camera::fieldOfView() const {
     using Answer = std::optional<FieldOfView>;
     return std::visit(Overloaded{[](const OneOf<Pinhole, ThinLens> auto& fov) { return Answer(fov); },
-                                 [](const Orthographic&) { return Answer(); }},
+                                 [](const OneOf<Orthographic, Detectors> auto&) { return Answer(); }},
                       model);
 }
 
@@ -118,24 +137,24 @@ float Camera::aperture() const {
     return std::visit(Overloaded{[&](const ThinLens& lens) {
                                      return lens.apertureRadius * std::max(toWorld.x.length(), toWorld.y.length());
                                  },
-                                 [](const OneOf<Pinhole, Orthographic> auto&) { return 0.0f; }},
+                                 [](const OneOf<Pinhole, Orthographic, Detectors> auto&) { return 0.0f; }},
                       model);
 }
 
 float Camera::focusDistance() const {
     return std::visit(Overloaded{[&](const ThinLens& lens) { return lens.focusDistance * toWorld.z.length(); },
-                                 [](const OneOf<Pinhole, Orthographic> auto&) { return Infinity; }},
+                                 [](const OneOf<Pinhole, Orthographic, Detectors> auto&) { return Infinity; }},
                       model);
 }
 
 bool Camera::hasSinglePosition() const {
     return std::visit(Overloaded{[](const Pinhole&) { return true; },
-                                 [](const OneOf<ThinLens, Orthographic> auto&) { return false; }},
+                                 [](const OneOf<ThinLens, Orthographic, Detectors> auto&) { return false; }},
                       model);
 }
 
 bool Camera::hasParallelRays() const {
-    return std::visit(Overloaded{[](const Orthographic&) { return true; },
+    return std::visit(Overloaded{[](const OneOf<Orthographic, Detectors> auto&) { return true; },
                                  [](const OneOf<Pinhole, ThinLens> auto&) { return false; }},
                       model);
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Cameras: pinhole, thin lens, orthographic. Raster: pixel (0,0) is the top left, y grows downward.
+// Cameras: pinhole, thin lens, orthographic, detectors. Raster: pixel (0,0) is the top left, y grows downward.
 
+#include "tungsten/camera/Detectors.h"
 #include "tungsten/camera/ReconstructionFilter.h"
 #include "tungsten/core/Transform.h"
 
@@ -32,7 +33,8 @@ struct SensorSample {
     float distance;
     /// Power scattered per steradian towards the sensor, times this, is what the point adds to the image per pixel of
     /// area about `raster`: the density of raster positions per solid angle over distance^2 (orthographic: per area
-    /// across the rays), divided by the density of the place on the lens. Visibility not included.
+    /// across the rays), divided by the density of the place on the lens. Of detectors: cosine over distance^2, by
+    /// the etendue and the density of the place on which one. Visibility not included.
     float weight;
     Vec2f raster; ///< position in the image, in pixels; whole numbers are the centres of filters
 };
@@ -41,12 +43,13 @@ struct SensorSample {
 /// (docs/scene-format.md, section 3).
 class Camera {
   public:
-    std::variant<Pinhole, ThinLens, Orthographic> model;
+    std::variant<Pinhole, ThinLens, Orthographic, Detectors> model;
     Vec2i resolution{1000, 563};
     Transform toWorld; ///< x axis already negated
     ReconstructionFilter filter;
 
-    /// Ray through raster position `pixel` + 0.5 + filter offset; weight 1. `uLens` is used by the thin lens only.
+    /// Ray through raster position `pixel` + 0.5 + filter offset; weight 1. `uLens` is used by the thin lens and
+    /// detectors; to detectors `uFilter` is the direction.
     [[nodiscard]] Ray generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const;
     /// The ray of generateRay that meets `point` after leaving the lens where `uLens` says; none behind the camera. The
     /// raster position may lie outside the image.
@@ -65,7 +68,7 @@ class Camera {
     [[nodiscard]] std::optional<FieldOfView> fieldOfView() const;
     /// Every sensor ray leaves the same point.
     [[nodiscard]] bool hasSinglePosition() const;
-    /// Every sensor ray has the same direction: position() says nothing about where it starts.
+    /// position() says nothing about where a sensor ray starts: all have the same direction, or there are detectors.
     [[nodiscard]] bool hasParallelRays() const;
 };
 

@@ -3,6 +3,7 @@
 
 #include "tungsten/core/Distribution.h"
 #include "tungsten/core/Overloaded.h"
+#include "tungsten/core/TimeProfile.h"
 #include "tungsten/geometry/Shape.h"
 #include "tungsten/texture/Texture.h"
 
@@ -73,6 +74,7 @@ struct Emitter {
     std::string name;
     EmitterModel model;
     double emissionTime = 0.0; ///< when its pulse starts
+    TimeProfile pulse{};       ///< of its power, after that; empty: all at once
     int medium = -1;           ///< medium that surrounds it (ext_medium), -1 for vacuum
     float vacuumSpeed = -1.0f; ///< ext_speed_of_light where positive
     std::string path = {};     ///< in the scene file, as problems have it

@@ -1,4 +1,4 @@
-// `import darts_tungsten`.
+// `import darts_tungsten`, whose package is in tungsten/python/darts_tungsten.
 
 #include "tungsten/python/Result.h"
 
@@ -236,6 +236,6 @@ void declare(py::module_& module) {
 
 } // namespace tungsten::python
 
-PYBIND11_MODULE(darts_tungsten, module) {
+PYBIND11_MODULE(_native, module) {
     tungsten::python::declare(module);
 }

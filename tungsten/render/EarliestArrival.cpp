@@ -42,9 +42,19 @@ double gapToSensor(const Scene& scene, const Imath::Box3f& box) {
     return gapToSensor(scene, nearest, 0.0f);
 }
 
+/// When it starts to shine.
+double startOf(const Emitter& emitter) {
+    return emitter.emissionTime + (emitter.pulse.empty() ? 0.0 : emitter.pulse.times.front());
+}
+
+/// Between arrival and record, at least.
+double leastDelay(const Scene& scene) {
+    return scene.transport.delay.empty() ? 0.0 : scene.transport.delay.times.front();
+}
+
 double firstPulse(const Scene& scene) {
     double first = Never;
-    for (const Emitter& emitter : scene.emitters) first = std::min(first, emitter.emissionTime);
+    for (const Emitter& emitter : scene.emitters) first = std::min(first, startOf(emitter));
     return first;
 }
 
@@ -92,7 +102,7 @@ std::vector<double> earliestArrivals(const Scene& scene, const EffectPlan& plan)
     for (const Emitter& emitter : scene.emitters) {
         const BoundingSphere sphere = boundingSphere(emitter);
         const double gap = emitter.isInfinite() ? 0.0 : gapToSensor(scene, sphere.centre, sphere.radius);
-        const double start = emitter.emissionTime;
+        const double start = startOf(emitter);
         earliest.push_back(start + gap / double(plan.highestSpeed) - Slack * std::abs(start));
     }
     return earliest;
@@ -109,10 +119,10 @@ double earliestFromSurfaces(const Scene& scene, const EffectPlan& plan) {
 double lastTime(const Scene& scene) {
     const TimeGate& gate = scene.transport.gate;
     if (gate.steadyState) return Never;
-    const TemporalResponse& response = scene.transport.response;
+    const TimeProfile& response = scene.transport.response;
     for (size_t i = response.times.size(); i-- > 1;)
         if (response.values[i] > 0.0 || response.values[i - 1] > 0.0) return std::min(response.times[i], gate.end());
-    return gate.delta ? gate.start : gate.end();
+    return gate.delta ? gate.start : gate.end() - leastDelay(scene);
 }
 
 void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
@@ -125,7 +135,8 @@ void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
     }
     const std::vector<double> earliest = earliestArrivals(scene, plan);
     planEmitters(scene, earliest, end, plan);
-    planFrames(scene, earliest.empty() ? Never : *std::min_element(earliest.begin(), earliest.end()), plan);
+    const double first = earliest.empty() ? Never : *std::min_element(earliest.begin(), earliest.end());
+    planFrames(scene, first + leastDelay(scene), plan);
     const double surfaces = earliestFromSurfaces(scene, plan);
     plan.surfacesOutOfTime = surfaces > end && !plan.everything;
     const bool some = !scene.primitives.empty() && !plan.surfacesOutOfTime;

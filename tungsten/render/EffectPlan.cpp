@@ -24,25 +24,24 @@ std::string describeGate(const TimeGate& gate) {
                : "one gate " + interval;
 }
 
-void planTime(const Scene& scene, EffectPlan& plan) {
-    const TimeGate& gate = scene.transport.gate;
-    const TemporalResponse& response = scene.transport.response;
-    plan.timeResolved = !gate.steadyState;
-    plan.multipleFrames = gate.frames > 1;
-    plan.describe("time of flight", plan.timeResolved, describeGate(gate), {"integrator"});
-    plan.describe("frames", plan.multipleFrames,
-                  plan.multipleFrames ? std::to_string(gate.frames) + " images" : "a single image",
-                  {"integrator.frame_num"});
-    plan.describe("delta gate", plan.timeResolved && gate.delta,
-                  !plan.timeResolved ? "no time gate: steady state"
-                  : gate.delta       ? "the gate has no width"
-                                     : "the gate has a width",
-                  {"integrator.delta_time_gate"});
-    plan.describe("temporal response", !response.empty(),
-                  response.empty()
-                      ? "times of arrival count alike"
-                      : "times of arrival are weighed by " + std::to_string(response.times.size()) + " values",
-                  {"integrator.temporal_response"});
+std::string spanOf(const TimeProfile& profile) {
+    return formatted(profile.times.front()) + " to " + formatted(profile.times.back());
+}
+
+/// When lights shine.
+void planPulses(const Scene& scene, EffectPlan& plan) {
+    Uses pulses;
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const Emitter& emitter = scene.emitters[i];
+        if (!emitter.pulse.empty())
+            pulses.add("'" + emitter.name + "' shines from " + spanOf(emitter.pulse), emitter.path + ".pulse");
+    }
+    const bool last = plan.timeResolved && pulses.any();
+    plan.describe("pulses", last,
+                  last           ? pulses.names() + " after its emission_time"
+                  : pulses.any() ? "in steady state all light counts at once"
+                                 : "all light is emitted in flashes",
+                  pulses.causes());
     Uses delayed;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
@@ -54,6 +53,29 @@ void planTime(const Scene& scene, EffectPlan& plan) {
                   : delayed.any() ? "steady state: it does not matter when pulses start"
                                   : "all pulses start at 0",
                   delayed.causes());
+}
+
+void planTime(const Scene& scene, EffectPlan& plan) {
+    const TimeGate& gate = scene.transport.gate;
+    const TimeProfile &response = scene.transport.response, &delay = scene.transport.delay;
+    plan.timeResolved = !gate.steadyState;
+    plan.multipleFrames = gate.frames > 1;
+    plan.describe("time of flight", plan.timeResolved, describeGate(gate), {"integrator"});
+    plan.describe("frames", plan.multipleFrames,
+                  plan.multipleFrames ? std::to_string(gate.frames) + " images" : "a single image",
+                  {"integrator.frame_num"});
+    plan.describe("delta gate", plan.timeResolved && gate.delta,
+                  !plan.timeResolved ? "no time gate: steady state"
+                  : gate.delta       ? "the gate has no width"
+                                     : "the gate has a width",
+                  {"integrator.delta_time_gate"});
+    plan.describe("temporal response", !response.empty() || !delay.empty(),
+                  !response.empty()
+                      ? "times of arrival are weighed by " + std::to_string(response.times.size()) + " values"
+                  : !delay.empty() ? "light is recorded " + spanOf(delay) + " after its arrival"
+                                   : "times of arrival count alike",
+                  {"integrator.temporal_response"});
+    planPulses(scene, plan);
 }
 
 void planMedia(const Scene& scene, EffectPlan& plan) {

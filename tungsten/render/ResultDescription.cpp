@@ -41,6 +41,22 @@ void describeTime(JsonWriter& json, const Scene& scene) {
     json.endObject();
 }
 
+/// By column of the image.
+void describeDetectors(JsonWriter& json, const Scene& scene) {
+    const auto* detectors = std::get_if<Detectors>(&scene.camera.model);
+    if (!detectors) return;
+    std::vector<std::string> names;
+    std::vector<double> etendues;
+    for (const Detector& detector : detectors->row) {
+        names.push_back(detector.name.empty() ? std::to_string(names.size()) : detector.name);
+        etendues.push_back(detector.etendue());
+    }
+    json.beginObject("detectors");
+    json.field("names", names);
+    json.field("etendues", etendues);
+    json.endObject();
+}
+
 } // namespace
 
 std::vector<double> frameEdges(const TimeGate& gate) {
@@ -93,6 +109,7 @@ std::string describeResult(const ResultOrigin& origin) {
     json.field("channels", origin.scene.film.channels == 1 ? std::vector<std::string>{"Y"}
                                                            : std::vector<std::string>{"R", "G", "B"});
     describeTime(json, origin.scene);
+    describeDetectors(json, origin.scene);
     json.field("integrator", origin.integrator);
     json.field("build", buildText());
     json.field("machine", machineText());

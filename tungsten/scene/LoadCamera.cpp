@@ -1,5 +1,7 @@
 #include "tungsten/scene/LoadContext.h"
 
+#include <algorithm>
+
 namespace tungsten {
 
 namespace {
@@ -43,6 +45,44 @@ void readFocusPivot(const ObjectReader& root, const ObjectReader& reader, const 
     reader.problem("focus_pivot", "there is no primitive called '" + pivot + "'");
 }
 
+Detector readDetector(const ObjectReader& block, const Transform& placement) {
+    Detector detector;
+    detector.name = block.text("name", "", {"none", "what results call it"});
+    detector.position =
+        placement.point(block.vec3("position", Vec3f(0.0f), {"length", "middle of its disc"}, Range::coordinate()));
+    const Vec3f direction = placement.vector(block.vec3(
+        "direction", Vec3f(0, 0, 1), {"none", "where it looks: the normal of its disc"}, Range::coordinate()));
+    const bool looks = direction.length() > LeastPositive;
+    if (!looks) block.problem("direction", "expected a direction, found the length 0");
+    detector.frame = Frame(looks ? direction.normalized() : Vec3f(0, 0, 1));
+    detector.radius = float(block.number("radius", 0.001, {"length", "of its disc"}, LensRange));
+    detector.aperture = float(block.number("numerical_aperture", 1.0,
+                                           {"none", "sine of the half angle within which it accepts light; 1: a bucket "
+                                                    "that accepts a hemisphere"},
+                                           {1e-6, 1.0}));
+    block.warnAboutUnknown();
+    return detector;
+}
+
+/// As many columns as there are detectors.
+void readDetectors(const ObjectReader& reader, Camera& camera) {
+    const Transform placement = reader.has("transform") ? reader.transform("transform", PlacementMeaning) : Transform();
+    Detectors detectors;
+    const Meaning meaning{"none", "detectors: discs that accept light within a cone, each a pixel of one row"};
+    for (const ObjectReader& block : reader.blocks("detectors", meaning))
+        detectors.row.push_back(readDetector(block, placement));
+    if (reader.describes()) return;
+    if (detectors.row.empty() || detectors.row.size() > size_t(LargestSide))
+        return reader.problem("detectors", "expected an array of 1 to " + brief(LargestSide) + " detectors");
+    if (reader.has("resolution"))
+        reader.problem("resolution", "the image has a pixel for each detector, in one row; leave it out");
+    camera.resolution = {int(detectors.row.size()), 1};
+    camera.toWorld = Transform();
+    camera.toWorld.translation = detectors.row.front().position;
+    camera.filter = ReconstructionFilter(FilterType::Box);
+    camera.model = std::move(detectors);
+}
+
 void readModel(const ObjectReader& root, const ObjectReader& reader, Camera& camera) {
     const std::string type = reader.choice("type", "pinhole", cameraTypes(), {"none", "which camera"});
     if (type == "thinlens") {
@@ -53,6 +93,9 @@ void readModel(const ObjectReader& root, const ObjectReader& reader, Camera& cam
         camera.model = Orthographic{
             float(reader.number("orthographic_size", 1.0, {"length", "half the image's height"}, LensRange))};
         reader.accept({"fov"});
+    } else if (type == "detectors") {
+        readDetectors(reader, camera);
+        reader.accept({"fov", "orthographic_size"});
     } else {
         camera.model = Pinhole{fieldOfView(reader)};
         reader.accept({"orthographic_size"});
@@ -74,7 +117,7 @@ void describeCamera(const std::shared_ptr<Description>& description) {
 }
 
 std::vector<std::string> cameraTypes() {
-    return {"pinhole", "thinlens", "orthographic"};
+    return {"pinhole", "thinlens", "orthographic", "detectors"};
 }
 
 void readCamera(LoadContext& context, const ObjectReader& root, const ObjectReader& reader) {
@@ -95,6 +138,57 @@ void readCamera(LoadContext& context, const ObjectReader& root, const ObjectRead
     scene.cameraRegion = {medium, medium >= 0 ? scene.media[size_t(medium)].speedOfLight : scene.transport.vacuumSpeed};
     reader.accept({"name"});
     reader.warnAboutUnknown();
+}
+
+namespace {
+
+/// Light that does not come from an emitter right behind it cannot pass.
+bool isWall(const Scene& scene, const SurfaceHit& hit) {
+    const Primitive& primitive = scene.primitives[hit.shape];
+    return primitive.emitter < 0 && !primitive.boundsRegion && (scene.bsdfOf(hit).lobes() & lobe::Through) == 0;
+}
+
+/// No light is in sight from here.
+bool isDark(const Scene& scene, const Vec3f& position) {
+    return std::none_of(scene.emitters.begin(), scene.emitters.end(), [&](const Emitter& emitter) {
+        const Vec3f way = boundingSphere(emitter).centre - position;
+        if (emitter.isInfinite() || !(way.length() > 0.0f)) return true;
+        Ray ray{position, way.normalized()};
+        ray.tMax = way.length();
+        const auto hit = scene.geometry->intersect(ray);
+        return !hit || !isWall(scene, *hit);
+    });
+}
+
+/// What covers it: a wall nearer than its radius wherever it looks, or one all around it. Null if it may see.
+const Primitive* wallAbout(const Scene& scene, const Detector& detector) {
+    constexpr int Side = 6;
+    const Ray back{detector.position, -detector.frame.n};
+    const auto behind = scene.geometry->intersect(back);
+    const bool dark = isDark(scene, detector.position);
+    const Primitive* wall = nullptr;
+    for (int k = 0; k < Side * Side; ++k) {
+        const Vec2f u((float(k % Side) + 0.5f) / Side, (float(k / Side) + 0.5f) / Side);
+        const Ray ray = detector.sampleRay({u.y, u.x}, u);
+        const auto hit = scene.geometry->intersect(ray);
+        if (!hit || !isWall(scene, *hit)) return nullptr;
+        const bool inside = dark && behind && behind->shape == hit->shape && hit->ng.dot(ray.direction) > 0.0f &&
+                            behind->ng.dot(back.direction) > 0.0f;
+        if (!inside && hit->t >= detector.radius) return nullptr;
+        wall = &scene.primitives[hit->shape];
+    }
+    return wall;
+}
+
+} // namespace
+
+void warnAboutBlindDetectors(const LoadContext& context, const ObjectReader& camera) {
+    const auto* detectors = std::get_if<Detectors>(&context.scene.camera.model);
+    for (size_t i = 0; detectors && i < detectors->row.size(); ++i)
+        if (const Primitive* wall = wallAbout(context.scene, detectors->row[i]))
+            camera.warn("detectors[" + std::to_string(i) + "]",
+                        "sees nothing but " + (wall->name.empty() ? "a surface" : "'" + wall->name + "'") +
+                            ": it lies inside a wall, or looks into one nearer than its own radius");
 }
 
 } // namespace tungsten

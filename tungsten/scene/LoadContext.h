@@ -32,6 +32,9 @@ struct LoadContext {
     }
 };
 
+/// Warns about detectors of the camera that a wall covers; once the geometry is there.
+void warnAboutBlindDetectors(const LoadContext& context, const ObjectReader& camera);
+
 /// A context to describe types in: nothing is read from files, nothing is kept.
 struct ScratchContext {
     Scene scene;

@@ -2,6 +2,7 @@
 
 #include "tungsten/emitter/Power.h"
 #include "tungsten/scene/Interaction.h"
+#include "tungsten/scene/LoadTimeProfile.h"
 
 namespace tungsten {
 
@@ -31,7 +32,9 @@ void addEmitter(LoadContext& context, const ObjectReader& reader, EmitterModel m
     emitter.name = reader.text("name", "", NameMeaning);
     emitter.path = reader.path();
     emitter.model = std::move(model);
-    emitter.emissionTime = readEmissionTime(reader);
+    EmissionTimes times = readEmissionTimes(reader);
+    emitter.emissionTime = times.start;
+    emitter.pulse = std::move(times.pulse);
     emitter.medium = readMediumReference(context, reader, "ext_medium", SurroundingsMeaning);
     emitter.vacuumSpeed = float(readSpeedOrNone(reader, "ext_speed_of_light", SurroundingSpeedMeaning));
     if (reader.describes()) return;
@@ -167,8 +170,8 @@ bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader
     const Transform transform = reader.transform("transform", PlacementMeaning);
     // Known even where the emitter turns out dark. A light source without a surface has no inside and no material;
     // scenes name them all the same.
-    reader.accept(
-        {"name", "ext_medium", "int_medium", "ext_speed_of_light", "int_speed_of_light", "bsdf", "emission_time"});
+    reader.accept({"name", "ext_medium", "int_medium", "ext_speed_of_light", "int_speed_of_light", "bsdf",
+                   "emission_time", "pulse"});
     found->second(context, reader, transform);
     return true;
 }
@@ -182,8 +185,10 @@ std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader
     return radiance;
 }
 
-double readEmissionTime(const ObjectReader& reader) {
-    return reader.number("emission_time", 0.0, {"time", "when its pulse starts"}, Range::measure());
+EmissionTimes readEmissionTimes(const ObjectReader& reader) {
+    return {reader.number("emission_time", 0.0, {"time", "when its pulse starts"}, Range::measure()),
+            readTimeProfile(reader, "pulse",
+                            {"none", "how its power is spread over the time after emission_time, instead of a flash"})};
 }
 
 void warnAboutMediaOfEmitters(const LoadContext& context) {
@@ -215,6 +220,24 @@ void warnAboutLightsOnSurfaces(const LoadContext& context) {
     }
 }
 
+namespace {
+
+/// Sensors whose weights are no averages over frames meet flashes alone.
+void checkPulses(const LoadContext& context) {
+    const TransportSettings& transport = context.scene.transport;
+    for (size_t i = 0; i < context.emitters.size(); ++i) {
+        if (context.scene.emitters[i].pulse.empty()) continue;
+        if (transport.gate.delta)
+            context.emitters[i].problem("pulse", "light that is spread over time is not seen at a single moment; leave "
+                                                 "out delta_time_gate, and give the gate a width");
+        if (!transport.response.empty())
+            context.emitters[i].problem("pulse", "a temporal_response without frame_num weighs flashes alone; give the "
+                                                 "sensor frames, or put the pulse into the response");
+    }
+}
+
+} // namespace
+
 void finishEmitters(LoadContext& context, const ObjectReader& root) {
     Scene& scene = context.scene;
     if (scene.emitters.empty()) {
@@ -231,6 +254,7 @@ void finishEmitters(LoadContext& context, const ObjectReader& root) {
     }
     for (size_t i = 0; i < scene.emitters.size(); ++i)
         if (scene.emitters[i].isInfinite()) scene.infiniteEmitters.push_back(int(i));
+    checkPulses(context);
 }
 
 } // namespace tungsten

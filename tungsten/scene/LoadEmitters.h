@@ -13,8 +13,12 @@ std::vector<std::string> emitterTypes();
 bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader, const std::string& type);
 /// Radiance of a surface with `emission` or `power` (power wins), or none if it is dark.
 std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader& reader, const Shape& shape);
-/// `emission_time`: when the source's pulse starts.
-double readEmissionTime(const ObjectReader& reader);
+/// `emission_time` and `pulse`: when the source's light starts.
+struct EmissionTimes {
+    double start = 0.0;
+    TimeProfile pulse;
+};
+EmissionTimes readEmissionTimes(const ObjectReader& reader);
 /// Default light of a scene without emitters, and the checks that need all of them.
 void finishEmitters(LoadContext& context, const ObjectReader& root);
 /// Warns about lights in a medium that they do not name; once the geometry is there.

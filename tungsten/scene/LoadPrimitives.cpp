@@ -122,7 +122,7 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
                      {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});
     readRegions(context, reader, primitive);
     const std::optional<Texture> radiance = readAreaRadiance(context, reader, primitive.shape);
-    const double emissionTime = readEmissionTime(reader);
+    EmissionTimes times = readEmissionTimes(reader);
     if (!isUsable(primitive.shape)) {
         if (context.scene.geometry == nullptr) reader.warn("file", "the mesh has no triangles: left out");
         return;
@@ -134,7 +134,8 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     Emitter emitter;
     emitter.name = stored.name;
     emitter.path = stored.path;
-    emitter.emissionTime = emissionTime;
+    emitter.emissionTime = times.start;
+    emitter.pulse = std::move(times.pulse);
     emitter.medium = stored.outside.medium;
     emitter.vacuumSpeed = stored.outside.medium < 0 ? stored.outside.speed : -1.0f;
     emitter.model = AreaEmitter{&stored.shape, uint32_t(context.scene.primitives.size() - 1), *radiance,

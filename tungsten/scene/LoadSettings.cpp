@@ -1,9 +1,9 @@
 // The renderer block, and what every integrator's block has in common.
 
 #include "tungsten/scene/LoadContext.h"
+#include "tungsten/scene/LoadTimeProfile.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace tungsten {
 
@@ -48,7 +48,13 @@ bool isSteadyPhotonMap(const std::string& type) {
     return type == "photon_map" || type == "progressive_photon_map";
 }
 
-TimeGate readGate(const ObjectReader& reader, const std::string& type) {
+/// The sensor's gate, and whether it is a sequence of frames.
+struct GateRead {
+    TimeGate gate;
+    bool sequence = false;
+};
+
+GateRead readGate(const ObjectReader& reader, const std::string& type) {
     if (isSteadyPhotonMap(type)) {
         reader.accept({"transient_time_width", "transient_time_center", "start_time", "frame_num", "delta_time_gate"});
         return {};
@@ -93,7 +99,7 @@ TimeGate readGate(const ObjectReader& reader, const std::string& type) {
         reader.warn("transient_time_center",
                     "no gate without a transient_time_width above 0: rendered in steady state");
     }
-    return gate;
+    return {gate, frames > 0 && !delta};
 }
 
 /// The format misspells it; both spellings are read.
@@ -111,70 +117,24 @@ float readVacuumSpeed(const ObjectReader& reader) {
     return float(formats);
 }
 
-TemporalResponse gaussianResponse(double centre, double sigma) {
-    constexpr int Points = 65;
-    constexpr double Reach = 4.0; // standard deviations
-    TemporalResponse response;
-    for (int i = 0; i < Points; ++i) {
-        const double x = Reach * (2.0 * i / (Points - 1) - 1.0);
-        response.times.push_back(centre + x * sigma);
-        response.values.push_back(std::exp(-0.5 * x * x));
+/// Of a single gate, whose times it then is; of a sequence it is a delay.
+void useResponse(const ObjectReader& reader, bool sequence, TransportSettings& transport) {
+    TimeProfile response =
+        readTimeProfile(reader, "temporal_response",
+                        {"none", "how the sensor weighs times of arrival, instead of a gate; with frame_num: how long "
+                                 "after its arrival light is recorded"});
+    if (response.empty()) return;
+    if (transport.gate.delta)
+        return reader.problem("temporal_response", "says when the sensor is open; leave out delta_time_gate");
+    if (sequence) {
+        transport.delay = std::move(response);
+        return;
     }
-    return response;
-}
-
-/// Why (times, values) are no response; empty if they are.
-std::string responseProblem(const TemporalResponse& response) {
-    const std::vector<double>&times = response.times, &values = response.values;
-    if (times.size() < 2 || times.size() != values.size()) return "expected as many values as times, at least two";
-    if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
-        return "expected increasing times";
-    if (std::any_of(values.begin(), values.end(), [](double v) { return v < 0.0; }))
-        return "expected no negative value";
-    if (std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; })) return "zero at all times";
-    return {};
-}
-
-TemporalResponse readResponse(const ObjectReader& reader) {
-    const auto block =
-        reader.block("temporal_response",
-                     {"none", "how the sensor weighs times of arrival, instead of a gate; scaled to an integral of 1"});
-    if (!block) return {};
-    TemporalResponse response;
-    const std::string type =
-        block->choice("type", "tabulated", {"box", "gaussian", "tabulated"}, {"none", "shape of the response"});
-    if (type == "tabulated" || block->describes()) {
-        response.times = block->numbers("times", {"time", "tabulated: increasing; the response is linear between them"},
-                                        Range::measure());
-        response.values = block->numbers("values", {"none", "tabulated: the response at each of the times"});
-    }
-    if (type == "gaussian" || block->describes()) {
-        const double centre = block->number("center", 0.0, {"time", "gaussian: where it is largest"}, Range::measure());
-        const double sigma = block->number("sigma", 1.0, {"time", "gaussian: standard deviation, cut at four"},
-                                           Range::positiveMeasure());
-        response = gaussianResponse(centre, sigma);
-    }
-    if (type == "box" || block->describes()) {
-        response.times = {block->number("start", 0.0, {"time", "box: when it opens"}, Range::measure()),
-                          block->number("end", 1.0, {"time", "box: when it closes"}, Range::measure())};
-        response.values = {1.0, 1.0};
-    }
-    const std::string problem = responseProblem(response);
-    if (!problem.empty()) block->problem(type == "box" ? "end" : "times", problem);
-    block->warnAboutUnknown();
-    return problem.empty() ? response : TemporalResponse{};
-}
-
-/// The response's support becomes the gate.
-void useResponse(const ObjectReader& reader, TransportSettings& transport) {
-    transport.response = readResponse(reader);
-    if (transport.response.empty()) return;
-    if (transport.gate.frames > 1 || transport.gate.delta)
-        reader.problem("temporal_response", "describes a single gate; leave out frame_num and delta_time_gate");
     if (transport.integrateOverGate)
         reader.problem("time_normalization", "a temporal response has an integral of 1 and no other normalization");
-    const double start = transport.response.times.front(), end = transport.response.times.back();
+    const double start = response.times.front(), end = response.times.back();
     transport.gate = {false, false, start, end - start, 1};
+    transport.response = std::move(response);
 }
 
 std::optional<ExposureChoice> readExposure(const ObjectReader& reader) {
@@ -204,13 +164,14 @@ TransportSettings readTransport(const ObjectReader& reader, const std::string& t
     transport.consistencyChecks =
         reader.flag("enable_consistency_checks", false,
                     {"none", "no light where shading and geometric normal disagree on the side"});
-    transport.gate = readGate(reader, type);
+    const GateRead read = readGate(reader, type);
+    transport.gate = read.gate;
     transport.cameraUnwarped = reader.flag(
         "camera_unwarped", false, {"none", "time stops at the first thing seen: camera segments do not count"});
     transport.integrateOverGate =
         reader.choice("time_normalization", "average", {"average", "integral"},
                       {"none", "a pixel is the mean of radiance over its frame, or its integral"}) == "integral";
-    if (!isSteadyPhotonMap(type)) useResponse(reader, transport);
+    if (!isSteadyPhotonMap(type)) useResponse(reader, read.sequence, transport);
     transport.vacuumSpeed = readVacuumSpeed(reader);
     return transport;
 }

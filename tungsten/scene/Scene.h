@@ -3,6 +3,7 @@
 
 #include "tungsten/bsdf/Bsdf.h"
 #include "tungsten/camera/Camera.h"
+#include "tungsten/core/TimeProfile.h"
 #include "tungsten/emitter/Emitter.h"
 #include "tungsten/film/FilmContents.h"
 #include "tungsten/film/ToneMap.h"
@@ -60,21 +61,15 @@ struct TimeGate {
     }
 };
 
-/// How the sensor weighs times of arrival: linear between (times[i], values[i]), zero outside, in any scale. Empty:
-/// evenly over the gate.
-struct TemporalResponse {
-    std::vector<double> times, values;
-    [[nodiscard]] bool empty() const { return times.empty(); }
-};
-
 /// What every integrator's block has in common.
 struct TransportSettings {
     int minBounces = 0; ///< rendered iff minBounces <= interactions < maxBounces
     int maxBounces = 64;
     bool twoSidedShading = true;
     bool consistencyChecks = false;
-    TimeGate gate; ///< the response's support where there is one
-    TemporalResponse response;
+    TimeGate gate;                  ///< the response's support where there is one
+    TimeProfile response;           ///< how the sensor weighs times of arrival; empty: evenly over the gate
+    TimeProfile delay;              ///< of a sequence: between arrival and record; empty: none
     bool cameraUnwarped = false;    ///< time stops at the first interaction seen: camera segments do not count
     bool integrateOverGate = false; ///< output is the integral over a frame instead of its mean
     float vacuumSpeed = 1.0f;

@@ -66,7 +66,12 @@ void checkReach(const Scene& scene, const ObjectReader& root) {
     for (const Medium& medium : scene.media) speed = std::max(speed, double(medium.speedOfLight));
     for (const Primitive& primitive : scene.primitives)
         speed = std::max({speed, double(primitive.inside.speed), double(primitive.outside.speed)});
-    for (const Emitter& emitter : scene.emitters) delay = std::max(delay, std::abs(emitter.emissionTime));
+    const auto longest = [](const TimeProfile& profile) {
+        return profile.empty() ? 0.0 : std::max(std::abs(profile.times.front()), std::abs(profile.times.back()));
+    };
+    for (const Emitter& emitter : scene.emitters)
+        delay = std::max(delay, std::abs(emitter.emissionTime) + longest(emitter.pulse));
+    delay += longest(scene.transport.delay);
     const double reach =
         speed * (std::max(std::abs(scene.transport.gate.start), std::abs(scene.transport.gate.end())) + delay);
     if (reach > Range::measure().high)
@@ -89,7 +94,7 @@ double readLengthUnit(const ObjectReader& root) {
 struct Blocks {
     RendererSettings renderer;
     std::string integratorType;
-    ObjectReader integrator;
+    ObjectReader integrator, camera;
 };
 
 /// Reads all blocks in the order in which they need one another.
@@ -101,12 +106,13 @@ Blocks readScene(LoadContext& context, const ObjectReader& root) {
     readMedia(context, root);
     readBsdfs(context, root);
     readPrimitives(context, root);
-    readCamera(context, root, blockOf(root, "camera", {"none", "where it is seen from"}));
+    const ObjectReader camera = blockOf(root, "camera", {"none", "where it is seen from"});
+    readCamera(context, root, camera);
     context.scene.film = readFilm(blockOf(root, "film", {"none", "what is kept of every pixel of every frame"}));
     const RendererSettings renderer =
         readRenderer(blockOf(root, "renderer", {"none", "how long, and what is written"}));
     root.warnAboutUnknown();
-    return {renderer, type, integrator};
+    return {renderer, type, integrator, camera};
 }
 
 } // namespace
@@ -138,6 +144,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     finishGeometry(*scene);
     warnAboutMediaOfEmitters(context);
     warnAboutLightsOnSurfaces(context);
+    warnAboutBlindDetectors(context, blocks.camera);
     std::vector<std::filesystem::path> inputs = context.resources;
     const uint64_t text = hashText(*document);
     if (!options.text) inputs.insert(inputs.begin(), file);

@@ -12,6 +12,7 @@ SCENES = {
     "cornell-fog": (40, "The front of a pulse on the walls and the floor of a foggy box and on two blocks, the taller one just being passed."),
     "mirror-fog": (15, "A mirror at the end of a room shows the fog around the corner, lit by a warm pulse that the camera cannot see."),
     "two-pulses": (15, "The shells of two pulses in fog over a floor, the blue one later: every third of 20 frames."),
+    "pulse-shapes": (48, "Light that takes its time: a flash as wide as the sensor's response, a lamp that decays and one that shines evenly for a while: every third of 20 frames."),
     "two-peaks": (200, "A sensor that is sensitive at two short times: the glow of both in one picture."),
     "glass-tank": (12, "Milky water behind refracting walls, lit by a pulse inside."),
     "fogged-box": (80, "The shell of a pulse that has scattered once, cut by walls and blocks, and in it what has scattered more often."),

@@ -31,7 +31,7 @@ void GuidedPathWalk::goOn() {
 }
 
 void GuidedPathWalk::lookAhead(const Vec3f& position) {
-    const TimeGate& gate = context_.sensor.gate;
+    const TimeGate& gate = context_.sensor.arrivals;
     const PathTarget& target = *path_.target;
     const float speed = path_.state.region.speed;
     const darts::TimeGate open{gate.start - target.start, gate.end() - target.start};

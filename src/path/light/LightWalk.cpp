@@ -23,7 +23,7 @@ void LightWalk::run() {
 bool LightWalk::emit() {
     const auto chosen = context_.emitters.sample(sampler_.next1D());
     const Emitter& emitter = scene_.emitters[chosen.index];
-    time_ = emitter.emissionTime;
+    time_ = emitter.emissionTime + context_.sensor.delays.sample(emitter, sampler_);
     if (emitter.primitive()) showEmitter(emitter, chosen.probability);
     const Vec2f uPosition = sampler_.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());

@@ -135,7 +135,7 @@ void PathWalk<TimeResolved, Media>::addEmission(const SurfaceHit& hit) {
         const float lightPdf = pdfDirect(emitter, vertex_, hit.position, hit.ng) * lights_.probability(index);
         weight = transport::powerHeuristic(directionPdf_, lightPdf);
     }
-    path_.sink.add(path_.throughput * radiance * weight, path_.time + emitter.emissionTime);
+    path_.sink.add(path_.throughput * radiance * weight, path_.time + emitter.emissionTime, emitter);
 }
 
 template <bool TimeResolved, bool Media>
@@ -149,7 +149,7 @@ void PathWalk<TimeResolved, Media>::addEnvironment() {
     if (weighted_)
         weight = transport::powerHeuristic(directionPdf_, pdfDirectInfinite(emitter, path_.ray.direction) *
                                                               lights_.probability(index));
-    path_.sink.add(path_.throughput * environmentRadiance(emitter, path_.ray.direction) * weight, Infinity);
+    path_.sink.add(path_.throughput * environmentRadiance(emitter, path_.ray.direction) * weight, Infinity, emitter);
 }
 
 template <bool TimeResolved, bool Media>
@@ -176,7 +176,7 @@ void PathWalk<TimeResolved, Media>::connectToLight(const Vertex& vertex) {
     const float weight =
         pdf > 0.0f ? transport::powerHeuristic(pdf * light->probability, vertex.pdf(light->direct.direction)) : 1.0f;
     path_.sink.add(connection->throughput * (weight / light->probability),
-                   path_.time + connection->time + light->emitter.emissionTime);
+                   path_.time + connection->time + light->emitter.emissionTime, light->emitter);
 }
 
 template <bool TimeResolved, bool Media>
@@ -190,7 +190,7 @@ void PathWalk<TimeResolved, Media>::connectToSource(const Vertex& vertex) {
     const auto connection =
         connector_.connect(vertex, path_.throughput, source_->seenAlong(*way), path_.counters.shadowRays);
     if (!connection || !rendered(path_.interactions + connection->crossings + source_->interactions)) return;
-    path_.sink.add(connection->throughput, path_.time + connection->time + source_->start);
+    path_.sink.add(connection->throughput, path_.time + connection->time + source_->start, *source_->emitter);
 }
 
 template class PathWalk<false, false>;

@@ -32,7 +32,8 @@ void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& ver
     const Rgb radiance = state.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
-    state.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival);
+    state.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival,
+                         *path.target->emitter);
 }
 
 } // namespace
@@ -50,7 +51,7 @@ void ControlVertices::sample(GuidedPath& path, const Medium& medium, const darts
 void ControlVertices::sampleUntimed(GuidedPath& path, const Medium& medium, float surface) {
     const CameraPath& state = path.state;
     if (!path.guideOf(state.region).settings().elliptical) return;
-    const TimeGate& gate = path.context.sensor.gate;
+    const TimeGate& gate = path.context.sensor.arrivals;
     const PathTarget& target = *path.target;
     const double speed = double(state.region.speed), low = speed * (gate.start - target.start),
                  high = speed * (gate.end() - target.start);

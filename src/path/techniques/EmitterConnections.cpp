@@ -40,7 +40,8 @@ void ConnectionsFromMedia::connect(GuidedPath& path, const Medium& medium, float
     if (!connection || !path.counts(connection->crossings, 0)) return;
     const float share = connection->oneSpeed ? 1.0f - controlShare : 1.0f;
     if (share > 0.0f)
-        state.sink.add(connection->throughput * share, state.time + connection->time + path.target->start);
+        state.sink.add(connection->throughput * share, state.time + connection->time + path.target->start,
+                       *path.target->emitter);
 }
 
 void ConnectionsFromSurfaces::connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
@@ -58,7 +59,7 @@ void ConnectionsFromSurfaces::connect(GuidedPath& path, const SurfaceHit& hit, c
     const float lightPdf = target.pdfFrom(hit.position, target.vertex.position(), target.vertex.margin().normal);
     float weight = lightPdf > 0.0f ? transport::powerHeuristic(lightPdf, vertex.pdf(way->direction)) : 1.0f;
     if (connection->crossings == 0) weight *= shareOfWalk(path, vertex, hit.t, *way);
-    state.sink.add(connection->throughput * weight, time + connection->time + target.start);
+    state.sink.add(connection->throughput * weight, time + connection->time + target.start, *target.emitter);
 }
 
 float ConnectionsFromSurfaces::density(const GuidedPath& path, const transport::Vertex& vertex, float length) {
@@ -75,7 +76,7 @@ void EmittersMet::add(GuidedPath& path, const SurfaceHit& hit, const Rgb& throug
     if (path.last.kind == LastVertex::Kind::Surface)
         weight = transport::powerHeuristic(density(path), target.pdfFrom(path.last.position, hit.position, hit.ng));
     path.state.sink.add(throughput * radiance * (weight / target.probability),
-                        path.state.timeAfter(hit.t) + target.start);
+                        path.state.timeAfter(hit.t) + target.start, *target.emitter);
 }
 
 } // namespace tungsten::path

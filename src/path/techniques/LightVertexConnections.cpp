@@ -31,7 +31,7 @@ void LightVertexConnections::connect(GuidedPath& path, const transport::Vertex& 
         transmittance = beyond->transmittance(light.distance);
     const double time = connection->time + double(light.distance) / double(state.region.speed);
     state.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                   state.time + time + path.target->start);
+                   state.time + time + path.target->start, *path.target->emitter);
 }
 
 } // namespace tungsten::path

@@ -53,7 +53,7 @@ void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& he
     if (inMedium) transmittance = transmittance * path.scene().medium(state.region)->sigmaS();
     const double time = connection->time + double(light.length()) / double(state.region.speed);
     state.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                   state.time + time + path.target->start);
+                   state.time + time + path.target->start, *path.target->emitter);
 }
 
 float ReflectedConnections::density(const GuidedPath& path, float pdf, const transport::Straight& way, float areaPdf) {

@@ -77,7 +77,7 @@ bool GuidedPhotonWalk::emit() {
         path_.power = path_.power * frames;
         return true;
     }
-    path_.time = emitter.emissionTime;
+    path_.startAt(emitter);
     path_.region = scene_.regionOf(emitter);
     path_.power = Rgb(frames / chosen.probability);
     const darts::Guide* guide = guidance_.guide(path_.region);

@@ -4,10 +4,14 @@
 
 namespace tungsten::photon {
 
+void LightPath::startAt(const Emitter& emitter) {
+    time = emitter.emissionTime + culling->delays().sample(emitter, sampler);
+}
+
 bool LightPath::emitFrom(const Emitter& emitter, float probability, const Vec2f& uPosition) {
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
     power = emission.power / probability;
-    time = emitter.emissionTime;
+    startAt(emitter);
     region = context.scene.regionOf(emitter);
     ray = emission.ray;
     return !isBlack(power) && culling->mayContinue(ray.origin, time);

@@ -43,6 +43,8 @@ struct LightPath {
         : context(walkContext), culling(&walkContext.culling), sampler(ownSampler), deposits(ownDeposits),
           counters(ownCounters) {}
 
+    /// When light that is recorded as it arrives would have left: emission time and a delay that is drawn.
+    void startAt(const Emitter& emitter);
     /// By the emitter's own distribution; `probability` is that of its choice. False ends the path.
     bool emitFrom(const Emitter& emitter, float probability, const Vec2f& uPosition);
     /// A photon with bounce b takes part in paths of at least b interactions.

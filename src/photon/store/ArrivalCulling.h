@@ -44,6 +44,8 @@ class ArrivalCulling {
     /// Tests against this gate from now on instead of the scene's.
     void setGate(const TimeGate& gate);
     [[nodiscard]] const TimeGate& gate() const { return sensor_.gate; }
+    /// Light paths start with a delay of their own, so that everything later has the time of its record.
+    [[nodiscard]] const transport::Delays& delays() const { return sensor_.delays; }
     /// The same test against one frame of the gate, for paths that aim at it alone: with directView every deposit
     /// counts for one frame, whatever rounding makes of its arrival later.
     [[nodiscard]] ArrivalCulling ofFrame(int frame) const;

@@ -18,7 +18,8 @@ std::optional<LightConnection> LightConnector::connect(const transport::Sensor& 
     if (!direct) return std::nullopt;
     const TransportSettings& settings = scene_.transport;
     const double cameraTime = state.time + double(surface.hit.t) / double(state.region.speed);
-    const double start = emitter.emissionTime + (settings.cameraUnwarped ? 0.0 : cameraTime);
+    const double start =
+        emitter.emissionTime + sensor.delays.sample(emitter, sampler) + (settings.cameraUnwarped ? 0.0 : cameraTime);
     if (!bounds_.during(sensor.gate).mayArrive(start, double(direct->distance))) return std::nullopt;
     const transport::Vertex vertex(scene_, surface, state.ray.direction, TransportMode::Radiance, state.region);
     const auto connection = connector_.connect(vertex, state.throughput, transport::connectionEnd(*direct), rays);

@@ -1,0 +1,77 @@
+#include "tungsten/scene/LoadTimeProfile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace tungsten {
+
+namespace {
+
+/// Points of a shape, as values over x from `from` to `to`.
+TimeProfile pointsOf(double (*shape)(double), double from, double to, int points, double origin, double unit) {
+    TimeProfile profile;
+    for (int i = 0; i < points; ++i) {
+        const double x = from + (to - from) * i / (points - 1);
+        profile.times.push_back(origin + x * unit);
+        profile.values.push_back(shape(x));
+    }
+    return profile;
+}
+
+/// Why (times, values) are no density; empty if they are.
+std::string profileProblem(const TimeProfile& profile) {
+    const std::vector<double>&times = profile.times, &values = profile.values;
+    if (times.size() < 2 || times.size() != values.size()) return "expected as many values as times, at least two";
+    if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
+        return "expected increasing times";
+    if (std::any_of(values.begin(), values.end(), [](double v) { return v < 0.0; }))
+        return "expected no negative value";
+    if (std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; })) return "zero at all times";
+    return {};
+}
+
+TimeProfile readShape(const ObjectReader& block, const std::string& type) {
+    TimeProfile profile;
+    if (type == "tabulated" || block.describes()) {
+        profile.times = block.numbers("times", {"time", "tabulated: increasing; the density is linear between them"},
+                                      Range::measure());
+        profile.values = block.numbers("values", {"none", "tabulated: the density at each of the times, in any scale"});
+    }
+    if (type == "gaussian" || block.describes()) {
+        const double centre = block.number("center", 0.0, {"time", "gaussian: where it is largest"}, Range::measure());
+        const double sigma =
+            block.number("sigma", 1.0, {"time", "gaussian: standard deviation, cut at four"}, Range::positiveMeasure());
+        constexpr double Reach = 4.0; // standard deviations
+        profile = pointsOf([](double x) { return std::exp(-0.5 * x * x); }, -Reach, Reach, 65, centre, sigma);
+    }
+    if (type == "box" || type == "exponential" || block.describes()) {
+        const double start =
+            block.number("start", 0.0, {"time", "box and exponential: when it begins"}, Range::measure());
+        if (type == "exponential" || block.describes()) {
+            const double decay =
+                block.number("decay", 1.0, {"time", "exponential: until it has fallen to 1 / e; cut at 16 of these"},
+                             Range::positiveMeasure());
+            profile = pointsOf([](double x) { return std::exp(-x); }, 0.0, 16.0, 257, start, decay);
+        }
+        if (type == "box" || block.describes())
+            profile = {{start, block.number("end", 1.0, {"time", "box: when it ends"}, Range::measure())}, {1.0, 1.0}};
+    }
+    return profile;
+}
+
+} // namespace
+
+TimeProfile readTimeProfile(const ObjectReader& reader, const std::string& field, const Meaning& meaning) {
+    const auto block = reader.block(field, meaning);
+    if (!block) return {};
+    const std::string type = block->choice("type", "tabulated", {"box", "exponential", "gaussian", "tabulated"},
+                                           {"none", "shape of the density over time, whose integral counts as 1"});
+    TimeProfile profile = readShape(*block, type);
+    const std::string problem = profileProblem(profile);
+    if (!problem.empty()) block->problem(type == "box" ? "end" : "times", problem);
+    block->warnAboutUnknown();
+    return problem.empty() ? profile : TimeProfile{};
+}
+
+} // namespace tungsten
