@@ -15,7 +15,7 @@ FAULTS = [
     ("tungsten/render/EarliestArrival.cpp", "start + gap / double(plan.highestSpeed) - Slack * std::abs(start));",
      "start + gap * double(plan.highestSpeed) - Slack * std::abs(start));", [LEFT_OUT]),
     ("tungsten/render/EarliestArrival.cpp", "plan.late.push_back(time > end);", "plan.late.push_back(time < end);", [LEFT_OUT]),
-    ("tungsten/render/SceneUses.cpp", "if (primitive.boundsMedium) media.insert", "if (primitive.boundsRegion) media.insert", [PLAN]),
+    ("tungsten/render/SceneUses.cpp", "*speeds.begin(), *speeds.rbegin(),", "*speeds.begin(), *speeds.begin(),", [PLAN]),
     ("tungsten/film/Film.cpp", "+ (bits & Mask)) & ~Mask", "+ (bits & Mask) / 2) & ~Mask", [FILM]),
     ("tungsten/film/Film.cpp", "return totalBefore * delta * share;", "return delta * share;", [FILM]),
     ("tungsten/film/Film.cpp", "1.0 / (double(passes_ - 1) * weight_)", "1.0 / (double(passes_) * weight_)", [FILM]),
