@@ -147,6 +147,11 @@ class LeftOut(unittest.TestCase):
             if "photon_map" not in scene["integrator"]["type"]:
                 np.testing.assert_array_equal(self.image(scene), self.image(scene, "--effects", "all"))
 
+    def test_the_highest_speed_counts(self):
+        scene = self.scene()  # the second lamp is 9.06 away, the sensor closes at 5
+        scene["media"][0]["speed_of_light"] = 2
+        self.assertFalse(self.effects(scene)["late emitters left out"]["on"])
+
     def test_a_black_image_is_there_at_once_and_says_why(self):
         scene = self.scene(transient_time_center=0.4, transient_time_width=0.4)
         scene["renderer"]["spp"] = 10 ** 9
@@ -166,6 +171,8 @@ class LeftOut(unittest.TestCase):
         few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
                       for options in ([], ["--effects", "all"]))
         np.testing.assert_allclose(few, every, rtol=0.06)
+        scene["media"][0]["speed_of_light"] = 2  # the floor's light needs 3 / 2, and the sensor closes at 1.7
+        self.assertTrue(self.effects(scene)["surfaces in time"]["on"])
 
 
 if __name__ == "__main__":

@@ -70,6 +70,7 @@ auto ArrivalWindow::choose(const Vec3f& position, float low, float high, const V
     for (uint32_t i = 0; i < Size; ++i) {
         if (inside[i] == 0) continue;
         const float distance = std::sqrt(squared[i]);
+        if (!(distance > 0.0f)) continue; // no direction leads there
         const Vec3f offset(position.x - x[i], position.y - y[i], position.z - z[i]);
         const float value = importance((first + i) % count_, offset / distance, distance);
         if (!(value > 0.0f)) continue;
