@@ -50,7 +50,7 @@ inline AgreementScene fogSequence() {
     AgreementScene scene =
         builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 128, 40, 60000});
     scene.overrides = {"integrator.min_bounces=2", "integrator.start_time=5", "integrator.transient_time_width=0.5",
-                       "integrator.frame_num=20"};
+                       "integrator.frame_num=20", "integrator.transient_time_center=-1"};
     return scene;
 }
 inline constexpr double SequenceFrameWidth = 0.5;

@@ -86,8 +86,9 @@ GateRead readGate(const ObjectReader& reader, const std::string& type) {
         if (width <= 0.0)
             reader.problem("transient_time_width", "a sequence (frame_num > 0) needs a frame width above 0");
         gate = {false, false, start, width, frames};
-        without("transient_time_center", "frame_num",
-                "the first frame starts at start_time (" + numberText(start) + ")");
+        if (centre >= 0.0) // below: none
+            without("transient_time_center", "frame_num",
+                    "the first frame starts at start_time (" + numberText(start) + ")");
     } else if (width > 0.0 && (centre >= 0.0 || transient)) {
         gate = {false, false, centre - 0.5 * width, width, 1};
     } else if (transient) {

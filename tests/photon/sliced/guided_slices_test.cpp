@@ -70,7 +70,7 @@ TEST_P(GuidedSlices, AgreeWithPlainSlicesAndBeams) {
         }
         if (name.kind == SliceKind::MisVolumesBalls) {
             // Light that scatters forward rarely turns to the camera.
-            EXPECT_LT(guided.error[0], (std::string(c.g) == "0" ? 0.15 : 0.35) * guided.value[0])
+            EXPECT_LT(guided.error[0], (std::string(c.g) == "0" ? 0.15 : 0.4) * guided.value[0])
                 << "the test would not see a wrong value";
         }
     }
