@@ -110,9 +110,11 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
                                                 : "light paths aim at the whole sequence as one gate";
     drawsByResponse = exact && !scene.transport.response.empty();
     meetsDeltaGate = exact && gate.delta && policy.sampling.elliptical;
-    ordinaryPhotons.on = !directView || (policy.directView == transport::DirectView::Auto &&
-                                         !policy.sampling.published && !meetsDeltaGate && !drawsByResponse);
-    ordinaryPhotons.reason = !directView
+    const bool points = std::holds_alternative<Points>(settings.primitive);
+    ordinaryPhotons.on = points && (!directView || (policy.directView == transport::DirectView::Auto &&
+                                                    !policy.sampling.published && !meetsDeltaGate && !drawsByResponse));
+    ordinaryPhotons.reason = !points ? "no points are stored: there are no control vertices"
+                             : !directView
                                  ? "mirrors, refraction or different speeds: control vertices alone are not complete"
                              : ordinaryPhotons.on ? "by the balance heuristic, where the gate lets as many of them pass"
                              : meetsDeltaGate     ? "delta gate: none of them arrives on it"

@@ -1,8 +1,6 @@
 // Cameras of detectors: what is read, what is refused, and what they hold.
 
-#include "support/SceneFile.h"
-
-#include "tungsten/scene/SceneLoader.h"
+#include "scene/problems_of.h"
 
 #include <gtest/gtest.h>
 
@@ -18,13 +16,7 @@ std::string scene(const std::string& camera) {
            camera + R"(}, "integrator": {"type": "path_tracer"}})";
 }
 std::string problemsOf(const std::string& camera) {
-    const SceneFile file(scene(camera));
-    try {
-        loadScene(file.path());
-        return "";
-    } catch (const InputError& error) {
-        return error.what();
-    }
+    return test::problemsOf(scene(camera));
 }
 std::string warningsOf(const std::string& camera) {
     const SceneFile file(scene(camera));

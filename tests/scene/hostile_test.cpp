@@ -1,16 +1,16 @@
 // Scenes that mean harm, or hold values nothing can be done with: each is refused with its place, soon.
 
-#include "support/SceneFile.h"
+#include "scene/problems_of.h"
 
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/scene/JsonWriter.h"
-#include "tungsten/scene/SceneLoader.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten {
 namespace {
 
+using test::problemsOf;
 using test::SceneFile;
 
 const char* const Lit = R"({
@@ -20,17 +20,6 @@ const char* const Lit = R"({
                    {"name": "box", "type": "cube", "bsdf": "grey", "int_medium": "fog"}],
     "camera": {"type": "thinlens", "resolution": [4, 4], "transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
     "integrator": {"type": "path_tracer"}})";
-
-/// The problems of a scene; UsageErrors too.
-std::string problemsOf(const std::string& json, const std::vector<std::string>& overrides = {}) {
-    const SceneFile file(json);
-    try {
-        loadScene(file.path(), {{}, overrides});
-    } catch (const std::runtime_error& error) {
-        return error.what();
-    }
-    return "";
-}
 
 std::string times(const std::string& text, size_t count) {
     std::string all;

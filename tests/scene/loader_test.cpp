@@ -1,17 +1,18 @@
 // Whole scenes: what the format's fields become, and what bad scenes say.
 
+#include "scene/problems_of.h"
+
 #include "support/Folders.h"
-#include "support/SceneFile.h"
 
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/scene/Interaction.h"
-#include "tungsten/scene/SceneLoader.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten {
 namespace {
 
+using test::problemsOf;
 using test::SceneFile;
 
 const char* const Fog = R"({
@@ -27,16 +28,6 @@ const char* const Fog = R"({
     "integrator": {"type": "path_tracer", "max_bounces": 7, "transient_time_center": 4, "transient_time_width": 2},
     "renderer": {"spp": 3, "timeout": "0.5"}
 })";
-
-std::string problemsOf(const std::string& json) {
-    const SceneFile file(json);
-    try {
-        loadScene(file.path());
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 TEST(SceneLoader, ScenesMaySayHowLongTheirUnitIs) {
     EXPECT_DOUBLE_EQ(loadScene(SceneFile("{}").path()).scene->lengthUnit, 0.0);

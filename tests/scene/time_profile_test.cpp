@@ -1,14 +1,13 @@
 // Responses of the sensor and pulses of emitters: what is read, and what is refused.
 
-#include "support/SceneFile.h"
-
-#include "tungsten/scene/SceneLoader.h"
+#include "scene/problems_of.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten {
 namespace {
 
+using test::problemsOf;
 using test::SceneFile;
 
 const char* const Fog = R"({
@@ -17,16 +16,6 @@ const char* const Fog = R"({
     "camera": {"type": "pinhole", "medium": "fog", "resolution": [8, 4]},
     "integrator": {"type": "path_tracer", "transient_time_center": 4, "transient_time_width": 2}
 })";
-
-std::string problemsOf(const std::string& json) {
-    const SceneFile file(json);
-    try {
-        loadScene(file.path());
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 TEST(TimeProfiles, AResponseBringsItsOwnGate) {
     const SceneFile file(Fog);
