@@ -50,7 +50,9 @@ def surface(generator, i):
 def gate(generator):
     kind = generator.choice(["gate", "gate", "frames", "response", "delta"])
     if kind == "frames":
-        return {"start_time": generator.uniform(0, 3), "transient_time_width": 0.4, "frame_num": 5}
+        start = generator.choice([-1, 0.3, 1.5])  # of the delay between arrival and record
+        delay = generator.choice([{}, {"temporal_response": {"type": "box", "start": start, "end": start + 0.4}}])
+        return {"start_time": generator.uniform(0, 3), "transient_time_width": 0.4, "frame_num": 5} | delay
     if kind == "response":
         start = generator.uniform(0.5, 4)
         return {"temporal_response": {"times": [start, start + 0.5, start + 1, start + 9], "values": [0, 1, 0, 0]}}
@@ -66,14 +68,22 @@ def random_scene(generator):
         integrator |= COUNTS
     if integrator["type"] != "light_tracer":
         integrator["darts"] = generator.choice(["off", "best"])
-    camera = {"type": generator.choice(["pinhole", "pinhole", "thinlens", "orthographic"]), "resolution": [4, 4], "fov": 90,
+    camera = {"type": generator.choice(["pinhole", "pinhole", "thinlens", "orthographic", "detectors"]), "resolution": [4, 4], "fov": 90,
               "medium": "fog", "transform": {"position": [0, 0, 0], "look_at": vector(generator), "up": [0.3, 1, 0.1]}}
     if camera["type"] == "thinlens":
         camera |= {"aperture_size": 0.4, "focus_distance": 2}
+    if camera["type"] == "detectors":
+        del camera["fov"], camera["resolution"]
+        camera["detectors"] = [{"position": [3 * x for x in vector(generator)], "direction": vector(generator), "radius": 0.2}
+                               for _ in range(2)]
+    lamps = [lamp(generator, f"lamp {i}") | {"ext_medium": "fog"} for i in range(3)]
+    if "frame_num" in when or "transient_time_center" in when and not when["delta_time_gate"]:
+        for one in lamps:
+            start = generator.choice([-2, 0.2, 1])
+            one |= generator.choice([{}, {"pulse": {"type": "box", "start": start, "end": start + 0.5}}])
     return {"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3, "speed_of_light": generator.choice([0.5, 1, 1])},
                       {"name": "fast", "type": "homogeneous", "sigma_a": 0.1, "speed_of_light": 2}],
-            "primitives": [lamp(generator, f"lamp {i}") | {"ext_medium": "fog"} for i in range(3)]
-            + [surface(generator, i) for i in range(generator.randint(0, 3))],
+            "primitives": lamps + [surface(generator, i) for i in range(generator.randint(0, 3))],
             "camera": camera, "integrator": integrator, "renderer": {"spp": 16, "spp_step": 8}}
 
 
@@ -129,7 +139,8 @@ class LeftOut(unittest.TestCase):
         scene["primitives"] = [{"name": "lamp 0", "type": "point", "emission": 9, "transform": {"position": [0, 1, 1]}, "ext_medium": "fog"},
                                {"name": "lamp 1", "type": "point", "emission": 9, "transform": {"position": [0, 1, 9]}, "ext_medium": "fog"},
                                {"name": "floor", "type": "quad", "transform": {"position": [0, -1, 0], "scale": 9}}]
-        scene["camera"] |= {"type": "pinhole", "transform": {"position": [0, 0, 0], "look_at": [0, 0, 1], "up": [0, 1, 0]}}
+        scene["camera"] = {"type": "pinhole", "resolution": [4, 4], "fov": 90, "medium": "fog",
+                           "transform": {"position": [0, 0, 0], "look_at": [0, 0, 1], "up": [0, 1, 0]}}
         scene["media"][0]["speed_of_light"] = 1
         scene["integrator"] = {"type": "path_tracer", "max_bounces": 5, "transient_time_center": 4, "transient_time_width": 2} | integrator
         return scene
