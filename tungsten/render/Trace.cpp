@@ -27,10 +27,13 @@ void Trace::start() {
     cpuStart_ = processCpuSeconds();
 }
 
+bool Trace::due() const {
+    return !folder_.empty() && wallNow() - wallStart_ >= next_;
+}
+
 void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool last) {
-    if (folder_.empty()) return;
+    if (folder_.empty() || (!last && !due())) return;
     const double wall = wallNow(), cpu = processCpuSeconds();
-    if (!last && wall - wallStart_ < next_) return;
     write(film, bias, samples, wall - wallStart_, cpu - cpuStart_);
     next_ = 2.0 * (wall - wallStart_);
     wallStart_ += wallNow() - wall;

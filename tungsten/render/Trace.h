@@ -31,6 +31,8 @@ class Trace {
 
     /// Before the first pass.
     void start();
+    /// Whether record() has something to write.
+    [[nodiscard]] bool due() const;
     /// After a pass. Throws InputError if a file cannot be written.
     /// `bias`: of the film, without frames where none is estimated.
     void record(const Film& film, const Film& bias, uint64_t samples, bool last);
