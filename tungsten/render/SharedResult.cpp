@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <sstream>
 
 namespace tungsten {
@@ -64,6 +65,8 @@ void SharedResult::collect(size_t passes) {
 
 void SharedResult::fold(size_t rank, double weight) {
     const uint32_t standsFor = result_.estimatesBias() ? passesOfItsBias(result_.film.passes()) : 0;
+    std::optional<StageTimer> timer;
+    if (team_) timer.emplace(result_.statistics, "fold passes");
     film_.fold(rank, weight);
     if (standsFor > 0) bias_.fold(rank, double(standsFor));
     whole_ = !team_;
