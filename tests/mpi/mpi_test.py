@@ -84,6 +84,23 @@ class Mpi(unittest.TestCase):
         self.agree({**FRAMES, "frame_num": 1})
         self.agree(FRAMES, "--set", "film.moments=false", "--set", "film.channels=luminance")
 
+    def test_batches_and_what_rank_0_alone_writes(self):
+        self.agree(FRAMES, "--set", "film.batches=3", "--set", "film.batch_block=5")
+        self.run_with(2, self.scene(spp=64), "-e", "film.npz", "--trace", str(self.folder / "trace"), "--html",
+                      str(self.folder / "film.html"), "--sheet", "sheet.png", "--quiet")
+        entries = json.loads(self.bytes_of("trace/trace.json"))["entries"]
+        self.assertEqual(entries[-1]["passes"], 32)
+        self.run_with(1, self.scene(spp=64), "--set", "renderer.output_file=one.png", "-e", "one.npz", "--quiet", "--trace",
+                      str(self.folder / "alone"))
+        self.assertEqual(self.bytes_of("trace/mean-000032.npy"), self.bytes_of("alone/mean-000032.npy"))
+        self.assertIn(b"</html>", self.bytes_of("film.html"))
+
+    def test_more_ranks_than_rows_and_a_black_image(self):
+        fibres = [{"position": [0, 1.2, 3.5], "direction": [0, -0.2, -1], "radius": 0.1}] * 3
+        camera = json.dumps({"type": "detectors", "medium": "fog", "detectors": fibres})
+        self.agree(FRAMES, "--set", f"camera={camera}")
+        self.agree({**FRAMES, "start_time": 0, "transient_time_width": 0.1})
+
     def test_a_target_error_is_that_of_all_passes(self):
         one, two, three = self.agree({**FRAMES, "frame_num": 0, "start_time": 0, "transient_time_center": 5, "transient_time_width": 4,
                                       "darts": "best"}, "--target-error", "0.2", spp=4096, spp_step=1)
