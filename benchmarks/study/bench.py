@@ -8,6 +8,7 @@ process has used its share of CPU seconds.
 import hashlib
 import json
 import os
+import resource
 import signal
 import subprocess
 import time
@@ -64,10 +65,11 @@ class Scene:
 
     @staticmethod
     def others(name, side):
-        """cbox and dragon, by others, which do not ship; None where they are not beside the project."""
+        """cbox, dragon and staircase, by others, which do not ship; None where they are not beside the project."""
         file, *gate = {"cbox": ("transient.json",),
                        "dragon": ("scene-points-darts-short.json", "integrator.transient_time_center=4.125",
-                                  "integrator.transient_time_width=0.05")}[name]
+                                  "integrator.transient_time_width=0.05"),
+                       "staircase": ("scene-points-darts-short.json",)}[name]
         file = SHARED / name / file
         return Scene(name, file, (side, side), tuple(gate)) if file.exists() else None
 
@@ -124,19 +126,27 @@ class Bench:
         """A figure of the study, or that of its quick form."""
         return quick if self.quick else full
 
-    def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1):
-        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else."""
-        samples = ["--spp", str(passes or 10**9)]
-        command = [str(self.tungsten), "-t", str(threads), "-s", str(seed), "--quiet", *samples, "--timeout", "10h", "--resolution",
-                   f"{scene.resolution[0]}x{scene.resolution[1]}", *options]
+    def command(self, scene, settings, options, threads=1):
+        """Of any run of the scene at its resolution, but for its outputs and its file."""
+        command = [str(self.tungsten), "-t", str(threads), "--resolution", f"{scene.resolution[0]}x{scene.resolution[1]}", *options]
         for value in ["renderer.spp_step=1", "renderer.enable_resume_render=false", *scene.settings, *settings]:
             command += ["--set", value]
-        key = hashlib.sha256(json.dumps([command, cpu, self.build]).encode() + scene.file.read_bytes()).hexdigest()[:16]
-        folder = self.renders / key
+        return command
+
+    def folder_of(self, scene, *what):
+        """Where the results of a command are kept."""
+        key = json.dumps([*what, self.build]).encode() + scene.file.read_bytes()
+        return self.renders / hashlib.sha256(key).hexdigest()[:16]
+
+    def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1):
+        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else."""
+        command = self.command(scene, settings, ["-s", str(seed), "--quiet", "--spp", str(passes or 10**9), "--timeout", "10h",
+                                                 *options], threads)
+        folder = self.folder_of(scene, command, cpu)
         outputs = ["-d", str(folder), "-o", "image.png", "-e", "image.exr", "--stats", str(folder / "stats.json"),
                    "--trace", str(folder / "trace"), str(scene.file)]
         if not (folder / "done").exists():
-            run_for(command + outputs, cpu)
+            run_for(command + outputs, cpu, folder / "trace/trace.json")
             (folder / "done").touch()
         self.sample = self.sample or command + [str(scene.file)]
         render = Render(folder, json.loads((folder / "trace/trace.json").read_text())["entries"],
@@ -144,12 +154,26 @@ class Bench:
         self.spent += render.stats["process CPU seconds"]
         return render
 
+    def plan_cost(self, scene, seconds):
+        """What --plan-cost says, as data, from a pilot of so many seconds for each method."""
+        command = self.command(scene, (), ["--plan-cost", "--timeout", f"{seconds}s"])
+        folder = self.folder_of(scene, command)
+        file = folder / "plan.json"
+        if not file.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            run_for([*command, "--stats", str(file), str(scene.file)])
+            (folder / "cpu").write_text(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before))
+        self.sample = self.sample or command + [str(scene.file)]
+        self.spent += float((folder / "cpu").read_text())
+        return json.loads(file.read_text())
+
     def plain(self, scene, passes):
         """The folder of a render of some passes of the scene as it is, but for the names of its images."""
         folder = self.renders / f"{scene.name}-{passes}"
         if not (folder / "done").exists():
             run_for([str(self.tungsten), "-t", "1", "-s", "1", "--quiet", "--spp", str(passes), "--timeout", "10h", "-d", str(folder),
-                     "-o", "image.png", "-e", "image.exr", str(scene.file)], None)
+                     "-o", "image.png", "-e", "image.exr", str(scene.file)])
             (folder / "done").touch()
         return folder
 
@@ -206,13 +230,14 @@ def cpu_used(process):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def run_for(command, cpu):
-    """Runs the renderer; asks it to finish its pass and write once it has used `cpu` seconds of processor time."""
+def run_for(command, cpu=None, first=None):
+    """Runs the renderer; asks it to write what it has once it has used `cpu` seconds of processor time and its first pass
+    has left the file `first`."""
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     asked = cpu is None
     try:
         while process.poll() is None:
-            if not asked and cpu_used(process) >= cpu:
+            if not asked and cpu_used(process) >= cpu and first.exists():
                 process.send_signal(signal.SIGTERM)
                 asked = True
             time.sleep(0.02)
