@@ -138,11 +138,12 @@ class Bench:
         key = json.dumps([*what, self.build]).encode() + scene.file.read_bytes()
         return self.renders / hashlib.sha256(key).hexdigest()[:16]
 
-    def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1):
-        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else."""
+    def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1, again=1):
+        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else.
+        `again`: the same another time, where times matter."""
         command = self.command(scene, settings, ["-s", str(seed), "--quiet", "--spp", str(passes or 10**9), "--timeout", "10h",
                                                  *options], threads)
-        folder = self.folder_of(scene, command, cpu)
+        folder = self.folder_of(scene, command, cpu, *([again] if again > 1 else []))
         outputs = ["-d", str(folder), "-o", "image.png", "-e", "image.exr", "--stats", str(folder / "stats.json"),
                    "--trace", str(folder / "trace"), str(scene.file)]
         if not (folder / "done").exists():
@@ -155,14 +156,16 @@ class Bench:
         return render
 
     def plan_cost(self, scene, seconds):
-        """What --plan-cost says, as data, from a pilot of so many seconds for each method."""
-        command = self.command(scene, (), ["--plan-cost", "--timeout", f"{seconds}s"])
-        folder = self.folder_of(scene, command)
+        """What --plan-cost says, as data, from a pilot of so many seconds for each method: more on a machine whose load
+        takes wall time from it."""
+        command = self.command(scene, (), ["--plan-cost"])
+        folder = self.folder_of(scene, command, seconds)
         file = folder / "plan.json"
         if not file.exists():
             folder.mkdir(parents=True, exist_ok=True)
             before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            run_for([*command, "--stats", str(file), str(scene.file)])
+            wall = seconds * max(1.0, os.getloadavg()[0] / os.cpu_count())
+            run_for([*command, "--timeout", f"{wall:.2f}s", "--stats", str(file), str(scene.file)])
             (folder / "cpu").write_text(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before))
         self.sample = self.sample or command + [str(scene.file)]
         self.spent += float((folder / "cpu").read_text())

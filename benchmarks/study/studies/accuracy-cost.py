@@ -49,7 +49,7 @@ class Measured:
     def __init__(self, renders):
         before = np.mean([r.stats["stages"].get("prepare", {}).get("CPU seconds", 0.0) for r in renders])
         # The pilot's passes are without what estimating their bias takes.
-        passes = sum(r.stats["stages"]["passes"]["CPU seconds"] for r in renders)
+        passes = sum(r.cpu[-1] for r in renders)
         extra = sum(r.stats["stages"].get("bias", {}).get("CPU seconds", 0.0) for r in renders) / passes
         self.cpu = before + (1 - extra) * np.mean([r.cpu[-1] for r in renders])
         self.passes = np.mean([r.passes[-1] for r in renders])
@@ -66,10 +66,10 @@ class Measured:
 
 def compared(bench, scene):
     """(laws, measurements, reasons why methods have no price) by method of one scene."""
-    plan = bench.plan_cost(scene, bench.short(4, 0.3))["methods"]
+    plan = bench.plan_cost(scene, bench.short(2, 0.3))["methods"]
     laws = {method["name"]: Law(method) for method in plan if "prices" in method}
     cells = {method["name"]: (scene, method["settings"].split()) for method in plan if "prices" in method}
-    found = bench.interleaved(cells, SEEDS, cpu=bench.short(3, 0.5), options=["--bias"])
+    found = bench.interleaved(cells, SEEDS, cpu=bench.short(1.5, 0.5), options=["--bias"])
     measured = {name: Measured(renders) for name, renders in found.items() if min(r.passes[-1] for r in renders) > 3}
     return laws, measured, {method["name"]: method["refused because"] for method in plan if "prices" not in method}
 
@@ -136,8 +136,8 @@ def run(bench: Bench):
             prices.append([scene.name, *one_percent(laws, measured)])
     picture(bench, points)
     side = bench.short(48, 16)
-    bench.write(TITLE, f"{len(prices)} scenes, {side} x {side} pixels, passes of 10 000 and 5000 light paths. Pilots of {bench.short(4, 0.3)} s for each "
-                f"method beside renders of {bench.short(3, 0.5)} CPU seconds, {SEEDS} seeds, with `--bias`: the price of the error that they reached, and "
+    bench.write(TITLE, f"{len(prices)} scenes, {side} x {side} pixels, passes of 10 000 and 5000 light paths. Pilots of {bench.short(2, 0.3)} s for each "
+                f"method beside renders of {bench.short(1.5, 0.5)} CPU seconds, {SEEDS} seeds, with `--bias`: the price of the error that they reached, and "
                 "the CPU seconds that it took them (what estimating the bias takes left out). Errors: noise by the spread of the seeds, and "
                 "the render's own estimate of its bias; relative to the mean, rms over pixels and frames.",
                 failures(rows, choices), "![predicted over measured](accuracy-cost.svg)",
