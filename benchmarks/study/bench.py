@@ -208,16 +208,24 @@ class Bench:
 
     def write(self, title, *parts):
         """README.md of the results: what the study says, then the conditions."""
-        commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout
+        commit = commit_of(ROOT)
         command = " ".join(self.sample).replace(f"{ROOT.parent}/", "../").replace(f"../{ROOT.name}/", "")
         end = ["## Conditions", f"`benchmarks/study/study.py {self.name}{' --quick' if self.quick else ''}`, renderer built at "
-               f"`{commit.strip()}`, {time.strftime('%Y-%m-%d')}, {machine()}, load {os.getloadavg()[1]:.1f} in the last 5 minutes; "
+               f"`{commit}`, {time.strftime('%Y-%m-%d')}, {machine()}, load {os.getloadavg()[1]:.1f} in the last 5 minutes; "
                f"{self.spent / 60:.1f} CPU minutes of renders, one thread each unless a table says else. The first of them:",
                f"```sh\n{quoted(command)}\n```"]
         self.results.mkdir(parents=True, exist_ok=True)
         file = self.results / "README.md"
         file.write_text("\n\n".join([f"# {title}", *parts, *end]) + "\n")
         print(file)
+
+
+def commit_of(root):
+    """The commit, and whether the renderer's sources differ from it: results are written before they are committed."""
+    def git(*words):
+        return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True).stdout.strip()
+
+    return git("rev-parse", "--short", "HEAD") + ("-dirty" if git("status", "--porcelain", "--", "src", "tungsten") else "")
 
 
 def quoted(command):

@@ -146,8 +146,8 @@ def run(bench: Bench):
                 f"{bench.short(REPEATS, 1)} renders of the same passes, interleaved, every stage where it took least (renders differ by {np.median(spreads):.0%} in the "
                 f"median, {max(spreads):.0%} at most, by what else the machine does). The plan of each render says that the effect is on and off.",
                 f"The change is that of the effect's own stages to within {NOISE:.0%} of the time of a pass: {kept} of {len(points)}. Elsewhere: {elsewhere}. "
-                "Effects that change the walks themselves (fog, glass, what scatters how) have all stages of light and sensor as theirs; those "
-                f"with fewer ({', '.join(dict.fromkeys(effect for effect, _, own, *_ in chosen if not set(PHOTONS + VOLUME + LOOK) <= set(own)))}) are the "
+                "Effects that change the walks themselves (fog, glass, what scatters how) have all stages of light and sensor as theirs, those of "
+                f"paths the camera pass; those with fewer stages ({', '.join(dict.fromkeys(effect for effect, _, own, *_ in chosen if own != CAMERA and not set(PHOTONS + VOLUME + LOOK) <= set(own)))}) are the "
                 "harder test.",
                 "![time with and without](effects.svg)",
                 table(["effect", "scene", "with, ms", "without, ms", "change, ms", "of its stages, ms", "elsewhere, of a pass", "ratio",
