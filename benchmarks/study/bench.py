@@ -21,6 +21,7 @@ matplotlib.use("Agg")  # no display
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
 from runs import build_of, machine  # noqa: E402
 from study_file import StudyError  # noqa: E402
@@ -263,6 +264,15 @@ def run_for(command, cpu=None, first=None):
 def table(head, rows):
     """Markdown."""
     return "\n".join("| " + " | ".join(str(cell) for cell in row) + " |" for row in [head, ["---"] * len(head), *rows])
+
+
+def plain_log(axis, decades=1.5):
+    """A logarithmic axis with few labels that can be read: powers of ten, or below so many decades 1, 2 and 5."""
+    low, high = axis.get_view_interval()
+    if high / low < 10**decades:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low > 3 else (1, 1.5, 2, 3, 5, 7)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def panels(count=1, width=4.2, height=3.4):

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
-
-from bench import PATHS, Bench, Scene, panels, table
+from bench import PATHS, Bench, Scene, panels, plain_log, table
 from study_file import StudyError
 
 TITLE = "What effects cost"
@@ -114,9 +112,7 @@ def picture(bench, points):
         axes[0].plot([1, ratio], [row, row], color="tab:blue", linewidth=3, alpha=0.4)
         axes[0].plot(ratio, row, marker="o", markersize=4, color="tab:blue")
     axes[0].set_xscale("log")
-    axes[0].xaxis.set_major_locator(FixedLocator([0.5, 0.7, 1, 1.5, 2, 3, 5, 7]))
-    axes[0].xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axes[0].xaxis.set_minor_formatter(NullFormatter())
+    plain_log(axes[0].xaxis)
     axes[0].axvline(1, color="0.3", linewidth=0.8)
     axes[0].set_yticks(range(len(points)), [point[0] for point in points])
     axes[0].set_xlabel("CPU seconds with the effect / without", fontsize=9)
