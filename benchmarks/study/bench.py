@@ -233,10 +233,10 @@ def quoted(command):
     return " ".join(f"'{word}'" if set(word) & set('{}"[') else word for word in command.split(" "))
 
 
-def cpu_used(process):
-    """Seconds of processor time, user and system, of a running child."""
+def cpu_used(pid):
+    """Seconds of processor time, user and system, of a running process."""
     try:
-        fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     except OSError:
         return 0.0
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
@@ -245,20 +245,22 @@ def cpu_used(process):
 def run_for(command, cpu=None, first=None):
     """Runs the renderer; asks it to write what it has once it has used `cpu` seconds of processor time and its first pass
     has left the file `first`."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    asked = cpu is None
+    # The shell forks: a child that Python starts itself would report Python's own peak memory as the least of its own.
+    shell = subprocess.Popen(["/bin/sh", "-c", '"$@" >/dev/null & echo $!; wait $!', "sh", *command], stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, text=True)
+    pid, asked = int(shell.stdout.readline()), cpu is None
     try:
-        while process.poll() is None:
-            if not asked and cpu_used(process) >= cpu and first.exists():
-                process.send_signal(signal.SIGTERM)
+        while shell.poll() is None:
+            if not asked and cpu_used(pid) >= cpu and first.exists():
+                os.kill(pid, signal.SIGTERM)
                 asked = True
             time.sleep(0.02)
     except BaseException:
-        process.kill()
+        os.kill(pid, signal.SIGKILL)
         raise
-    messages = process.stderr.read()
-    if process.returncode != 0:
-        raise StudyError(f"{' '.join(command)}: exit code {process.returncode}: {messages.strip()}")
+    messages = shell.stderr.read()
+    if shell.returncode != 0:
+        raise StudyError(f"{' '.join(command)}: exit code {shell.returncode}: {messages.strip()}")
 
 
 def table(head, rows):
