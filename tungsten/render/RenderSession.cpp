@@ -120,11 +120,12 @@ class Session {
             }
             if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
-            trace_.record(result_.film, result_.bias, result_.samples, stop);
+            trace_.record(result_.film, result_.bias, result_.samples);
             if (stop || reporter_.due()) reporter_.show(state(), stop);
             if (!stop) files_.checkpointIfDue();
         }
         result_.renderSeconds = secondsSince(start_);
+        trace_.end(result_.film, result_.bias, result_.samples);
         result_.trace = trace_.entries();
     }
 
