@@ -8,6 +8,7 @@ process has used its share of CPU seconds.
 import hashlib
 import json
 import os
+import resource
 import signal
 import subprocess
 import time
@@ -20,6 +21,7 @@ matplotlib.use("Agg")  # no display
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter  # noqa: E402
 
 from runs import build_of, machine  # noqa: E402
 from study_file import StudyError  # noqa: E402
@@ -64,10 +66,11 @@ class Scene:
 
     @staticmethod
     def others(name, side):
-        """cbox and dragon, by others, which do not ship; None where they are not beside the project."""
+        """cbox, dragon and staircase, by others, which do not ship; None where they are not beside the project."""
         file, *gate = {"cbox": ("transient.json",),
                        "dragon": ("scene-points-darts-short.json", "integrator.transient_time_center=4.125",
-                                  "integrator.transient_time_width=0.05")}[name]
+                                  "integrator.transient_time_width=0.05"),
+                       "staircase": ("scene-points-darts-short.json",)}[name]
         file = SHARED / name / file
         return Scene(name, file, (side, side), tuple(gate)) if file.exists() else None
 
@@ -124,19 +127,28 @@ class Bench:
         """A figure of the study, or that of its quick form."""
         return quick if self.quick else full
 
-    def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1):
-        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else."""
-        samples = ["--spp", str(passes or 10**9)]
-        command = [str(self.tungsten), "-t", str(threads), "-s", str(seed), "--quiet", *samples, "--timeout", "10h", "--resolution",
-                   f"{scene.resolution[0]}x{scene.resolution[1]}", *options]
+    def command(self, scene, settings, options, threads=1):
+        """Of any run of the scene at its resolution, but for its outputs and its file."""
+        command = [str(self.tungsten), "-t", str(threads), "--resolution", f"{scene.resolution[0]}x{scene.resolution[1]}", *options]
         for value in ["renderer.spp_step=1", "renderer.enable_resume_render=false", *scene.settings, *settings]:
             command += ["--set", value]
-        key = hashlib.sha256(json.dumps([command, cpu, self.build]).encode() + scene.file.read_bytes()).hexdigest()[:16]
-        folder = self.renders / key
+        return command
+
+    def folder_of(self, scene, *what):
+        """Where the results of a command are kept."""
+        key = json.dumps([*what, self.build]).encode() + scene.file.read_bytes()
+        return self.renders / hashlib.sha256(key).hexdigest()[:16]
+
+    def render(self, scene, settings=(), seed=1, cpu=None, passes=None, options=(), threads=1, again=1):
+        """Until `passes`, or the process has used `cpu` seconds; passes of one sample a pixel unless `settings` say else.
+        `again`: the same another time, where times matter."""
+        command = self.command(scene, settings, ["-s", str(seed), "--quiet", "--spp", str(passes or 10**9), "--timeout", "10h",
+                                                 *options], threads)
+        folder = self.folder_of(scene, command, cpu, *([again] if again > 1 else []))
         outputs = ["-d", str(folder), "-o", "image.png", "-e", "image.exr", "--stats", str(folder / "stats.json"),
                    "--trace", str(folder / "trace"), str(scene.file)]
         if not (folder / "done").exists():
-            run_for(command + outputs, cpu)
+            run_for(command + outputs, cpu, folder / "trace/trace.json")
             (folder / "done").touch()
         self.sample = self.sample or command + [str(scene.file)]
         render = Render(folder, json.loads((folder / "trace/trace.json").read_text())["entries"],
@@ -144,12 +156,28 @@ class Bench:
         self.spent += render.stats["process CPU seconds"]
         return render
 
+    def plan_cost(self, scene, seconds):
+        """What --plan-cost says, as data, from a pilot of so many seconds for each method: more on a machine whose load
+        takes wall time from it."""
+        command = self.command(scene, (), ["--plan-cost"])
+        folder = self.folder_of(scene, command, seconds)
+        file = folder / "plan.json"
+        if not file.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            wall = seconds * max(1.0, os.getloadavg()[0] / os.cpu_count())
+            run_for([*command, "--timeout", f"{wall:.2f}s", "--stats", str(file), str(scene.file)])
+            (folder / "cpu").write_text(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before))
+        self.sample = self.sample or command + [str(scene.file)]
+        self.spent += float((folder / "cpu").read_text())
+        return json.loads(file.read_text())
+
     def plain(self, scene, passes):
         """The folder of a render of some passes of the scene as it is, but for the names of its images."""
         folder = self.renders / f"{scene.name}-{passes}"
         if not (folder / "done").exists():
             run_for([str(self.tungsten), "-t", "1", "-s", "1", "--quiet", "--spp", str(passes), "--timeout", "10h", "-d", str(folder),
-                     "-o", "image.png", "-e", "image.exr", str(scene.file)], None)
+                     "-o", "image.png", "-e", "image.exr", str(scene.file)])
             (folder / "done").touch()
         return folder
 
@@ -181,10 +209,10 @@ class Bench:
 
     def write(self, title, *parts):
         """README.md of the results: what the study says, then the conditions."""
-        commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout
+        commit = commit_of(ROOT)
         command = " ".join(self.sample).replace(f"{ROOT.parent}/", "../").replace(f"../{ROOT.name}/", "")
         end = ["## Conditions", f"`benchmarks/study/study.py {self.name}{' --quick' if self.quick else ''}`, renderer built at "
-               f"`{commit.strip()}`, {time.strftime('%Y-%m-%d')}, {machine()}, load {os.getloadavg()[1]:.1f} in the last 5 minutes; "
+               f"`{commit}`, {time.strftime('%Y-%m-%d')}, {machine()}, load {os.getloadavg()[1]:.1f} in the last 5 minutes; "
                f"{self.spent / 60:.1f} CPU minutes of renders, one thread each unless a table says else. The first of them:",
                f"```sh\n{quoted(command)}\n```"]
         self.results.mkdir(parents=True, exist_ok=True)
@@ -193,40 +221,60 @@ class Bench:
         print(file)
 
 
+def commit_of(root):
+    """The commit, and whether the renderer's sources differ from it: results are written before they are committed."""
+    def git(*words):
+        return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True).stdout.strip()
+
+    return git("rev-parse", "--short", "HEAD") + ("-dirty" if git("status", "--porcelain", "--", "src", "tungsten") else "")
+
+
 def quoted(command):
     return " ".join(f"'{word}'" if set(word) & set('{}"[') else word for word in command.split(" "))
 
 
-def cpu_used(process):
-    """Seconds of processor time, user and system, of a running child."""
+def cpu_used(pid):
+    """Seconds of processor time, user and system, of a running process."""
     try:
-        fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     except OSError:
         return 0.0
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def run_for(command, cpu):
-    """Runs the renderer; asks it to finish its pass and write once it has used `cpu` seconds of processor time."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    asked = cpu is None
+def run_for(command, cpu=None, first=None):
+    """Runs the renderer; asks it to write what it has once it has used `cpu` seconds of processor time and its first pass
+    has left the file `first`."""
+    # The shell forks: a child that Python starts itself would report Python's own peak memory as the least of its own.
+    shell = subprocess.Popen(["/bin/sh", "-c", '"$@" >/dev/null & echo $!; wait $!', "sh", *command], stdout=subprocess.PIPE,
+                             stderr=subprocess.PIPE, text=True)
+    pid, asked = int(shell.stdout.readline()), cpu is None
     try:
-        while process.poll() is None:
-            if not asked and cpu_used(process) >= cpu:
-                process.send_signal(signal.SIGTERM)
+        while shell.poll() is None:
+            if not asked and cpu_used(pid) >= cpu and first.exists():
+                os.kill(pid, signal.SIGTERM)
                 asked = True
             time.sleep(0.02)
     except BaseException:
-        process.kill()
+        os.kill(pid, signal.SIGKILL)
         raise
-    messages = process.stderr.read()
-    if process.returncode != 0:
-        raise StudyError(f"{' '.join(command)}: exit code {process.returncode}: {messages.strip()}")
+    messages = shell.stderr.read()
+    if shell.returncode != 0:
+        raise StudyError(f"{' '.join(command)}: exit code {shell.returncode}: {messages.strip()}")
 
 
 def table(head, rows):
     """Markdown."""
     return "\n".join("| " + " | ".join(str(cell) for cell in row) + " |" for row in [head, ["---"] * len(head), *rows])
+
+
+def plain_log(axis, decades=1.5):
+    """A logarithmic axis with few labels that can be read: powers of ten, or below so many decades 1, 2 and 5."""
+    low, high = axis.get_view_interval()
+    if high / low < 10**decades:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low > 3 else (1, 1.5, 2, 3, 5, 7)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def panels(count=1, width=4.2, height=3.4):

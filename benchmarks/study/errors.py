@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from measures import grey
+from measures import grey, picture_difference
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,9 @@ class Parts:
     relmse99: float
     variance: float
     bias: float
+    doubt: float  # about that bias: two standard errors
     median: float  # of the seeds' relative root mean squared errors
+    flip: float  # mean over pixels, frames and seeds
     cpu: float
     passes: float
 
@@ -56,6 +58,11 @@ class Parts:
         """MSE x CPU seconds: 1 / efficiency."""
         return self.mse * self.cpu
 
+    @property
+    def certain_cost(self):
+        """The same of the variance, and of the bias where it is beyond doubt: the noise of a reference does not enter it."""
+        return (self.variance + (self.bias if self.bias > self.doubt else 0.0)) * self.cpu
+
 
 def parts(renders, truth, at=-1):
     images = [render.image(at) for render in renders]
@@ -63,9 +70,12 @@ def parts(renders, truth, at=-1):
     variance = float(np.var(greys, axis=0, ddof=1).mean()) / truth.scale if len(images) > 1 else np.nan
     means = np.mean(images, axis=0)
     squares = [mse(image, truth) for image in images]
+    # Neighbours vary together: 16 pixels count as one.
+    doubt = 2 * np.std((grey(means) - truth.grey) ** 2) / np.sqrt(means[..., 0].size / 16) / truth.scale
+    looks = [picture_difference(image[frame], truth.image[frame]) for image in images for frame in range(len(image))]
     return Parts(float(np.mean(squares)), float(np.mean([relmse99(image, truth) for image in images])), variance,
-                 mse(means, truth) - variance / len(images), float(np.median(np.sqrt(np.maximum(squares, 0.0)))),
-                 float(np.mean([render.cpu[at] for render in renders])), float(np.mean([render.passes[at] for render in renders])))
+                 mse(means, truth) - variance / len(images), float(doubt), float(np.median(np.sqrt(np.maximum(squares, 0.0)))),
+                 float(np.mean(looks)), float(np.mean([render.cpu[at] for render in renders])), float(np.mean([render.passes[at] for render in renders])))
 
 
 def curve(render, truth):

@@ -8,10 +8,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flip import flip
+from images import tone_map
+
 
 def grey(image):
     """Mean of the channels."""
     return image.mean(axis=-1)
+
+
+def relmse99(grey_image, grey_reference):
+    """Mean squared difference once both are divided by the 0.99 quantile of the reference's pixels; noise of both included."""
+    return float(np.mean((grey_image - grey_reference) ** 2) / np.quantile(grey_reference, 0.99) ** 2)
+
+
+def median_error(grey_image, grey_reference):
+    """Median over pixels of the absolute difference, relative to the reference's mean: bright outliers do not move it."""
+    return float(np.median(np.abs(grey_image - grey_reference)) / np.mean(grey_reference))
+
+
+def picture_difference(image, reference):
+    """Mean FLIP of the pictures, tone-mapped alike: the 0.99 quantile of the reference is white."""
+    white = float(np.quantile(reference, 0.99)) or 1.0
+    return float(flip(tone_map(reference, white), tone_map(image, white)).mean())
 
 
 def relative_std(standard_error, reference_mean):

@@ -20,12 +20,18 @@ def legend(study):
   reference's both are of the render's own pixels; **std, averaged down** is over the seeds at the reference's resolution.
 - **block bias**: rms difference of the means of blocks of {study.block}×{study.block} reference pixels after subtracting the noise
   of renders and reference; "< x" where it does not stand out of that noise (2 standard errors).
+- **own bias**: of studies with `"bias": true` (`--bias`, which takes time of its own): what
+  the renderer says its kernels leave, and its bound, relative to the mean; unlike block bias it needs no reference.
 - **mean ratio**: mean of the image over that of the reference, with its standard error over seeds.
 - **MSE** = std² + bias². **gain**: MSE of the baseline ({study.baseline}; in scenes without it, the first method) over the
   method's, after bringing the baseline's variance to the method's wall time, since the last pass ends late by different amounts.
   **gain per CPU s**: the same at equal CPU time, which is firmer on a shared machine. **over published**: the same at equal CPU
   time over the published implementation's figures, measured elsewhere: a yardstick only.
-- **MSE × CPU s**: of the passes; without bias it is the same for any time.
+- **MSE × CPU s**: of the passes, the reciprocal of the efficiency; without bias it is the same for any time.
+- **relMSE 0.99**: mean squared difference from the reference after both are divided by the 0.99 quantile of the reference. **median
+  error**: median over pixels of the absolute difference, which rare bright pixels do not move. **FLIP**: how different the pictures look, 0 to
+  1 (Andersson et al. 2020), mean over pixels, tone-mapped with the 0.99 quantile as white, at 67 pixels per degree. All three at the
+  reference's resolution, with the reference's own noise in them.
 - **wall s, CPU s**: of the passes, without loading and preparation. **processor share**: CPU time over wall time and threads.
 """
 

@@ -66,6 +66,10 @@ class Summary:
     std_spread: float | None = None  # per pixel, over the seeds
     std_averaged: float | None = None  # over the seeds, after averaging down to the reference's resolution
     bias: measures.Bias | None = None
+    told_bias: tuple | None = None  # the renders' own estimate and its bound (--bias)
+    relmse99: float | None = None  # these three at the reference's resolution, its noise in them
+    median_error: float | None = None
+    flip: float | None = None
     mean_ratio: float = 0.0
     mean_ratio_error: float | None = None
     memory: float = 0.0  # bytes, peak
@@ -122,10 +126,14 @@ def _add_images(summary, images, errors, reference, block):
         stds = [measures.relative_std(error, mean) for error in errors]
         summary.std, summary.std_range = median(stds), (min(stds), max(stds))
     shape = reference.image.shape[:2]
-    averaged = [average_down(image, shape) for image in grey]
+    coarse = [average_down(image, shape) for image in images]
+    averaged = [measures.grey(image) for image in coarse]
     ratios = [float(image.mean() / mean) for image in averaged]
     summary.mean_ratio = median(ratios)
-    summary.average = np.mean([average_down(image, shape) for image in images], axis=0)
+    summary.average = np.mean(coarse, axis=0)
+    summary.relmse99 = median(measures.relmse99(image, reference.grey) for image in averaged)
+    summary.median_error = median(measures.median_error(image, reference.grey) for image in averaged)
+    summary.flip = median(measures.picture_difference(image, reference.image) for image in coarse)
     if len(images) >= 2:
         summary.std_spread = measures.spread_std(grey, mean)
         if grey[0].shape != shape:
@@ -163,6 +171,8 @@ def summarise(runs, reference, study: Study):
     summary.share = summary.cpu / (summary.wall * study.threads)
     summary.memory = median(s["peak memory bytes"] for s in stats)
     summary.non_finite = sum(s["non-finite samples"] for s in stats)
+    told = [(s["relative bias"], s["relative bias bound"]) for s in stats if s.get("relative bias") is not None]
+    summary.told_bias = tuple(median(column) for column in zip(*told)) if told else None
     for stage in STAGES:
         seconds = [s["stages"][stage]["wall seconds"] for s in stats if stage in s["stages"]]
         if seconds:

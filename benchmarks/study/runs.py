@@ -25,6 +25,7 @@ class Run:
     seed: int
     threads: int
     folder: Path
+    bias: bool = False
 
     @property
     def label(self):
@@ -52,6 +53,7 @@ class Run:
         width, height = self.scene.resolution
         arguments = ["-t", str(self.threads), "-s", str(self.seed), "--timeout", f"{self.seconds:g}s", "--quiet",
                      "--spp", str(MOST_SAMPLES), "--resolution", f"{width}x{height}"]
+        arguments += ["--bias"] if self.bias else []
         for value in self.overrides:
             arguments += ["--set", value]
         return [*arguments, str(self.scene_file)]
@@ -84,7 +86,7 @@ def plan(study: Study, work: Path):
             for scene in study.scenes:
                 for method in study.methods_of(scene):
                     folder = work / "runs" / _slug(scene.name) / _slug(method.name) / f"{seconds:g}s-seed{seed}"
-                    once.append(Run(scene, method, seconds, seed, study.threads, folder))
+                    once.append(Run(scene, method, seconds, seed, study.threads, folder, study.bias))
         runs += once if seed % 2 else reversed(once)
     folders = {run.folder for run in runs}
     if len(folders) != len(runs):

@@ -60,6 +60,7 @@ class Study:
     seeds: int
     block: int
     limit_seconds: float | None
+    bias: bool = False  # renders estimate what their kernels leave, which takes time
 
     def methods_of(self, scene):
         return [method for method in self.methods
@@ -77,7 +78,7 @@ def reason_to_skip(scene, method):
 
 
 STUDY_KEYS = {"title", "include", "scenes", "methods", "sweeps", "baseline", "seconds", "threads", "seeds", "block",
-              "limit_seconds", "definitions"}
+              "limit_seconds", "definitions", "bias"}
 SCENE_KEYS = {"name", "base", "path", "resolution", "gate", "reference", "reference_block_variance", "files", "set",
               "published", "skip", "reference_by"}
 METHOD_KEYS = {"name", "base", "set", "published", "scenes", "may_refuse"}
@@ -273,5 +274,6 @@ def load_study(path, root):
     for scene in scenes:
         _require(all(side % block == 0 for side in scene.resolution), where, f"scene '{scene.name}': blocks of {block} pixels "
                  f"('block') do not divide {scene.resolution[0]} x {scene.resolution[1]}")
-    return Study(path.stem, study.get("title", path.stem), scenes, methods, baseline, seconds,
-                 _whole(study, "threads", 2, where), _whole(study, "seeds", 3, where), block, study.get("limit_seconds"))
+    _require(isinstance(study.get("bias", False), bool), where, "'bias' is true or false")
+    return Study(path.stem, study.get("title", path.stem), scenes, methods, baseline, seconds, _whole(study, "threads", 2, where),
+                 _whole(study, "seeds", 3, where), block, study.get("limit_seconds"), study.get("bias", False))

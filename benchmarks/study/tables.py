@@ -27,6 +27,11 @@ def bias_text(bias):
     return number(bias.squared**0.5) if bias.is_significant else f"< {number(bias.bound, 2)}"
 
 
+def _told(bias):
+    """The renders' own estimate, and in brackets what it may be."""
+    return "–" if bias is None else f"{number(bias[0], 2)} (< {number(bias[1], 2)})"
+
+
 def _times(value):
     return "–" if value is None else f"{number(value)}×"
 
@@ -58,12 +63,16 @@ def accuracy_table(study, summaries):
     published = any(s.gain_over_published() is not None for s in done)
     header = ["method", "seeds", "passes", "wall s", "CPU s", "rel. std (range)", "std over seeds"]
     header += ["std, averaged down"] if averaged else []
-    header += ["block bias", "mean ratio", "MSE", "MSE × CPU s", "gain", "gain per CPU s"] + (["over published"] if published else [])
+    told = any(s.told_bias is not None for s in done)
+    header += ["block bias"] + (["own bias"] if told else []) + ["mean ratio", "MSE", "relMSE 0.99", "median error", "FLIP",
+                                                                 "MSE × CPU s", "gain", "gain per CPU s"]
+    header += ["over published"] if published else []
     rows = []
     for s in done:
         row = [s.method.name, s.seeds, number(s.passes), number(s.wall), number(s.cpu), _range(s), number(s.std_spread)]
         row += [number(s.std_averaged)] if averaged else []
-        row += [bias_text(s.bias), _ratio(s), number(s.mse), number(s.cost),
+        row += [bias_text(s.bias)] + ([_told(s.told_bias)] if told else [])
+        row += [_ratio(s), number(s.mse), number(s.relmse99), number(s.median_error), number(s.flip), number(s.cost),
                 _times(s.gain_over(baseline)), _times(s.gain_over(baseline, at_equal_cpu=True))]
         row += [_times(s.gain_over_published())] if published else []
         rows.append(row)

@@ -28,11 +28,11 @@ TEST_P(SwitchesAlone, AgreeWithPlainPaths) {
     AgreementScene& scene =
         *std::find_if(scenes.begin(), scenes.end(), [](const AgreementScene& s) { return s.name == GetParam(); });
     const bool glass = scene.name == "glass-tank";
-    scene.effort.pathSamples = glass ? 64 : 24;
+    scene.effort.pathSamples = glass ? 48 : 20;
     const BlockMeans reference = renderBlocks(scene, Plain);
     // Connections through its boundary are left to chance without control vertices.
     AgreementScene longer = scene;
-    if (glass) longer.effort.pathSamples = 256;
+    if (glass) longer.effort.pathSamples = 160;
     expectAgreement(longer, guidedPathMethod("guiding only", {"enable_guiding=true"}, 2), reference);
     for (const Method& method :
          {guidedPathMethod("elliptical only", {"enable_elliptical=true"}, 3),

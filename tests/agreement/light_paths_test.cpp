@@ -15,7 +15,7 @@ struct Moment {
 };
 
 AgreementScene sceneOf(const Moment& moment) {
-    const Effort effort{24, 96, 32, 60000};
+    const Effort effort{24, 80, 24, 50000};
     return shippedScene(moment.scene,
                         {"integrator.delta_time_gate=false", "integrator.transient_time_width=0.2",
                          std::string("integrator.camera_unwarped=") + (moment.unwarped ? "true" : "false"),

@@ -20,7 +20,8 @@ void addPass(Film& film, float value, uint32_t pass) {
     for (int frame = 0; frame < Frames; ++frame)
         for (int y = 0; y < Height; ++y)
             for (int x = 0; x < Width; ++x)
-                if (frame != 2 || pass > 3) film.add(frame, x, y, Rgb(value * float(1 + frame), value * float(x), 1.0f));
+                if (frame != 2 || pass > 3)
+                    film.add(frame, x, y, Rgb(value * float(1 + frame), value * float(x), 1.0f));
 }
 
 std::vector<float> passValues(uint32_t count) {
@@ -42,8 +43,11 @@ Film rendered(const FilmContents& contents, uint32_t passes) {
 }
 
 float batchValue(const PassBatches& batches, int batch, int frame, int row, int column, int channel) {
-    const size_t at = (((size_t(batch) * Frames + size_t(frame)) * size_t(batches.rows()) + size_t(row)) *
-                           size_t(batches.columns()) + size_t(column)) * 3 + size_t(channel);
+    const size_t at =
+        (((size_t(batch) * Frames + size_t(frame)) * size_t(batches.rows()) + size_t(row)) * size_t(batches.columns()) +
+         size_t(column)) *
+            3 +
+        size_t(channel);
     return batches.means()[at];
 }
 
@@ -105,7 +109,8 @@ TEST(FilmRows, FoldedApartAndPutTogetherAreOneFilm) {
                         const auto row = size_t(frame * Height + y);
                         if (whole.passRowIsLit(row)) parts[part].setPassRow(row, whole.passRow(row));
                     }
-                const FoldedPass some = parts[part].foldRows(pass + 1 == Passes ? 1.0 : 2.0, bounds[part], bounds[part + 1]);
+                const FoldedPass some =
+                    parts[part].foldRows(pass + 1 == Passes ? 1.0 : 2.0, bounds[part], bounds[part + 1]);
                 folded.weight = some.weight;
                 folded.weightBefore = some.weightBefore;
                 folded.squaresBefore = some.squaresBefore;

@@ -4,6 +4,7 @@ its module or the launcher all is skipped."""
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -134,6 +135,9 @@ class Mpi(unittest.TestCase):
         self.assertLess(time.monotonic() - start, 30)
         self.assertIn("time-out", result.stdout)
         self.assertEqual(result.stdout.count("passes, "), 1, "one rank speaks")
+        passes = int(re.search(r"(\d+) passes, ", result.stdout)[1])
+        self.run_with(1, scene, "--spp", str(2 * passes), "-e", "one.npy", "-o", "one.png")
+        self.assertEqual(self.bytes_of("film.npy"), self.bytes_of("one.npy"))
         # One pass as long as the time-out and more: it is cut, in both.
         result = self.run_with(2, self.scene(spp=10_000_000, spp_step=1_000_000), "--timeout", "2s", "-e", "film.npy")
         self.assertEqual(result.stderr.count("passes are cut to"), 1, result.stderr)

@@ -122,10 +122,10 @@ class CornellFog : public testing::Test {
 };
 
 TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
-    const auto beams = photons("beams", 32);
+    const auto beams = photons("beams", 26);
     expectSame(*beams, *paths(20), 0.02, 0.15);
     // The same seed gives the same light paths and surface photons: only the fog's estimate differs.
-    expectSame(*beams, *photons("points", 32), 0.01, 0.15);
+    expectSame(*beams, *photons("points", 26), 0.01, 0.15);
     EXPECT_GT(beams->statistics.counter("gathered beams"), 100000u);
     EXPECT_EQ(beams->statistics.counter("stored volume photons"), 0u);
 }
@@ -136,9 +136,9 @@ TEST_F(CornellFog, BeamsAgreeWithPathsAndPointsThroughAMirror) {
     overrides.emplace_back(
         R"(primitives.pulse={"type": "quad", "int_medium": "fog", "ext_medium": "fog", "emission": 40,
         "transform": {"position": [0.3, 1.7, 0.1], "scale": [0.5, 1, 0.5], "rotation": [180, 0, 0]}})");
-    const auto beams = photons("beams", 24);
+    const auto beams = photons("beams", 20);
     expectSame(*beams, *paths(16), 0.02, 0.15);
-    expectSame(*beams, *photons("points", 24), 0.01, 0.15);
+    expectSame(*beams, *photons("points", 20), 0.01, 0.15);
 }
 
 TEST(BeamMap, FramesSumToTheSteadyState) {

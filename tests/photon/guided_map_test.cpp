@@ -317,7 +317,7 @@ TEST(GlossySurfaces, ShowFog) {
         Overrides maps = best;
         maps.push_back(std::string("integrator.volume_photon_type=") + primitive);
         const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
-            return renderPhotons(json, {maps, 16, 1, seed});
+            return renderPhotons(json, {maps, 10, 1, seed});
         });
         EXPECT_NEAR(mean, expected, 5.0 * std::hypot(error, pathError) + 0.02 * expected);
         EXPECT_LT(std::hypot(error, pathError), 0.05 * expected) << "the test would not see a wrong value";
@@ -356,7 +356,7 @@ TEST(SurfaceConnections, GatherTheNearestPhotonsBesideAMirror) {
     const auto gathered = [&](const Overrides& settings) {
         Overrides all{Mirror, Best, setting("photon_count", 20000)};
         all.insert(all.end(), settings.begin(), settings.end());
-        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 12, 1, seed}); });
+        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 7, 1, seed}); });
     };
     const auto [expected, radiusError] = gathered({});
     const auto [mean, error] = gathered({"integrator.gather_radius=1e30", "integrator.gather_photon_count=20"});
@@ -396,9 +396,9 @@ TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
     const auto render = [&](const std::string& darts) {
         Overrides all = mirror;
         all.push_back(darts);
-        return Warm(*test::renderPhotonFile(file, {all, 32, 128}));
+        return Warm(*test::renderPhotonFile(file, {all, 20, 128}));
     };
-    const Warm paths(*test::renderPathFile(file, {mirror, 24, 4096}));
+    const Warm paths(*test::renderPathFile(file, {mirror, 16, 4096}));
     for (const std::string preset : {"published", "best"}) {
         SCOPED_TRACE(preset);
         const Warm right = render("integrator.darts=" + preset);

@@ -213,7 +213,7 @@ TEST(Session, ADamagedStateIsAnErrorNotACrash) {
     }
 }
 
-/// Every single bit, and random pairs of bits.
+/// Every single bit, and random pairs of bits beside every eighth.
 TEST(Session, AFlippedBitIsNoticed) {
     SessionFixture session(tinyScene(ThreeFrames, TenByFour));
     session.options.resumeEnabled = true;
@@ -239,11 +239,12 @@ TEST(Session, AFlippedBitIsNoticed) {
         std::string bytes = whole;
         bytes[bit / 8] = char(bytes[bit / 8] ^ (1 << bit % 8));
         flipped += accepted(bytes) ? 1 : 0;
+        if (bit % 8 != 0) continue;
         const size_t other = (bit + 1 + sampler.nextBits() % (8 * whole.size() - 1)) % (8 * whole.size());
         bytes[other / 8] = char(bytes[other / 8] ^ (1 << other % 8));
         flipped += accepted(bytes) ? 1 : 0;
     }
-    EXPECT_EQ(flipped, 0) << "of " << 16 * whole.size();
+    EXPECT_EQ(flipped, 0) << "of " << 9 * whole.size();
     EXPECT_FALSE(accepted(whole + "x"));
     std::string older = whole;
     older[7] = '1';

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <thread>
 
 namespace tungsten {
@@ -50,6 +51,26 @@ TEST(Trace, HoldsWhatShorterRendersWrite) {
     }
     EXPECT_EQ(contentOf(traced.folder() / "trace/stderr-000040.npy").size(),
               contentOf(traced.folder() / "trace/mean-000040.npy").size());
+}
+
+/// Studies stop renders within passes: the whole ones before that are not lost, and its time is not theirs.
+TEST(Trace, EndsWithTheLastWholePass) {
+    constexpr auto Long = std::chrono::milliseconds(50);
+    SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 1)"));
+    std::atomic<bool> interrupted{false};
+    session.options.interrupted = &interrupted;
+    session.options.trace = session.folder() / "trace";
+    session.integrator.afterPass = [&](const PassInfo& pass) {
+        if (pass.index == 0 || pass.index == 3) std::this_thread::sleep_for(Long);
+        interrupted = pass.index == 3;
+        pass.watch.poll();
+    };
+    const SessionResult& result = session.run();
+    ASSERT_EQ(result.film.passes(), 3u);
+    const std::string list = contentOf(session.folder() / "trace/trace.json");
+    EXPECT_EQ(numbers(list, "passes").back(), 3.0);
+    EXPECT_LT(numbers(list, "wall seconds").back(), result.renderSeconds - 0.045);
+    EXPECT_TRUE(session.has("trace/mean-000003.npy"));
 }
 
 TEST(Trace, AFolderThatCannotBeWrittenIsFoundBeforeRendering) {

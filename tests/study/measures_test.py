@@ -118,6 +118,17 @@ class Measures(unittest.TestCase):
                  for _ in range(300)]
         self.assert_mean(found, known, "block variance")
 
+    def test_differences_from_the_reference(self):
+        reference = np.full((SIZE, SIZE), 2.0)
+        image = reference + 0.1
+        self.assertAlmostEqual(measures.relmse99(image, reference), 0.0025)
+        self.assertAlmostEqual(measures.median_error(image, reference), 0.05)
+        image[0, 0] = 1e6
+        self.assertAlmostEqual(measures.median_error(image, reference), 0.05, msg="a firefly does not move it")
+        colour = np.repeat(truth()[..., None], 3, axis=2)
+        self.assertEqual(measures.picture_difference(colour, colour), 0.0)
+        self.assertGreater(measures.picture_difference(0.5 * colour, colour), measures.picture_difference(0.9 * colour, colour))
+
     def test_gain(self):
         self.assertAlmostEqual(measures.mean_squared_error(0.3, 0.16), 0.25)
         self.assertAlmostEqual(measures.mean_squared_error(0.3, -1.0), 0.09)

@@ -46,7 +46,7 @@ class TinyStudy(unittest.TestCase):
         render(cls.folder, "reference.exr", "--spp", "2000", "-s", "1000")
         points = ["integrator.photon_count=30000", "integrator.volume_photon_count=15000"]
         cls.study = {
-            "title": "Tiny", "baseline": "paths", "seconds": 0.3, "block": 4,
+            "title": "Tiny", "baseline": "paths", "seconds": 0.3, "block": 4, "bias": True,
             "scenes": [{"name": "fog", "path": str(SCENE), "resolution": [SIZE, SIZE], "reference": str(cls.folder / "reference.exr"),
                         "gate": [5.45, 5.75], "set": {"points": points},
                         "published": {"source": "invented", "seconds": 1, "threads": 1, "rows": [{"method": "paths", "std": 2.0}]}}],
@@ -99,6 +99,11 @@ class TinyStudy(unittest.TestCase):
             self.assertAlmostEqual(error / stats["relative standard error"], 1, delta=1e-4)
         reference = read_exr(self.folder / "reference.exr")
         mean, seeds = measures.grey(reference[""]).mean(), range(1, 4)
+        header, *rows = [line.strip("| ").split(" | ") for line in self.report.splitlines() if line.startswith(("| method | seeds", "| points |", "| paths |"))]
+        for row in rows[:2]:
+            cell = dict(zip(header, row))
+            self.assertTrue(0 < float(cell["FLIP"]) < 1 and float(cell["median error"]) > 0 and float(cell["relMSE 0.99"]) > 0, cell)
+            self.assertEqual("<" in cell["own bias"], row[0] == "points", "paths have no kernels")
         renders = [read_exr(self.folder_of("paths", seed) / "image.exr") for seed in seeds]
         difference = np.mean([layers[""].mean() for layers in renders]) / mean - 1
         variance = measures.relative_std(reference["stderr"], mean) ** 2 \

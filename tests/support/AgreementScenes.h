@@ -48,7 +48,7 @@ inline AgreementScene shippedScene(const std::string& name, std::vector<std::str
 /// Twenty frames that hold all scattered light there is; the ball itself is left out, which would outshine the rest.
 inline AgreementScene fogSequence() {
     AgreementScene scene =
-        builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 128, 40, 60000});
+        builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 80, 24, 50000});
     scene.overrides = {"integrator.min_bounces=2", "integrator.start_time=5", "integrator.transient_time_width=0.5",
                        "integrator.frame_num=20", "integrator.transient_time_center=-1"};
     return scene;
@@ -58,7 +58,7 @@ inline AgreementScene fogInSteadyState() {
     AgreementScene scene = fogSequence();
     scene.name = "steady-state";
     scene.steadyState = true;
-    scene.effort.photonPasses = 16;
+    scene.effort.photonPasses = 12;
     return scene;
 }
 
@@ -71,12 +71,12 @@ inline std::vector<AgreementScene> singleGateScenes() {
         "bsdf": {"type": "null"}, "emission": [260, 240, 195],
         "transform": {"position": [0.3, 1.65, 0.1], "scale": 0.12}})";
     return {
-        shippedScene("cornell-fog", {ball}, 0.08, {32, 96, 28, 40000}),
+        shippedScene("cornell-fog", {ball}, 0.08, {32, 64, 20, 40000}),
         shippedScene("mirror-fog", {}, 0.12, {32, 128, 36, 50000}),
         shippedScene(
             "two-pulses",
             {"integrator.frame_num=0", "integrator.transient_time_center=7.6", "integrator.transient_time_width=0.3"},
-            0.1, {32, 256, 64, 50000}),
+            0.1, {32, 160, 36, 50000}),
         builtScene("forward-fog", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.7), 0.12, Plenty),
         builtScene("backward-fog", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", -0.4), 0.12, Plenty),
         builtScene("coloured-fog", fogCube(R"("sigma_a": [0.3, 0.15, 0.08], "sigma_s": [0.25, 0.5, 1])", 0.2), 0.12,

@@ -129,6 +129,7 @@ void writeMethod(JsonWriter& json, const Method& method) {
     writeLaw(json, "relative variance of a pass", method.costs->variance);
     writeLaw(json, "relative bias of a pass", method.costs->bias);
     writeLaw(json, "CPU seconds of a pass", method.costs->cpuSeconds);
+    json.field("CPU seconds before the first", method.costs->prepareCpuSeconds);
     json.beginArray("prices");
     for (const double error : Errors) {
         json.beginObject();

@@ -34,7 +34,19 @@ void readArray(std::istream& in, Values& values, size_t first, size_t count) {
 } // namespace
 
 void Film::write(std::ostream& out) const {
-    StateHeader header{{},      width_,  height_,         frames_,     contents_.channels, contents_.moments, passes_, uint32_t(contents_.batches), uint32_t(contents_.batchBlock), weight_, squaredWeights_, moment2Sum_, nonFinite_};
+    StateHeader header{{},
+                       width_,
+                       height_,
+                       frames_,
+                       contents_.channels,
+                       contents_.moments,
+                       passes_,
+                       uint32_t(contents_.batches),
+                       uint32_t(contents_.batchBlock),
+                       weight_,
+                       squaredWeights_,
+                       moment2Sum_,
+                       nonFinite_};
     std::memcpy(header.magic, Magic, sizeof Magic);
     out.write(reinterpret_cast<const char*>(&header), sizeof header);
     writeRows(out, 0, height_);
@@ -48,8 +60,8 @@ void Film::read(std::istream& in, const std::string& fileName) {
         throw InputError(fileName, "not a saved render state (or truncated)");
     const auto text = [](int width, int height, int frames, const FilmContents& contents) {
         return std::to_string(width) + "x" + std::to_string(height) + " pixels in " + std::to_string(frames) +
-               " frames of " + std::to_string(contents.channels) +
-               (contents.channels == 1 ? " channel" : " channels") + (contents.moments ? "" : " without moments") +
+               " frames of " + std::to_string(contents.channels) + (contents.channels == 1 ? " channel" : " channels") +
+               (contents.moments ? "" : " without moments") +
                (contents.batches == 0 ? ""
                                       : " with " + std::to_string(contents.batches) + " batches of blocks of " +
                                             std::to_string(contents.batchBlock) + " pixels");
@@ -100,8 +112,7 @@ void Film::readRows(std::istream& in, int from, int end) {
         }
     }
     if (frames_ > 1)
-        for (auto* total : {&totalMean_, &totalMoment2_})
-            readArray(in, *total, size_t(from) * values, rows * values);
+        for (auto* total : {&totalMean_, &totalMoment2_}) readArray(in, *total, size_t(from) * values, rows * values);
     batches_.read(in, from, end);
 }
 

@@ -35,11 +35,13 @@ void PassBatches::foldRow(uint32_t batch, int frame, int blockRow, double weight
     for (int y = top; y < bottom; ++y)
         for (int x = 0; x < width_; ++x)
             for (size_t c = 0; c < channels; ++c)
-                sums[size_t(x / side_) * channels + c] += double(image[(size_t(y) * size_t(width_) + size_t(x)) * channels + c]);
+                sums[size_t(x / side_) * channels + c] +=
+                    double(image[(size_t(y) * size_t(width_) + size_t(x)) * channels + c]);
     const size_t first = rowAt(batch, frame, blockRow);
     for (size_t i = 0; i < sums.size(); ++i) {
         const int left = int(i / channels) * side_, pixels = (std::min(left + side_, width_) - left) * (bottom - top);
-        foldInto(float(sums[i] / double(pixels)), weight, weights_[batch], evenBits(batch, first + i), means_[first + i]);
+        foldInto(float(sums[i] / double(pixels)), weight, weights_[batch], evenBits(batch, first + i),
+                 means_[first + i]);
     }
 }
 

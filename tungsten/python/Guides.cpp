@@ -54,16 +54,17 @@ class GuideOfMedium {
     [[nodiscard]] py::dict sample(float C, double low, double high, py::ssize_t count, uint64_t seed, float before,
                                   float surface) const {
         if (!(C > 0.0f && high > low && before >= 0.0f && before <= 2.0f && count >= 0))
-            throw py::value_error("expected C > 0, high > low, before = 1 - cos from 0 to 2, and a count of at least 0");
+            throw py::value_error(
+                "expected C > 0, high > low, before = 1 - cos from 0 to 2, and a count of at least 0");
         const darts::Residual residual = darts::Residual::of({0.0f, 0.0f, C}, {low, high});
         const darts::HenyeyGreenstein phase{{std::sqrt(before * (2.0f - before)), 0.0f, 1.0f - before},
                                             guide_.medium().g};
         Columns columns(count);
         float *lengths = columns.add("length"), *lengthWeights = columns.add("length_inverse_pdf"),
-              *hs = columns.add("h"), *phases = columns.add("phase"), *directions = columns.add("direction_inverse_pdf"),
-              *vertices = columns.add("vertex"), *legs = columns.add("to_target"),
-              *vertexWeights = columns.add("vertex_inverse_pdf"), *distances = columns.add("distance"),
-              *weights = columns.add("transmittance_over_pdf");
+              *hs = columns.add("h"), *phases = columns.add("phase"),
+              *directions = columns.add("direction_inverse_pdf"), *vertices = columns.add("vertex"),
+              *legs = columns.add("to_target"), *vertexWeights = columns.add("vertex_inverse_pdf"),
+              *distances = columns.add("distance"), *weights = columns.add("transmittance_over_pdf");
         std::mt19937_64 bits(seed);
         const auto random = [&bits] { return float(bits() >> 40) * 0x1p-24f; };
         for (py::ssize_t i = 0; i < count; ++i) {
@@ -103,8 +104,8 @@ class GuideOfMedium {
 double firstPassageLog(double depth, double longest, double gate, double sigmaA, double reducedS, double thickness,
                        double relativeIndex, double allowance) {
     constexpr double Height = 1.0;
-    darts::Residual residual = darts::Residual::of({0.0f, 0.0f, float(depth + Height)},
-                                                   {Height + longest - gate, Height + longest});
+    darts::Residual residual =
+        darts::Residual::of({0.0f, 0.0f, float(depth + Height)}, {Height + longest - gate, Height + longest});
     residual.way = darts::Way::Out;
     residual.exit.faces.add({{0, 0, 1}, float(depth), float(Height), float(thickness), 0.0f});
     residual.exit.inside = float(depth);
@@ -122,24 +123,27 @@ void declareGuides(py::module_& sampling) {
                               "What a guided walk draws at a vertex, for a target at distance C, in a grey medium.")
         .def(py::init<const std::string&, const std::string&, float, float, float>(), "preset"_a, "mode"_a, "sigma_a"_a,
              "sigma_s"_a, "g"_a = 0.0f)
-        .def("sample", &GuideOfMedium::sample,
-             "A dict of arrays (count,): `length` of the next connection (low to high) and 1 / its density per length;\n"
-             "`h` = 1 - cos between the next direction and the target, `phase` of it, and 1 / its density per solid\n"
-             "angle; `vertex`, the control vertex's distance along the ray (NaN: none), `to_target` from there, and 1 /\n"
-             "its density per length; `distance` to the next vertex of the walk, and transmittance over density.\n"
-             "`before` is 1 - cos between the direction that the walk came in and the target.",
-             "C"_a, "low"_a, "high"_a, "count"_a, "seed"_a = uint64_t(0), "before"_a = 0.0f,
-             "surface"_a = std::numeric_limits<float>::infinity())
+        .def(
+            "sample", &GuideOfMedium::sample,
+            "A dict of arrays (count,): `length` of the next connection (low to high) and 1 / its density per length;\n"
+            "`h` = 1 - cos between the next direction and the target, `phase` of it, and 1 / its density per solid\n"
+            "angle; `vertex`, the control vertex's distance along the ray (NaN: none), `to_target` from there, and 1 "
+            "/\n"
+            "its density per length; `distance` to the next vertex of the walk, and transmittance over density.\n"
+            "`before` is 1 - cos between the direction that the walk came in and the target.",
+            "C"_a, "low"_a, "high"_a, "count"_a, "seed"_a = uint64_t(0), "before"_a = 0.0f,
+            "surface"_a = std::numeric_limits<float>::infinity())
         .def("vertex_pdf", py::vectorize(&GuideOfMedium::vertexPdf),
              "density per length along the ray of the control vertex", "C"_a, "low"_a, "high"_a, "h"_a, "distance"_a)
         .def("log_usefulness", py::vectorize(&GuideOfMedium::logUsefulness),
              "log of what a walk with this throughput is good for here", "C"_a, "low"_a, "high"_a,
              "throughput"_a = 1.0f);
-    sampling.def("first_passage_log", py::vectorize(firstPassageLog),
-                 "log of the probability that light diffusing from `depth` under the boundary of a half-space (or slab\n"
-                 "of `thickness`) leaves it after paths of at most `longest`, and no more than `gate` less",
-                 "depth"_a, "longest"_a, "gate"_a, "sigma_a"_a, "reduced_sigma_s"_a,
-                 "thickness"_a = std::numeric_limits<double>::infinity(), "relative_index"_a = 1.0, "allowance"_a = 1.0);
+    sampling.def(
+        "first_passage_log", py::vectorize(firstPassageLog),
+        "log of the probability that light diffusing from `depth` under the boundary of a half-space (or slab\n"
+        "of `thickness`) leaves it after paths of at most `longest`, and no more than `gate` less",
+        "depth"_a, "longest"_a, "gate"_a, "sigma_a"_a, "reduced_sigma_s"_a,
+        "thickness"_a = std::numeric_limits<double>::infinity(), "relative_index"_a = 1.0, "allowance"_a = 1.0);
 }
 
 } // namespace tungsten::python

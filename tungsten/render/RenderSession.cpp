@@ -120,13 +120,15 @@ class Session {
             if (shared_.speaks()) show(stop);
         }
         result_.renderSeconds = secondsSince(start_);
+        shared_.gather(); // what a broken round has left
+        trace_.end(result_.film, result_.bias, result_.samples);
         result_.trace = trace_.entries();
     }
 
     void show(bool last) {
-        trace_.record(result_.film, result_.bias, result_.samples, last);
+        trace_.record(result_.film, result_.bias, result_.samples, shared_.isWhole());
         if (last || reporter_.due()) reporter_.show(state(), last);
-        if (!last) files_.checkpointIfDue();
+        if (!last && shared_.isWhole()) files_.checkpointIfDue(); // else in a round that gathers it
     }
 
     [[nodiscard]] std::vector<RoundPass> nextRound() const {

@@ -31,6 +31,7 @@ class SharedResult {
     void fold(size_t rank, double weight);
     /// Rank 0's films become whole.
     void gather();
+    [[nodiscard]] bool isWhole() const { return whole_; }
     /// Whether SessionResult::errorBound() is at most this.
     [[nodiscard]] bool errorIsBelow(double target);
     /// Whether it is time to gather for the progress bar: that takes at most a twentieth of the time.

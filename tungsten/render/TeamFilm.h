@@ -37,7 +37,7 @@ class TeamFilm {
     std::vector<Bytes> received_;    ///< rows of the round's passes, by rank
     std::vector<FoldedPass> folded_; ///< since settle()
     uint64_t bytesSent_ = 0;
-    uint64_t told_ = 0;              ///< non-finite samples that rank 0 knows of
+    uint64_t told_ = 0; ///< non-finite samples that rank 0 knows of
 };
 
 } // namespace tungsten

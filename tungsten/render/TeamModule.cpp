@@ -27,7 +27,8 @@ std::filesystem::path moduleFile(int processes) {
         if (std::filesystem::exists(directory / ModuleFile, error)) return directory / ModuleFile;
     }
     throw UsageError("started as one of " + std::to_string(processes) + " processes, by mpirun for example, but " +
-                     ModuleFile + " is not beside the plugins: this build has no MPI (apt-get install libopenmpi-dev "
+                     ModuleFile +
+                     " is not beside the plugins: this build has no MPI (apt-get install libopenmpi-dev "
                      "openmpi-bin, then configure and build again)");
 }
 
@@ -46,8 +47,8 @@ std::unique_ptr<Team> joinTeam() {
         throw InputError(file.string(), "built for another version of this program");
     std::unique_ptr<Team> team = entry()->join();
     if (team->size() == processes) return team;
-    throw UsageError("started as one of " + std::to_string(processes) + " processes, but " + file.string() +
-                     " sees " + std::to_string(team->size()) + ": the launcher is of another MPI than it was built with");
+    throw UsageError("started as one of " + std::to_string(processes) + " processes, but " + file.string() + " sees " +
+                     std::to_string(team->size()) + ": the launcher is of another MPI than it was built with");
 }
 
 } // namespace tungsten

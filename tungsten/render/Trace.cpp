@@ -31,16 +31,21 @@ bool Trace::due() const {
     return !folder_.empty() && wallNow() - wallStart_ >= next_;
 }
 
-void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool last) {
-    if (folder_.empty() || (!last && !due())) return;
-    const double wall = wallNow(), cpu = processCpuSeconds();
-    write(film, bias, samples, wall - wallStart_, cpu - cpuStart_);
-    next_ = 2.0 * (wall - wallStart_);
-    wallStart_ += wallNow() - wall;
-    cpuStart_ += processCpuSeconds() - cpu;
+void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool whole) {
+    if (folder_.empty()) return;
+    const bool writes = whole && due();
+    wall_ = wallNow();
+    cpu_ = processCpuSeconds();
+    written_ = false;
+    if (writes) write(film, bias, samples);
 }
 
-void Trace::write(const Film& film, const Film& bias, uint64_t samples, double wallSeconds, double cpuSeconds) {
+void Trace::end(const Film& film, const Film& bias, uint64_t samples) {
+    if (!written_) write(film, bias, samples);
+}
+
+void Trace::write(const Film& film, const Film& bias, uint64_t samples) {
+    const double wallSeconds = wall_ - wallStart_, cpuSeconds = cpu_ - cpuStart_;
     const std::string number = std::to_string(film.passes());
     const std::string name = std::string(6 - std::min<size_t>(number.size(), 6), '0') + number + ".npy";
     TraceEntry entry{film.passes(), samples,        wallSeconds,      cpuSeconds, film.relativeStandardError(),
@@ -60,6 +65,10 @@ void Trace::write(const Film& film, const Film& bias, uint64_t samples, double w
     }
     entries_.push_back(entry);
     writeList();
+    written_ = true;
+    next_ = 2.0 * wallSeconds;
+    wallStart_ += wallNow() - wall_;
+    cpuStart_ += processCpuSeconds() - cpu_;
 }
 
 void Trace::writeList() const {

@@ -35,18 +35,23 @@ class Trace {
     [[nodiscard]] bool due() const;
     /// After a pass. Throws InputError if a file cannot be written.
     /// `bias`: of the film, without frames where none is estimated.
-    void record(const Film& film, const Film& bias, uint64_t samples, bool last);
+    /// `whole`: the film is; else nothing is written yet.
+    void record(const Film& film, const Film& bias, uint64_t samples, bool whole = true);
+    /// After the last pass, or one that was broken off: the film as it was at the last `record`, if that wrote nothing.
+    void end(const Film& film, const Film& bias, uint64_t samples);
     [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }
 
   private:
-    void write(const Film& film, const Film& bias, uint64_t samples, double wallSeconds, double cpuSeconds);
+    void write(const Film& film, const Film& bias, uint64_t samples);
     void writeList() const;
 
     std::filesystem::path folder_;
     const Scene& scene_;
     uint64_t seed_;
     double wallStart_ = 0.0, cpuStart_ = 0.0; ///< moved on by the time that writing takes
+    double wall_ = 0.0, cpu_ = 0.0;           ///< when the last pass ended
     double next_ = 0.0;                       ///< seconds of passes
+    bool written_ = true;                     ///< the last pass's film
     std::vector<TraceEntry> entries_;
 };
 

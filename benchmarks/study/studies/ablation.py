@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 
-from bench import PRIMITIVES, Bench, Scene, panels, table
+from bench import PRIMITIVES, Bench, Scene, panels, plain_log, table
 from errors import Truth, mse
 
 TITLE = "Ablation: the parts of the sampling, with the same photons and radii"
@@ -75,6 +75,23 @@ def rows_of(found, truth):
     return rows, losses
 
 
+def picture(bench, pictures):
+    """Of [(title, {variant: cost over that of best, by seed})]."""
+    figure, axes = panels(len(pictures), 2.3, 4.6)
+    for (title, losses), panel in zip(pictures, axes):
+        for row, costs in enumerate(losses.values()):
+            panel.plot([min(costs), max(costs)], [row, row], color="tab:blue", linewidth=4, alpha=0.4)
+            panel.plot(np.mean(costs), row, marker="o", markersize=4, color="tab:blue")
+        panel.set_xscale("log")
+        plain_log(panel.xaxis)
+        panel.axvline(1, color="0.3", linewidth=0.8)
+        panel.set_title(title, fontsize=8)
+        panel.set_yticks(range(len(losses)), list(losses) if panel is axes[0] else [""] * len(losses))
+        panel.invert_yaxis()
+    axes[len(axes) // 2].set_xlabel("MSE × CPU seconds, over that of best", fontsize=9)
+    bench.plot(figure, "ablation")
+
+
 def run(bench: Bench):
     text, pictures = [], []
     for scene, by, primitives in groups(bench):
@@ -86,18 +103,7 @@ def run(bench: Bench):
             text += [f"## {scene.words()}: {primitive}", table(
                 ["variant", "standard error", "mean / reference", "MSE × CPU s (of the seeds)", "gain over vanilla", "times best's"], rows)]
             pictures.append((f"{scene.name}, {primitive}", losses))
-    figure, axes = panels(len(pictures), 2.3, 4.6)
-    for (title, losses), panel in zip(pictures, axes):
-        for row, costs in enumerate(losses.values()):
-            panel.plot([min(costs), max(costs)], [row, row], color="tab:blue", linewidth=4, alpha=0.4)
-            panel.plot(np.mean(costs), row, marker="o", markersize=4, color="tab:blue")
-        panel.set_xscale("log")
-        panel.axvline(1, color="0.3", linewidth=0.8)
-        panel.set_title(title, fontsize=8)
-        panel.set_yticks(range(len(losses)), list(losses) if panel is axes[0] else [""] * len(losses))
-        panel.invert_yaxis()
-    axes[len(axes) // 2].set_xlabel("MSE × CPU seconds, over that of best", fontsize=9)
-    bench.plot(figure, "ablation")
+    picture(bench, pictures)
     bench.write(TITLE, "Above the line `best` the paper's parts, from none to all; below it `best` with one part off. Above 1 in the "
                 "last column: the part is worth its time. Dots: two seeds, bars: one and the other. MSE over (reference "
                 "mean)²; a heavy tail that two seeds have not seen is in no figure, and where the mean is far from the reference's (points of "

@@ -1,0 +1,141 @@
+"""Time and memory against pixels, photons, frames, triangles and threads."""
+
+import json
+
+import numpy as np
+
+from bench import Bench, Scene, look, method, panels, plain_log, table
+
+TITLE = "Time and memory against the size of a scene and its image"
+METHODS = ["plain points", "best points", "plain beams", "best paths"]
+PHOTONS = {"points": (20000, 20000), "beams": (20000, 2000), "paths": (0, 0)}  # on surfaces, in volumes
+REPEATS, PASSES = 2, 2
+
+
+def counts(name, times=1.0):
+    surface, volume = PHOTONS[name.split(" ")[1]]
+    return [f"integrator.photon_count={int(surface * times)}", f"integrator.volume_photon_count={int(volume * times)}"] if surface else []
+
+
+def sphere(rings):
+    """Vertices and triangles of a ball of so many rings, as the text of an OBJ file."""
+    sides = 2 * rings
+    angles = [(np.pi * i / rings, 2 * np.pi * j / sides) for i in range(rings + 1) for j in range(sides)]
+    lines = [f"v {np.sin(a) * np.cos(b):.6f} {np.cos(a):.6f} {np.sin(a) * np.sin(b):.6f}" for a, b in angles]
+    for i in range(rings):
+        for j in range(sides):
+            near, far = i * sides + j, i * sides + (j + 1) % sides
+            lines += [f"f {near + 1} {far + 1} {near + sides + 1}"] if i < rings - 1 else []
+            lines += [f"f {far + 1} {far + sides + 1} {near + sides + 1}"] if i > 0 else []
+    return "\n".join(lines) + "\n"
+
+
+def triangles_of(rings):
+    return 4 * rings * (rings - 1)
+
+
+def ball_scene(bench, rings):
+    """A ball of triangles in fog, over a floor."""
+    folder = bench.work / f"ball-{rings}"
+    folder.mkdir(exist_ok=True)
+    (folder / f"ball-{rings}.obj").write_text(sphere(rings))
+    scene = {
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3, "sigma_a": 0.02}],
+        "primitives": [
+            {"name": "floor", "type": "quad", "bsdf": {"type": "lambert", "albedo": 0.4}, "transform": {"scale": [5, 1, 4]}},
+            {"name": "ball", "type": "mesh", "file": f"ball-{rings}.obj", "bsdf": {"type": "lambert", "albedo": 0.7},
+             "transform": {"position": [0, 0.9, 0], "scale": 0.8}},
+            {"name": "lamp", "type": "point", "emission": 50, "ext_medium": "fog", "transform": {"position": [-1.2, 2, 1]}}],
+        "camera": {"type": "pinhole", "resolution": [64, 64], "fov": 50, "medium": "fog", "reconstruction_filter": "box",
+                   "transform": {"position": [0, 1.6, 5], "look_at": [0, 0.8, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "path_tracer", "max_bounces": 32, "gather_radius": 0.1, "fixed_volume_radius": True, "volume_gather_radius": 0.1,
+                       "transient_time_center": 8, "transient_time_width": 1}, "renderer": {"spp": 1}}
+    (folder / "scene.json").write_text(json.dumps(scene, indent=1))
+    return Scene(f"ball of {triangles_of(rings)} triangles", folder / "scene.json", (64, 64))
+
+
+def axes_of(bench):
+    """{what grows: ({size: {method: (scene, settings, threads)}})}."""
+    def fog(side, *settings):
+        return Scene.own("cornell-fog", side, *settings)
+
+    def film(frames):
+        return [f"integrator.{v}" for v in (f"frame_num={frames}", "start_time=4", f"transient_time_width={4 / frames!r}")]
+
+    sides = bench.short([32, 64, 128, 256], [8, 16])
+    factors = bench.short([0.25, 1, 4, 16], [0.1, 0.4])
+    frames = bench.short([1, 8, 64, 512], [1, 4])
+    rings = bench.short([8, 32, 128, 512], [4, 8])
+    return {
+        "pixels": {side**2: {name: (fog(side), [*method(name), *counts(name)], 1) for name in METHODS} for side in sides},
+        "photons of a pass": {int(sum(PHOTONS["points"]) * f): {name: (fog(48), [*method(name), *counts(name, f)], 1)
+                                                              for name in METHODS if "paths" not in name} for f in factors},
+        "frames": {n: {name: (fog(48), [*method(name), *counts(name), *film(n)], 1) for name in METHODS} for n in frames},
+        "triangles": {triangles_of(r): {name: (ball_scene(bench, r), [*method(name), *counts(name)], 1) for name in METHODS} for r in rings},
+        "threads": {n: {name: (fog(96), [*method(name), *counts(name, 2)], n) for name in METHODS} for n in (1, 2)},
+    }
+
+
+def measured(bench, cells):
+    """{size: {method: (CPU seconds of a pass, wall seconds of a pass, load and preparation, peak MB)}}: the least of the repeats."""
+    found = {}
+    for again in range(1, bench.short(REPEATS, 1) + 1):
+        for size, of_size in list(cells.items())[::1 if again % 2 else -1]:
+            for name, (scene, settings, threads) in of_size.items():
+                render = bench.render(scene, settings, 1, passes=PASSES, threads=threads, again=again)
+                last, stages = render.entries[-1], render.stats["stages"]
+                before = sum(stages.get(stage, {}).get("CPU seconds", 0.0) for stage in ("load", "prepare"))
+                figures = (last["CPU seconds"] / PASSES, last["wall seconds"] / PASSES, before, render.stats["peak memory bytes"] / 1e6)
+                known = found.setdefault(size, {}).get(name, figures)
+                found[size][name] = tuple(map(min, figures, known))
+    return dict(sorted(found.items()))
+
+
+def exponent(sizes, values):
+    """The power of the size between the two largest."""
+    return float(np.log(values[-1] / values[-2]) / np.log(sizes[-1] / sizes[-2]))
+
+
+def rows_of(found):
+    """By method: seconds by size, the power at the upper end, memory, its growth per unit of size."""
+    sizes = list(found)
+    for name in next(iter(found.values())):
+        cpu, _, before, memory = zip(*(found[size][name] for size in sizes))
+        grows = 1e6 * (memory[-1] - memory[-2]) / (sizes[-1] - sizes[-2])
+        yield [name, *(f"{1e3 * seconds:.3g}" for seconds in cpu), f"{exponent(sizes, cpu):.2f}", *(f"{mb:.0f}" for mb in memory), 
+               f"{grows:.3g}" if memory[-1] > 1.1 * memory[0] else "–", f"{1e3 * before[-1]:.3g}"]
+
+
+def thread_rows(found):
+    for name, (cpu, wall, _, memory) in found[1].items():
+        cpu2, wall2, _, memory2 = found[2][name]
+        yield [name, f"{1e3 * wall:.3g}", f"{1e3 * wall2:.3g}", f"{wall / wall2:.2f}", f"{1e3 * cpu:.3g}", f"{1e3 * cpu2:.3g}", f"{memory:.0f}", f"{memory2:.0f}"]
+
+
+def picture(bench, found):
+    grows = [what for what in found if what != "threads"]
+    figure, axes = panels(len(grows), 3.4, 3.4)
+    for what, panel in zip(grows, axes):
+        for name in next(iter(found[what].values())):
+            sizes = [size for size in found[what] if name in found[what][size]]
+            panel.loglog(sizes, [found[what][size][name][0] for size in sizes], marker="o", markersize=3, label=name, **look(name))
+        plain_log(panel.yaxis)
+        panel.set_xlabel(what, fontsize=9)
+    axes[0].set_ylabel("CPU seconds of a pass", fontsize=9)
+    axes[0].legend(fontsize=7)
+    bench.plot(figure, bench.name)
+
+
+def run(bench: Bench):
+    found = {what: measured(bench, cells) for what, cells in axes_of(bench).items()}
+    picture(bench, found)
+    text = []
+    for what in ("pixels", "photons of a pass", "frames", "triangles"):
+        sizes = list(found[what])
+        text += [f"## {what.capitalize()}", table(["method", *(f"{n}: ms" for n in sizes), "power at the end", *(f"{n}: MB" for n in sizes),
+                                                   f"bytes for each of the {what.split(' ')[0]}", "load and prepare, ms"], rows_of(found[what]))]
+    text += ["## Threads", "A machine with other work to do has less than two processors for two threads.",
+             table(["method", "1: ms", "2: ms", "times as fast", "1: CPU ms", "2: CPU ms", "1: MB", "2: MB"], thread_rows(found["threads"]))]
+    bench.write(TITLE, "CPU ms of a pass, of one sample for each pixel, and the peak memory of the process, in cornell-fog; triangles: a ball of them in fog. "
+                f"The least of {bench.short(REPEATS, 1)} renders of {PASSES} passes each, one thread. The power: of the size, between the two largest. What a scene needs "
+                "apart from what grows is in all of them, so that powers are below those of large scenes.", "![CPU seconds against sizes](scaling.svg)", *text)
