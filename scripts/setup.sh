@@ -2,6 +2,7 @@
 # Makes a fresh Debian 12 or 13 ready: installs missing packages, configures and builds into build/. Safe to run again.
 # Arguments go to the build (such as --target tungsten-app).
 #   TUNGSTEN_WERROR=ON    warnings are errors (continuous integration)
+#   TUNGSTEN_MPI=ON       installs Open MPI too, so that mpirun can be used (without it: whether it is there)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -12,6 +13,8 @@ packages=(
   libgtest-dev libbenchmark-dev
   python3-dev pybind11-dev python3-numpy python3-matplotlib
 )
+
+if [ "${TUNGSTEN_MPI:-OFF}" = ON ]; then packages+=(libopenmpi-dev openmpi-bin); fi
 
 is_installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

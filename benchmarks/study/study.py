@@ -18,10 +18,11 @@ from report import write_report
 from references import SECONDS, SEEDS, render_references
 from runs import check, plan, run_all
 from study_file import StudyError, load_study, missing_references, require_references
+from submit import MOST_TASKS, part_of, run_by_workers, submit
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDIES = Path(__file__).resolve().parent / "studies"
-ACTIONS = ["run", "report", "check", "list", "references"]
+ACTIONS = ["run", "report", "check", "list", "references", "submit"]
 EXIT_DONE, EXIT_FAILED_RUNS, EXIT_BAD_INPUT, EXIT_INTERRUPTED = 0, 1, 2, 130
 
 
@@ -34,10 +35,11 @@ def parse_arguments(arguments):
                                      "give the same command again. Exit codes: 0 done, 1 some runs failed, 2 bad input.")
     parser.add_argument("study", help="a name: " + ", ".join(sorted(file.stem for file in STUDIES.glob("*.*")))
                         + "; or a study file of your own; or new, with a scene: writes a study of it beside it")
-    parser.add_argument("action", nargs="?", default="run", metavar="{run,report,check,list,references} | SCENE",
+    parser.add_argument("action", nargs="?", default="run", metavar="{run,report,check,list,references,submit} | SCENE",
                         help="run: render what is missing, then report (default); report: from the results so far; "
                         "check: whether there are references, and the renderer reads every scene with every method's settings; list: show the runs; "
-                        f"references: render those of the study's own, {SEEDS} seeds of {SECONDS} s each unless told otherwise")
+                        f"references: render those of the study's own, {SEEDS} seeds of {SECONDS} s each unless told otherwise; "
+                        "submit: hand the runs to Slurm as a job array, then the report")
     parser.add_argument("--tungsten", type=Path, default=ROOT / "build/bin/tungsten", help="the renderer (default: %(default)s)")
     parser.add_argument("--work", type=Path, help="folder of results (default: build/study/STUDY)")
     parser.add_argument("--root", type=Path, default=ROOT, help="what paths in the study are relative to (default: the project)")
@@ -46,6 +48,14 @@ def parse_arguments(arguments):
     parser.add_argument("--threads", type=int, help="threads instead of the study's")
     parser.add_argument("--scenes", type=_names, help='only these, as "a; b"')
     parser.add_argument("--methods", type=_names, help='only these, as "a; b"')
+    parser.add_argument("--workers", type=int, default=1, help="make so many runs at once on this machine; times are "
+                        "comparable only where workers times threads are no more than its cores")
+    parser.add_argument("--part", help="I/N: only every N-th run, from the I-th (from 0) on; no report")
+    parser.add_argument("--tasks", type=int, default=MOST_TASKS, help="of submit: tasks of the array at most (default: %(default)s)")
+    parser.add_argument("--sbatch", default="sbatch", help="of submit: Slurm's command (default: %(default)s)")
+    parser.add_argument("--sbatch-option", action="append", default=[], metavar="OPTION",
+                        help="of submit: for sbatch, as --sbatch-option=--partition=long (repeatable)")
+    parser.add_argument("--write-only", action="store_true", help="of submit: write the scripts and submit nothing")
     parser.add_argument("--quick", action="store_true",
                         help="does it work? Small and short, its results under --work; of files: 2 seeds of 2 s")
     parser.add_argument("--retry-failed", action="store_true", help="run what failed once more")
@@ -56,6 +66,10 @@ def parse_arguments(arguments):
         parser.error("new: expected a scene")
     if options.study != "new" and options.action not in ACTIONS:
         parser.error(f"'{options.action}' is no action; there are: {', '.join(ACTIONS)}")
+    if min(options.workers, options.tasks) < 1:
+        parser.error("--workers, --tasks: at least 1 is needed")
+    if (options.part or options.workers > 1) and options.action != "run":
+        parser.error("--part, --workers: go with run alone")
     return options
 
 
@@ -80,7 +94,7 @@ def resolved(name):
 
 def perform_program(file, options):
     """A study that is a program; exits with what its renders say."""
-    if options.action != "run":
+    if options.action != "run" or options.part or options.workers > 1:
         raise StudyError(f"'{file.stem}' is a program: it knows 'run' alone")
     spec = importlib.util.spec_from_file_location(file.stem.replace("-", "_"), file)
     program = importlib.util.module_from_spec(spec)
@@ -144,7 +158,7 @@ def perform(options):
         for run in runs:
             print(f"{_state(run.record()):7}  {run.label}")
         return EXIT_DONE
-    if options.action in ("run", "check", "references"):
+    if options.action in ("run", "check", "references", "submit"):
         require_renderer(options)
     if options.action == "check":
         problems = missing_references(study) + check(runs, options.tungsten)
@@ -156,8 +170,16 @@ def perform(options):
         return EXIT_FAILED_RUNS if failed else EXIT_DONE
     require_references(study)
     work.mkdir(parents=True, exist_ok=True)
-    if options.action == "run":
-        run_all(study, runs, options.tungsten.resolve(), options.retry_failed, options.accept_warnings)
+    if options.action == "submit":
+        submit(study, runs, work, options)
+        return EXIT_DONE
+    if options.action == "run" and options.workers > 1:
+        run_by_workers(options)
+    elif options.action == "run":
+        part, parts = part_of(options.part or "0/1")
+        run_all(study, runs[part::parts], options.tungsten.resolve(), options.retry_failed, options.accept_warnings)
+        if options.part:
+            return EXIT_DONE
     failed = [run for run in runs if (record := run.record()) and record["error"]]
     summaries, references = collect(study, runs)
     print(f"{write_report(study, summaries, references, work)}\n{write_page(study, summaries, references, runs, work)}")

@@ -227,6 +227,46 @@ class Sampling(unittest.TestCase):
         np.testing.assert_allclose(first + second, 2.5)
         np.testing.assert_allclose(second, np.sqrt((first - 2) ** 2 + 4 * first * h), rtol=1e-12)
 
+    def test_guides_sum_to_light_scattered_once(self):
+        """Connections of one scattering from an isotropic vertex, against the integral over their lengths."""
+        C, low, high, sigma_s = 1.0, 1.5, 1.6, 0.8
+        S = np.linspace(low, high, 20001)
+        light = np.exp(-S) * np.log((S + C) / (S - C)) / (C * S)
+        exact = sigma_s * ((light[1:] + light[:-1]) / 2).mean() * (high - low)
+        for preset in ("published", "best"):
+            for mode in ("path", "photon"):
+                guide = sampling.Guide(preset, mode, 0.2, sigma_s)
+                drawn = guide.sample(C, low, high, 200000, seed=5)
+                self.assertTrue(((drawn["length"] >= low - 1e-5) & (drawn["length"] <= high + 1e-5)).all())
+                good = drawn["vertex_inverse_pdf"] > 0
+                np.testing.assert_allclose(drawn["vertex"][good] + drawn["to_target"][good], drawn["length"][good], rtol=1e-5)
+                value = np.zeros(len(good))
+                value[good] = (sigma_s * np.exp(-drawn["length"]) * drawn["vertex_inverse_pdf"] * drawn["direction_inverse_pdf"]
+                               * drawn["phase"] / np.square(drawn["to_target"]))[good]
+                self.assertAlmostEqual(value.mean(), exact, delta=4.5 * value.std() / len(value) ** 0.5, msg=(preset, mode))
+                pdf = guide.vertex_pdf(C, low, high, drawn["h"][good][:1000], drawn["vertex"][good][:1000])
+                np.testing.assert_allclose(pdf, 1 / drawn["vertex_inverse_pdf"][good][:1000], rtol=2e-3)
+                flight = -np.expm1(-sampling.first_leg(C, high - C, drawn["h"]))
+                weight = drawn["transmittance_over_pdf"]
+                self.assertAlmostEqual((weight - flight).mean(), 0, delta=4.5 * (weight - flight).std() / len(weight) ** 0.5)
+        with self.assertRaisesRegex(ValueError, "high > low"):
+            guide.sample(1.0, 2.0, 1.5, 10)
+        with self.assertRaisesRegex(ValueError, "preset"):
+            sampling.Guide("worst", "path", 0.2, 0.8)
+
+    def test_first_passage_is_the_integrated_flux(self):
+        sigma_a, reduced, gate = 0.02, 10.0, 0.3
+        D = 1 / (3 * (sigma_a + reduced))
+        depth, longest = np.array([[0.05], [0.3], [1.0]]), np.array([2.0, 5.0, 12.0])
+        y, s = (depth + 2 * D)[..., None], np.linspace(longest - gate, longest, 4001).T[None]
+        flux = y / np.sqrt(4 * np.pi * D * s ** 3) * np.exp(-y ** 2 / (4 * D * s))
+        expected = np.log(((flux[..., 1:] + flux[..., :-1]) / 2).mean(axis=-1) * gate) - sigma_a * longest
+        found = sampling.first_passage_log(depth, longest, gate, sigma_a, reduced, allowance=0)
+        np.testing.assert_allclose(found, expected, atol=3e-3)
+        self.assertLess(sampling.first_passage_log(0.3, 5.0, gate, sigma_a, reduced, thickness=0.5),
+                        sampling.first_passage_log(0.3, 5.0, gate, sigma_a, reduced))
+        self.assertEqual(sampling.first_passage_log(1.0, 0.5, gate, sigma_a, reduced), -np.inf)
+
     def test_greens_functions(self):
         rho, s = np.array([[1.0], [2.0]]), np.array([2.5, 4.0, 8.0])
         D = 1 / (3 * (0.1 + 0.9 * 0.5))

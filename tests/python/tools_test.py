@@ -212,6 +212,42 @@ class Film(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "channel"):
             tools.per_frame(result, 3)
 
+    def test_the_error_of_a_region_is_that_of_several_renders(self):
+        """Photons are seen by many pixels at once: independent pixels would tell too little."""
+        scene = {
+            "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.5, "sigma_a": 0.05}],
+            "primitives": [{"type": "point", "power": 10, "ext_medium": "fog", "transform": {"position": [0.5, 0.5, 0]}}],
+            "camera": {"type": "pinhole", "resolution": [18, 14], "fov": 40, "medium": "fog",
+                       "transform": {"position": [0, 0, 4], "look_at": [0, 0, 0]}},
+            "film": {"batches": 16}, "renderer": {"spp_step": 1},
+            "integrator": {"type": "progressive_transient_photon_map", "photon_count": 200, "volume_photon_count": 200,
+                           "fixed_volume_radius": True, "volume_gather_radius": 0.3, "max_bounces": 4,
+                           "transient_time_center": 6, "transient_time_width": 2}}
+        means, told, independent = [], [], []
+        for seed in range(24):
+            result = darts_tungsten.render(scene, passes=32, seed=seed)
+            mean, error = tools.region(result, slice(4, None), slice(4, 16), 1)
+            pixels = np.s_[0, 4:, 4:16, 1]
+            self.assertAlmostEqual(mean[0] / result.mean[pixels].mean(), 1, delta=1e-5)
+            means.append(mean[0])
+            told.append(error[0])
+            independent.append(np.sqrt(np.square(result.standard_error[pixels]).sum()) / result.standard_error[pixels].size)
+        true = np.std(means, ddof=1)
+        told, independent = (np.sqrt(np.mean(np.square(errors))) for errors in (told, independent))
+        spread = np.hypot(1 / np.sqrt(2 * 23), 1 / np.sqrt(2 * 15 * 24))  # of the true error by 24 seeds, and of what is told
+        self.assertLess(abs(told / true - 1), 4 * spread)
+        self.assertLess(independent, 0.5 * true)
+        with tempfile.TemporaryDirectory() as folder:
+            with np.load(result.write(Path(folder) / "film.npz")[0]) as file:
+                np.testing.assert_array_equal(tools.region(file, slice(4, None), slice(4, 16), 1)[1], error)
+        for rows, complaint in ((slice(2, 8), "multiple of 4"), (slice(0, 13), "edge at 14"), (slice(8, 4), "rows")):
+            with self.assertRaisesRegex(ValueError, complaint):
+                tools.region(result, rows, slice(0, 4))
+        with self.assertRaisesRegex(ValueError, "no batches"):
+            tools.region(darts_tungsten.render(self.SCENE, samples=4), slice(0, 1), slice(0, 1))
+        with self.assertRaisesRegex(darts_tungsten.InputError, "one batch tells no error"):
+            darts_tungsten.render(self.SCENE, samples=4, set={"film.batches": 1})
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -119,6 +119,16 @@ TEST(PlanCost, PrintsATableAndWritesJson) {
     EXPECT_EQ(files, 1u) << "it renders nothing";
 }
 
+TEST(PlanCost, EndsWhenItIsInterrupted) {
+    test::Command command({"--plan-cost", "--timeout", "1h", "--resolution", "12x12", "--set", "renderer.spp_step=1",
+                           (test::dataFolder() / "scenes/cornell-fog/scene.json").string()});
+    ASSERT_TRUE(command.handles(SIGINT));
+    command.send(SIGINT);
+    const auto result = command.wait();
+    EXPECT_EQ(result.exitCode, 130) << result.all();
+    EXPECT_EQ(result.out, "");
+}
+
 /// Paths miss a laser's light where it is scattered for the first time: a reason instead of a price.
 TEST(PlanCost, SaysWhyAMethodHasNoPrice) {
     const auto result =

@@ -102,6 +102,50 @@ TEST_F(Partial, PhotonMapsMergeToRounding) {
     EXPECT_LT(difference, 1e-6 * sum);
 }
 
+TEST_F(Partial, ExposureAndBatchesAreThoseOfOneRun) {
+    const std::vector<std::string> more{"--set", "renderer.exposure=3.5", "--set", "film.batches=4"};
+    ASSERT_EQ(passes("0:3", more).exitCode, 0);
+    ASSERT_EQ(passes("3:8", more).exitCode, 0);
+    const std::vector<std::string> states{"merge", "--quiet", state("0-3"), state("3-8")};
+    const auto merge = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), states.begin(), states.end());
+        EXPECT_EQ(tungsten(arguments).exitCode, 0);
+    };
+    merge({"-e", target(".npz"), "-o", target(".png")});
+    const std::string one = whole(".npz", more);
+    EXPECT_EQ(contentOf(target(".png")), contentOf(out() / "whole.png"));
+    const auto member = [](const std::string& file, const std::string& name) {
+        const std::string bytes = contentOf(file);
+        const size_t at = bytes.find(name);
+        return bytes.substr(at, bytes.find("PK\x03\x04", at) - at);
+    };
+    for (const char* name : {"mean.npy", "standard_error.npy", "batch_means.npy", "batch_weights.npy"})
+        EXPECT_EQ(member(target(".npz"), name), member(one, name)) << name;
+    merge({"-o", target(".png"), "--exposure", "-2"});
+    const std::string dark = contentOf(target(".png"));
+    EXPECT_NE(dark, contentOf(out() / "whole.png"));
+    ASSERT_EQ(run({"--spp", "15", "-o", "dark.png", "--exposure", "-2"}).exitCode, 0);
+    EXPECT_EQ(dark, contentOf(out() / "dark.png"));
+    EXPECT_EQ(tungsten({"merge", state("0-3"), "-o", target(".png"), "--exposure", "bright"}).exitCode, 2);
+}
+
+TEST_F(Partial, DetectorsKeepTheirNamesAndEtendues) {
+    const std::vector<std::string> fibres{"--set", R"(camera={"type":"detectors","medium":"fog","detectors":[
+            {"name":"fibre","position":[0,1.2,3.5],"direction":[0,-0.2,-1],"radius":0.25,"numerical_aperture":0.4},
+            {"position":[1,1.2,3.5],"direction":[0,-0.2,-1],"radius":0.125}]})"};
+    ASSERT_EQ(passes("0:3", fibres).exitCode, 0);
+    ASSERT_EQ(passes("3:8", fibres).exitCode, 0);
+    ASSERT_EQ(tungsten({"merge", state("0-3"), state("3-8"), "-e", target(".exr")}).exitCode, 0);
+    const auto detectors = [](const std::string& metadata) {
+        const size_t at = metadata.find("\"etendues\"");
+        return at == std::string::npos ? "missing" : metadata.substr(metadata.find("\"detectors\""), at + 120 - at);
+    };
+    const std::string merged = detectors(readExrMetadata(target(".exr")));
+    EXPECT_NE(merged, "missing");
+    EXPECT_NE(merged.find("fibre"), std::string::npos) << merged;
+    EXPECT_EQ(merged, detectors(readExrMetadata(whole(".exr", fibres))));
+}
+
 TEST_F(Partial, PassesThatOverlapOrMissAreNamed) {
     for (const char* range : {"0:3", "2:4", "5:8"}) ASSERT_EQ(passes(range).exitCode, 0);
     refusesToMerge({state("0-3"), state("2-4")}, 1,

@@ -19,7 +19,8 @@ namespace {
 struct MergeOptions {
     std::vector<std::filesystem::path> states;
     OutputFiles outputs;
-    bool quiet = false;
+    std::string exposure;
+    bool noFrames = false, quiet = false;
 };
 
 constexpr const char* Purpose = "Puts the partial states of --passes together: the images that one run gives.";
@@ -28,6 +29,11 @@ void declareOptions(CLI::App& app, MergeOptions& options) {
     app.add_option("states", options.states, "all passes of one render, from its first on, each once")->required();
     app.add_option("-o,--output-file", options.outputs.ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", options.outputs.hdr, "linear image: .exr, .npz, .h5, .pfm or .npy");
+    app.add_option("--exposure", options.exposure,
+                   "stops that 8-bit images are brightened by, or auto (default: the scene's)");
+    app.add_flag("--no-frames", options.noFrames, "no 8-bit image of each frame of a sequence");
+    app.add_option("--sheet", options.outputs.sheet, "frames of a sequence at a glance (.png)");
+    app.add_option("--video", options.outputs.video, "a sequence as .mp4 or .gif, by ffmpeg");
     app.add_option("--stats", options.outputs.statistics,
                    "write what was measured, of every state too, to this JSON file");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");
@@ -45,6 +51,13 @@ bool parse(int argc, const char* const* argv, MergeOptions& options) {
         app.exit(error, std::cout, std::cerr);
         return false;
     }
+    if (!options.exposure.empty()) {
+        options.outputs.exposure = ExposureChoice::read(options.exposure);
+        if (!options.outputs.exposure)
+            throw UsageError("merge: --exposure " + options.exposure +
+                             ": expected auto or a number of stops, from -100 to 100");
+    }
+    options.outputs.frames = !options.noFrames;
     if (options.outputs.ldr.empty() && options.outputs.hdr.empty())
         throw UsageError("merge: no image is asked for; give one by -e NAME.exr or -o NAME.png");
     return true;
@@ -63,6 +76,7 @@ int mergeCommand(int argc, const char* const* argv) {
     MergeOptions options;
     if (!parse(argc, argv, options)) return 0;
     const MergedRender merged = mergePartialStates(options.states);
+    if (!options.outputs.exposure) options.outputs.exposure = merged.identity.exposure;
     checkOutputs(options.outputs, {merged.film.frames(), false, false, options.states});
     const Scene& scene = *merged.identity.scene;
     const std::string metadata =

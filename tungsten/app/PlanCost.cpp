@@ -49,7 +49,8 @@ LoadOptions loadOptions(const Options& options, const std::vector<std::string>& 
     return load;
 }
 
-void measure(Method& method, const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+void measure(Method& method, const std::filesystem::path& file, const Options& options, const Plugins& plugins,
+             const std::atomic<bool>& interrupted) {
     try {
         const Job job = makeJob(file, loadOptions(options, method.settings), plugins);
         if (!job.plan.lacks.empty()) {
@@ -58,7 +59,7 @@ void measure(Method& method, const std::filesystem::path& file, const Options& o
         }
         method.costs = measurePasses(*job.loaded.scene, *job.integrator, job.plan,
                                      {options.seed, uint32_t(job.loaded.renderer.sppStep),
-                                      options.timeoutSeconds.value_or(DefaultPilotSeconds)});
+                                      options.timeoutSeconds.value_or(DefaultPilotSeconds), &interrupted});
         if (!method.costs) method.refusal = "black: nothing arrived in the passes of the pilot";
     } catch (const InputError& error) {
         const Problem& first = error.problems().front();
@@ -164,17 +165,22 @@ std::string costJson(const std::string& scene, const std::vector<Method>& method
 
 } // namespace
 
-void planCost(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+bool planCost(const std::filesystem::path& file, const Options& options, const Plugins& plugins,
+              const std::atomic<bool>& interrupted) {
     const LoadedScene loaded = loadScene(file, loadOptions(options, {}));
     if (options.outputs.statistics) checkWritable(*options.outputs.statistics);
     std::vector<Method> methods = methodsFor(loaded);
-    for (Method& method : methods) measure(method, file, options, plugins);
+    try {
+        for (Method& method : methods) measure(method, file, options, plugins, interrupted);
+    } catch (const PassBrokenOff&) {
+        return false;
+    }
     const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     printTable(file.string(), methods, threads);
     if (options.outputs.statistics)
         writeTextFile(*options.outputs.statistics, costJson(file.string(), methods, threads));
     for (const Method& method : methods)
-        if (method.costs) return;
+        if (method.costs) return true;
     throw InputError(file.string(), "no method can tell what an error costs: " + methods.front().refusal);
 }
 

@@ -12,6 +12,7 @@
 #include "tungsten/render/PlanReport.h"
 #include "tungsten/render/Progress.h"
 #include "tungsten/render/RenderSession.h"
+#include "tungsten/render/Team.h"
 
 #include <tbb/global_control.h>
 
@@ -41,6 +42,10 @@ void onInterrupt(int) {
     if (interrupted.exchange(true)) _exit(ExitInterrupted);
 }
 
+bool speaks(const Team* team) {
+    return !team || team->rank() == 0;
+}
+
 void printWarnings(const std::vector<Problem>& warnings, size_t more = 0) {
     for (const Problem& warning : warnings) std::cerr << "warning: " << warning.text() << '\n';
     if (more > 0) std::cerr << "warning: and " << more << " more\n";
@@ -50,7 +55,7 @@ void printErrors(const InputError& error) {
     for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
 }
 
-SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer) {
+SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer, Team* team) {
     SessionOptions session;
     session.seed = options.seed;
     session.spp = options.spp.value_or(renderer.spp);
@@ -64,6 +69,7 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.bias = options.bias;
     session.memoryLimit = options.memoryLimit;
     session.quiet = options.quiet;
+    session.team = team;
     session.trace = options.trace;
     session.command = options.command;
     session.interrupted = &interrupted;
@@ -96,18 +102,25 @@ void printSummary(const SessionResult& result) {
                                         "fewer samples in a pass (renderer.spp_step) or fewer photons");
 }
 
+/// Job and outputs of a scene that is rendered; only rank 0 warns.
+Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+    std::optional<Job> job;
+    together(team, [&] {
+        job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins,
+                      options.everything);
+    });
+    const Diagnostics& diagnostics = *job->loaded.diagnostics;
+    if (speaks(team)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
+    return std::move(*job);
+}
+
 /// Exit code: 0, or 130 when interrupted before there was anything to write.
-int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
-    if (options.planCost) {
-        planCost(file, options, plugins);
-        return 0;
-    }
+int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+    if (options.planCost) return planCost(file, options, plugins, interrupted) ? 0 : ExitInterrupted;
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
-    const Job job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}},
-                            plugins, options.everything);
+    const Job job = loadJob(file, options, plugins, team);
     const LoadedScene& loaded = job.loaded;
-    printWarnings(loaded.diagnostics->warnings, loaded.diagnostics->moreWarnings);
     loading.reset();
     if (options.explainAsJson) {
         std::cout << planJson(*loaded.scene, loaded.integratorType, job.plan) << '\n';
@@ -118,30 +131,52 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
         printPlan(job.plan, std::cout);
         return 0;
     }
-    const OutputFiles outputs = resolveOutputs(loaded.renderer, file, options.outputs);
-    const SessionOptions session = sessionOptions(options, loaded.renderer);
+    OutputFiles outputs;
+    together(team, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
+    const SessionOptions session = sessionOptions(options, loaded.renderer, team);
     runSession(loaded, *job.integrator, job.plan, outputs, session, result);
-    if (result.film.passes() == 0 && result.reason == StopReason::TimedOut) failWithoutPass(file, session);
-    if (!options.quiet) printSummary(result);
+    if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
+        together(team, [&] { failWithoutPass(file, session); });
+    if (!options.quiet && speaks(team)) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }
 
-/// Exit code of one scene; reports what went wrong.
-int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
+/// The exit code of what went wrong, which is told unless another rank does.
+int tell(const std::exception_ptr& failure, const std::string& file, bool aloud = true) {
+    std::string message;
+    int code = ExitBadInput;
     try {
-        return renderScene(file, options, plugins);
+        std::rethrow_exception(failure);
     } catch (const InputError& error) {
-        printErrors(error);
+        if (aloud) printErrors(error);
+        return code;
     } catch (const UsageError& error) {
-        std::cerr << "error: " << error.what() << '\n';
-        return ExitBadUsage;
+        message = error.what();
+        code = ExitBadUsage;
     } catch (const std::bad_alloc&) {
-        std::cerr << "error: " << file.string()
-                  << ": out of memory; try a smaller --resolution, fewer frames or fewer photons\n";
+        message = file + ": out of memory; try a smaller --resolution, fewer frames or fewer photons";
     } catch (const std::exception& error) {
-        std::cerr << "error: " << file.string() << ": " << error.what() << '\n';
+        message = file + ": " + error.what();
     }
-    return ExitBadInput;
+    if (aloud) std::cerr << "error: " << message << '\n';
+    return code;
+}
+
+/// Exit code of one scene; reports what went wrong. What fails in one rank alone, while others wait for it, ends all.
+int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+    const auto tellAs = [&](const std::exception_ptr& failure) {
+        if (!speaks(team)) std::cerr << "rank " << team->rank() << " on " << team->machine() << ": ";
+        return tell(failure, file.string());
+    };
+    try {
+        return renderScene(file, options, plugins, team);
+    } catch (const TeamFailure& failure) {
+        return failure.toTell() ? tellAs(failure.toTell()) : ExitBadInput;
+    } catch (...) {
+        const int code = tellAs(std::current_exception());
+        if (team) team->abort(code);
+        return code;
+    }
 }
 
 /// Throws UsageError if two scenes would write the same file: the later would replace the earlier's, or resume it.
@@ -174,8 +209,9 @@ void requireOutputsOfTheirOwn(const Options& options) {
 }
 
 /// Signals that ask for an end are handled, but those that whoever started the command has set aside (nohup). A reader
-/// of our messages that goes away is no reason to lose a render.
-void handleSignals() {
+/// of our messages that goes away is no reason to lose a render. SIGUSR1 is what mpirun hands on without killing.
+void handleSignals(const Team* team) {
+    if (team) std::signal(SIGUSR1, onInterrupt);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(signal, onInterrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
@@ -186,7 +222,27 @@ void printFields(const Options& options, const Plugins& plugins) {
     options.markdown ? printMarkdown(selected, std::cout) : printDescriptions(selected, std::cout);
 }
 
-int run(const Options& options) {
+/// Of a process: those that share a machine share its processors, unless the launcher has bound each to some.
+size_t threadsOf(const Options& options, const Team* team) {
+    using tbb::global_control;
+    if (options.threads > 0) return size_t(options.threads);
+    const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
+    if (!team || all < std::thread::hardware_concurrency()) return all;
+    return std::max<size_t>(all / size_t(team->onThisMachine()), 1);
+}
+
+/// Options of a team's rank, which has a part of the machine; what renders nothing is rank 0's.
+Options shareOf(const Options& options, const Team& team) {
+    if (options.passes) throw UsageError("--passes: mpirun gives passes to its processes itself; goes without it");
+    Options mine = options;
+    if (mine.memoryLimit <= 0.0) mine.memoryLimit = availableMemoryBytes() / double(team.onThisMachine());
+    return mine;
+}
+
+int run(const Options& options, Team* team) {
+    const bool renders = !options.describe && !options.list && !options.explain && !options.planCost;
+    if (!renders && !speaks(team)) return 0;
+    if (!renders) team = nullptr;
     const Plugins plugins;
     if (options.describe) {
         printFields(options, plugins);
@@ -198,18 +254,18 @@ int run(const Options& options) {
         printWarnings(plugins.problems);
         return 0;
     }
-    printWarnings(plugins.problems);
+    if (speaks(team)) printWarnings(plugins.problems);
     using tbb::global_control;
-    const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
-    const global_control threads(global_control::max_allowed_parallelism,
-                                 options.threads > 0 ? size_t(options.threads) : all);
+    const global_control threads(global_control::max_allowed_parallelism, threadsOf(options, team));
     if (options.memoryLimit > 0.0) limitMemory(options.memoryLimit, std::thread::hardware_concurrency());
-    handleSignals();
+    handleSignals(team);
     if (!options.explain && !options.planCost) requireOutputsOfTheirOwn(options);
     int code = 0;
+    const Options mine = team ? shareOf(options, *team) : options;
     for (const auto& scene : options.scenes) {
-        if (interrupted) return ExitInterrupted; // not all were rendered
-        code = std::max(code, tryScene(scene, options, plugins));
+        const bool ends = team ? team->largest({double(interrupted)})[0] > 0.0 : bool(interrupted);
+        if (ends) return ExitInterrupted; // not all were rendered
+        code = std::max(code, tryScene(scene, mine, plugins, team));
     }
     return code;
 }
@@ -229,18 +285,13 @@ int withWholeOutput(int code) {
 
 int main(int argc, char** argv) {
     using namespace tungsten;
+    std::unique_ptr<Team> team;
     try {
         if (argc > 1 && std::strcmp(argv[1], "merge") == 0) return withWholeOutput(mergeCommand(argc - 1, argv + 1));
+        team = joinTeam();
         const auto options = parseOptions(argc, argv);
-        return withWholeOutput(options ? run(*options) : 0);
-    } catch (const InputError& error) {
-        printErrors(error);
-        return ExitBadInput;
-    } catch (const UsageError& error) {
-        std::cerr << "error: " << error.what() << '\n';
-        return ExitBadUsage;
-    } catch (const std::exception& error) {
-        std::cerr << "error: " << error.what() << '\n';
-        return ExitBadInput;
+        return withWholeOutput(options ? run(*options, team.get()) : 0);
+    } catch (...) { // before any rank waits for another: all meet it
+        return tell(std::current_exception(), "tungsten", speaks(team.get()));
     }
 }

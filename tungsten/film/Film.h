@@ -5,6 +5,7 @@
 #include "tungsten/core/Types.h"
 #include "tungsten/film/FilmContents.h"
 #include "tungsten/film/LazyArray.h"
+#include "tungsten/film/PassBatches.h"
 #include "tungsten/film/PassScatter.h"
 
 #include <atomic>
@@ -36,6 +37,12 @@ enum class PassWeight {
 inline float luminanceOf(const Rgb& value) {
     return 0.2126f * value.x + 0.7152f * value.y + 0.0722f * value.z;
 }
+
+/// A pass that has been folded in, on its way to the film's figures.
+struct FoldedPass {
+    double weight = 1.0, weightBefore = 0.0, squaresBefore = 0.0; ///< of the pass; sums over those before it
+    std::vector<double> deviations{};                             ///< what it adds to second moments, by image row
+};
 
 /// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
 /// (by samples per pixel). Mean and second moment follow West (1979), so adding in the same order gives the same bits.
@@ -75,8 +82,20 @@ class Film {
     /// The whole pass, frame by frame, row by row, channels innermost.
     [[nodiscard]] const LazyArray& passValues() const { return pass_; }
     void setPassValues(const std::vector<float>& values);
+    /// Rows of frames, frame by frame: whether the pass in progress has light there, and its values.
+    [[nodiscard]] size_t passRows() const { return touched_.size(); }
+    [[nodiscard]] bool passRowIsLit(size_t row) const { return touched_[row] != 0; }
+    [[nodiscard]] size_t rowValues() const { return size_t(width_) * size_t(contents_.channels); }
+    [[nodiscard]] const float* passRow(size_t row) const { return pass_.data() + row * rowValues(); }
+    /// Of a row that is lit.
+    void setPassRow(size_t row, const float* values);
     /// Folds the pass image in with the given weight (> 0). Non-finite pixels are counted, and replaced by 0.
-    void endPass(double weight);
+    void endPass(double weight) { settle(foldRows(weight, 0, height_)); }
+    /// The same in two steps, for a film that is kept apart by image rows: rows from..end are folded; what all rows
+    /// deviate, pass by pass, goes into the film's figures (in which FoldedPass::deviations are those of every row).
+    [[nodiscard]] FoldedPass foldRows(double weight, int from, int end);
+    void settle(const FoldedPass& pass);
+    [[nodiscard]] const PassBatches& batches() const { return batches_; }
     [[nodiscard]] uint64_t nonFiniteSamples() const { return nonFinite_; }
     void countNonFinite(uint64_t n) { nonFinite_ += n; }
 
@@ -104,6 +123,9 @@ class Film {
     /// Exact binary state for checkpoints. read() throws InputError(file name, ...) on a mismatch or truncation.
     void write(std::ostream& out) const;
     void read(std::istream& in, const std::string& fileName);
+    /// The same of image rows from..end, with the number and weight of passes, but without the film's figures.
+    void writeRows(std::ostream& out, int from, int end) const;
+    void readRows(std::istream& in, int from, int end);
 
   private:
     [[nodiscard]] size_t row(int frame, int y) const { return size_t(frame) * size_t(height_) + size_t(y); }
@@ -126,7 +148,7 @@ class Film {
     /// From a second moment to the squared standard error; NaN while it is unknown.
     [[nodiscard]] double errorScale() const;
     /// An estimate of the variance of one pass from what it adds to the second moment.
-    [[nodiscard]] double variance(double deviation, double weight) const;
+    [[nodiscard]] double variance(double deviation, const FoldedPass& pass) const;
 
     int width_ = 0, height_ = 0, frames_ = 0;
     FilmContents contents_;
@@ -136,6 +158,7 @@ class Film {
     double moment2Sum_ = 0.0;                    ///< of all pixels and channels
     uint64_t nonFinite_ = 0;
     PassScatter scatter_;
+    PassBatches batches_;
     LazyArray mean_, moment2_, pass_;
     std::vector<uint8_t> touched_, lit_;          ///< rows of frames to which this pass, any pass added
     std::vector<float> totalMean_, totalMoment2_; ///< of the mean over frames (frames > 1)

@@ -71,6 +71,14 @@ void addVector(hid_t file, const ResultContent::Vector& vector) {
     checked(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, vector.values.data()));
 }
 
+void addArray(hid_t file, const ResultContent::Array& array) {
+    const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
+    const Handle space(H5Screate_simple(int(shape.size()), shape.data(), nullptr), H5Sclose);
+    const Handle dataset(
+        H5Dcreate2(file, array.name.c_str(), H5T_IEEE_F32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    checked(H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()));
+}
+
 void addImages(hid_t file, const ResultContent& content, const ResultContent::Images& images) {
     const auto width = hsize_t(content.width), height = hsize_t(content.height), channels = hsize_t(content.channels);
     const hsize_t shape[] = {hsize_t(content.frames), height, width, channels},
@@ -101,6 +109,7 @@ void writeFile(std::ostream& out, const ResultContent& content) {
     addAttribute(file, "format", "darts-tungsten result");
     addAttribute(file, "format_version", H5T_NATIVE_INT, &ResultVersion);
     for (const ResultContent::Images& images : content.images) addImages(file, content, images);
+    for (const ResultContent::Array& array : content.arrays) addArray(file, array);
     for (const ResultContent::Vector& vector : content.vectors) addVector(file, vector);
     addText(file, "metadata", content.metadata);
     checked(H5Fflush(file, H5F_SCOPE_GLOBAL));

@@ -100,6 +100,13 @@ void writeMembers(ZipStream& zip, const ResultContent& content) {
         }
         zip.endMember();
     }
+    for (const ResultContent::Array& array : content.arrays) {
+        std::string shape;
+        for (const size_t size : array.shape) shape += std::to_string(size) + ", ";
+        begin(array.name, npyHeader("<f4", shape));
+        zip.append(array.values.data(), array.values.size() * sizeof(float));
+        zip.endMember();
+    }
     for (const auto& [name, values] : content.vectors) {
         begin(name, npyHeader("<f8", std::to_string(values.size()) + ","));
         zip.append(values.data(), values.size() * sizeof(double));

@@ -23,11 +23,17 @@ struct ResultContent {
         std::string name;
         std::vector<double> values;
     };
+    struct Array {
+        std::string name;
+        std::vector<size_t> shape;
+        std::vector<float> values;
+    };
     int width = 0, height = 0, frames = 0;
     int channels = 3;            ///< 3, or 1: of the images' pixels, which are grey, the first
     std::vector<Images> images;  ///< each (frames, height, width, channels) of 32-bit floats
     std::vector<Vector> vectors; ///< 64-bit floats
     std::string metadata;        ///< JSON
+    std::vector<Array> arrays{};
 };
 
 /// Row-major, channels innermost.

@@ -63,8 +63,8 @@ Result::Result(LoadedScene loaded, const SessionOptions& options, std::unique_pt
       metadata_(describeResult({*loaded_.scene, loaded_.integratorType, loaded_.text, options.command,
                                 statisticsJson(loaded_, options, *session_)})),
       mean_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.mean(frame); })),
-      standardError_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.standardError(frame); })) {
-}
+      standardError_(arrayOf(session_->film, scene(), [&](int frame) { return session_->film.standardError(frame); })),
+      batchMeans_(tungsten::batchMeans(session_->film, scene()).values) {}
 
 std::vector<std::string> Result::write(const std::filesystem::path& file) const {
     OutputFiles outputs;
@@ -86,12 +86,33 @@ py::array Result::standardError(const py::object& self) {
     return viewOf(result.standardError_, result.session_->film, self);
 }
 
+py::object Result::batchMeans(const py::object& self) {
+    const auto& result = self.cast<const Result&>();
+    const PassBatches& batches = result.session_->film.batches();
+    if (batches.count() == 0) return py::none();
+    const std::vector<py::ssize_t> shape{batches.count(), result.session_->film.frames(), batches.rows(),
+                                         batches.columns(), result.session_->film.contents().channels};
+    py::array view(py::dtype::of<float>(), shape, result.batchMeans_.data(), self);
+    view.attr("setflags")(py::arg("write") = false);
+    return view;
+}
+
 void declareResult(py::module_& module) {
     const auto property = [](auto get) { return py::cpp_function(get); };
     py::class_<Result>(module, "Result", "What a render left; docs/results.md says what the arrays are.")
         .def_property_readonly("mean", property(&Result::mean), "(frames, height, width, channels), a read-only view")
         .def_property_readonly("standard_error", property(&Result::standardError),
                                "of mean, a read-only view; NaN while there is but one pass")
+        .def_property_readonly("batch_means", property(&Result::batchMeans),
+                               "(batches, frames, rows, columns, channels) of blocks, a read-only view; None where the "
+                               "scene has no film.batches")
+        .def_property_readonly(
+            "batch_weights",
+            [](const Result& r) {
+                const std::vector<double>& weights = r.session().film.batches().weights();
+                return py::array_t<double>(py::ssize_t(weights.size()), weights.data());
+            },
+            "of passes, by batch")
         .def_property_readonly("time_edges", edgesOf, "frames + 1 times in the scene's unit")
         .def_property_readonly("time_edges_ps", picosecondsOf,
                                "the same in picoseconds; None where the scene does not say its length_unit")

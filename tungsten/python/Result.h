@@ -23,16 +23,20 @@ class Result {
     /// Read-only views (frames, height, width, 3) that keep `self` alive.
     static pybind11::array mean(const pybind11::object& self);
     static pybind11::array standardError(const pybind11::object& self);
+    /// The same of the means of batches; None without them.
+    static pybind11::object batchMeans(const pybind11::object& self);
 
   private:
     LoadedScene loaded_;
     std::unique_ptr<const SessionResult> session_;
     std::string metadata_;
-    std::vector<float> mean_, standardError_;
+    std::vector<float> mean_, standardError_, batchMeans_;
 };
 
 void declareResult(pybind11::module_& module);
 /// The submodule `sampling`: densities and samplers of src/darts over arrays.
 void declareSampling(pybind11::module_& module);
+/// Its part about whole steps of a walk.
+void declareGuides(pybind11::module_& sampling);
 
 } // namespace tungsten::python

@@ -151,6 +151,7 @@ void declareSampling(py::module_& module) {
     declareConnections(sampling);
     declareDirections(sampling);
     declareDistances(sampling);
+    declareGuides(sampling);
 }
 
 } // namespace tungsten::python

@@ -13,7 +13,7 @@ namespace tungsten {
 namespace {
 
 /// The last two are the version: since 02 it ends with the checksum of all before.
-constexpr char Magic[8] = {'T', 'S', 'T', 'A', 'T', 'E', '0', '3'};
+constexpr char Magic[8] = {'T', 'S', 'T', 'A', 'T', 'E', '0', '4'};
 constexpr size_t VersionAt = 6;
 
 struct Header {

@@ -86,6 +86,9 @@ void renderRound(Integrator& integrator, std::array<Sample, Indices.size()>& sam
         Sample& sample = samples[k];
         PassInfo pass{Indices[k], uint64_t(Indices[k]) * options.samplesPerPass, options.samplesPerPass,
                       options.seed + round, measuresBias ? &sample.bias : nullptr};
+        PassMonitor monitor([&] { return options.interrupted && options.interrupted->load(); });
+        pass.watch = PassWatch(monitor);
+        pass.watch.poll(0);
         Statistics statistics;
         sample.film.beginPass();
         if (measuresBias) sample.bias.beginPass();

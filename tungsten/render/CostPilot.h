@@ -3,6 +3,7 @@
 
 #include "tungsten/render/Integrator.h"
 
+#include <atomic>
 #include <optional>
 
 namespace tungsten {
@@ -33,13 +34,14 @@ struct PassCosts {
 
 struct PilotOptions {
     uint64_t seed = 0xBA5EBA11u;
-    uint32_t samplesPerPass = 1; ///< per pixel
-    double seconds = 3.0;        ///< passes are rendered for so long, but a least number in any case
+    uint32_t samplesPerPass = 1;                    ///< per pixel
+    double seconds = 3.0;                           ///< passes are rendered for so long, but a least number in any case
+    const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: PassBrokenOff
 };
 
 /// Renders passes 0, 15 and 255, again and again with other random numbers: a pass depends on nothing but its index, so
 /// that what late passes bring need not be guessed. `plan` is complete (Integrator::plan was called); the integrator
-/// is prepared here. None where all is black.
+/// is prepared here. None where all is black. Throws PassBrokenOff when it is interrupted.
 std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
                                        const PilotOptions& options);
 

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The last two are the version.
-constexpr char Magic[8] = {'T', 'P', 'A', 'R', 'T', 'S', '0', '2'};
+constexpr char Magic[8] = {'T', 'P', 'A', 'R', 'T', 'S', '0', '3'};
 constexpr size_t VersionAt = 6;
 
 /// Fixed part of the file's start; texts, passes, an end and the checksum follow.
@@ -25,9 +25,16 @@ struct Header {
     int64_t sppStep;
     int32_t width, height, frames;
     uint32_t firstPass;
-    double gateStart, frameWidth, lengthUnit;
+    int32_t filmBatches, filmBatchBlock;
+    double gateStart, frameWidth, lengthUnit, exposureStops;
     float vacuumSpeed, cameraSpeed;
     uint8_t steadyState, delta, hasResponse, cameraUnwarped, integrate, toneMap, filmChannels, filmMoments;
+    uint8_t exposureGiven, exposureAutomatic, unused[6];
+};
+
+/// Of a detector, after its name.
+struct DetectorState {
+    float radius, aperture;
 };
 
 /// Before each pass; without samples: the end, with the process's CPU seconds.
@@ -66,6 +73,11 @@ Header headerOf(const PartialIdentity& identity, uint32_t firstPass) {
     header.toneMap = uint8_t(scene.toneMap);
     header.filmChannels = uint8_t(scene.film.channels);
     header.filmMoments = scene.film.moments;
+    header.filmBatches = scene.film.batches;
+    header.filmBatchBlock = scene.film.batchBlock;
+    header.exposureGiven = identity.exposure.has_value();
+    header.exposureAutomatic = identity.exposure && identity.exposure->automatic;
+    header.exposureStops = identity.exposure ? identity.exposure->stops : 0.0;
     return header;
 }
 
@@ -82,7 +94,7 @@ std::shared_ptr<Scene> sceneOf(const Header& header) {
     scene->lengthUnit = header.lengthUnit;
     scene->cameraRegion.speed = header.cameraSpeed;
     scene->toneMap = ToneMap(header.toneMap);
-    scene->film = {header.filmChannels, header.filmMoments != 0};
+    scene->film = {header.filmChannels, header.filmMoments != 0, header.filmBatches, header.filmBatchBlock};
     return scene;
 }
 
@@ -109,6 +121,28 @@ std::string readText(std::istream& in) {
     return value;
 }
 
+/// What a camera of detectors is made of, as far as results tell it.
+void writeDetectors(std::ostream& out, const Scene& scene) {
+    const auto* detectors = std::get_if<Detectors>(&scene.camera.model);
+    writeValue(out, uint64_t(detectors ? detectors->row.size() : 0));
+    for (size_t i = 0; detectors && i < detectors->row.size(); ++i) {
+        writeText(out, detectors->row[i].name);
+        writeValue(out, DetectorState{detectors->row[i].radius, detectors->row[i].aperture});
+    }
+}
+
+void readDetectors(std::istream& in, Scene& scene) {
+    Detectors detectors;
+    for (auto left = readValue<uint64_t>(in); left > 0; --left) {
+        Detector& detector = detectors.row.emplace_back();
+        detector.name = readText(in);
+        const auto state = readValue<DetectorState>(in);
+        detector.radius = state.radius;
+        detector.aperture = state.aperture;
+    }
+    if (!detectors.row.empty()) scene.camera.model = std::move(detectors);
+}
+
 /// Of a file that is whole; the stream goes on behind it.
 Header readHeader(std::istream& in, const fs::path& file) {
     const uint64_t size = requireRegularFile(file);
@@ -126,7 +160,8 @@ Header readHeader(std::istream& in, const fs::path& file) {
 
 } // namespace
 
-PartialIdentity PartialIdentity::of(const LoadedScene& loaded, uint64_t seed, int64_t sppStep) {
+PartialIdentity PartialIdentity::of(const LoadedScene& loaded, uint64_t seed, int64_t sppStep,
+                                    const std::optional<ExposureChoice>& exposure) {
     Hash hash;
     hash.add(std::to_string(loaded.textHash));
     for (const fs::path& input : loaded.inputs) {
@@ -134,7 +169,7 @@ PartialIdentity PartialIdentity::of(const LoadedScene& loaded, uint64_t seed, in
         const std::vector<char> bytes = readFileBytes(input);
         hash.addBytes(bytes.data(), bytes.size());
     }
-    return {hash.value(), seed, sppStep, loaded.scene, loaded.integratorType, loaded.text};
+    return {hash.value(), seed, sppStep, loaded.scene, loaded.integratorType, loaded.text, exposure};
 }
 
 struct PartialStateWriter::Implementation {
@@ -158,6 +193,7 @@ PartialStateWriter::PartialStateWriter(std::ostream& out, std::string file, cons
     for (const std::string& text :
          {std::string(TUNGSTEN_VERSION), identity.scene->file.string(), identity.integrator, identity.sceneText})
         writeText(implementation_->out, text);
+    writeDetectors(implementation_->out, *identity.scene);
     implementation_->requireGood();
 }
 PartialStateWriter::~PartialStateWriter() = default;
@@ -191,7 +227,9 @@ PartialStateReader::PartialStateReader(const fs::path& file) : file_(file) {
     const std::shared_ptr<Scene> scene = sceneOf(header);
     scene->file = readText(in);
     const std::string integrator = readText(in);
-    identity_ = {header.content, header.seed, header.sppStep, scene, integrator, readText(in)};
+    identity_ = {header.content, header.seed, header.sppStep, scene, integrator, readText(in), {}};
+    if (header.exposureGiven) identity_.exposure = ExposureChoice{header.exposureAutomatic != 0, header.exposureStops};
+    readDetectors(in, *scene);
     passesAt_ = in.tellg();
     auto pass = readValue<PassHeader>(in);
     for (; pass.samples > 0; pass = readValue<PassHeader>(in)) {

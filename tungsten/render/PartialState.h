@@ -3,11 +3,13 @@
 // the scene, the settings and its number alone, and a film on its passes in their order: what is merged is bit for bit
 // what one run gives, wherever two runs give the same.
 
+#include "tungsten/film/Exposure.h"
 #include "tungsten/film/Film.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace tungsten {
 
@@ -21,10 +23,12 @@ struct PartialIdentity {
     uint64_t content = 0; ///< of the scene without its renderer block, overrides included, and the files that it names
     uint64_t seed = 0;
     int64_t sppStep = 0;
-    std::shared_ptr<const Scene> scene; ///< its file, camera resolution, transport, units and tone map are kept
+    std::shared_ptr<const Scene> scene; ///< its file, resolution, detectors, film, transport, units, tone map are kept
     std::string integrator, sceneText;
+    std::optional<ExposureChoice> exposure{}; ///< of 8-bit images; need not agree
 
-    static PartialIdentity of(const LoadedScene& loaded, uint64_t seed, int64_t sppStep);
+    static PartialIdentity of(const LoadedScene& loaded, uint64_t seed, int64_t sppStep,
+                              const std::optional<ExposureChoice>& exposure);
 };
 
 /// Writes a partial state pass by pass, to a stream of writeAtomically().
@@ -45,7 +49,7 @@ class PartialStateWriter {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// What was merged.
+/// What was merged; its identity is that of the state with the first passes.
 struct MergedRender {
     PartialIdentity identity;
     Film film;

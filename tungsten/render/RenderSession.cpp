@@ -4,10 +4,11 @@
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/render/HtmlPage.h"
 #include "tungsten/render/Memory.h"
-#include "tungsten/render/PassSizes.h"
 #include "tungsten/render/Progress.h"
+#include "tungsten/render/RoundPass.h"
 #include "tungsten/render/SceneFilm.h"
 #include "tungsten/render/SessionFiles.h"
+#include "tungsten/render/SharedResult.h"
 
 #include <bit>
 #include <chrono>
@@ -26,9 +27,6 @@ bool checksError(uint32_t passes) {
     return passes >= LeastPassesForTargetError && std::has_single_bit(passes);
 }
 
-/// Keys of samples that are rendered in parts; whole ones come before.
-constexpr uint64_t FirstPartialSample = uint64_t(1) << 31;
-
 double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -39,15 +37,35 @@ class Session {
     Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs,
             const SessionOptions& options, SessionResult& result)
         : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options), result_(result),
-          files_(loaded, outputs, options, result), firstPass_(options.passes ? options.passes->first : 0),
-          spp_(samplesOf(options)), sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()),
-          trace_(options.trace, *loaded.scene, options.seed), reporter_(options.quiet) {}
+          files_(loaded, outputs, options, result), shared_(options.team, result),
+          firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
+          sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()),
+          trace_(shared_.speaks() ? options.trace : std::filesystem::path(), *loaded.scene, options.seed),
+          reporter_(options.quiet || !shared_.speaks()) {}
 
     void run(const EffectPlan& plan) {
+        together(options_.team, [&] { begin(plan); });
+        shared_.shareResumed();
+        black_ = plan.nothingArrives;
+        if (!black_)
+            together(options_.team, [&] {
+                const StageTimer timer(result_.statistics, "prepare");
+                integrator_.prepare(plan, result_.statistics);
+            });
+        if (stopBeforeFirstPass()) return;
+        if (options_.passes) return renderPartially();
+        renderPasses();
+        shared_.gatherStatistics();
+        if (result_.film.passes() > 0 && shared_.speaks()) files_.finish();
+    }
+
+  private:
+    /// Checks, films, and what earlier runs have left.
+    void begin(const EffectPlan& plan) {
         const Scene& scene = *loaded_.scene;
         if (options_.passes)
             checkWritable(partialState());
-        else
+        else if (shared_.speaks())
             checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
                                     options_.checkpointSeconds > 0.0, loaded_.inputs});
         const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(plan);
@@ -55,31 +73,8 @@ class Session {
         requireMemory(loaded_, bias ? 3.0 : 2.0, integrator_.memoryBytes(), options_.memoryLimit);
         if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
         result_.film = filmOf(scene);
-        files_.resume();
+        if (shared_.speaks()) files_.resume();
         result_.effects = plan.effects;
-        black_ = plan.nothingArrives;
-        if (!black_) {
-            const StageTimer timer(result_.statistics, "prepare");
-            integrator_.prepare(plan, result_.statistics);
-        }
-        if (stopBeforeFirstPass()) return;
-        if (options_.passes) return renderPartially();
-        renderPasses();
-        if (result_.film.passes() > 0) files_.finish();
-    }
-
-  private:
-    /// Samples per pixel of this session. Throws UsageError for passes that the render does not have.
-    static uint64_t samplesOf(const SessionOptions& options) {
-        const auto spp = uint64_t(options.spp), step = uint64_t(options.sppStep);
-        if (!options.passes) return spp;
-        const uint64_t passes = (spp + step - 1) / step;
-        const auto [first, end] = *options.passes;
-        if (end > passes)
-            throw UsageError("--passes " + std::to_string(first) + ":" + std::to_string(end) + ": the render has " +
-                             std::to_string(passes) + " passes, from 0, of " + std::to_string(spp) +
-                             " samples per pixel in steps (spp_step) of " + std::to_string(step));
-        return std::min(spp, end * step) - first * step;
     }
     [[nodiscard]] std::filesystem::path partialState() const {
         return outputs_.partialState(options_.passes->first, options_.passes->end);
@@ -88,7 +83,8 @@ class Session {
     /// Every pass goes to the file as soon as it is there.
     void renderPartially() {
         const std::filesystem::path file = partialState();
-        const PartialIdentity identity = PartialIdentity::of(loaded_, options_.seed, options_.sppStep);
+        const PartialIdentity identity =
+            PartialIdentity::of(loaded_, options_.seed, options_.sppStep, outputs_.exposure);
         try {
             writeAtomically(file, [&](std::ostream& out) {
                 PartialStateWriter writer(out, file.string(), identity, firstPass_);
@@ -104,61 +100,75 @@ class Session {
 
     /// Interrupted while loading: there is nothing to write.
     bool stopBeforeFirstPass() {
-        if (interrupted()) result_.reason = StopReason::Interrupted;
-        return interrupted();
+        agree();
+        if (agreed_.interrupted) result_.reason = StopReason::Interrupted;
+        return agreed_.interrupted;
     }
 
     void renderPasses() {
         const StageTimer timer(result_.statistics, "passes");
         start_ = Clock::now();
-        trace_.start();
+        if (shared_.speaks()) trace_.start();
         bool stop = result_.samples >= spp_;
         while (!stop) {
-            if (!renderOnePass()) {
+            if (!renderRound()) {
                 stop = afterBreak();
                 continue;
             }
             if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
-            trace_.record(result_.film, result_.bias, result_.samples);
-            if (stop || reporter_.due()) reporter_.show(state(), stop);
-            if (!stop) files_.checkpointIfDue();
+            if (shared_.speaks()) show(stop);
         }
         result_.renderSeconds = secondsSince(start_);
+        shared_.gather(); // what a broken round has left
         trace_.end(result_.film, result_.bias, result_.samples);
         result_.trace = trace_.entries();
     }
 
-    /// False: it was broken off.
-    bool renderOnePass() {
+    void show(bool last) {
+        trace_.record(result_.film, result_.bias, result_.samples, shared_.isWhole());
+        if (last || reporter_.due()) reporter_.show(state(), last);
+        if (!last && shared_.isWhole()) files_.checkpointIfDue(); // else in a round that gathers it
+    }
+
+    [[nodiscard]] std::vector<RoundPass> nextRound() const {
         const double done = result_.film.totalWeight();
         // A black image is there at once; partial states hold every pass all the same.
-        const PassSize size = black_ && !partial_ ? sizes_.rest(done) : sizes_.next(done);
-        const uint64_t before = firstPass_ * uint64_t(options_.sppStep);
-        const uint32_t passes = result_.film.passes(),
-                       standsFor = result_.estimatesBias() ? passesOfItsBias(passes) : 0;
-        // Parts of one sample look at pixels in places of their own.
-        const bool partial = size.weight < double(size.samples);
-        const uint64_t firstSample = partial ? FirstPartialSample + passes : before + result_.samples;
-        PassMonitor monitor([this] { return stopsPass(); });
-        const PassInfo pass{firstPass_ + passes,
-                            firstSample,
-                            size.samples,
-                            options_.seed,
-                            standsFor > 0 ? &result_.bias : nullptr,
-                            size.share,
-                            PassWatch(monitor)};
-        result_.film.beginPass();
-        if (pass.bias) result_.bias.beginPass();
-        const bool whole = tryPass(pass, monitor);
+        if (black_ && !partial_) return {{sizes_.rest(done), result_.film.passes(), done}};
+        return roundOf(sizes_, {sizes_.next(done), result_.film.passes(), done}, size_t(result_.ranks), double(spp_));
+    }
+
+    /// One pass of every rank. False: not even the first of them has ended.
+    bool renderRound() {
+        const std::vector<RoundPass> round = nextRound();
+        const size_t mine = shared_.rank();
+        const bool whole = mine >= round.size() || renderPass(round[mine]);
         if (failed_) std::rethrow_exception(failure_);
-        if (!whole) return false;
-        if (partial_) partial_->add(result_.film, size.samples);
-        result_.film.endPass(size.weight);
-        if (pass.bias) result_.bias.endPass(double(standsFor));
-        result_.samples = uint64_t(result_.film.totalWeight());
+        const size_t passes = agree(whole, round.size());
+        if (passes == 0) return false;
+        if (partial_) partial_->add(result_.film, round[0].size.samples);
+        shared_.collect(passes);
+        for (size_t rank = 0; rank < passes && !targetReached_; ++rank) {
+            shared_.fold(rank, round[rank].size.weight);
+            result_.samples = uint64_t(result_.film.totalWeight());
+            if (options_.targetError > 0.0 && checksError(result_.film.passes()))
+                targetReached_ = shared_.errorIsBelow(options_.targetError);
+        }
         endedAPass_ = true;
         return true;
+    }
+
+    /// Into the film's pass image. False: it was broken off.
+    bool renderPass(const RoundPass& planned) {
+        PassMonitor monitor([this] { return stopsPass(); });
+        PassInfo pass = planned.info(firstPass_, uint64_t(options_.sppStep), options_.seed);
+        pass.watch = PassWatch(monitor);
+        result_.film.beginPass();
+        if (result_.estimatesBias()) {
+            result_.bias.beginPass();
+            if (passesOfItsBias(planned.index) > 0) pass.bias = &result_.bias;
+        }
+        return tryPass(pass, monitor);
     }
 
     /// Figures of a pass that is broken off are left out, but for the time.
@@ -200,10 +210,9 @@ class Session {
             return;
         }
         if (!reporter_.due()) return;
-        const PassSize size = sizes_.next(result_.film.totalWeight());
         ProgressState progress = state();
         progress.pass = monitor_->progress();
-        progress.samplesOfPass = size.weight;
+        for (const RoundPass& pass : nextRound()) progress.samplesOfPass += pass.size.weight;
         reporter_.show(progress, false);
     }
 
@@ -220,29 +229,49 @@ class Session {
 
     /// Whether the render ends with the pass that was broken off; else passes are smaller from now on.
     bool afterBreak() {
-        if (interrupted() || secondsSince(begin_) >= options_.timeoutSeconds) {
-            result_.reason = interrupted() ? StopReason::Interrupted : StopReason::TimedOut;
+        if (agreed_.interrupted || agreed_.timedOut) {
+            result_.reason = agreed_.interrupted ? StopReason::Interrupted : StopReason::TimedOut;
             return true;
         }
         sizes_.cut(brokenAt_);
-        std::fprintf(stderr, "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
-                     loaded_.diagnostics->file.c_str(), FirstPassPart * options_.timeoutSeconds, sizes_.text().c_str());
+        if (shared_.speaks())
+            std::fprintf(
+                stderr, "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
+                loaded_.diagnostics->file.c_str(), FirstPassPart * options_.timeoutSeconds, sizes_.text().c_str());
         return false;
     }
 
     [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted->load(); }
 
+    /// What any rank has met counts for all. Returns how many passes of the round there are before the first that was
+    /// broken off.
+    size_t agree(bool whole = true, size_t passes = 0, bool wantsFilm = false) {
+        const bool timedOut = options_.timeoutSeconds > 0.0 && secondsSince(begin_) >= options_.timeoutSeconds;
+        const double broken = whole ? double(result_.ranks) : double(shared_.rank());
+        const auto all = shared_.largest(
+            {double(interrupted()), double(timedOut), double(wantsFilm), -broken, whole ? -1.0 : -brokenAt_});
+        agreed_ = {all[0] > 0.0, all[1] > 0.0, all[2] > 0.0};
+        brokenAt_ = -all[4];
+        return std::min(passes, size_t(-all[3]));
+    }
+
     bool shouldStop() {
+        const bool due = files_.checkpointDue() || trace_.due() || (!options_.quiet && shared_.mayShow());
+        agree(true, 0, shared_.speaks() && due);
+        const bool stop = stopsAfterRound();
+        if (stop || agreed_.wantsFilm) shared_.gather();
+        return stop;
+    }
+
+    bool stopsAfterRound() {
         const auto because = [&](StopReason reason) {
             result_.reason = reason;
             return true;
         };
         if (result_.samples >= spp_) return because(StopReason::Finished);
-        if (interrupted()) return because(StopReason::Interrupted);
-        if (options_.timeoutSeconds > 0.0 && secondsSince(begin_) >= options_.timeoutSeconds)
-            return because(StopReason::TimedOut);
-        if (options_.targetError <= 0.0 || !checksError(result_.film.passes())) return false;
-        return result_.errorBound() <= options_.targetError && because(StopReason::TargetReached);
+        if (agreed_.interrupted) return because(StopReason::Interrupted);
+        if (agreed_.timedOut) return because(StopReason::TimedOut);
+        return targetReached_ && because(StopReason::TargetReached);
     }
 
     /// Costs a sweep over the film (the standard error): made only when it is shown.
@@ -254,9 +283,10 @@ class Session {
         progress.totalSamples = int64_t(spp_);
         progress.elapsedSeconds = secondsSince(start_);
         progress.timeoutSeconds = options_.timeoutSeconds;
-        progress.relativeError = result_.film.relativeStandardError();
-        progress.errorBound = result_.film.relativeErrorBound();
-        progress.bias = result_.relativeBias();
+        const ShownErrors errors = shared_.errors();
+        progress.relativeError = errors.relative;
+        progress.errorBound = errors.bound;
+        progress.bias = errors.bias;
         progress.targetError = options_.targetError;
         progress.resumedSamples = int64_t(result_.resumedSamples);
         return progress;
@@ -268,12 +298,17 @@ class Session {
     const SessionOptions& options_;
     SessionResult& result_;
     SessionFiles files_;
+    mutable SharedResult shared_;
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
     PassSizes sizes_;
     std::atomic<bool> failed_{false};
-    std::exception_ptr failure_;           ///< of duringPass, if failed_
-    bool endedAPass_ = false;              ///< in this run
+    std::exception_ptr failure_; ///< of duringPass, if failed_
+    struct {
+        bool interrupted = false, timedOut = false, wantsFilm = false;
+    } agreed_;                ///< of all ranks
+    bool endedAPass_ = false; ///< in this run
+    bool targetReached_ = false;
     const PassMonitor* monitor_ = nullptr; ///< of the pass in progress
     double brokenAt_ = 0.0;                ///< where the last pass that was broken off was
     std::thread::id thread_ = std::this_thread::get_id();
@@ -290,7 +325,7 @@ class Session {
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result) {
     Session(loaded, integrator, outputs, options, result).run(plan);
-    if (result.film.passes() == 0) return;
+    if (result.film.passes() == 0 || (options.team && options.team->rank() > 0)) return;
     if (!outputs.statistics.empty()) {
         makeFolderOf(outputs.statistics);
         writeTextFile(outputs.statistics, statisticsJson(loaded, options, result));

@@ -5,6 +5,7 @@
 #include "tungsten/render/Integrator.h"
 #include "tungsten/render/Outputs.h"
 #include "tungsten/render/PartialState.h"
+#include "tungsten/render/Team.h"
 #include "tungsten/render/Trace.h"
 #include "tungsten/scene/SceneLoader.h"
 
@@ -39,6 +40,7 @@ struct SessionOptions {
     bool quiet = false;              ///< no progress bar
     std::filesystem::path trace;     ///< folder of the render's trace; empty: none
     std::string command;             ///< that started the render, for its page
+    Team* team = nullptr;            ///< of this process; rank 0 writes
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: break the pass off, write, stop
     /// Called after every pass, before it is decided whether to go on. What it throws ends the render.
     std::function<void(const SessionResult&)> afterPass;
@@ -54,6 +56,9 @@ struct SessionResult {
     double renderSeconds = 0.0;    ///< passes of this run, not counting loading and writing
     uint64_t samples = 0;          ///< whole ones per pixel, resumed ones included
     uint64_t resumedSamples = 0;   ///< of them, taken by earlier runs
+    int ranks = 1;                 ///< of the team that rendered
+    double othersCpuSeconds = 0.0; ///< of ranks but the first
+    double othersPeakMemory = 0.0; ///< bytes: the largest of them
     std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
     std::vector<Effect> effects; ///< of the plan
@@ -72,7 +77,8 @@ inline constexpr double FirstPassPart = 0.25;
 
 /// Renders and writes every output. A pass that a time-out or an interrupt finds in progress is broken off: the film
 /// holds whole passes alone. Where not one has ended, nothing is written. `plan` is complete (Integrator::plan was
-/// called). Throws InputError before the first pass when an output cannot be written.
+/// called). Throws InputError before the first pass when an output cannot be written. In a team every rank calls this
+/// alike; the film is whole in rank 0, which alone writes, and what keeps any rank from starting is a TeamFailure.
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result);
 

@@ -79,6 +79,19 @@ std::vector<double> frameEdgesInPicoseconds(const Scene& scene) {
     return edges;
 }
 
+ResultContent::Array batchMeans(const Film& film, const Scene& scene) {
+    const PassBatches& batches = film.batches();
+    ResultContent::Array array{"batch_means",
+                               {size_t(batches.count()), size_t(film.frames()), size_t(batches.rows()),
+                                size_t(batches.columns()), size_t(film.contents().channels)},
+                               {batches.means().begin(), batches.means().end()}};
+    Image factor(1, 1);
+    factor.pixels[0] = Rgb(1.0f);
+    const float units = inOutputUnits(factor, scene, 1).pixels[0].x;
+    for (float& value : array.values) value *= units;
+    return array;
+}
+
 ResultContent resultContent(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata) {
     ResultContent content{film.width(), film.height(), film.frames(), film.contents().channels, {}, {}, metadata};
     const auto add = [&](const std::string& mean, const std::string& error, const Film& of) {
@@ -90,6 +103,10 @@ ResultContent resultContent(const Film& film, const Film& bias, const Scene& sce
     add("mean", "standard_error", film);
     if (bias.frames() > 0) add("bias", "bias_standard_error", bias);
     content.vectors = {{"time_edges", frameEdges(scene.transport.gate)}};
+    if (film.batches().count() > 0) {
+        content.arrays.push_back(batchMeans(film, scene));
+        content.vectors.push_back({"batch_weights", film.batches().weights()});
+    }
     if (picosecondsPerTime(scene) > 0.0) content.vectors.push_back({"time_edges_ps", frameEdgesInPicoseconds(scene)});
     return content;
 }
@@ -108,6 +125,7 @@ std::string describeResult(const ResultOrigin& origin) {
     json.field("axes", std::vector<std::string>{"frame", "row", "column", "channel"});
     json.field("channels", origin.scene.film.channels == 1 ? std::vector<std::string>{"Y"}
                                                            : std::vector<std::string>{"R", "G", "B"});
+    if (origin.scene.film.batches > 0) json.field("batch block", uint64_t(origin.scene.film.batchBlock));
     describeTime(json, origin.scene);
     describeDetectors(json, origin.scene);
     json.field("integrator", origin.integrator);

@@ -30,6 +30,8 @@ double picosecondsPerTime(const Scene& scene);
 std::vector<double> frameEdgesInPicoseconds(const Scene& scene);
 /// All that a result file holds, the bias where `bias` has frames. Films, scene and metadata must outlive it.
 ResultContent resultContent(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata);
+/// The means of batches in output units: (batch, frame, row of blocks, column of blocks, channel).
+ResultContent::Array batchMeans(const Film& film, const Scene& scene);
 /// What a pixel of a frame holds.
 std::string quantityText(const Scene& scene);
 

@@ -8,7 +8,9 @@ namespace tungsten {
 
 inline Film filmOf(const Scene& scene, PassWeight meaning = PassWeight::Samples) {
     const Vec2i size = scene.camera.resolution;
-    return {size.x, size.y, scene.transport.gate.frames, scene.film, meaning};
+    FilmContents contents = scene.film;
+    if (meaning == PassWeight::Repeats) contents.batches = 0; // of the image alone
+    return {size.x, size.y, scene.transport.gate.frames, contents, meaning};
 }
 
 /// Bytes that it takes.

@@ -17,10 +17,13 @@ void SessionFiles::resume() {
                      static_cast<unsigned long long>(result_.samples), outputs_.state.c_str());
 }
 
+bool SessionFiles::checkpointDue() const {
+    return options_.checkpointSeconds > 0.0 &&
+           Clock::now() - lastCheckpoint_ >= std::chrono::duration<double>(options_.checkpointSeconds);
+}
+
 void SessionFiles::checkpointIfDue() {
-    if (options_.checkpointSeconds <= 0.0 ||
-        Clock::now() - lastCheckpoint_ < std::chrono::duration<double>(options_.checkpointSeconds))
-        return;
+    if (!checkpointDue()) return;
     const StageTimer timer(result_.statistics, "checkpoint");
     // The images so far are worth more than the checkpoint: the render goes on.
     for (const Problem& problem : write(CheckpointSuffix))

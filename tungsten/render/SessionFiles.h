@@ -19,6 +19,7 @@ class SessionFiles {
     void resume();
     /// Images and state once more, if it is time; what goes wrong is a warning.
     void checkpointIfDue();
+    [[nodiscard]] bool checkpointDue() const;
     /// All of the result but statistics and page. Throws InputError of everything that could not be written.
     void finish();
 

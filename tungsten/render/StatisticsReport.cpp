@@ -6,6 +6,8 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
+
 namespace tungsten {
 
 std::string toString(StopReason reason) {
@@ -52,8 +54,9 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     }
     json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
     json.field("render wall seconds", result.renderSeconds);
-    json.field("process CPU seconds", processCpuSeconds());
-    json.field("peak memory bytes", peakMemoryBytes());
+    if (result.ranks > 1) json.field("ranks", uint64_t(result.ranks));
+    json.field("process CPU seconds", processCpuSeconds() + result.othersCpuSeconds);
+    json.field("peak memory bytes", std::max(peakMemoryBytes(), uint64_t(result.othersPeakMemory)));
     writeEffects(result.effects, result.statistics, json);
     json.beginObject("counters");
     for (const auto& [name, value] : result.statistics.counters()) json.field(name, value);

@@ -27,12 +27,17 @@ void Trace::start() {
     cpuStart_ = processCpuSeconds();
 }
 
-void Trace::record(const Film& film, const Film& bias, uint64_t samples) {
+bool Trace::due() const {
+    return !folder_.empty() && wallNow() - wallStart_ >= next_;
+}
+
+void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool whole) {
     if (folder_.empty()) return;
+    const bool writes = whole && due();
     wall_ = wallNow();
     cpu_ = processCpuSeconds();
     written_ = false;
-    if (wall_ - wallStart_ >= next_) write(film, bias, samples);
+    if (writes) write(film, bias, samples);
 }
 
 void Trace::end(const Film& film, const Film& bias, uint64_t samples) {

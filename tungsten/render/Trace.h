@@ -31,9 +31,12 @@ class Trace {
 
     /// Before the first pass.
     void start();
+    /// Whether record() has something to write.
+    [[nodiscard]] bool due() const;
     /// After a pass. Throws InputError if a file cannot be written.
     /// `bias`: of the film, without frames where none is estimated.
-    void record(const Film& film, const Film& bias, uint64_t samples);
+    /// `whole`: the film is; else nothing is written yet.
+    void record(const Film& film, const Film& bias, uint64_t samples, bool whole = true);
     /// After the last pass, or one that was broken off: the film as it was at the last `record`, if that wrote nothing.
     void end(const Film& film, const Film& bias, uint64_t samples);
     [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }

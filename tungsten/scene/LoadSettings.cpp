@@ -186,6 +186,12 @@ FilmContents readFilm(const ObjectReader& reader) {
     film.moments = reader.flag("moments", true,
                                {"none", "second moments, a third of the memory: standard errors by pixel and frame; "
                                         "without them that of the whole film is still known"});
+    film.batches = int(reader.integer("batches", 0,
+                                      {"none", "groups of passes whose means over blocks of pixels are kept (16 is "
+                                               "enough), for the errors of regions; 0: none"},
+                                      {0, 256}));
+    film.batchBlock = int(reader.integer("batch_block", 4, {"pixels", "side of those blocks"}, {1, 4096}));
+    if (film.batches == 1) reader.problem("batches", "expected 0, or 2 and more: one batch tells no error, found 1");
     reader.warnAboutUnknown();
     return film;
 }

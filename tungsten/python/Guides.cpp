@@ -1,0 +1,149 @@
+// `darts_tungsten.sampling.Guide`: whole steps of a guided walk over numpy arrays; and first passage out of a body.
+
+#include "tungsten/python/Result.h"
+
+#include "darts/FirstPassage.h"
+#include "darts/Guide.h"
+
+#include <random>
+
+namespace tungsten::python {
+
+namespace py = pybind11;
+using namespace py::literals;
+
+namespace {
+
+darts::Medium mediumOf(float sigmaA, float sigmaS, float g) {
+    if (!(sigmaA >= 0.0f && sigmaS >= 0.0f && std::abs(g) < 1.0f))
+        throw py::value_error("expected coefficients of at least 0, and g between -1 and 1");
+    return {{sigmaA, sigmaA, sigmaA}, {sigmaS, sigmaS, sigmaS}, g};
+}
+
+darts::Settings presetOf(const std::string& preset, const std::string& mode, float g) {
+    if (mode != "path" && mode != "photon") throw py::value_error("mode: expected 'path' or 'photon'");
+    const darts::Mode kind = mode == "path" ? darts::Mode::Path : darts::Mode::Photon;
+    if (preset == "best") return darts::best(kind, g);
+    if (preset == "published") return darts::published(kind);
+    throw py::value_error("preset: expected 'best' or 'published'");
+}
+
+/// Arrays of one length, under their names.
+class Columns {
+  public:
+    explicit Columns(py::ssize_t rows) : rows_(rows) {}
+    float* add(const char* name) {
+        py::array_t<float> column(rows_);
+        columns_[name] = column;
+        return column.mutable_data();
+    }
+    [[nodiscard]] py::dict all() const { return columns_; }
+
+  private:
+    py::ssize_t rows_;
+    py::dict columns_;
+};
+
+/// One kind of target in one grey medium: a vertex at the origin, its target on the axis z.
+class GuideOfMedium {
+  public:
+    GuideOfMedium(const std::string& preset, const std::string& mode, float sigmaA, float sigmaS, float g)
+        : guide_(presetOf(preset, mode, g), mediumOf(sigmaA, sigmaS, g)) {}
+
+    /// One vertex's step, `count` times.
+    [[nodiscard]] py::dict sample(float C, double low, double high, py::ssize_t count, uint64_t seed, float before,
+                                  float surface) const {
+        if (!(C > 0.0f && high > low && before >= 0.0f && before <= 2.0f && count >= 0))
+            throw py::value_error(
+                "expected C > 0, high > low, before = 1 - cos from 0 to 2, and a count of at least 0");
+        const darts::Residual residual = darts::Residual::of({0.0f, 0.0f, C}, {low, high});
+        const darts::HenyeyGreenstein phase{{std::sqrt(before * (2.0f - before)), 0.0f, 1.0f - before},
+                                            guide_.medium().g};
+        Columns columns(count);
+        float *lengths = columns.add("length"), *lengthWeights = columns.add("length_inverse_pdf"),
+              *hs = columns.add("h"), *phases = columns.add("phase"),
+              *directions = columns.add("direction_inverse_pdf"), *vertices = columns.add("vertex"),
+              *legs = columns.add("to_target"), *vertexWeights = columns.add("vertex_inverse_pdf"),
+              *distances = columns.add("distance"), *weights = columns.add("transmittance_over_pdf");
+        std::mt19937_64 bits(seed);
+        const auto random = [&bits] { return float(bits() >> 40) * 0x1p-24f; };
+        for (py::ssize_t i = 0; i < count; ++i) {
+            darts::ConnectionSample connection = guide_.sampleConnection(residual, random());
+            const darts::DirectionSample ray =
+                guide_.sampleDirection(residual, connection, phase, darts::NoView{}, random);
+            if (!guide_.settings().lengthFirst) connection = guide_.sampleConnection(residual, random());
+            const auto vertex = guide_.controlVertex(residual, connection, ray.h, surface);
+            const darts::DistanceSample step =
+                guide_.sampleDistance(residual, ray, surface, {1.0f, 1.0f, 1.0f}, random);
+            lengths[i] = C + connection.excess;
+            lengthWeights[i] = connection.inversePdf;
+            hs[i] = ray.h;
+            phases[i] = phase.pdf(ray.direction);
+            directions[i] = ray.inversePdf;
+            vertices[i] = vertex ? vertex->distance : NAN;
+            legs[i] = vertex ? vertex->toTarget : NAN;
+            vertexWeights[i] = vertex ? vertex->inversePdf : 0.0f;
+            distances[i] = step.distance;
+            weights[i] = step.transmittanceOverPdf.x;
+        }
+        return columns.all();
+    }
+
+    [[nodiscard]] float vertexPdf(float C, double low, double high, float h, float distance) const {
+        return guide_.pdfControlVertex(darts::Residual::of({0.0f, 0.0f, C}, {low, high}), h, distance);
+    }
+    [[nodiscard]] float logUsefulness(float C, double low, double high, float throughput) const {
+        return guide_.logUsefulness(darts::Residual::of({0.0f, 0.0f, C}, {low, high}), throughput);
+    }
+
+  private:
+    darts::Guide guide_;
+};
+
+/// Under the plane boundary of a half-space or slab, the target straight above and far away.
+double firstPassageLog(double depth, double longest, double gate, double sigmaA, double reducedS, double thickness,
+                       double relativeIndex, double allowance) {
+    constexpr double Height = 1.0;
+    darts::Residual residual =
+        darts::Residual::of({0.0f, 0.0f, float(depth + Height)}, {Height + longest - gate, Height + longest});
+    residual.way = darts::Way::Out;
+    residual.exit.faces.add({{0, 0, 1}, float(depth), float(Height), float(thickness), 0.0f});
+    residual.exit.inside = float(depth);
+    residual.exit.gate = residual.width;
+    residual.exit.mismatch = darts::boundaryMismatch(float(relativeIndex));
+    if (!residual.alive()) return -std::numeric_limits<double>::infinity();
+    const darts::FirstPassage passage(float(sigmaA), float(reducedS), residual.exit, float(allowance));
+    return double(passage.log({residual.exit, residual.latest(0), residual.axis, 0.0f}));
+}
+
+} // namespace
+
+void declareGuides(py::module_& sampling) {
+    py::class_<GuideOfMedium>(sampling, "Guide",
+                              "What a guided walk draws at a vertex, for a target at distance C, in a grey medium.")
+        .def(py::init<const std::string&, const std::string&, float, float, float>(), "preset"_a, "mode"_a, "sigma_a"_a,
+             "sigma_s"_a, "g"_a = 0.0f)
+        .def(
+            "sample", &GuideOfMedium::sample,
+            "A dict of arrays (count,): `length` of the next connection (low to high) and 1 / its density per length;\n"
+            "`h` = 1 - cos between the next direction and the target, `phase` of it, and 1 / its density per solid\n"
+            "angle; `vertex`, the control vertex's distance along the ray (NaN: none), `to_target` from there, and 1 "
+            "/\n"
+            "its density per length; `distance` to the next vertex of the walk, and transmittance over density.\n"
+            "`before` is 1 - cos between the direction that the walk came in and the target.",
+            "C"_a, "low"_a, "high"_a, "count"_a, "seed"_a = uint64_t(0), "before"_a = 0.0f,
+            "surface"_a = std::numeric_limits<float>::infinity())
+        .def("vertex_pdf", py::vectorize(&GuideOfMedium::vertexPdf),
+             "density per length along the ray of the control vertex", "C"_a, "low"_a, "high"_a, "h"_a, "distance"_a)
+        .def("log_usefulness", py::vectorize(&GuideOfMedium::logUsefulness),
+             "log of what a walk with this throughput is good for here", "C"_a, "low"_a, "high"_a,
+             "throughput"_a = 1.0f);
+    sampling.def(
+        "first_passage_log", py::vectorize(firstPassageLog),
+        "log of the probability that light diffusing from `depth` under the boundary of a half-space (or slab\n"
+        "of `thickness`) leaves it after paths of at most `longest`, and no more than `gate` less",
+        "depth"_a, "longest"_a, "gate"_a, "sigma_a"_a, "reduced_sigma_s"_a,
+        "thickness"_a = std::numeric_limits<double>::infinity(), "relative_index"_a = 1.0, "allowance"_a = 1.0);
+}
+
+} // namespace tungsten::python
