@@ -150,16 +150,18 @@ def kill_and_resume(name, folder, kills, random_number, totals):
         begun = time.monotonic()
         finished(start(file, whole))
         totals["seconds"] = time.monotonic() - begun
-    for _ in range(kills):
+    state = out / "filmState.dat"
+    for kill in range(kills):
         process = start(file, out, *options)
+        while kill == kills - 1 and not state.exists() and process.poll() is None:
+            time.sleep(1e-3)
         time.sleep(random_number.uniform(0.0, totals["seconds"] * random_number.choice([0.4, 0.9])))
         totals["kills"] += process.poll() is None
         process.kill()
         process.communicate()
         if out.exists():
             totals["images"] += require_whole(out)
-    states = sum(1 for _ in out.glob("*State.dat")) if out.exists() else 0
-    totals["resumed"] += states > 0
+    totals["resumed"] += state.exists()
     finished(start(file, out, *options))
     finished(start(file, out))  # the film as .npz too, if it was .exr: the state is complete or gone
     require_whole(out)
