@@ -99,7 +99,9 @@ void printSummary(const SessionResult& result) {
 /// Exit code: 0, or 130 when interrupted before there was anything to write.
 int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins) {
     if (options.planCost) {
+        interrupted = true; // there is nothing to write: the first signal leaves
         planCost(file, options, plugins);
+        interrupted = false;
         return 0;
     }
     SessionResult result;
