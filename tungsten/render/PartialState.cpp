@@ -164,7 +164,8 @@ void requirePlausible(const Header& header, const fs::path& file) {
     const bool sizes = header.width > 0 && header.height > 0 && header.frames > 0;
     const bool contents = header.filmChannels == 1 || header.filmChannels == 3;
     const bool numbers = std::isfinite(header.gateStart) && header.frameWidth >= 0.0 && header.lengthUnit >= 0.0;
-    if (!sizes || !contents || !numbers || header.sppStep <= 0 || header.toneMap > uint8_t(ToneMap::Pbrt))
+    const bool batches = header.filmBatches >= 0 && header.filmBatches <= 256 && header.filmBatchBlock > 0;
+    if (!sizes || !contents || !numbers || !batches || header.sppStep <= 0 || header.toneMap > uint8_t(ToneMap::Pbrt))
         throw implausible(file);
 }
 
