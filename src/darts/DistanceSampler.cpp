@@ -1,7 +1,6 @@
 #include "darts/DistanceSampler.h"
 
 #include "darts/CandidateKernel.h"
-#include <cstdlib>
 
 #include <stdexcept>
 
@@ -73,6 +72,11 @@ Vec3 DistanceSampler::transmittance(float distance) const {
     return {std::exp(-sigmaT_.x * distance), std::exp(-sigmaT_.y * distance), std::exp(-sigmaT_.z * distance)};
 }
 
+float DistanceSampler::floor(const Residual& residual) const {
+    if (residual.way != Way::Out || !(settings_.strays > 0)) return settings_.floor;
+    return std::clamp(settings_.strays / (meanSigmaT_ * residual.excess), settings_.floor, MostFloor);
+}
+
 DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
                                        const Vec3& throughput, const DistanceRandom& random) const {
     DistanceSample sample;
@@ -101,7 +105,7 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
     draw.proposals = settings_.proposals;
     if (settings_.mixDenseOnly && meanSigmaT_ * residual.C < 4.0f) draw.proposals = Proposals::Exponential;
     draw.overlap = settings_.overlap;
-    draw.floor = settings_.floor;
+    draw.floor = floor(residual);
     draw.throughput = throughput;
     draw.medium = &medium_;
     draw.exit = &residual.exit;

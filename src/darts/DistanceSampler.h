@@ -51,6 +51,11 @@ class DistanceSampler {
     struct Kernels {
         Kernel through = nullptr, out = nullptr, unknown = nullptr;
     };
+    /// Of usefulness, relative to the candidates' mean. Diffusion knows little of the last few scatterings in a body:
+    /// what it calls useless still shows, too bright for its odds. Over a long way a constant floor would lead every
+    /// walk astray; this one leads `strays` flights of each.
+    [[nodiscard]] float floor(const Residual& residual) const;
+    static constexpr float MostFloor = 0.05f;
     static Kernels chooseKernels(const Settings& settings, bool grey, bool scalar);
 
     Settings settings_;

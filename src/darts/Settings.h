@@ -65,6 +65,7 @@ struct Settings {
     int candidates = 8;        ///< 1, 4, 8 or 16
     bool overlap = true;       ///< usefulness includes the part of the gate that is still reachable
     float floor = 0.0f;        ///< added to usefulness, relative to the candidates' mean; at most 0.05
+    float strays = 0.0f;       ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
     bool mixDenseOnly = false; ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
 
     bool elliptical = true;     ///< control vertices at all
@@ -108,6 +109,7 @@ inline Settings best(Mode mode, float g) {
         s.roulette = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
         s.mixDenseOnly = !peaked;
+        s.strays = 0.2f;
     } else {
         s.candidates = 16;
         s.roulette = 0.03f;
@@ -122,6 +124,7 @@ inline Settings plainFlights(Settings s) {
     s.proposals = Proposals::Exponential;
     s.candidates = 1;
     s.overlap = s.mixDenseOnly = false;
+    s.strays = 0.0f;
     return s;
 }
 

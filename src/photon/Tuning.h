@@ -63,7 +63,7 @@ inline constexpr float MostPerBase = 8.0f, LeastPerBase = 1e-3f;
 /// Slices that bring less than this part of their shape's mean to a frame of a sequence are drawn there at random.
 /// Variance / mean^2 x CPU seconds, mean over 50 frames, without, at 0.3 and at 1: fogged-box 0.69, 0.59, 0.60, warped
 /// volumes 0.66, 0.55, 0.54, simple-volumetric 0.070, 0.050, 0.053; but the warped film's darkest tenth 0.08, 0.31,
-/// 0.36. Bench: benchmarks/study/liu_stages.py
+/// 0.36. Bench: benchmarks/study/studies/liu-stages.py
 inline constexpr float DimInFrame = 0.3f;
 
 /// Shadow rays for what a ray gathers of slices behind occluders: each stands for a dose of light, so many to a ray.
@@ -94,7 +94,7 @@ inline constexpr float SharedConnections = 100.0f, LeastShared = 2.5f, MostShare
 /// Width of the kernels that the bias is estimated with, of those that the image is made with. Narrower ones need no
 /// photons but the pass's, and tell more where what they blur has edges: a slab seen from outside, estimate over true
 /// bias 0.60 at 0.71 and 0.52 at 0.8, where the estimate's noise was taken off differently. Bench:
-/// benchmarks/study/bias.py
+/// benchmarks/study/studies/bias.py
 inline constexpr float NarrowKernel = 0.70710678f;
 
 // --- Stores and structures -------------------------------------------------------------------------------------------

@@ -64,8 +64,8 @@ class GuidedStep {
     void startRoulette(const darts::Guide& guide, int medium, float throughput);
     /// Probability of going on; 1 where the roulette starts.
     [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput);
-    /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, elsewhere those that
-    /// have become too useful.
+    /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, and where it has become
+    /// too useful.
     [[nodiscard]] int copies(const darts::Guide& guide);
 
     // Connection.

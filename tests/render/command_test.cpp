@@ -188,8 +188,8 @@ TEST(Command, APageHoldsFilmCommandAndFigures) {
     EXPECT_EQ(text.rfind("<!DOCTYPE html>", 0), 0u);
     for (const char* line : {"\n@include", "\n@data"}) EXPECT_EQ(text.find(line), std::string::npos) << line;
     EXPECT_EQ(text.substr(text.size() - 8), "</html>\n");
-    for (const char* part : {"\"frames\": 4", "\"samples per pixel\": 8", "new uPlot(", "Leon Sorokin",
-                             R"('primitives.lamp.name=\u003c/script> it'\\''s')"})
+    for (const char* part : {"\"frames\": 4", "\"samples per pixel\": 8", "\"value\": \"standard error", "new uPlot(",
+                             "Leon Sorokin", R"('primitives.lamp.name=\u003c/script> it'\\''s')"})
         EXPECT_NE(text.find(part), std::string::npos) << part;
 }
 

@@ -19,7 +19,7 @@ namespace {
 class KnownPasses : public Integrator {
   public:
     PowerLaw variance{0.04, 0.25}, bias{0.02, -0.5};
-    bool kernels = true;
+    bool kernels = true, shared = false; ///< shared: noise of the bias is the same for all pixels
     std::vector<uint32_t> indices;
 
     void plan(EffectPlan&) const override {}
@@ -34,21 +34,22 @@ class KnownPasses : public Integrator {
         const double spread = std::sqrt(3.0 * variance.first * std::pow(age, variance.exponent)); // of a box, half
         const double left = bias.first * std::pow(age, bias.exponent);
         Sampler sampler(pass.seed, RandomStream::Test, pass.index, 0);
+        const double common = spread * (2.0 * double(sampler.next1D()) - 1.0);
         for (int y = 0; y < film.height(); ++y)
             for (int x = 0; x < film.width(); ++x) {
                 const double sign = (x + y) % 2 == 0 ? 1.0 : -1.0, wrong = kernels ? sign * left : 0.0;
                 const double noise = spread * (2.0 * double(sampler.next1D()) - 1.0);
                 film.add(0, x, y, Rgb(float(1.0 + wrong + noise)));
-                if (pass.bias) pass.bias->add(0, x, y, Rgb(float(wrong + 0.3 * noise)));
+                if (pass.bias) pass.bias->add(0, x, y, Rgb(float(wrong + 0.3 * (shared ? common : noise))));
             }
     }
 };
 
-std::optional<PassCosts> costsOf(KnownPasses& integrator) {
+std::optional<PassCosts> costsOf(KnownPasses& integrator, double seconds = 0.05, uint64_t seed = 7) {
     const test::SceneFile file(R"({"primitives": [{"type": "point", "emission": 1}],
         "camera": {"type": "pinhole", "resolution": [64, 64]}, "integrator": {"type": "path_tracer"}})");
     const LoadedScene loaded = loadScene(file.path());
-    return measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene), {7, 1, 0.05});
+    return measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene), {seed, 1, seconds});
 }
 
 TEST(PowerLaw, SumsAreThoseOfTheirTerms) {
@@ -90,6 +91,25 @@ TEST(CostPilot, FindsTheLawsOfPasses) {
     EXPECT_GT(costs.cpuSeconds.first, 0.0);
     integrator.bias.first = 0.0;
     EXPECT_EQ(costsOf(integrator).value().bias.first, 0.0) << "noise is no bias";
+}
+
+TEST(CostPilot, NoiseThatPixelsShareIsNoBias) {
+    KnownPasses integrator;
+    integrator.bias.first = 0.0;
+    integrator.shared = true;
+    int found = 0;
+    for (uint64_t seed = 0; seed < 100; ++seed)
+        if (costsOf(integrator, 0.01, 1000 * seed)->bias.first > 0.0) ++found;
+    EXPECT_LE(found, 10);
+}
+
+TEST(CostPilot, NarrowerKernelsTakeNoNoise) {
+    KnownPasses integrator;
+    for (const double exponent : {-0.5, 1.0}) {
+        integrator.variance.exponent = exponent;
+        const PassCosts costs = costsOf(integrator).value();
+        EXPECT_EQ(costs.variance.exponent, exponent < 0.0 ? 0.0 : 0.75) << "three dimensions, width ~ n^-0.25";
+    }
 }
 
 TEST(CostPilot, PassesWithoutKernelsAreAlike) {

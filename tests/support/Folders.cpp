@@ -8,6 +8,9 @@ std::filesystem::path binaryFolder() {
 std::filesystem::path dataFolder() {
     return TEST_DATA_FOLDER;
 }
+std::filesystem::path corpusFolder() {
+    return TEST_CORPUS_FOLDER;
+}
 std::filesystem::path sharedFolder() {
     return TEST_SHARED_FOLDER;
 }

@@ -15,7 +15,7 @@ namespace tungsten {
 ///
 /// v: relative variance of the deviations over n passes (rare bright samples make it large); s: the same by quartiles,
 /// which rare samples do not reach; an even, bell-shaped noise of k independent pixels has s = 2 / k. Measured:
-/// benchmarks/study/PROMISE.md.
+/// benchmarks/results/promise/README.md.
 class PassScatter {
   public:
     /// Standard deviations of a one-sided confidence of 97.7 %, on the safe side of the 95 % that is told.

@@ -43,6 +43,31 @@ PowerLaw fitted(const std::array<double, Indices.size()>& values) {
     return {std::exp((y - exponent * x) / n), exponent};
 }
 
+/// The same with an exponent between these: what a few passes of heavy tails say otherwise is noise.
+PowerLaw fitted(const std::array<double, Indices.size()>& values, double least, double most) {
+    PowerLaw law = fitted(values);
+    if (law.exponent >= least && law.exponent <= most) return law;
+    law.exponent = std::clamp(law.exponent, least, most);
+    double log = 0.0;
+    for (size_t k = 0; k < Indices.size(); ++k)
+        log += (std::log(values[k]) - law.exponent * std::log(double(Indices[k]) + 1.0)) / double(Indices.size());
+    law.first = std::exp(log);
+    return law;
+}
+
+/// How fast kernels narrow: the exponent of their width.
+double widthExponent(const Integrator& integrator) {
+    return std::log(integrator.kernelWidth(Indices[1])) / std::log(double(Indices[1]) + 1.0);
+}
+
+/// What a square may be too large by, as that of RelativeBias, since neighbouring pixels have noise in common: the
+/// squared factor of the sample that is known worst, or that of a single number where few passes tell nothing.
+double squaredBoundFactor(const std::array<Sample, Indices.size()>& samples) {
+    double factor = 0.0;
+    for (const Sample& sample : samples) factor = std::fmax(factor, sample.bias.boundFactor());
+    return factor > 0.0 ? factor * factor : 4.0;
+}
+
 /// Every sample's bias image over the square of its kernels' width is that of the first pass, with noise: their mean by
 /// inverse variances. 0 where that does not rise above its own noise.
 PowerLaw biasLaw(const std::array<Sample, Indices.size()>& samples, const Integrator& integrator) {
@@ -62,9 +87,9 @@ PowerLaw biasLaw(const std::array<Sample, Indices.size()>& samples, const Integr
     }
     double square = 0.0;
     for (const Vec3d& sum : sums) square += sum.dot(sum) / (3.0 * double(sums.size()) * weights * weights);
-    const double noise = 1.0 / weights;
-    if (square < 2.0 * noise) return {};
-    return {std::sqrt(square - noise), std::log(squaredWidth(1)) / std::log(double(Indices[1]) + 1.0)};
+    const double noise = 1.0 / weights, more = std::max(square - noise, 0.0);
+    const double doubt = (squaredBoundFactor(samples) - 1.0) * std::sqrt(noise * (noise + 2.0 * more));
+    return more > doubt ? PowerLaw{std::sqrt(more - 0.5 * doubt), 2.0 * widthExponent(integrator)} : PowerLaw{};
 }
 
 template <typename Of>
@@ -112,7 +137,8 @@ PassCosts costsOf(const std::array<Sample, Indices.size()>& samples, const Integ
     const auto cpu = each(samples, [](const Sample& s) { return std::max(s.cpu, 1e-9); });
     const auto wall = each(samples, [](const Sample& s) { return std::max(s.wall, 1e-9); });
     if (measuresBias) {
-        costs.variance = fitted(variance);
+        // Narrower kernels of at most three dimensions bring noise, never take it.
+        costs.variance = fitted(variance, 0.0, -3.0 * widthExponent(integrator));
         costs.cpuSeconds = fitted(cpu);
         costs.wallSeconds = fitted(wall);
         costs.bias = biasLaw(samples, integrator);

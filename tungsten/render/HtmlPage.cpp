@@ -2,6 +2,7 @@
 
 #include "tungsten/film/FilmCode.h"
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/render/Progress.h"
 #include "tungsten/render/ResultDescription.h"
 #include "tungsten/scene/JsonWriter.h"
 
@@ -94,9 +95,13 @@ void describeScene(JsonWriter& json, const LoadedScene& loaded, const SessionRes
     json.endArray();
 }
 
-void describeFacts(JsonWriter& json, const SessionOptions& options) {
+void describeFacts(JsonWriter& json, const SessionOptions& options, const SessionResult& result) {
+    const double error = result.film.relativeStandardError();
+    const std::string known =
+        std::isnan(error) ? "" : errorText(error, result.film.relativeErrorBound(), result.relativeBias());
     json.beginArray("facts");
-    for (const auto& [name, value] : {std::pair<std::string, std::string>{"command", options.command},
+    for (const auto& [name, value] : {std::pair<std::string, std::string>{"error", known},
+                                      {"command", options.command},
                                       {"machine", machineText()},
                                       {"build", buildText()}}) {
         if (value.empty()) continue;
@@ -137,7 +142,7 @@ void writeFilmPage(const std::filesystem::path& file, const LoadedScene& loaded,
     json.field("title", (sceneFile.parent_path().filename() / sceneFile.filename()).string());
     json.field("subtitle", subtitle(loaded, result));
     describeScene(json, loaded, result, code);
-    describeFacts(json, options);
+    describeFacts(json, options, result);
     const std::string data =
         "{\"statistics\": " + statisticsJson(loaded, options, result) + "," + json.finish().substr(1);
     const auto element = [](const std::string& attributes, const std::string& text) {

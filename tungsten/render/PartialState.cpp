@@ -3,9 +3,11 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
 #include "tungsten/film/Checksum.h"
+#include "tungsten/scene/JsonWriter.h"
 
 #include <zlib.h>
 
+#include <cmath>
 #include <cstring>
 
 namespace tungsten {
@@ -115,8 +117,21 @@ Value readValue(std::istream& in) {
     return value;
 }
 
-std::string readText(std::istream& in) {
-    std::string value(readValue<uint64_t>(in), '\0');
+/// A checksum says that a file is as it was written, not who wrote it.
+InputError implausible(const fs::path& file) {
+    return {file.string(), "the partial state is damaged: what it holds cannot be"};
+}
+
+/// What is left of the file, of so many bytes.
+uint64_t bytesLeft(std::istream& in, uint64_t size) {
+    const auto at = uint64_t(in.tellg());
+    return in && at <= size ? size - at : 0;
+}
+
+std::string readText(std::istream& in, uint64_t fileSize, const fs::path& file) {
+    const auto size = readValue<uint64_t>(in);
+    if (size > bytesLeft(in, fileSize)) throw implausible(file);
+    std::string value(size, '\0');
     in.read(value.data(), std::streamsize(value.size()));
     return value;
 }
@@ -131,16 +146,27 @@ void writeDetectors(std::ostream& out, const Scene& scene) {
     }
 }
 
-void readDetectors(std::istream& in, Scene& scene) {
+void readDetectors(std::istream& in, Scene& scene, uint64_t size, const fs::path& file) {
     Detectors detectors;
-    for (auto left = readValue<uint64_t>(in); left > 0; --left) {
+    const auto count = readValue<uint64_t>(in);
+    if (count > size) throw implausible(file);
+    for (uint64_t left = count; left > 0; --left) {
         Detector& detector = detectors.row.emplace_back();
-        detector.name = readText(in);
+        detector.name = readText(in, size, file);
         const auto state = readValue<DetectorState>(in);
         detector.radius = state.radius;
         detector.aperture = state.aperture;
     }
     if (!detectors.row.empty()) scene.camera.model = std::move(detectors);
+}
+
+void requirePlausible(const Header& header, const fs::path& file) {
+    const bool sizes = header.width > 0 && header.height > 0 && header.frames > 0;
+    const bool contents = header.filmChannels == 1 || header.filmChannels == 3;
+    const bool numbers = std::isfinite(header.gateStart) && header.frameWidth >= 0.0 && header.lengthUnit >= 0.0;
+    const bool batches = header.filmBatches >= 0 && header.filmBatches <= 256 && header.filmBatchBlock > 0;
+    if (!sizes || !contents || !numbers || !batches || header.sppStep <= 0 || header.toneMap > uint8_t(ToneMap::Pbrt))
+        throw implausible(file);
 }
 
 /// Of a file that is whole; the stream goes on behind it.
@@ -155,6 +181,7 @@ Header readHeader(std::istream& in, const fs::path& file) {
     if (!endsWithChecksum(in, size))
         throw InputError(file.string(), "the partial state is damaged or truncated (its checksum is wrong)");
     in.seekg(sizeof header);
+    requirePlausible(header, file);
     return header;
 }
 
@@ -219,25 +246,32 @@ void PartialStateWriter::finish(const std::string& statistics, double cpuSeconds
 }
 
 PartialStateReader::PartialStateReader(const fs::path& file) : file_(file) {
-    (void)requireRegularFile(file);
+    const uint64_t size = requireRegularFile(file);
     std::ifstream in(file, std::ios::binary);
     const Header header = readHeader(in, file);
     first_ = header.firstPass;
-    build_ = readText(in);
+    build_ = readText(in, size, file);
     const std::shared_ptr<Scene> scene = sceneOf(header);
-    scene->file = readText(in);
-    const std::string integrator = readText(in);
-    identity_ = {header.content, header.seed, header.sppStep, scene, integrator, readText(in), {}};
+    scene->file = readText(in, size, file);
+    const std::string integrator = readText(in, size, file);
+    identity_ = {header.content, header.seed, header.sppStep, scene, integrator, readText(in, size, file), {}};
     if (header.exposureGiven) identity_.exposure = ExposureChoice{header.exposureAutomatic != 0, header.exposureStops};
-    readDetectors(in, *scene);
+    readDetectors(in, *scene, size, file);
     passesAt_ = in.tellg();
     auto pass = readValue<PassHeader>(in);
     for (; pass.samples > 0; pass = readValue<PassHeader>(in)) {
+        // A byte that is deflated holds at most 1032.
+        const double values = double(header.width) * header.height * header.frames * header.filmChannels;
+        if (pass.bytes > bytesLeft(in, size) || values * sizeof(float) > 1032.0 * double(pass.bytes) + 1032.0)
+            throw implausible(file);
         samples_.push_back(pass.samples);
         in.seekg(std::streamoff(pass.bytes), std::ios::cur);
     }
     cpuSeconds_ = pass.cpuSeconds;
-    statistics_ = readText(in);
+    statistics_ = readText(in, size, file);
+    if (!in || samples_.size() > UINT32_MAX - first_ || !isJsonObject(statistics_) ||
+        !isJsonObject(identity_.sceneText))
+        throw implausible(file);
 }
 
 std::string PartialStateReader::differenceTo(const PartialStateReader& other) const {

@@ -164,6 +164,8 @@ void applyOverride(rapidjson::Document& document, const std::string& assignment)
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0)
         throw UsageError("--set " + assignment + ": expected path.to.field=value");
+    if (assignment.find('\0') != std::string::npos)
+        throw UsageError("--set: a zero byte is part of no path and no value");
     auto& allocator = document.GetAllocator();
     std::string rest = assignment.substr(0, equals);
     rapidjson::Value* at = &document;

@@ -1,6 +1,8 @@
 #include "tungsten/scene/JsonWriter.h"
 
+#include <rapidjson/memorystream.h>
 #include <rapidjson/prettywriter.h>
+#include <rapidjson/reader.h>
 #include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
@@ -121,6 +123,15 @@ void JsonWriter::endObject() {
 std::string JsonWriter::finish() {
     implementation_->writer.EndObject();
     return std::string(implementation_->buffer.GetString()) + "\n";
+}
+
+bool isJsonObject(const std::string& text) {
+    constexpr unsigned Grammar = rapidjson::kParseNanAndInfFlag | rapidjson::kParseIterativeFlag;
+    rapidjson::MemoryStream bytes(text.data(), text.size());
+    rapidjson::Reader reader;
+    rapidjson::BaseReaderHandler<> nothing;
+    const bool valid = !reader.Parse<Grammar>(bytes, nothing).IsError();
+    return valid && text.find('\0') == std::string::npos && text.find_first_not_of(" \t\r\n") == text.find('{');
 }
 
 } // namespace tungsten

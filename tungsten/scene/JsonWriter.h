@@ -40,4 +40,7 @@ class JsonWriter {
     std::unique_ptr<Implementation> implementation_;
 };
 
+/// Whether the text is one JSON object, as jsonField() needs it.
+bool isJsonObject(const std::string& text);
+
 } // namespace tungsten

@@ -25,8 +25,8 @@ def sphere(rings):
     for i in range(rings):
         for j in range(sides):
             near, far = i * sides + j, i * sides + (j + 1) % sides
-            lines += [f"f {near + 1} {far + 1} {near + sides + 1}"] if i < rings - 1 else []
-            lines += [f"f {far + 1} {far + sides + 1} {near + sides + 1}"] if i > 0 else []
+            lines += [f"f {near + 1} {far + 1} {near + sides + 1}"] if i > 0 else []
+            lines += [f"f {far + 1} {far + sides + 1} {near + sides + 1}"] if i < rings - 1 else []
     return "\n".join(lines) + "\n"
 
 
@@ -38,12 +38,12 @@ def ball_scene(bench, rings):
     """A ball of triangles in fog, over a floor."""
     folder = bench.work / f"ball-{rings}"
     folder.mkdir(exist_ok=True)
-    (folder / f"ball-{rings}.obj").write_text(sphere(rings))
+    (folder / f"sphere-{rings}.obj").write_text(sphere(rings))
     scene = {
         "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3, "sigma_a": 0.02}],
         "primitives": [
             {"name": "floor", "type": "quad", "bsdf": {"type": "lambert", "albedo": 0.4}, "transform": {"scale": [5, 1, 4]}},
-            {"name": "ball", "type": "mesh", "file": f"ball-{rings}.obj", "bsdf": {"type": "lambert", "albedo": 0.7},
+            {"name": "ball", "type": "mesh", "file": f"sphere-{rings}.obj", "bsdf": {"type": "lambert", "albedo": 0.7},
              "transform": {"position": [0, 0.9, 0], "scale": 0.8}},
             {"name": "lamp", "type": "point", "emission": 50, "ext_medium": "fog", "transform": {"position": [-1.2, 2, 1]}}],
         "camera": {"type": "pinhole", "resolution": [64, 64], "fov": 50, "medium": "fog", "reconstruction_filter": "box",
