@@ -4,7 +4,7 @@ LIB, APP = "tungsten", "tungsten-app"
 MEDIUM, EMITTER, BSDF, FILM = ("medium_tests", "*"), ("emitter_tests", "*"), ("bsdf_tests", "*"), ("film_tests", "*")
 SCENE, DARTS, TRANSPORT = ("scene_tests", "*"), ("darts_tests", "*Response*:*FirstPassage*"), ("transport_tests", "*")
 PLAN, LEFT_OUT, NASTY = (APP, "tests/plan/plan_test.py"), (APP, "tests/plan/left_out_test.py"), (APP, "tests/nasty/nasty_test.py")
-PLAIN = ("path_tests", "PathTracer.*:DirectLight*:Energy*:SingleScattering*:SpecularTime*")
+PLAIN = ("path_tests", "PathTracer.*:DirectLight*:Bounces*:Energy*:SingleScattering*:SpecularTime*")
 LIGHT, GUIDED = ("path_tests", "LightTracer*:Energy*"), ("path_tests", "*Guided*:LightVertices*:*DirectLight*")
 MAPS = ("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:Gather*")
 SHARED = ("photon_tests", "SharedLight*:SpreadLight*:*GuidedMap*")
@@ -49,7 +49,7 @@ FAULTS = [
     ("src/path/plain/PathWalk.cpp", "powerHeuristic(pdf * light->probability,", "powerHeuristic(pdf,", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "(medium.transmittance(reach) / probabilityFlightExits(medium, reach))",
      "(Rgb(1.0f) / probabilityFlightExits(medium, reach))", [PLAIN]),
-    ("src/path/plain/PathWalk.cpp", "if (++path_.interactions >= scene_", "if (++path_.interactions > scene_", [PLAIN]),
+    ("src/path/plain/PathWalk.cpp", "!rendered(path_.interactions) || !orderCounts()", "!rendered(path_.interactions - 1) || !orderCounts()", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "weighted_ = false; // emitters", "weighted_ = weighted_; // emitters", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "path_.time + connection->time + source_->start", "path_.time + connection->time", [PLAIN]),
     ("src/path/PathTarget.cpp", "target.start += double(length) / double(laser.region.speed);", "target.start += double(length);", [PLAIN]),
