@@ -165,6 +165,25 @@ TEST(FirstPassage, PullsTowardsTheBoundaryAndInsideTheSides) {
     EXPECT_LT(FirstPassage(float(SigmaA), float(ReducedS), residual.exit).slopes(beside, residual.axis).pull.y, -0.1f);
 }
 
+/// Over a mean free path, in depth and in the length left: the target is straight above, where neither changes the
+/// other.
+TEST(FirstPassage, SlopesAreDifferences) {
+    const double step = 1.0 / ReducedS;
+    for (const auto& [depth, height, longest, gate] :
+         {std::array{0.3, 3.0, 5.0, 0.2}, {1.0, 3.0, 4.3, 0.2}, {0.05, 1.0, 20.0, 1.0}}) {
+        const Residual residual = outOf(depth, height, longest, gate);
+        const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit);
+        const Departure<float> here(residual.exit, residual.latest(0), residual.axis, 0.0f);
+        const FirstPassage::Slopes slopes = passage.slopes(here, residual.axis);
+        const double log = logPassage(residual, 1.0f);
+        const double change = log - logPassage(outOf(depth + step, height, longest, gate), 1.0f);
+        const double later = logPassage(outOf(depth, height, longest + step, gate), 1.0f) - log;
+        EXPECT_NEAR(slopes.later, later / step, 0.01 + 0.01 * std::abs(later / step)) << depth;
+        const double outward = (change > 0.0 ? change : std::expm1(change)) / step;
+        EXPECT_NEAR(dot(slopes.pull, residual.exit.faces[0].normal), outward, 0.01 + 0.01 * std::abs(outward)) << depth;
+    }
+}
+
 TEST(FirstPassage, RegistersAndSinglePlacesAgree) {
     Residual residual = outOf(0.5, 2.0, 4.0, 0.3);
     residual.exit.faces[0].thickness = 1.5f;

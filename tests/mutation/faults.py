@@ -4,7 +4,7 @@ LIB, APP = "tungsten", "tungsten-app"
 MEDIUM, EMITTER, BSDF, FILM = ("medium_tests", "*"), ("emitter_tests", "*"), ("bsdf_tests", "*"), ("film_tests", "*")
 SCENE, DARTS, TRANSPORT = ("scene_tests", "*"), ("darts_tests", "*Response*:*FirstPassage*"), ("transport_tests", "*")
 PLAN, LEFT_OUT, NASTY = (APP, "tests/plan/plan_test.py"), (APP, "tests/plan/left_out_test.py"), (APP, "tests/nasty/nasty_test.py")
-PLAIN = ("path_tests", "PathTracer.*:DirectLight*:Energy*:SingleScattering*:SpecularTime*")
+PLAIN = ("path_tests", "PathTracer.*:DirectLight*:Bounces*:Energy*:SingleScattering*:SpecularTime*")
 LIGHT, GUIDED = ("path_tests", "LightTracer*:Energy*"), ("path_tests", "*Guided*:LightVertices*:*DirectLight*")
 MAPS = ("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:Gather*")
 SHARED = ("photon_tests", "SharedLight*:SpreadLight*:*GuidedMap*")
@@ -42,14 +42,14 @@ FAULTS = [
     ("src/darts/FirstPassage.cpp", "deeper.depth += step;", "deeper.depth -= step;", [DARTS]),
     ("src/darts/FirstPassage.cpp", "(logThrough(face, later) - log)", "(log - logThrough(face, later))", [DARTS]),
     ("src/transport/Connection.cpp", "/ sqr(way.distance),", "/ way.distance,", [TRANSPORT, LIGHT]),
-    ("src/transport/Connection.cpp", "medium ? medium->transmittance(distance) : Rgb(1.0f)", "Rgb(1.0f)", [PLAIN]),
+    ("src/transport/Connection.cpp", "medium ? medium->transmittance(distance) :", "medium ? medium->transmittance(0.0f) :", [PLAIN]),
     ("src/transport/Connection.cpp", "double(distance) / double(region.speed)", "double(distance)", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "double(length) / double(path_.region.speed)", "double(length) * double(path_.region.speed)", [PLAIN]),
-    ("src/path/plain/PathWalk.cpp", "* weight, path_.time + emitter.emissionTime", "* weight, path_.time", [PLAIN, NASTY]),
+    ("src/path/plain/PathWalk.cpp", "* weight, path_.time + emitter.emissionTime", "* weight, path_.time - emitter.emissionTime", [PLAIN, NASTY]),
     ("src/path/plain/PathWalk.cpp", "powerHeuristic(pdf * light->probability,", "powerHeuristic(pdf,", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "(medium.transmittance(reach) / probabilityFlightExits(medium, reach))",
      "(Rgb(1.0f) / probabilityFlightExits(medium, reach))", [PLAIN]),
-    ("src/path/plain/PathWalk.cpp", "if (++path_.interactions >= scene_", "if (++path_.interactions > scene_", [PLAIN]),
+    ("src/path/plain/PathWalk.cpp", "!rendered(path_.interactions) || !orderCounts()", "!rendered(path_.interactions - 1) || !orderCounts()", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "weighted_ = false; // emitters", "weighted_ = weighted_; // emitters", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "path_.time + connection->time + source_->start", "path_.time + connection->time", [PLAIN]),
     ("src/path/PathTarget.cpp", "target.start += double(length) / double(laser.region.speed);", "target.start += double(length);", [PLAIN]),

@@ -172,7 +172,7 @@ def cases():
     same = "points, beams and paths, plain and best, agree within 5 standard errors and the kernel's blur"
     finite = "finite, no crash, no hang"
     many = [lamp((0.3 + 1e-3 * math.sin(i), 1.6, 0.2 + 1e-3 * math.cos(i)), emission=8e-4, name=f"lamp {i}") for i in range(10000)]
-    crowd = SQUARE + ["v 0 1e-3 0"] * 3 + FACES + ["f 5 6 7"] * 5000
+    crowd = {count: SQUARE + ["v 0 1e-3 0"] * 3 + FACES + ["f 5 6 7"] * count for count in (5000, 10 ** 6)}
     degenerate = SQUARE + FACES + ["f 1 1 2", "f 1 2 1", "f 3 3 3", "f 1 2 4", "f 1 2 4"] + FACES
     listed = [
         Case("room", same, room()),
@@ -206,7 +206,9 @@ def cases():
         Case("degenerate and duplicate triangles", "as the floor without them", room(boundary=floor_mesh("degenerate.obj")),
              files={"degenerate.obj": mesh_of(degenerate)}, like=room()),
         Case("5000 triangles in one point", "as the floor without them", room(boundary=floor_mesh("crowd.obj")),
-             files={"crowd.obj": mesh_of(crowd)}, like=room()),
+             files={"crowd.obj": mesh_of(crowd[5000])}, like=room()),
+        Case("1e6 triangles in one point", "as the floor without them", room(boundary=floor_mesh("crowd.obj")),
+             files={"crowd.obj": mesh_of(crowd[10 ** 6])}, like=room(), long=True),
         Case("sigma of 0, 1e-9 and 1e4 by channel", same, room(medium={"sigma_s": [0, 1e-9, 1e4], "sigma_a": [1e-9, 1e4, 0]})),
         Case("g = 0.999", finite + "; paths agree", room(medium={"phase_function": {"type": "henyey_greenstein", "g": 0.999}}), agree=PATHS),
         Case("g = -0.999", finite + "; paths agree", room(medium={"phase_function": {"type": "henyey_greenstein", "g": -0.999}}), agree=PATHS),

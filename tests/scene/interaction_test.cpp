@@ -3,6 +3,7 @@
 #include "support/SceneFile.h"
 
 #include "tungsten/scene/Interaction.h"
+#include "tungsten/scene/LightChoice.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <gtest/gtest.h>
@@ -40,6 +41,37 @@ TEST(Interaction, BacksAreBlackBesideRefractionAndWithoutTwoSidedShading) {
     EXPECT_GT(valueSeenFrom(1.0f, beside).y, 0.05f);
     EXPECT_EQ(valueSeenFrom(-1.0f, beside), Rgb(0.0f));
     EXPECT_EQ(valueSeenFrom(-1.0f, Leaf, R"("enable_two_sided_shading": false)"), Rgb(0.0f));
+}
+
+/// Into fog, out of it, reflected from within, and from without, where the box names nothing.
+TEST(Interaction, RegionsAreThoseOfTheSideThatAPathLeavesFrom) {
+    const test::SceneFile file(
+        R"({"media": [{"name": "fog", "type": "homogeneous"}, {"name": "haze", "type": "homogeneous"}],
+        "primitives": [{"type": "cube", "int_medium": "fog"}]})");
+    const LoadedScene loaded = loadScene(file.path());
+    const Region fog{0, 1.0f}, haze{1, 1.0f};
+    const Vec3f up(0.0f, 1.0f, 0.0f);
+    const auto meet = [&](const Vec3f& origin, const Vec3f& direction) {
+        const auto hit = loaded.scene->geometry->intersect({origin, direction});
+        return makeInteraction(*loaded.scene, hit.value(), direction);
+    };
+    const SurfaceInteraction fromAbove = meet({0.1f, 3.0f, 0.1f}, -up), fromWithin = meet({0.1f, 0.0f, 0.1f}, up);
+    EXPECT_EQ(regionBeyond(fromAbove, -up, haze).medium, 0);
+    EXPECT_EQ(regionBeyond(fromAbove, up, haze).medium, 1);
+    EXPECT_EQ(regionBeyond(fromWithin, up, fog).medium, -1);
+    EXPECT_EQ(regionBeyond(fromWithin, -up, fog).medium, 0);
+}
+
+TEST(LightChoice, IsHalfByPowerAndHalfEven) {
+    const test::SceneFile file(R"({"primitives": [{"type": "point", "emission": 1}, {"type": "point", "emission": 3},
+        {"type": "point", "emission": 96}]})");
+    const LoadedScene loaded = loadScene(file.path());
+    const LightChoice every(*loaded.scene), some(*loaded.scene, {false, false, true});
+    const float expected[] = {0.005f + 0.5f / 3.0f, 0.015f + 0.5f / 3.0f, 0.48f + 0.5f / 3.0f};
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(every.probability(i), expected[i], 1e-5f) << i;
+    EXPECT_NEAR(some.probability(0), 0.125f + 0.25f, 1e-5f);
+    EXPECT_NEAR(some.probability(1), 0.375f + 0.25f, 1e-5f);
+    EXPECT_EQ(some.probability(2), 0.0f);
 }
 
 } // namespace
