@@ -149,16 +149,12 @@ class DirectionSampler {
   private:
     static constexpr int MostDirections = 8;
     // Bench: study bodies, paths.
-    static constexpr float Peaked = 0.5f;
     /// Where boundaries of unknown kind lie between, the lobe is a rougher guess.
     static constexpr float LeastAlphaOutside = 0.5f;
     /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
     /// study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
-    /// So do peaked ones alone for camera paths. (Layered tissue, g = 0.8, gates of 0.05, 0.5 and 4: variance x CPU 54
-    /// to 33, 4.5 to 2.5, 8.8 to 1.3; points and beams no better.)
     [[nodiscard]] bool leavesToScatterer(const Residual& residual) const {
-        const bool peaked = settings_.mode == Mode::Path && std::abs(g_) >= Peaked;
-        return residual.way == Way::Out && (!residual.exit.connects || peaked);
+        return residual.way == Way::Out && (!residual.exit.connects || settings_.scattererOut);
     }
     /// Excess lengths of 0 have no lobe.
     [[nodiscard]] static float least(const Residual& residual, float excess) {

@@ -62,11 +62,13 @@ struct Settings {
     bool bounded = true; ///< candidates end where no path can be in time any more
     Greens greens = Greens::Causal;
     Proposals proposals = Proposals::MixedUniform;
-    int candidates = 8;        ///< 1, 4, 8 or 16
-    bool overlap = true;       ///< usefulness includes the part of the gate that is still reachable
-    float floor = 0.0f;        ///< added to usefulness, relative to the candidates' mean; at most 0.05
-    float strays = 0.0f;       ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
-    bool mixDenseOnly = false; ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
+    int candidates = 8;  ///< 1, 4, 8 or 16
+    bool overlap = true; ///< usefulness includes the part of the gate that is still reachable
+    float floor = 0.0f;  ///< added to usefulness, relative to the candidates' mean; at most 0.05
+    float strays = 0.0f; ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
+    bool splitsHeavyOut = false; ///< out of bodies walks that are too heavy split too, not by the way left alone
+    bool scattererOut = false;   ///< out of bodies directions are the scatterer's own
+    bool mixDenseOnly = false;   ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
 
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
@@ -94,7 +96,8 @@ inline Settings published(Mode mode) {
 }
 
 /// What the study of sampling found best, for a phase function of mean cosine g; candidates, roulette and the
-/// camera's share as benchmarks/infinite_medium found them better still.
+/// camera's share as benchmarks/infinite_medium found them better still. What differs out of bodies: bench study
+/// bodies, and docs/notebook.md ("Drift and splits").
 inline Settings best(Mode mode, float g) {
     const bool peaked = std::abs(g) >= 0.5f;
     Settings s;
@@ -110,7 +113,9 @@ inline Settings best(Mode mode, float g) {
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
         s.mixDenseOnly = !peaked;
         s.strays = 0.2f;
+        s.splitsHeavyOut = true;
     } else {
+        s.scattererOut = peaked;
         s.candidates = 16;
         s.roulette = 0.03f;
         s.greens = peaked ? Greens::Diffusion : Greens::Causal;

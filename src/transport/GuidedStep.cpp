@@ -35,9 +35,8 @@ float GuidedStep::survival(const darts::Guide& guide, int medium, float throughp
 int GuidedStep::copies(const darts::Guide& guide) {
     const bool out = reachable_.way == darts::Way::Out;
     int copies = out ? splits_.copies(guide.splits(reachable_)) : 1;
-    // Camera paths out of bodies connect to the light from everywhere: heavy ones are not what is dear.
-    const bool byWorth = !out || guide.settings().mode == darts::Mode::Photon;
-    if (byWorth && first_ && reachable_.way != darts::Way::Unknown)
+    const bool byWorth = out ? guide.settings().splitsHeavyOut : reachable_.way != darts::Way::Unknown;
+    if (byWorth && first_)
         copies *= guide.copies(useful_ - std::log(float(copies)), first_->usefulness, tuning::MostCopies / lineage_);
     lineage_ *= float(copies);
     return copies;

@@ -3,6 +3,8 @@
 #include "transport/GuidedStep.h"
 #include "transport/Tuning.h"
 
+#include "support/BodyExit.h"
+
 #include <gtest/gtest.h>
 
 namespace tungsten::transport {
@@ -69,6 +71,25 @@ TEST(GuidedStep, WhatHasBecomeTooUsefulSplits) {
     EXPECT_LT(step.survival(guide, 0, 1e-4f), 0.01f);
     (void)step.survival(guide, 0, 1e6f);
     EXPECT_GT(step.copies(guide), 8);
+}
+
+/// Where half of 16 transport mean free paths is not left yet, by their worth alone, and by both where it is.
+TEST(GuidedStep, OutOfBodiesHeavyPhotonsSplit) {
+    const auto copiesOf = [](darts::Mode mode, double longest) {
+        const darts::Guide guide(darts::best(mode, 0.0f), Fog);
+        GuidedStep step;
+        step.look(test::outOf(0.5, 3.0, longest, 1.0));
+        EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
+        EXPECT_EQ(step.copies(guide), 1);
+        if (longest < 10.0) step.look(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
+        EXPECT_FLOAT_EQ(step.survival(guide, 0, 40.0f), 1.0f);
+        return step.copies(guide);
+    };
+    EXPECT_EQ(copiesOf(darts::Mode::Photon, 43.5), 11); // 40 / 4 + 1
+    EXPECT_EQ(copiesOf(darts::Mode::Path, 43.5), 1);
+    const int halved = copiesOf(darts::Mode::Path, 9.5);
+    EXPECT_EQ(halved, 2);
+    EXPECT_GT(copiesOf(darts::Mode::Photon, 9.5), halved);
 }
 
 /// Both ways to a control vertex must arrive after the length that was drawn.

@@ -53,11 +53,12 @@ TEST_P(GuidedSlices, AgreeWithPlainSlicesAndBeams) {
     const std::string box = c.unwarped ? R"("transient_time_center": 2, "transient_time_width": 0.05)"
                                        : R"("transient_time_center": 5.6, "transient_time_width": 0.05)";
     const std::string gate = c.delta ? box + R"(, "delta_time_gate": true)" : box;
+    const bool forward = std::string(c.g) != "0"; // light that scatters forward rarely turns to the camera
     const Mean beams = meanOf(boxOfFog(c.unwarped, box, c.g), "beams", "20000", 60, 0);
     for (const SliceName& name : SliceNames) {
         if (name.kind == SliceKind::Balls || name.kind == SliceKind::VolumesBalls) continue; // others have theirs
         const Mean plain = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", 60, 0);
-        const Mean guided = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", 60, 0, "best");
+        const Mean guided = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", forward ? 80 : 60, 0, "best");
         for (int k = 0; k < 3; ++k) {
             EXPECT_NEAR(guided.value[k], plain.value[k], 4.0 * std::hypot(guided.error[k], plain.error[k]))
                 << name.type << " channel " << k;
@@ -69,8 +70,7 @@ TEST_P(GuidedSlices, AgreeWithPlainSlicesAndBeams) {
                                    std::to_string(plain.error[k] / guided.value[k]));
         }
         if (name.kind == SliceKind::MisVolumesBalls) {
-            // Light that scatters forward rarely turns to the camera.
-            EXPECT_LT(guided.error[0], (std::string(c.g) == "0" ? 0.15 : 0.4) * guided.value[0])
+            EXPECT_LT(guided.error[0], (forward ? 0.35 : 0.15) * guided.value[0])
                 << "the test would not see a wrong value";
         }
     }
