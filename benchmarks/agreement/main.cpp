@@ -42,7 +42,7 @@ Image deviationMap(const BlockMeans& method, const BlockMeans& reference, int si
             const auto block = size_t((y / BlockSide) * (side / BlockSide) + x / BlockSide);
             const double ratio =
                 (method.mean[block].y - reference.mean[block].y) / Allowance(method, reference, block, 1, mean).total();
-            map.at(x, y) = floats(Vec3d(std::clamp(ratio, 0.0, 1.0), 0.0, std::clamp(-ratio, 0.0, 1.0)));
+            map.at(x, y) = {float(std::clamp(ratio, 0.0, 1.0)), 0.0f, float(std::clamp(-ratio, 0.0, 1.0))};
         }
     return map;
 }

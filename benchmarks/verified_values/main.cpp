@@ -5,7 +5,8 @@
 // as "A2" or "best beams". Writes the deviations to FILE.md; exits with 1 if one exceeds what is allowed, except where
 // the estimator is known to have no finite variance.
 
-#include "photon/render_photons.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,5 +1,7 @@
 // The harness itself: it finds deliberate errors, and a method that is not there is an error.
 
+#include "tungsten/core/Errors.h"
+
 #include "support/AgreementScenes.h"
 #include "support/SingleScattering.h"
 

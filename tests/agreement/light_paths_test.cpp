@@ -2,6 +2,7 @@
 // and glass, in the scenes that ship for single moments. Gates here have a width, which the light tracer needs.
 
 #include "support/AgreementScenes.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

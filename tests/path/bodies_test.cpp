@@ -1,13 +1,13 @@
 // Light from outside a body: guided paths against the diffusion limit and against plain paths.
 
-#include "path/render_paths.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::path {
 namespace {
 
-using test::renderWithPathTracer;
+using test::renderPaths;
 
 /// A block of unit mean free path, 60 wide, lit and seen from far above; frames of 10 from `start` after the light that
 /// its surface would reflect at once.
@@ -37,7 +37,7 @@ double reflectance(double s) {
 }
 
 TEST(Bodies, AHalfSpacesReflectanceDecaysAsInTheDiffusionLimit) {
-    const auto rendered = renderWithPathTracer(blockScene(30.0, false, 20.0, 4), {{}, 1024, 16, 5});
+    const auto rendered = renderPaths(blockScene(30.0, false, 20.0, 4), {{}, 1024, 16, 5});
     const auto expected = [](int frame) {
         double sum = 0.0;
         for (int i = 0; i < 100; ++i) sum += reflectance(20.0 + 10.0 * frame + 0.1 * (i + 0.5));
@@ -54,7 +54,7 @@ TEST(Bodies, AHalfSpacesReflectanceDecaysAsInTheDiffusionLimit) {
 
 TEST(Bodies, ASlabsTransmittanceDecaysWithItsLowestMode) {
     constexpr double Thickness = 6.0;
-    const auto rendered = renderWithPathTracer(blockScene(Thickness, true, 40.0, 3), {{}, 1024, 16, 6});
+    const auto rendered = renderPaths(blockScene(Thickness, true, 40.0, 3), {{}, 1024, 16, 6});
     const double wide = Thickness + 2.0 * Extrapolated, rate = SigmaA + D * M_PI * M_PI / (wide * wide);
     for (const int frame : {1, 2}) {
         const double ratio = rendered->mean(frame) / rendered->mean(0), exact = std::exp(-10.0 * frame * rate);
@@ -94,7 +94,7 @@ TEST(Bodies, GuidedPathsAgreeWithPlainOnesSeenFromAfar) {
         const std::string scene = cubeScene(c.medium, c.haze);
         double mean[2], error[2];
         for (const bool guided : {false, true}) {
-            const auto rendered = renderWithPathTracer(
+            const auto rendered = renderPaths(
                 scene, {{guided ? "integrator.darts=best" : "integrator.darts=off"}, guided ? 48u : 128u, 16, 7});
             const Image variance = rendered->film.standardError(0);
             double sum = 0.0;

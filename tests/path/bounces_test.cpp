@@ -1,14 +1,15 @@
 // Which paths are rendered: bounce limits, low orders, medium limits; and what time bounds may not change.
 
-#include "path/render_paths.h"
+#include "path/look_along.h"
 #include "support/GroundTruthScenes.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::path {
 namespace {
 
-using test::renderWithPathTracer;
+using test::renderPaths;
 
 /// A floor seen through two sheets of `sheet` (heights 1.9 and 1.8), its light 1.25 away behind a third; a glowing quad
 /// instead of the floor's reflection when `glowing`.
@@ -31,7 +32,7 @@ double litFloorValue() {
 TEST(Bounces, ForwardSheetsCountOnCameraAndShadowRays) {
     for (int bounce = 0; bounce < 7; ++bounce) {
         const double expected = bounce == 4 ? litFloorValue() : 0.0; // two sheets, the floor, one sheet
-        EXPECT_NEAR(renderWithPathTracer(sheets(R"({"type": "forward"})", false, bounce), {{}, 1, 8})->mean(), expected,
+        EXPECT_NEAR(renderPaths(sheets(R"({"type": "forward"})", false, bounce), {{}, 1, 8})->mean(), expected,
                     1e-3 * litFloorValue())
             << bounce;
     }
@@ -39,14 +40,14 @@ TEST(Bounces, ForwardSheetsCountOnCameraAndShadowRays) {
 
 TEST(Bounces, EmissionThroughForwardSheets) {
     for (int bounce = 0; bounce < 4; ++bounce)
-        EXPECT_NEAR(renderWithPathTracer(sheets(R"({"type": "forward"})", true, bounce), {{}, 1, 8})->mean(),
+        EXPECT_NEAR(renderPaths(sheets(R"({"type": "forward"})", true, bounce), {{}, 1, 8})->mean(),
                     bounce == 2 ? 2.0 / 100.0 : 0.0, 1e-6)
             << bounce;
 }
 
 TEST(Bounces, TransparencyWeighsEveryPassage) {
     const std::string sheet = R"({"type": "transparency", "alpha": 0.3, "base": {"type": "null"}})";
-    const auto rendered = renderWithPathTracer(sheets(sheet, false, 4), {{}, 50, 200});
+    const auto rendered = renderPaths(sheets(sheet, false, 4), {{}, 50, 200});
     EXPECT_NEAR(rendered->mean(), 0.7 * 0.7 * 0.7 * litFloorValue(),
                 4.5 * rendered->pixelError() + 1e-5 * litFloorValue());
     EXPECT_LT(rendered->pixelError(), 0.02 * rendered->mean());
@@ -54,9 +55,8 @@ TEST(Bounces, TransparencyWeighsEveryPassage) {
 
 TEST(Bounces, MediumLimitsCountDistancesSinceTheLastSurface) {
     const auto value = [](int limit) {
-        return renderWithPathTracer(
-                   test::configurationA(3, false),
-                   {{"integrator.type=path_tracer", "media.0.max_bounces=" + std::to_string(limit)}, 1, 5000})
+        return renderPaths(test::configurationA(3, false),
+                           {{"integrator.type=path_tracer", "media.0.max_bounces=" + std::to_string(limit)}, 1, 5000})
             ->mean();
     };
     EXPECT_EQ(value(2), 0.0);
@@ -66,11 +66,11 @@ TEST(Bounces, MediumLimitsCountDistancesSinceTheLastSurface) {
 
 TEST(Bounces, LowOrdersCanBeLeftOut) {
     const auto value = [](int order, bool lowOrder) {
-        return renderWithPathTracer(test::configurationA(order, false),
-                                    {{"integrator.type=path_tracer",
-                                      std::string("integrator.low_order_scattering=") + (lowOrder ? "true" : "false")},
-                                     1,
-                                     5000})
+        return renderPaths(test::configurationA(order, false),
+                           {{"integrator.type=path_tracer",
+                             std::string("integrator.low_order_scattering=") + (lowOrder ? "true" : "false")},
+                            1,
+                            5000})
             ->mean();
     };
     EXPECT_GT(value(1, true), 0.0);
@@ -80,10 +80,10 @@ TEST(Bounces, LowOrdersCanBeLeftOut) {
 
 TEST(Bounces, SurfacesCanBeLeftOut) {
     const auto value = [](const std::string& json, bool surfaces) {
-        return renderWithPathTracer(json, {{"integrator.type=path_tracer", std::string("integrator.include_surfaces=") +
-                                                                               (surfaces ? "true" : "false")},
-                                           1,
-                                           200})
+        return renderPaths(json, {{"integrator.type=path_tracer",
+                                   std::string("integrator.include_surfaces=") + (surfaces ? "true" : "false")},
+                                  1,
+                                  200})
             ->mean();
     };
     EXPECT_EQ(value(test::litFloor(20), false), 0.0);
@@ -100,15 +100,15 @@ TEST(TimeBounds, NarrowGatesShowTheSameFrameOfASequence) {
             const std::vector<std::string> overrides{
                 "integrator.type=path_tracer", "integrator.camera_unwarped=" + unwarped,
                 "primitives.0.bsdf={\"type\": \"" + glass + "\"}", "primitives.0.int_speed_of_light=0.7"};
-            const auto sequence = renderWithPathTracer(
-                test::fogOverFloor(R"("start_time": 2, "transient_time_width": 0.5, "frame_num": 40)"),
-                {overrides, 1, 32});
+            const auto sequence =
+                renderPaths(test::fogOverFloor(R"("start_time": 2, "transient_time_width": 0.5, "frame_num": 40)"),
+                            {overrides, 1, 32});
             int lit = 0;
             for (int frame = 0; frame < 24; frame += 3) {
                 const auto gate =
-                    renderWithPathTracer(test::fogOverFloor(R"("start_time": )" + std::to_string(2.0 + 0.5 * frame) +
-                                                            R"(, "transient_time_width": 0.5, "frame_num": 1)"),
-                                         {overrides, 1, 32});
+                    renderPaths(test::fogOverFloor(R"("start_time": )" + std::to_string(2.0 + 0.5 * frame) +
+                                                   R"(, "transient_time_width": 0.5, "frame_num": 1)"),
+                                {overrides, 1, 32});
                 EXPECT_EQ(gate->film.mean(0).pixels, sequence->film.mean(frame).pixels) << glass << frame;
                 EXPECT_LE(gate->statistics.counter("shadow rays"), sequence->statistics.counter("shadow rays"));
                 lit += gate->mean() > 0.0;
@@ -130,9 +130,9 @@ TEST(TimeBounds, ManyLightsShareOneBound) {
             "integrator": {"type": "path_tracer", "max_bounces": 6, "transient_time_width": 0.4, )" +
                gate + "}}";
     };
-    const auto sequence = renderWithPathTracer(scene(R"("start_time": 7, "frame_num": 20)"), {{}, 1, 32});
+    const auto sequence = renderPaths(scene(R"("start_time": 7, "frame_num": 20)"), {{}, 1, 32});
     for (const int frame : {4, 8, 12, 16}) { // before, some lights are late and left out: others are chosen
-        const auto gate = renderWithPathTracer(
+        const auto gate = renderPaths(
             scene(R"("start_time": )" + std::to_string(7.0 + 0.4 * frame) + R"(, "frame_num": 1)"), {{}, 1, 32});
         EXPECT_EQ(gate->film.mean(0).pixels, sequence->film.mean(frame).pixels) << frame;
         EXPECT_GT(gate->mean(), 0.0);
@@ -141,12 +141,12 @@ TEST(TimeBounds, ManyLightsShareOneBound) {
 
 TEST(TimeBounds, PathsEndWhenNothingCanArrive) {
     const std::string fog = test::configurationA(1, false);
-    const auto gated = renderWithPathTracer(
+    const auto gated = renderPaths(
         fog, {{"integrator.type=path_tracer", "integrator.min_bounces=0", "integrator.max_bounces=1000"}, 1, 2000});
-    const auto late = renderWithPathTracer(fog, {{"integrator.type=path_tracer", "integrator.min_bounces=0",
-                                                  "integrator.max_bounces=1000", "integrator.transient_time_center=50"},
-                                                 1,
-                                                 2000});
+    const auto late = renderPaths(fog, {{"integrator.type=path_tracer", "integrator.min_bounces=0",
+                                         "integrator.max_bounces=1000", "integrator.transient_time_center=50"},
+                                        1,
+                                        2000});
     EXPECT_LT(2 * gated->statistics.counter("medium events"), late->statistics.counter("medium events"));
     // One speed: a connection's time is known before it is traced, so most of the early ones are never traced.
     EXPECT_LT(late->statistics.counter("shadow rays"), late->statistics.counter("medium events") / 4);

@@ -1,19 +1,13 @@
 // Detectors against closed forms, and paths from them against paths to them.
 
-#include "path/light/LightTracer.h"
-#include "path/render_paths.h"
+#include "tungsten/scene/Scene.h"
+
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::path {
 namespace {
-
-std::unique_ptr<test::Rendered> renderLight(const std::string& json, const test::RenderOptions& options) {
-    const test::SceneFile file(json);
-    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<LightTracer>(std::move(scene), settings);
-    });
-}
 
 std::string scene(const std::string& primitives, const std::string& detectors, const std::string& integrator = "") {
     return R"({"bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.6}], "primitives": [)" + primitives +
@@ -38,8 +32,8 @@ TEST(DetectorPower, OfAWallThatGlowsIsEtendueTimesRadiance) {
         scene(R"({"type": "quad", "bsdf": {"type": "null"}, "emission": 3,
                                        "transform": {"position": [0, 0, 2], "rotation": [-90, 0, 0], "scale": 40}})",
               R"({"radius": 0.05, "numerical_aperture": 0.22}, {"radius": 0.2, "numerical_aperture": 0.5})");
-    const auto paths = test::renderWithPathTracer(json, {{"integrator.type=path_tracer"}, 4, 16});
-    const auto light = renderLight(json, {{"integrator.type=light_tracer"}, 40, 20000});
+    const auto paths = test::renderPaths(json, {{"integrator.type=path_tracer"}, 4, 16});
+    const auto light = test::renderLight(json, {{"integrator.type=light_tracer"}, 40, 20000});
     for (int i = 0; i < 2; ++i) {
         const double radius = i == 0 ? 0.05 : 0.2, aperture = i == 0 ? 0.22 : 0.5;
         const double expected = 3.0 * M_PI * M_PI * radius * radius * aperture * aperture;
@@ -56,8 +50,8 @@ TEST(DetectorPower, OfASmallBucketIsItsIrradianceTimesItsArea) {
                                  "transform": {"position": [0, 0, 4], "scale": 0.5}})";
     const std::string json = scene(ball, R"({"radius": 0.01, "direction": [0, 0.8660254, 0.5]})");
     const double expected = M_PI * 2.0 * 0.25 / 16.0 * 0.5 * M_PI * 1e-4;
-    const auto paths = test::renderWithPathTracer(json, {{"integrator.type=path_tracer"}, 40, 20000});
-    const auto light = renderLight(json, {{"integrator.type=light_tracer"}, 40, 2000});
+    const auto paths = test::renderPaths(json, {{"integrator.type=path_tracer"}, 40, 20000});
+    const auto light = test::renderLight(json, {{"integrator.type=light_tracer"}, 40, 2000});
     EXPECT_NEAR(power(*paths, 0), expected, 4.5 * powerError(*paths, 0));
     EXPECT_LT(powerError(*paths, 0), 0.05 * expected);
     EXPECT_NEAR(power(*light, 0), expected, 4.5 * powerError(*light, 0));
@@ -72,7 +66,7 @@ TEST(DetectorPower, OfAFibreAtALambertWallByTimeOfFlight) {
                                       {"type": "point", "emission": 4, "transform": {"position": [0, 0, 1]}})",
         R"({"radius": 0.001, "numerical_aperture": 0.001})",
         R"(, "min_bounces": 1, "max_bounces": 2, "start_time": 4.5, "transient_time_width": 0.25, "frame_num": 4)");
-    const auto rendered = test::renderWithPathTracer(json, {{"integrator.type=path_tracer"}, 2, 16});
+    const auto rendered = test::renderPaths(json, {{"integrator.type=path_tracer"}, 2, 16});
     const double expected = 0.6 / M_PI * 4.0 / 4.0 / 0.25;
     for (int frame = 0; frame < 4; ++frame)
         EXPECT_NEAR(rendered->mean(frame), frame == 2 ? expected : 0.0, 1e-3 * expected) << frame;
@@ -89,8 +83,8 @@ TEST(DetectorPower, OfARoomAgrees) {
         {"position": [-1, 0.5, 1], "direction": [0.2, -1, -0.5], "radius": 0.2, "numerical_aperture": 0.8})";
     const std::string json =
         scene(room, detectors, R"(, "start_time": 1, "transient_time_width": 1.5, "frame_num": 4)");
-    const auto paths = test::renderWithPathTracer(json, {{"integrator.type=path_tracer"}, 30, 4000});
-    const auto light = renderLight(json, {{"integrator.type=light_tracer"}, 30, 4000});
+    const auto paths = test::renderPaths(json, {{"integrator.type=path_tracer"}, 30, 4000});
+    const auto light = test::renderLight(json, {{"integrator.type=light_tracer"}, 30, 4000});
     for (int frame = 0; frame < 4; ++frame)
         for (int x = 0; x < 2; ++x) {
             const double expected = double(paths->film.mean(frame).at(x, 0).y);

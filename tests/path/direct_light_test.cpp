@@ -1,13 +1,14 @@
 // Direct light on a Lambert floor: closed forms, and each arrival in the right frame.
 
-#include "path/render_paths.h"
+#include "path/look_along.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::path {
 namespace {
 
-using test::renderWithPathTracer;
+using test::renderPaths;
 
 /// A floor of albedo 0.5 seen from (0.75, 2, 0) straight below; `lights` are primitives, `integrator` its fields.
 std::string floorUnder(const std::string& lights, const std::string& integrator) {
@@ -19,7 +20,7 @@ std::string floorUnder(const std::string& lights, const std::string& integrator)
 constexpr double Reflectance = 0.5 / M_PI;
 
 TEST(DirectLight, SpotWithItsSmoothEdge) {
-    const auto rendered = renderWithPathTracer(
+    const auto rendered = renderPaths(
         floorUnder(R"({"type": "spot", "emission": 3, "cone_angle": 50, "edge_angle": 20, "emission_time": 0.6,
                        "transform": {"position": [0, 1, 0], "look_at": [0, 0, 0], "up": [1, 0, 0]}})",
                    R"("start_time": 0, "transient_time_width": 0.25, "frame_num": 20)"),
@@ -36,9 +37,9 @@ TEST(DirectLight, NarrowGateCatchesTheExactArrival) {
     const std::string light = R"({"type": "point", "emission": 3, "transform": {"position": [0, 1, 0]}})";
     const double flux = Reflectance * 3.0 * 0.8 / (1.25 * 1.25);
     const auto value = [&](double centre) {
-        return renderWithPathTracer(floorUnder(light, R"("transient_time_width": 2e-5, "transient_time_center": )" +
-                                                          std::to_string(centre)),
-                                    {{}, 1, 1})
+        return renderPaths(floorUnder(light, R"("transient_time_width": 2e-5, "transient_time_center": )" +
+                                                 std::to_string(centre)),
+                           {{}, 1, 1})
             ->mean();
     };
     EXPECT_NEAR(value(3.25), flux / 2e-5, 1e-3 * flux / 2e-5);
@@ -48,10 +49,10 @@ TEST(DirectLight, NarrowGateCatchesTheExactArrival) {
 
 TEST(DirectLight, PulsesOfTwoLightsArriveApart) {
     const auto rendered =
-        renderWithPathTracer(floorUnder(R"({"type": "point", "emission": 3, "transform": {"position": [0, 1, 0]}},
+        renderPaths(floorUnder(R"({"type": "point", "emission": 3, "transform": {"position": [0, 1, 0]}},
                       {"type": "point", "emission": [1, 2, 4], "emission_time": 2.3, "transform": {"position": [0.75, 1, 0]}})",
-                                        R"("start_time": 0, "transient_time_width": 0.5, "frame_num": 12)"),
-                             {{}, 50, 200});
+                               R"("start_time": 0, "transient_time_width": 0.5, "frame_num": 12)"),
+                    {{}, 50, 200});
     const double first = Reflectance * 3.0 * 0.8 / (1.25 * 1.25) / 0.5, second = Reflectance / 0.5;
     for (int frame = 0; frame < 12; ++frame) {
         const Rgb mean = rendered->film.mean(frame).at(0, 0), error = rendered->film.standardError(frame).at(0, 0);
@@ -77,7 +78,7 @@ double sphereIrradiance(double reach) {
 TEST(DirectLight, SphereFrameByFrameWithAndWithoutLightSampling) {
     constexpr double Width = 0.03;
     for (const std::string sampling : {"true", "false"}) {
-        const auto rendered = renderWithPathTracer(
+        const auto rendered = renderPaths(
             floorUnder(R"({"type": "sphere", "emission": 2, "bsdf": {"type": "null"},
                            "transform": {"position": [0, 1, 0], "scale": 0.2}})",
                        R"("start_time": 3, "transient_time_width": 0.03, "frame_num": 10, "enable_light_sampling": )" +
@@ -98,7 +99,7 @@ TEST(DirectLight, QuadOverheadWithAndWithoutLightSampling) {
     const double a = 0.5, root = std::sqrt(1.0 + a * a);
     const double formFactor = 4.0 / (2.0 * M_PI) * 2.0 * (a / root) * std::atan(a / root);
     for (const std::string sampling : {"true", "false"}) {
-        const auto rendered = renderWithPathTracer(
+        const auto rendered = renderPaths(
             R"({"primitives": [{"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.5}, "transform": {"scale": [20, 1, 20]}},
                  {"type": "quad", "emission": 2, "bsdf": {"type": "null"}, "transform": {"position": [0, 1, 0], "rotation": [180, 0, 0]}}],)" +
                 test::lookAlong("[0, 0.9, 0]", "[0, 0, 0]", "[1, 0, 0]") +
@@ -112,12 +113,12 @@ TEST(DirectLight, QuadOverheadWithAndWithoutLightSampling) {
 
 TEST(DirectLight, EscapingRaysSeeTheLastEnvironmentOutsideMediaOnly) {
     const auto view = [](const std::string& medium) {
-        return renderWithPathTracer(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_a": 1e-3},
+        return renderPaths(R"({"media": [{"name": "haze", "type": "homogeneous", "sigma_a": 1e-3},
                                                   {"name": "tint", "type": "homogeneous", "sigma_a": [1, 0, 0]}],
             "primitives": [{"type": "infinite_sphere", "emission": 5}, {"type": "infinite_sphere", "emission": [1, 2, 3]}],)" +
-                                        test::lookAlong("[0, 0, 0]", "[0, 0, 1]", "[0, 1, 0]", medium) +
-                                        R"(, "integrator": {"type": "path_tracer"}})",
-                                    {{}, 1, 1})
+                               test::lookAlong("[0, 0, 0]", "[0, 0, 1]", "[0, 1, 0]", medium) +
+                               R"(, "integrator": {"type": "path_tracer"}})",
+                           {{}, 1, 1})
             ->film.mean(0)
             .at(0, 0);
     };

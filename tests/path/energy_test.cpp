@@ -1,14 +1,14 @@
 // Closed rooms that glow: a wall of emission E and albedo rho is seen with radiance E sum rho^k, fog without absorption
 // or not.
 
-#include "path/render_paths.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::path {
 namespace {
 
-using test::renderWithPathTracer;
+using test::renderPaths;
 
 /// Six glowing walls (emission 0.5) of one BSDF around [-1, 1] x [0, 2] x [-1, 1]; the camera is in the middle, in
 /// `medium`.
@@ -43,7 +43,7 @@ TEST(Energy, RoomWithAFixedNumberOfBounces) {
     const std::string lambert = R"({"type": "lambert", "albedo": 0.6})";
     for (const std::string sampling : {"true", "false"}) {
         const std::string integrator = R"("enable_rr": false, "max_bounces": 5, "enable_light_sampling": )" + sampling;
-        expectUniform(*renderWithPathTracer(glowingRoom(lambert, "", integrator), {{}, 50, 100}),
+        expectUniform(*renderPaths(glowingRoom(lambert, "", integrator), {{}, 50, 100}),
                       0.5 * (1.0 - std::pow(0.6, 5)) / 0.4, 0.01);
     }
 }
@@ -52,23 +52,21 @@ TEST(Energy, RoomWithAFixedNumberOfBounces) {
 TEST(Energy, RoomOfHalfMirrors) {
     const std::string mixed = R"({"type": "mixed", "ratio": 0.5, "bsdf0": {"type": "mirror", "albedo": 0.6},
                                   "bsdf1": {"type": "lambert", "albedo": 0.6}})";
-    expectUniform(
-        *renderWithPathTracer(glowingRoom(mixed, "", R"("enable_rr": false, "max_bounces": 5)"), {{}, 50, 200}),
-        0.5 * (1.0 - std::pow(0.6, 5)) / 0.4, 0.01);
+    expectUniform(*renderPaths(glowingRoom(mixed, "", R"("enable_rr": false, "max_bounces": 5)"), {{}, 50, 200}),
+                  0.5 * (1.0 - std::pow(0.6, 5)) / 0.4, 0.01);
 }
 
 /// Two distances per surface are enough in thin fog, however many surfaces a path meets.
 TEST(Energy, MediumLimitsStartAnewAtSurfaces) {
-    expectUniform(*renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "cloud",
-                                                    R"("enable_rr": false, "max_bounces": 6)"),
-                                        {{"media.0.max_bounces=2", "media.0.sigma_s=1e-7"}, 50, 100}),
+    expectUniform(*renderPaths(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "cloud",
+                                           R"("enable_rr": false, "max_bounces": 6)"),
+                               {{"media.0.max_bounces=2", "media.0.sigma_s=1e-7"}, 50, 100}),
                   0.5 * (1.0 - std::pow(0.6, 6)) / 0.4, 0.01);
 }
 
 TEST(Energy, RoomWithRussianRoulette) {
     expectUniform(
-        *renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "", R"("max_bounces": 1000)"),
-                              {{}, 50, 100}),
+        *renderPaths(glowingRoom(R"({"type": "lambert", "albedo": 0.6})", "", R"("max_bounces": 1000)"), {{}, 50, 100}),
         0.5 / 0.4, 0.01);
 }
 
@@ -76,19 +74,18 @@ TEST(Energy, NonAbsorbingFogChangesNothing) {
     for (const std::string sampling : {"true", "false"}) {
         const std::string integrator =
             R"("max_bounces": 1000, "enable_light_sampling": true, "enable_volume_light_sampling": )" + sampling;
-        expectUniform(*renderWithPathTracer(glowingRoom(R"({"type": "lambert", "albedo": 0.5})", "cloud", integrator),
-                                            {{}, 50, 100}),
-                      0.5 / 0.5, 0.02);
+        expectUniform(
+            *renderPaths(glowingRoom(R"({"type": "lambert", "albedo": 0.5})", "cloud", integrator), {{}, 50, 100}),
+            0.5 / 0.5, 0.02);
     }
 }
 
 TEST(Energy, SmokeOnlyAttenuates) {
-    const auto rendered =
-        renderWithPathTracer(glowingRoom(R"({"type": "null"})", "smoke", R"("max_bounces": 1)"),
-                             {{"camera.resolution=[1, 1]", "camera.fov=0.01",
-                               "camera.transform={\"position\": [0, 1, 0.5], \"look_at\": [0, 1, -1]}"},
-                              1,
-                              4});
+    const auto rendered = renderPaths(glowingRoom(R"({"type": "null"})", "smoke", R"("max_bounces": 1)"),
+                                      {{"camera.resolution=[1, 1]", "camera.fov=0.01",
+                                        "camera.transform={\"position\": [0, 1, 0.5], \"look_at\": [0, 1, -1]}"},
+                                       1,
+                                       4});
     const Rgb mean = rendered->film.mean(0).at(0, 0);
     for (int channel = 0; channel < 3; ++channel)
         EXPECT_NEAR(mean[channel], 0.5f * std::exp(-1.5f * (channel == 0 ? 0.5f : float(channel))), 1e-4f);
@@ -104,14 +101,14 @@ TEST(Energy, ConnectionsDoNotChangeTheMean) {
          R"({"type": "mixed", "bsdf0": {"type": "mirror"}, "bsdf1": {"type": "lambert", "albedo": 0.5}, "ratio": 0.4})",
          R"({"type": "transparency", "alpha": 0.6, "base": {"type": "lambert", "albedo": 0.7}})"}) {
         const auto value = [&](const std::string& sampling) {
-            return renderWithPathTracer(R"({"primitives": [{"type": "cube", "bsdf": )" + bsdf +
-                                            R"(, "transform": {"rotation": [30, 20, 0]}},
+            return renderPaths(R"({"primitives": [{"type": "cube", "bsdf": )" + bsdf +
+                                   R"(, "transform": {"rotation": [30, 20, 0]}},
                      {"type": "sphere", "emission": [20, 10, 5], "bsdf": {"type": "null"}, "transform": {"position": [1, 2, 1], "scale": 0.6}},
                      {"type": "infinite_sphere", "emission": 0.3}],
                     "camera": {"type": "pinhole", "resolution": [1, 1], "fov": 10, "transform": {"position": [0, 0, 4], "look_at": [0, 0, 0]}},
                     "integrator": {"type": "path_tracer", "max_bounces": 6, "enable_light_sampling": )" +
-                                            sampling + "}}",
-                                        {{}, 100, 300});
+                                   sampling + "}}",
+                               {{}, 100, 300});
         };
         const auto with = value("true"), without = value("false");
         const double error = std::hypot(with->pixelError(), without->pixelError());
@@ -124,7 +121,7 @@ TEST(Energy, ConnectionsDoNotChangeTheMean) {
 /// scatterings must not let few of them carry everything.
 TEST(Energy, GuidedPathsFillAClosedWhiteBox) {
     const double time = 15.0, light = -0.4, camera = 0.9, sigmaS = 8.0;
-    const auto rendered = renderWithPathTracer(
+    const auto rendered = renderPaths(
         R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 8}],
             "primitives": [{"type": "cube", "bsdf": {"type": "lambert", "albedo": 1}, "int_medium": "fog", "transform": {"scale": 2}},
                            {"type": "point", "power": 100.530965, "ext_medium": "fog", "int_medium": "fog",

@@ -1,6 +1,6 @@
 // An image does not change with what is far away, nor with where the scene is.
 
-#include "path/render_paths.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ std::string blockOnGround(double size, double offset) {
 
 /// With the same random numbers: what differs is rounding.
 double meanOf(double size, double offset) {
-    return test::renderWithPathTracer(blockOnGround(size, offset), {{}, 1, 128})->mean();
+    return test::renderPaths(blockOnGround(size, offset), {{}, 1, 128})->mean();
 }
 
 TEST(FarAway, AVastGroundAndAPlaceFarFromTheOriginChangeNothing) {

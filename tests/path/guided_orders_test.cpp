@@ -1,7 +1,7 @@
 // Guided paths, order by order, against verified values (docs/photon-primitives.md, section 6): presets in full, every
 // switch alone.
 
-#include "path/render_paths.h"
+#include "support/PathsAndPhotons.h"
 #include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ std::unique_ptr<test::Rendered> renderOrder(const VerifiedValue& value, const Sa
     test::RenderOptions options{test::gateOf(value), 40, sampling.samples};
     options.overrides.insert(options.overrides.end(), sampling.fields.begin(), sampling.fields.end());
     options.overrides.emplace_back("integrator.type=path_tracer");
-    return test::renderWithPathTracer(test::sceneOf(value), options);
+    return test::renderPaths(test::sceneOf(value), options);
 }
 
 class GuidedOrders : public testing::TestWithParam<std::tuple<Sampling, VerifiedValue>> {};

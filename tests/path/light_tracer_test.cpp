@@ -1,35 +1,28 @@
 // The light tracer shows what the path tracer does, pixel by pixel and frame by frame, from the other end.
 
-#include "path/PathTracer.h"
 #include "path/light/LightTracer.h"
+#include "tungsten/core/Errors.h"
+#include "tungsten/scene/SceneLoader.h"
 
 #include "support/AgreementScenes.h"
-#include "support/Render.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
 namespace tungsten::test {
 namespace {
 
-template <typename Made>
-std::unique_ptr<Rendered> renderWith(const std::string& json, const RenderOptions& options) {
-    const SceneFile file(json);
-    return render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<Made>(std::move(scene), settings);
-    });
-}
-
 /// Means over independent renders, and their standard errors: by frame and pixel (channel means), and of whole frames,
 /// whose pixels may share light paths.
 struct Estimate {
     std::vector<double> mean, error, frameMean, frameError;
 };
-template <typename Made>
-Estimate estimate(const std::string& json, RenderOptions options, uint64_t renders) {
+using RenderScene = std::unique_ptr<Rendered>(const std::string&, const RenderOptions&);
+Estimate estimate(RenderScene& render, const std::string& json, RenderOptions options, uint64_t renders) {
     Estimate e;
     for (uint64_t i = 0; i < renders; ++i) {
         options.seed += 1;
-        const auto rendered = renderWith<Made>(json, options);
+        const auto rendered = render(json, options);
         EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
         const Film& film = rendered->film;
         const size_t pixels = size_t(film.width()) * size_t(film.height());
@@ -72,10 +65,10 @@ void expectAgreement(const std::string& json, const std::vector<std::string>& ov
     options.passes = 1;
     options.samplesPerPass = effort.pathSamples;
     options.seed = 1000;
-    const Estimate path = estimate<path::PathTracer>(json, options, effort.renders);
+    const Estimate path = estimate(renderPaths, json, options, effort.renders);
     options.samplesPerPass = effort.lightSamples;
     options.seed = 2000;
-    const Estimate light = estimate<path::LightTracer>(json, options, effort.renders);
+    const Estimate light = estimate(renderLight, json, options, effort.renders);
     constexpr double Sigmas = 5.0;
     for (size_t frame = 0; frame < path.frameMean.size(); ++frame) {
         const double error = std::hypot(path.frameError[frame], light.frameError[frame]);
@@ -177,9 +170,9 @@ TEST(LightTracer, DoesNotDependOnThreads) {
     options.passes = 2;
     options.samplesPerPass = 20;
     options.threads = 1;
-    const auto one = renderWith<path::LightTracer>(room(""), options);
+    const auto one = renderLight(room(""), options);
     options.threads = 4;
-    const auto four = renderWith<path::LightTracer>(room(""), options);
+    const auto four = renderLight(room(""), options);
     const Image a = one->film.mean(0), b = four->film.mean(0);
     ASSERT_GT(one->mean(), 0.0);
     EXPECT_TRUE(a.pixels == b.pixels);

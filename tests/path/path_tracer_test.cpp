@@ -1,8 +1,11 @@
 // The path tracer against closed forms and verified values.
 
 #include "path/PathTracer.h"
+#include "tungsten/core/Errors.h"
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/scene/SceneLoader.h"
 
-#include "support/Render.h"
+#include "support/PathsAndPhotons.h"
 #include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
@@ -12,14 +15,7 @@ namespace {
 
 using test::Rendered;
 using test::RenderOptions;
-
-std::unique_ptr<Rendered> renderPaths(const std::string& json, RenderOptions options) {
-    options.overrides.emplace_back("integrator.type=path_tracer");
-    const test::SceneFile file(json);
-    return test::render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<PathTracer>(std::move(scene), settings);
-    });
-}
+using test::renderPaths;
 
 struct OrderCase {
     test::VerifiedValue value;

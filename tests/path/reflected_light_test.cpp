@@ -1,8 +1,9 @@
 // Reflected light: what its vertices bring, and that paths that use it find as much light as paths that do not.
 
 #include "path/techniques/ReflectedLight.h"
+#include "tungsten/scene/SceneLoader.h"
 
-#include "render_paths.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ Estimate estimate(const std::string& scene, const std::vector<std::string>& over
         options.passes = 4;
         options.samplesPerPass = samples / 4;
         options.seed = 100 + run;
-        const double mean = renderWithPathTracer(scene, options)->mean();
+        const double mean = renderPaths(scene, options)->mean();
         sum += mean / Runs;
         squares += mean * mean / Runs;
     }

@@ -1,7 +1,7 @@
 // Sensors that weigh times of arrival by a response.
 
-#include "path/render_paths.h"
 #include "support/GroundTruthScenes.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
@@ -44,9 +44,8 @@ double weighedSingleScattering(double (*response)(double)) {
 
 std::unique_ptr<test::Rendered> renderOrder(int order, const std::string& response, const std::string& darts,
                                             uint32_t samples) {
-    return test::renderWithPathTracer(
-        test::configurationA(order, false),
-        {{"integrator.type=path_tracer", response, "integrator.darts=" + darts}, 40, samples});
+    return test::renderPaths(test::configurationA(order, false),
+                             {{"integrator.type=path_tracer", response, "integrator.darts=" + darts}, 40, samples});
 }
 
 TEST(Response, WeighsSingleScatteringAsTheClosedForm) {
@@ -82,11 +81,11 @@ TEST(Response, BoxIsAGate) {
 /// The experiment of He et al. 2024, figure 7: paths of all orders to a sensor that sees two short times.
 TEST(Response, ControlVerticesHitTwoPeaksThatPlainConnectionsMiss) {
     const auto outside = [](const std::string& darts, const char* tried) {
-        const auto rendered = test::renderWithPathTracer(
-            test::configurationA(1, false), {{"integrator.type=path_tracer", "integrator.min_bounces=0",
-                                              "integrator.max_bounces=1000", TwoPeaks, "integrator.darts=" + darts},
-                                             1,
-                                             20000});
+        const auto rendered = test::renderPaths(test::configurationA(1, false),
+                                                {{"integrator.type=path_tracer", "integrator.min_bounces=0",
+                                                  "integrator.max_bounces=1000", TwoPeaks, "integrator.darts=" + darts},
+                                                 1,
+                                                 20000});
         const Statistics& statistics = rendered->statistics;
         EXPECT_GT(statistics.counter(tried), 20000u);
         return 1.0 -

@@ -1,7 +1,8 @@
 // Single scattering of a point pulse in a cube of fog, frame by frame, against the closed form
 //   L(t) = sigma_s f_p exp(-sigma_t (s + r)) I / r^2 along the camera ray, s from its entry, r from there to the light.
 
-#include "path/render_paths.h"
+#include "path/look_along.h"
+#include "support/PathsAndPhotons.h"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/tools/roots.hpp>
@@ -94,8 +95,7 @@ class SingleScattering : public testing::TestWithParam<std::tuple<Case, const ch
 
 TEST_P(SingleScattering, MatchesTheClosedFormInEveryFrame) {
     const auto& [c, sampling] = GetParam();
-    const auto rendered =
-        test::renderWithPathTracer(scene(c), {{std::string("integrator.darts=") + sampling}, 100, 3000});
+    const auto rendered = test::renderPaths(scene(c), {{std::string("integrator.darts=") + sampling}, 100, 3000});
     double total = 0.0;
     for (int frame = 0; frame < Frames; ++frame) {
         const Rgb mean = rendered->film.mean(frame).at(0, 0), error = rendered->film.standardError(frame).at(0, 0);

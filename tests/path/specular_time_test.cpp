@@ -1,6 +1,7 @@
 // Times and values along specular camera paths: mirrors fold them, glass slows them.
 
-#include "path/render_paths.h"
+#include "path/look_along.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@
 namespace tungsten::path {
 namespace {
 
-using test::renderWithPathTracer;
+using test::renderPaths;
 
 /// Frames of one render that hold light, with their values times the frame width.
 std::map<int, double> litFrames(const test::Rendered& rendered, double width) {
@@ -33,8 +34,7 @@ std::string periscope(const std::string& integrator) {
 constexpr double PeriscopeValue = 0.9 * 0.5 / M_PI * 3.0 * 0.8;
 
 TEST(SpecularTime, MirrorPathsCountEverySegment) {
-    const auto lit =
-        litFrames(*renderWithPathTracer(periscope(R"("start_time": 0, "frame_num": 80)"), {{}, 1, 4}), 0.1);
+    const auto lit = litFrames(*renderPaths(periscope(R"("start_time": 0, "frame_num": 80)"), {{}, 1, 4}), 0.1);
     ASSERT_EQ(lit.size(), 1u);
     EXPECT_EQ(lit.begin()->first, 70); // 0.05 + 3 + 3 + 1
     EXPECT_NEAR(lit.begin()->second, PeriscopeValue, 1e-3 * PeriscopeValue);
@@ -43,7 +43,7 @@ TEST(SpecularTime, MirrorPathsCountEverySegment) {
 TEST(SpecularTime, MirrorsBelongToTheCameraWhenUnwarped) {
     // Only 0.05 + 1 counts. In the narrow gate the light could not even reach the mirror in time; it need not.
     for (const std::string gate : {R"("start_time": 0, "frame_num": 80)", R"("start_time": 1, "frame_num": 1)"}) {
-        const auto rendered = renderWithPathTracer(periscope(R"("camera_unwarped": true, )" + gate), {{}, 1, 4});
+        const auto rendered = renderPaths(periscope(R"("camera_unwarped": true, )" + gate), {{}, 1, 4});
         const auto lit = litFrames(*rendered, 0.1);
         ASSERT_EQ(lit.size(), 1u) << gate;
         EXPECT_EQ(lit.begin()->first, rendered->film.frames() > 1 ? 10 : 0);
@@ -61,7 +61,7 @@ TEST(SpecularTime, GlassBallDelaysAndEchoes) {
                               test::lookAlong("[0.75, 2, 0]", "[0.75, 0, 0]", "[1, 0, 0]") +
                               R"(, "integrator": {"type": "path_tracer", "max_bounces": 6, "start_time": 0,
                                    "transient_time_width": 0.02, "frame_num": 400}})";
-    const auto rendered = renderWithPathTracer(scene, {{}, 100, 1000});
+    const auto rendered = renderPaths(scene, {{}, 100, 1000});
     const double floor = 0.5 / M_PI * 3.0 * 0.8 / (1.25 * 1.25);
     // 1.8 in air, 0.2 at speed 2/3, 1.25 to the light: 3.35. Two reflections inside add 0.6. Each end transmits 0.96.
     const int direct = int(3.35 / 0.02), echo = int(3.95 / 0.02);
@@ -99,7 +99,7 @@ TEST(SpecularTime, UnwarpedFogShowsInAMirrorFarFromTheLight) {
                        "transient_time_width": 0.5, "camera_unwarped": true}})";
     double mean[2], error[2];
     for (const bool guided : {false, true}) {
-        const auto rendered = renderWithPathTracer(
+        const auto rendered = renderPaths(
             scene, {{guided ? "integrator.darts=best" : "integrator.darts=off"}, 64, guided ? 1000u : 4000u, 9});
         mean[guided] = rendered->mean();
         error[guided] = rendered->pixelError();

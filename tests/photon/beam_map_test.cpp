@@ -1,9 +1,11 @@
 // Photon beams against verified values, closed forms, photon points and the path tracer.
 
 #include "photon/primitives/ProgressiveSchedule.h"
+#include "tungsten/core/Errors.h"
 
-#include "render_photons.h"
 #include "support/Folders.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

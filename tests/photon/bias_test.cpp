@@ -1,8 +1,11 @@
 // What kernels leave, as a render estimates it, against closed forms.
 
-#include "render_photons.h"
+#include "tungsten/film/KernelBias.h"
+
+#include "support/PathsAndPhotons.h"
 
 #include "support/SingleScattering.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,18 @@
 // Passes that are broken off: the film holds whole passes alone, the integrator goes on as if nothing had been, and
 // little is done after the stop.
 
-#include "render_photons.h"
+#include "support/PathsAndPhotons.h"
 
 #include "path/light/LightTracer.h"
 
+#include "path/PathTracer.h"
+#include "photon/PhotonIntegrator.h"
 #include "render/command.h"
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/SceneFilm.h"
+#include "tungsten/scene/SceneLoader.h"
+
+#include <tbb/global_control.h>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // Radii that scenes leave open.
 
 #include "photon/DefaultRadius.h"
+#include "tungsten/scene/SceneLoader.h"
 
-#include "render_photons.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 

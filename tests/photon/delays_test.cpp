@@ -1,8 +1,9 @@
 // Light that does not start, or is not recorded, in a moment: pulses of emitters and the sensor's response in
 // sequences.
 
-#include "photon/render_photons.h"
 #include "support/GroundTruthScenes.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,13 @@
 // Guided light paths in whole scenes: surfaces, mirrors, sequences, several pulses, full stores, threads.
 
-#include "render_photons.h"
+#include "photon/light/PhotonPass.h"
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/scene/Scene.h"
+#include "tungsten/scene/SceneLoader.h"
+
 #include "support/Folders.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

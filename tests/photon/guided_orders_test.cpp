@@ -1,6 +1,7 @@
 // Guided light paths against the verified values: every switch of the sampling changes the noise, never the mean.
 
-#include "render_photons.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

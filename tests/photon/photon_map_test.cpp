@@ -1,8 +1,10 @@
 // Photon points and surface photons against closed forms, verified values and the path tracer.
 
 #include "photon/primitives/ProgressiveSchedule.h"
+#include "tungsten/core/Errors.h"
 
-#include "render_photons.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 
@@ -128,9 +130,7 @@ TEST(PhotonMap, WithoutProgressionTellsItsError) {
             passes,
             1,
             seed};
-        return test::render(file.path(), options, [&](auto scene, const ObjectReader& settings) {
-            return std::make_unique<PhotonIntegrator>(std::move(scene), settings, progressive);
-        });
+        return test::renderPhotonFile(file.path(), options, progressive);
     };
     constexpr int Seeds = 200;
     double sum = 0.0, squares = 0.0, told = 0.0;

@@ -1,9 +1,12 @@
 // Light paths: which photons they store.
 
 #include "photon/light/PhotonPass.h"
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/scene/SceneLoader.h"
 
 #include "support/GroundTruthScenes.h"
 #include "support/Render.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

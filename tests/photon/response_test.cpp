@@ -1,6 +1,7 @@
 // Photons seen by sensors that weigh times of arrival by a response.
 
-#include "render_photons.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

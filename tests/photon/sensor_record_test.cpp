@@ -1,6 +1,7 @@
 // The record of camera paths: straight pieces, visible points, legs.
 
 #include "photon/view/SensorRecord.h"
+#include "tungsten/scene/SceneLoader.h"
 
 #include "support/Render.h"
 

@@ -1,6 +1,7 @@
 // Connections' light shared among neighbouring sensor points.
 
 #include "photon/surface/SharedLight.h"
+#include "tungsten/scene/SceneLoader.h"
 
 #include "support/Render.h"
 

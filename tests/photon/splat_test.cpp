@@ -8,6 +8,7 @@
 #include "tungsten/core/Warp.h"
 
 #include "support/Render.h"
+#include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
 

@@ -3,16 +3,20 @@
 
 #include "support/SceneFile.h"
 
-#include "tungsten/film/KernelBias.h"
-#include "tungsten/render/Integrator.h"
-#include "tungsten/render/SceneFilm.h"
-#include "tungsten/scene/SceneLoader.h"
+#include "tungsten/film/Film.h"
+#include "tungsten/render/Statistics.h"
 
-#include <tbb/global_control.h>
-
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
+
+namespace tungsten {
+class Integrator;
+class ObjectReader;
+struct Scene;
+} // namespace tungsten
 
 namespace tungsten::test {
 
@@ -30,41 +34,14 @@ struct Rendered {
     Film film, bias;
     Statistics statistics;
 
-    /// Mean over the image of one frame's channel average, and its standard error from the spread of the passes.
-    [[nodiscard]] double mean(int frame = 0) const {
-        double sum = 0.0;
-        for (const Rgb& pixel : film.mean(frame).pixels) sum += double(meanComponent(pixel));
-        return sum / double(film.width() * film.height());
-    }
+    /// Mean over the image of one frame's channel average.
+    [[nodiscard]] double mean(int frame = 0) const;
     /// Of a single-pixel image (pixels of one pass share photons, so larger images need their own estimate).
     [[nodiscard]] double pixelError(int frame = 0) const { return double(film.standardError(frame).at(0, 0).y); }
 };
 
-/// `make(scene, settings)` makes the integrator.
-template <typename Make>
-std::unique_ptr<Rendered> render(const std::filesystem::path& file, const RenderOptions& options, Make make) {
-    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, options.threads);
-    const LoadedScene loaded = loadScene(file, {{}, options.overrides});
-    auto rendered = std::make_unique<Rendered>();
-    rendered->scene = loaded.scene;
-    const std::unique_ptr<Integrator> integrator = make(loaded.scene, loaded.integratorSettings);
-    throwIfProblems(*loaded.diagnostics);
-    EffectPlan plan = analyseScene(*loaded.scene);
-    integrator->plan(plan);
-    integrator->prepare(plan, rendered->statistics);
-    rendered->film = filmOf(*loaded.scene);
-    rendered->bias = filmOf(*loaded.scene, PassWeight::Repeats);
-    for (uint32_t pass = 0; pass < options.passes; ++pass) {
-        PassInfo info{pass, uint64_t(pass) * options.samplesPerPass, options.samplesPerPass, options.seed};
-        const uint32_t standsFor = options.bias ? passesOfItsBias(pass) : 0;
-        if (standsFor > 0) info.bias = &rendered->bias;
-        rendered->film.beginPass();
-        rendered->bias.beginPass();
-        integrator->renderPass(info, rendered->film, rendered->statistics);
-        rendered->film.endPass(double(options.samplesPerPass));
-        if (standsFor > 0) rendered->bias.endPass(double(standsFor));
-    }
-    return rendered;
-}
+using MakeIntegrator = std::function<std::unique_ptr<Integrator>(std::shared_ptr<const Scene>, const ObjectReader&)>;
+std::unique_ptr<Rendered> render(const std::filesystem::path& file, const RenderOptions& options,
+                                 const MakeIntegrator& make);
 
 } // namespace tungsten::test

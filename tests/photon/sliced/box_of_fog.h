@@ -2,7 +2,7 @@
 // A box of coloured fog seen through its index-matched front, with blocks that occlude and two lights whose pulses
 // start at different times.
 
-#include "photon/render_photons.h"
+#include "support/PathsAndPhotons.h"
 
 #include <gtest/gtest.h>
 

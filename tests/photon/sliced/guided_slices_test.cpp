@@ -1,5 +1,7 @@
 // Sliced primitives on guided light paths: against verified values, and against plain paths and beams.
 
+#include "support/VerifiedValues.h"
+
 #include "photon/primitives/sliced/SliceKind.h"
 #include "photon/sliced/box_of_fog.h"
 

@@ -1,6 +1,7 @@
 // Where slices come close to their singularities: every sample stays finite, on plain and on guided paths.
 
-#include "photon/render_photons.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include "photon/primitives/sliced/SliceKind.h"
 

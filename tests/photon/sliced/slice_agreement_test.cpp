@@ -1,5 +1,7 @@
 // Planes, volumes, balls and hypervolumes against beams, which are tested against paths.
 
+#include "support/GroundTruthScenes.h"
+
 #include "photon/sliced/box_of_fog.h"
 
 #include "photon/primitives/sliced/SliceKind.h"

@@ -1,6 +1,8 @@
 // What must hold for slices whatever the scene: short flights have the means of long ones, volumes and balls together
 // are no noisier than either, box gates tend to delta gates, closed boxes keep their light.
 
+#include "support/VerifiedValues.h"
+
 #include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
@@ -9,6 +11,7 @@
 #include "photon/sliced/box_of_fog.h"
 
 #include "tungsten/emitter/Emitter.h"
+#include "tungsten/scene/SceneLoader.h"
 
 #include <functional>
 #include <random>

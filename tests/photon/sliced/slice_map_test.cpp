@@ -1,8 +1,10 @@
 // Sliced primitives as integrators render them, against the verified values.
 
-#include "photon/render_photons.h"
+#include "support/PathsAndPhotons.h"
+#include "support/VerifiedValues.h"
 
 #include "photon/primitives/sliced/SliceKind.h"
+#include "tungsten/core/Errors.h"
 
 #include <gtest/gtest.h>
 

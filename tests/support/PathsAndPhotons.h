@@ -1,0 +1,16 @@
+#pragma once
+// Rendering small scenes with the photon maps, and with the path and light tracers that they are compared with.
+
+#include "support/Render.h"
+
+namespace tungsten::test {
+
+std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, RenderOptions options);
+std::unique_ptr<Rendered> renderPaths(const std::string& json, const RenderOptions& options);
+std::unique_ptr<Rendered> renderLight(const std::string& json, const RenderOptions& options); ///< the light tracer
+std::unique_ptr<Rendered> renderPhotonFile(const std::filesystem::path& file, const RenderOptions& options,
+                                           bool progressive = true);
+std::unique_ptr<Rendered> renderPhotons(const std::string& json, const RenderOptions& options);
+std::unique_ptr<Rendered> renderBeams(const std::string& json, RenderOptions options);
+
+} // namespace tungsten::test
