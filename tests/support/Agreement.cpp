@@ -226,7 +226,7 @@ struct SquareSums {
 };
 
 void compareBlock(const BlockMeans& method, const BlockMeans& reference, int frame, int block, const Vec3d& mean,
-                         SquareSums& sums, Agreement& result) {
+                  SquareSums& sums, Agreement& result) {
     const size_t i = reference.index(frame, block);
     for (int c = 0; c < 3; ++c) {
         const Allowance allowance(method, reference, i, c, mean);

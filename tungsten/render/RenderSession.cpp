@@ -9,17 +9,17 @@
 #include "tungsten/render/SceneFilm.h"
 #include "tungsten/render/SessionFiles.h"
 #include "tungsten/render/SharedResult.h"
+#include "tungsten/render/WatchedPass.h"
 
 #include <bit>
 #include <chrono>
 #include <cstdio>
-#include <thread>
 
 namespace tungsten {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = WatchedPass::Clock;
 
 /// Whether a target error is looked at after so many passes. Few passes know their own error badly, and every look is
 /// another chance to stop at an estimate that happens to be low: looks are rare, each after twice the work.
@@ -40,6 +40,7 @@ class Session {
           files_(loaded, outputs, options, result), shared_(options.team, result),
           firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
           sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()),
+          watched_(options, result, [this](const PassMonitor& monitor) { showPass(monitor); }),
           trace_(shared_.speaks() ? options.trace : std::filesystem::path(), *loaded.scene, options.seed),
           reporter_(options.quiet || !shared_.speaks()) {}
 
@@ -143,7 +144,7 @@ class Session {
         const std::vector<RoundPass> round = nextRound();
         const size_t mine = shared_.rank();
         const bool whole = mine >= round.size() || renderPass(round[mine]);
-        if (failed_) std::rethrow_exception(failure_);
+        watched_.rethrow();
         const size_t passes = agree(whole, round.size());
         if (passes == 0) return false;
         if (partial_) partial_->add(result_.film, round[0].size.samples);
@@ -160,58 +161,21 @@ class Session {
 
     /// Into the film's pass image. False: it was broken off.
     bool renderPass(const RoundPass& planned) {
-        PassMonitor monitor([this] { return stopsPass(); });
         PassInfo pass = planned.info(firstPass_, uint64_t(options_.sppStep), options_.seed);
-        pass.watch = PassWatch(monitor);
         result_.film.beginPass();
         if (result_.estimatesBias()) {
             result_.bias.beginPass();
             if (passesOfItsBias(planned.index) > 0) pass.bias = &result_.bias;
         }
-        return tryPass(pass, monitor);
+        return watched_.run(pass, deadline(), [this](const PassInfo& watched, Statistics& statistics) {
+            if (!black_) integrator_.renderPass(watched, result_.film, statistics);
+        });
     }
 
-    /// Figures of a pass that is broken off are left out, but for the time.
-    bool tryPass(const PassInfo& pass, const PassMonitor& monitor) {
-        monitor_ = &monitor;
-        passStart_ = Clock::now();
-        Statistics statistics;
-        std::optional<StageTimer> timer(std::in_place, result_.statistics, "passes broken off");
-        try {
-            if (!black_) integrator_.renderPass(pass, result_.film, statistics);
-            timer->discard();
-        } catch (const PassBrokenOff&) {
-            brokenAt_ = monitor.progress().ofPass;
-            monitor_ = nullptr;
-            return false;
-        }
-        monitor_ = nullptr;
-        result_.statistics.add(statistics);
-        return true;
-    }
-
-    /// Of a pass in progress; any of its threads.
-    bool stopsPass() {
-        if (std::this_thread::get_id() == thread_) showPass();
-        return failed_.load(std::memory_order_relaxed) || interrupted() || secondsSince(begin_) >= deadline();
-    }
-
-    void showPass() {
-        constexpr std::chrono::milliseconds Between(50);
-        const auto now = Clock::now();
-        if (now - lastShown_ < Between) return;
-        lastShown_ = now;
-        if (failed_) return;
-        try {
-            if (options_.duringPass) options_.duringPass();
-        } catch (...) { // later: thrown here it would not end other threads' parts of the pass
-            failure_ = std::current_exception();
-            failed_ = true;
-            return;
-        }
+    void showPass(const PassMonitor& monitor) {
         if (!reporter_.due()) return;
         ProgressState progress = state();
-        progress.pass = monitor_->progress();
+        progress.pass = monitor.progress();
         for (const RoundPass& pass : nextRound()) progress.samplesOfPass += pass.size.weight;
         reporter_.show(progress, false);
     }
@@ -219,12 +183,16 @@ class Session {
     /// Before a pass of this run has ended; a partial state has whole passes.
     [[nodiscard]] bool mayCut() const { return !endedAPass_ && !options_.passes && sizes_.canCut(); }
 
-    /// When the pass in progress is to end, in seconds since begin_.
-    [[nodiscard]] double deadline() const {
-        if (options_.timeoutSeconds <= 0.0) return std::numeric_limits<double>::infinity();
-        if (!mayCut()) return options_.timeoutSeconds;
-        const double started = std::chrono::duration<double>(passStart_ - begin_).count();
-        return std::min(options_.timeoutSeconds, started + FirstPassPart * options_.timeoutSeconds);
+    /// When the pass that begins now is to end.
+    [[nodiscard]] Clock::time_point deadline() const {
+        const auto after = [](Clock::time_point start, double seconds) {
+            constexpr double Ever = 1e9; // the clock counts nanoseconds in 64 bits
+            return start +
+                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, Ever)));
+        };
+        if (options_.timeoutSeconds <= 0.0) return Clock::time_point::max();
+        const auto end = after(begin_, options_.timeoutSeconds);
+        return mayCut() ? std::min(end, after(Clock::now(), FirstPassPart * options_.timeoutSeconds)) : end;
     }
 
     /// Whether the render ends with the pass that was broken off; else passes are smaller from now on.
@@ -241,15 +209,13 @@ class Session {
         return false;
     }
 
-    [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted->load(); }
-
     /// What any rank has met counts for all. Returns how many passes of the round there are before the first that was
     /// broken off.
     size_t agree(bool whole = true, size_t passes = 0, bool wantsFilm = false) {
         const bool timedOut = options_.timeoutSeconds > 0.0 && secondsSince(begin_) >= options_.timeoutSeconds;
         const double broken = whole ? double(result_.ranks) : double(shared_.rank());
-        const auto all = shared_.largest(
-            {double(interrupted()), double(timedOut), double(wantsFilm), -broken, whole ? -1.0 : -brokenAt_});
+        const auto all = shared_.largest({double(watched_.interrupted()), double(timedOut), double(wantsFilm), -broken,
+                                          whole ? -1.0 : -watched_.brokenAt()});
         agreed_ = {all[0] > 0.0, all[1] > 0.0, all[2] > 0.0};
         brokenAt_ = -all[4];
         return std::min(passes, size_t(-all[3]));
@@ -302,17 +268,14 @@ class Session {
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
     PassSizes sizes_;
-    std::atomic<bool> failed_{false};
-    std::exception_ptr failure_; ///< of duringPass, if failed_
     struct {
         bool interrupted = false, timedOut = false, wantsFilm = false;
     } agreed_;                ///< of all ranks
     bool endedAPass_ = false; ///< in this run
     bool targetReached_ = false;
-    const PassMonitor* monitor_ = nullptr; ///< of the pass in progress
-    double brokenAt_ = 0.0;                ///< where the last pass that was broken off was
-    std::thread::id thread_ = std::this_thread::get_id();
-    Clock::time_point begin_ = Clock::now(), passStart_ = begin_, lastShown_ = begin_;
+    double brokenAt_ = 0.0; ///< where the last pass that was broken off was, in any rank
+    Clock::time_point begin_ = Clock::now();
+    WatchedPass watched_;
     PartialStateWriter* partial_ = nullptr;
     bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;
