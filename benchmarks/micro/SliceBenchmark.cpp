@@ -48,7 +48,7 @@ struct Setting {
             r.base = Vec3f(0, 0, 2) + warp::squareToSphere(sampler.next2D()) * sampler.next1D();
             for (Vec3f& direction : r.directions) direction = warp::squareToSphere(sampler.next2D());
             r.power = Rgb(1.0f);
-            r.reach = Infinity;
+            r.reach = r.shape == FlightShape::Ball ? 0.0f : Infinity;
             r.random = {uint16_t(sampler.nextBits()), uint16_t(sampler.nextBits())};
             r.lengths = {1.0f, 1.0f};
             r.bounce = 2;

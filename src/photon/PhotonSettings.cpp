@@ -63,8 +63,12 @@ void readSlices(const ObjectReader& block, const Scene& scene, PhotonSettings& s
     slices.classes = SliceClasses::of(slices.kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
     slices.classes.shortFlights = settings.shortFlights;
     const bool beams = slicesNeedBeams(scene, slices.classes);
-    if (beams) slices.classes.share = tuning::ShareBesideBeams;
-    if (beams) requireRadius(block, scene, settings);
+    if (!beams) return;
+    slices.classes.share = tuning::ShareBesideBeams;
+    slices.classes.sharedShare = tuning::SharedBesideBeams;
+    requireRadius(block, scene, settings);
+    if (scene.transport.gate.delta && slices.classes.lights)
+        slices.classes.shortBeams = tuning::ShortBeamsInRadii * settings.volumeRadius;
 }
 
 /// The primitive, radius and temporal kernel of the volume store.

@@ -120,6 +120,11 @@ void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
     chain_.end();
     if (!path_.arriveOnSurface(hit)) return false;
+    auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
+    if (flights && path_.context.storeVolume)
+        chain_.leaveSurface(chainRules(), path_.surface,
+                            {hit.position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
+                            path_.region, path_.sampler, *flights);
     if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0)
         connectToSurfaces({scene_, path_.surface, path_.ray.direction, TransportMode::Photons, path_.region},
                           2.0f * InSphere);

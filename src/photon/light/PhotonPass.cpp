@@ -159,12 +159,21 @@ std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, Statist
         GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
     }
     statistics.add("rays", pilot.counters.rays);
-    worth->measure(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes.share);
+    worth->measure(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes);
     return worth;
 }
 
+PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
+    PhotonSettings settings = settings_.ofShare(pass.share);
+    auto* slices = std::get_if<Slices>(&settings.primitive);
+    // As the temporal kernel and the beams' radius do.
+    if (slices && scene_.transport.gate.delta)
+        slices->classes.shortBeams *= float(culling_.gate().frameWidth / (2.0 * settings.temporalRadius));
+    return settings;
+}
+
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
-    const PhotonSettings settings = settings_.ofShare(pass.share);
+    const PhotonSettings settings = settingsOf(pass);
     if (connections) setLightPerConnection(pass, settings, *connections, statistics);
     const auto worth = sliceWorth(pass, statistics);
     PhotonMaps maps;

@@ -37,6 +37,8 @@ class PhotonPass {
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
 
   private:
+    /// Of its part of a whole pass, and with its kernels.
+    [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// Tells connections what each of them is to bring, from what a few paths find.
     void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, SurfaceConnections& connections,
                                Statistics& statistics) const;

@@ -72,7 +72,13 @@ void PhotonWalk::endChain() {
 
 bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
     endChain();
-    return path_.arriveOnSurface(hit) && path_.leaveSurface();
+    if (!path_.arriveOnSurface(hit)) return false;
+    auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
+    if (flights && path_.context.storeVolume)
+        chain_.leaveSurface(chainRules(), path_.surface,
+                            {hit.position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
+                            path_.region, path_.sampler, *flights);
+    return path_.leaveSurface();
 }
 
 bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {

@@ -206,7 +206,7 @@ TEST(SliceWorth, CountsTheLightOfLights) {
     scattered.power = emitterPower(scene.emitters[0]);
     light.power = Rgb(1.0f);
     SliceWorth worth(scene, scene.transport.gate);
-    worth.measure(std::array{scattered, light}, 1.0f);
+    worth.measure(std::array{scattered, light}, {});
     EXPECT_NEAR(worth.expected(light), worth.expected(scattered), 1e-5);
     EXPECT_NEAR(worth.expected(scattered), 1.0, 1e-5);
 }

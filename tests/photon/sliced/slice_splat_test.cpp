@@ -61,6 +61,11 @@ std::vector<CollapsedFlights> randomRecords(const Scene& scene, int count) {
         r.medium = int16_t(i / 5 % 3);
         r.emitter = i % 25 == 0 ? 0 : -1;
         r.shared = r.emitter < 0 && i % 2 == 0 && (r.shape == FlightShape::Ball || r.shape == FlightShape::Volume);
+        if (r.shape == FlightShape::Ball) {
+            const bool single = r.emitter < 0 && !r.shared;
+            r.reach = single ? 0.3f * sampler.next1D() : 0.0f;
+            r.onSurface = single && i % 3 == 0;
+        }
         records.push_back(r);
     }
     return records;

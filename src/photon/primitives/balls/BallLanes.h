@@ -24,8 +24,13 @@ struct BallViewLanes {
     }
 };
 
-/// Scattering at the centre, or a light's own, and towards the camera.
+/// Scattering at the centre, or a light's own.
 inline Batch leavingBall(const LaneRecord& record, const Lanes3& last) {
+    if (record.flights->onSurface) {
+        const auto& normals = record.flights->directions;
+        return xsimd::select(last.dot(normals[2]) > 0.0f, xsimd::max(last.dot(normals[0]), Batch(0.0f)) * InvPi,
+                             Batch(0.0f));
+    }
     return record.isotropic ? Batch(1.0f) : henyeyGreenstein(record.g, Lanes3(record.flights->directions[1]), last);
 }
 
@@ -134,7 +139,7 @@ class BallGateLanes {
         const Batch scattered = leavingBall(record, last);
         Batch factor = scattered * record.towardsCamera(last, rays) * angles / h;
         if (record.flights->shared) factor *= ballShare(record, rays, last, length, scattered);
-        emit(frame, LaneReach{met, along, length + along, factor});
+        emit(frame, LaneReach{met && length >= record.flights->reach, along, length + along, factor});
     }
 };
 

@@ -19,7 +19,8 @@ bool SliceEstimate::addBall(const SliceMeeting& m, FrameSums& sums) const {
 Rgb SliceEstimate::leavingBall(const SliceMeeting& m, const BallReach<double>& reach, const Vec3f& last) const {
     const CollapsedFlights& ball = m.flights;
     const Rgb power = ball.emitter >= 0 ? ball.power * emittedIntensity(scene_.emitters[size_t(ball.emitter)],
-                                                                        ball.lightPoint(), last)
+                                                                        ball.surfacePoint(), last)
+                      : ball.onSurface  ? ball.power * ball.leavingSurface(last)
                                         : ball.power * m.medium.phase.eval(ball.directions[1], last);
     if (isBlack(power) || unoccluded(ball, inFloat(m.sight.at(reach.alongRay)))) return power;
     return Rgb(0.0f);
@@ -31,7 +32,7 @@ bool SliceEstimate::unoccluded(const CollapsedFlights& ball, const Vec3f& end) c
     const float length = way.length();
     if (!(length > 0.0f)) return true;
     const Vec3f direction = way / length;
-    Ray ray = ball.emitter >= 0 ? ball.lightPoint().leave(direction) : Ray{ball.base, direction};
+    Ray ray = ball.emitter >= 0 || ball.onSurface ? ball.surfacePoint().leave(direction) : Ray{ball.base, direction};
     ray.tMax = length;
     return !scene_.geometry->occluded(ray);
 }
@@ -64,7 +65,7 @@ bool SliceEstimate::addBallGate(const SliceMeeting& m, int frame, FrameSums& sum
         gateBall<double>(m.base, m.sight, {m.residual(gate.frameStart(frame)), m.residual(gate.frameStart(frame + 1))});
     if (!(lit.angles() > 0.0)) return false;
     const auto reach = lit.sample(m.random(0, frame));
-    if (!(reach.length > 0.0)) return false;
+    if (!(reach.length > 0.0) || reach.length < double(m.flights.reach)) return false;
     const Vec3d towards = (m.sight.at(reach.alongRay) - m.base) / reach.length;
     const Vec3f last = inFloat(towards);
     const double arrival = m.arrival(reach.length + m.sight.warp() * reach.alongRay);

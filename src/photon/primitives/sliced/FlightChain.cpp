@@ -24,13 +24,28 @@ void FlightChain::fly(const Rules& rules, const ChainVertex& vertex, int medium,
     if (flights_ == 1) {
         if (emitter_ >= 0 && rules.classes.lights) {
             if (!rules.worth) depositLight(rules, vertex, sampler, list);
-        } else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1))
-            list.records.push_back(record(rules, vertex, FlightShape::Beam, sampler));
+        } else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1)) {
+            const bool ball = vertex.direction.dot(ballSide_) > 0.0f;
+            depositBeam(rules, vertex, ball ? rules.classes.shortBeams : Infinity, sampler, list);
+        }
+    } else if (rules.classes.shortBeams > 0.0f && rules.classes.hasSingleBall(flights_ - 1) &&
+               counts(rules, vertex, medium_, flights_ - 1, 1)) {
+        depositBeam(rules, vertex, rules.classes.shortBeams, sampler, list);
     }
     if (rules.worth)
         branch(rules, sampler, list);
     else
         complete(rules, flights_ - 1, sampler, list);
+}
+
+void FlightChain::depositBeam(const Rules& rules, const ChainVertex& start, float most, Sampler& sampler,
+                              DepositList<CollapsedFlights>& list) const {
+    const auto speed = double(rules.scene.media[size_t(medium_)].speedOfLight);
+    const FlightPart part = rules.arrival.countingPart(start.position, start.direction, start.time, speed);
+    CollapsedFlights beam = record(rules, start, FlightShape::Beam, sampler);
+    beam.reach = std::min({beam.reach, most, float(part.end)});
+    beam.lengths[0] = float(part.start);
+    if (beam.lengths[0] < beam.reach) list.records.push_back(beam);
 }
 
 void FlightChain::leaveLight(const Rules& rules, const Emitter& emitter, float probability, const SurfaceSample& light,
@@ -52,10 +67,35 @@ void FlightChain::depositLight(const Rules& rules, ChainVertex start, Sampler& s
     start.power = Rgb(inverseProbability_);
     if (!counts(rules, start, medium_, 0, 1)) return;
     CollapsedFlights ball = record(rules, start, FlightShape::Ball, sampler);
+    ball.reach = 0.0f;
     ball.emitter = int16_t(emitter_);
     ball.directions[0] = light_.normal;
     ball.directions[1].x = light_.error;
     ball.lengths = {light_.uv.x, light_.uv.y};
+    thin(rules, ball, sampler, list);
+}
+
+void FlightChain::leaveSurface(const Rules& rules, const SurfaceInteraction& surface, const ChainVertex& at,
+                               const Region& region, Sampler& sampler, DepositList<CollapsedFlights>& list) {
+    if (rules.classes.shortBeams == 0.0f || !std::holds_alternative<Lambert>(surface.bsdf->model)) return;
+    const Vec3f &ng = surface.hit.ng, &ns = surface.frame.n;
+    const Vec3f side = ng.dot(ns) < 0.0f ? -ng : ng;
+    const float arriving = -at.direction.dot(side);
+    const int medium = regionBeyond(surface, side, region).medium;
+    if (!(arriving > 0.0f) || medium < 0 || !rules.scene.media[size_t(medium)].scatters()) return;
+    ballSide_ = side;
+    // Along the normal f |cos| is the albedo / pi; SurfaceInteraction::photonShadingFactor, but for what the way out
+    // brings to it.
+    const Rgb albedo = surface.bsdf->eval(surface.query(TransportMode::Photons), surface.wi, Vec3f(0, 0, 1)) * Pi;
+    ChainVertex centre = at;
+    centre.position = surface.hit.position;
+    centre.power = at.power * albedo * std::abs(at.direction.dot(ns) / arriving);
+    if (!counts(rules, centre, medium, 0, 1)) return;
+    medium_ = medium;
+    CollapsedFlights ball = record(rules, centre, FlightShape::Ball, sampler);
+    ball.onSurface = true;
+    ball.reach = rules.classes.shortBeams;
+    ball.directions = {side, Vec3f(surface.hit.error, 0.0f, 0.0f), ns, Vec3f(0.0f)};
     thin(rules, ball, sampler, list);
 }
 
@@ -65,6 +105,7 @@ void FlightChain::scatter(const Rules& rules, const ChainVertex& vertex, Sampler
     if (centre < rules.classes.firstBall || centre > rules.classes.lastBall) return;
     if (!counts(rules, vertex, medium_, centre, 1)) return;
     CollapsedFlights ball = record(rules, vertex, FlightShape::Ball, sampler);
+    ball.reach = rules.classes.hasSingleBall(centre) ? rules.classes.shortBeams : 0.0f;
     ball.directions[1] = direction(centre - 1);
     if (centre >= 2) {
         const Vec3f& before = at(centre - 1).position;
@@ -125,13 +166,12 @@ void FlightChain::end(const Rules& rules, Sampler& sampler, DepositList<Collapse
             complete(rules, ghost, sampler, list);
         }
     }
-    flights_ = 0;
-    emitter_ = -1;
+    end();
 }
 
 void FlightChain::thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
                        DepositList<CollapsedFlights>& list) {
-    const float share = rules.worth ? rules.worth->expected(flights) : rules.classes.share;
+    const float share = rules.worth ? rules.worth->expected(flights) : rules.classes.shareOf(flights);
     if (share < 1.0f) {
         if (sampler.next1D() >= share) return;
         flights.power = flights.power / share;

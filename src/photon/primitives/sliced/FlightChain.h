@@ -5,7 +5,7 @@
 #include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
 
-#include "tungsten/scene/Scene.h"
+#include "tungsten/scene/Interaction.h"
 
 namespace tungsten::photon {
 
@@ -34,6 +34,10 @@ class FlightChain {
     /// The same at a point that is known, which leaves its ball here: guided paths may go where it does not shine.
     void leaveLight(const Rules& rules, const Emitter& emitter, float probability, const SurfaceSample& light,
                     const ChainVertex& start, int medium, Sampler& sampler, DepositList<CollapsedFlights>& list);
+    /// Light has arrived on a surface and will leave it: `at` has the arriving power and direction, and the bounces
+    /// with this one. A ball there, if it scatters evenly.
+    void leaveSurface(const Rules& rules, const SurfaceInteraction& surface, const ChainVertex& at,
+                      const Region& region, Sampler& sampler, DepositList<CollapsedFlights>& list);
     /// A flight through a medium.
     void fly(const Rules& rules, const ChainVertex& vertex, int medium, Sampler& sampler,
              DepositList<CollapsedFlights>& list);
@@ -46,6 +50,7 @@ class FlightChain {
     void end() {
         flights_ = 0;
         emitter_ = -1;
+        ballSide_ = Vec3f(0.0f);
     }
 
   private:
@@ -55,6 +60,9 @@ class FlightChain {
     void complete(const Rules& rules, int last, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
     /// Records from the base of the flight at hand, with directions of their own.
     void branch(const Rules& rules, Sampler& sampler, DepositList<CollapsedFlights>& list) const;
+    /// As long as `most`.
+    void depositBeam(const Rules& rules, const ChainVertex& start, float most, Sampler& sampler,
+                     DepositList<CollapsedFlights>& list) const;
     void depositLight(const Rules& rules, ChainVertex start, Sampler& sampler,
                       DepositList<CollapsedFlights>& list) const;
     [[nodiscard]] static bool counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights);
@@ -73,6 +81,7 @@ class FlightChain {
     int emitter_ = -1; ///< of the first flight, if it can be seen in more than one direction
     float inverseProbability_ = 0.0f;
     SurfaceSample light_;
+    Vec3f ballSide_{0.0f}; ///< normal on the side that a ball on the last surface lights; 0 without one
 };
 
 } // namespace tungsten::photon

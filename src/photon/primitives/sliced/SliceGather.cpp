@@ -50,7 +50,7 @@ std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<Collaps
     std::vector<PhotonBeam> beams;
     for (const CollapsedFlights& flights : records)
         if (flights.shape == FlightShape::Beam)
-            beams.push_back({flights.time, flights.base, flights.directions[0], flights.power, 0.0f,
+            beams.push_back({flights.time, flights.base, flights.directions[0], flights.power, flights.lengths[0],
                              std::min(flights.reach, visibleReach(scene.media[size_t(flights.medium)])), flights.bounce,
                              flights.medium});
     return beams;

@@ -33,9 +33,18 @@ struct SliceClasses {
     std::array<Bases, 5> flights{};   ///< by number of flights, 2 to 4: First: m is that number, All: or more
     int firstBall = 0, lastBall = -1; ///< medium vertices of the chain with a ball: m = vertex + 1
     float share = 1.0f;        ///< of what is not a beam that is left, at random; its power makes up for the rest
+    float sharedShare = 1.0f;  ///< the same of paths that balls and volumes share
     bool shared = false;       ///< m >= 3: balls and volumes together
     bool shortFlights = false; ///< flights end at random lengths
+    /// Last flights of what single balls make at a delta gate: beams up to this length, balls beyond it; after surfaces
+    /// that scatter evenly too. 0: balls alone, and beams alone after surfaces.
+    float shortBeams = 0.0f;
 
+    [[nodiscard]] float shareOf(const CollapsedFlights& record) const { return record.shared ? sharedShare : share; }
+    /// A vertex of a chain has a ball that volumes do not share.
+    [[nodiscard]] bool hasSingleBall(int vertex) const {
+        return vertex >= firstBall && vertex <= lastBall && !(shared && vertex >= 2);
+    }
     /// `lowOrders`: with m = 1. `onlyShared`: m >= 3 alone, which balls and volumes both make.
     static SliceClasses of(SliceKind kind, bool steadyState, bool lowOrders, bool onlyShared);
 };

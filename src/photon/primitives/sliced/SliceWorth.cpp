@@ -22,18 +22,18 @@ float sliceWorth(const Scene& scene, const CollapsedFlights& record, double time
 
 SliceWorth::SliceWorth(const Scene& scene, const TimeGate& gate) : scene_(scene), gate_(gate) {}
 
-void SliceWorth::measure(std::span<const CollapsedFlights> records, float share) {
-    std::array<double, 5> sums{}, counts{};
+void SliceWorth::measure(std::span<const CollapsedFlights> records, const SliceClasses& classes) {
+    std::array<double, Groups> sums{}, counts{};
     for (const CollapsedFlights& record : records) {
-        sums[size_t(record.shape)] += double(worth(record));
-        counts[size_t(record.shape)] += 1.0;
+        sums[group(record)] += double(worth(record));
+        counts[group(record)] += double(classes.shareOf(record));
     }
-    for (size_t shape = 0; shape < worthOfOne_.size(); ++shape)
-        if (counts[shape] > 0.0) worthOfOne_[shape] = sums[shape] / (counts[shape] * double(share));
+    for (size_t i = 0; i < Groups; ++i)
+        if (counts[i] > 0.0) worthOfOne_[i] = sums[i] / counts[i];
 }
 
 float SliceWorth::expected(const CollapsedFlights& record) const {
-    const double one = worthOfOne_[size_t(record.shape)];
+    const double one = worthOfOne_[group(record)];
     if (!(one > 0.0)) return 1.0f;
     return std::clamp(float(double(worth(record)) / one), tuning::LeastPerBase, tuning::MostPerBase);
 }

@@ -1,7 +1,7 @@
 #pragma once
 // How many records a base leaves, by what one of them brings inside the gate.
 
-#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/primitives/sliced/SliceKind.h"
 
 #include "tungsten/scene/Scene.h"
 
@@ -20,9 +20,9 @@ class SliceWorth {
     /// `gate`: the pass's. Every base that counts leaves one record, until measure() has been called.
     SliceWorth(const Scene& scene, const TimeGate& gate);
 
-    /// From records of a few paths, one for every base that counts; `share`: how many there are to be for each of
+    /// From records of a few paths, one for every base that counts; `classes`: how many there are to be for each of
     /// these.
-    void measure(std::span<const CollapsedFlights> records, float share);
+    void measure(std::span<const CollapsedFlights> records, const SliceClasses& classes);
     /// Expected number of records like this one.
     [[nodiscard]] float expected(const CollapsedFlights& record) const;
 
@@ -31,7 +31,13 @@ class SliceWorth {
 
     const Scene& scene_;
     TimeGate gate_;
-    std::array<double, 5> worthOfOne_{}; ///< worth of what leaves one record, by shape
+    /// Shapes, and balls that share their paths.
+    static constexpr size_t Groups = 6;
+    [[nodiscard]] static size_t group(const CollapsedFlights& record) {
+        return record.shape == FlightShape::Ball && record.shared ? Groups - 1 : size_t(record.shape);
+    }
+
+    std::array<double, Groups> worthOfOne_{}; ///< worth of what leaves one record, by group
 };
 
 } // namespace tungsten::photon
