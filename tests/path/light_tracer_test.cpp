@@ -11,12 +11,18 @@
 namespace tungsten::test {
 namespace {
 
+/// A floor whose shading normals lean towards the camera: lies beside every scene.
+constexpr const char* LeaningFloor = "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nvn 0 0.8 0.6\n"
+                                     "f 1//1 2//1 3//1\nf 1//1 3//1 4//1\n";
+
 template <typename Made>
 std::unique_ptr<Rendered> renderWith(const std::string& json, const RenderOptions& options) {
-    const SceneFile file(json);
-    return render(file.path(), options, [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
-        return std::make_unique<Made>(std::move(scene), settings);
-    });
+    const FileFolder folder;
+    folder.write("leaning.obj", LeaningFloor);
+    return render(folder.write("scene.json", json), options,
+                  [](std::shared_ptr<const Scene> scene, const ObjectReader& settings) {
+                      return std::make_unique<Made>(std::move(scene), settings);
+                  });
 }
 
 /// Means over independent renders, and their standard errors: by frame and pixel (channel means), and of whole frames,
@@ -137,6 +143,44 @@ TEST(LightTracer, ShowsSurfacesThroughALens) {
 
 TEST(LightTracer, ShowsSurfacesAlongParallelRays) {
     expectAgreement(room("", R"("type": "orthographic", "orthographic_size": 1.4)"), {}, {128, 256});
+}
+
+/// A wall that a floor with leaning shading normals alone lights: the walk over the floor goes on with their factor.
+TEST(LightTracer, KeepsTheFactorOfShadingNormals) {
+    const std::string scene = R"({"bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.8}],
+        "primitives": [
+          {"type": "mesh", "file": "leaning.obj", "smooth": true, "bsdf": "grey"},
+          {"type": "quad", "bsdf": "grey", "transform": {"position": [0, 3, -2], "rotation": [90, 0, 0], "scale": 4}},
+          {"type": "disk", "bsdf": {"type": "null"}, "emission": 12, "cone_angle": 30,
+           "transform": {"position": [0, 1.5, -0.5], "rotation": [180, 0, 0], "scale": 0.5}}],
+        "camera": {"type": "pinhole", "fov": 30, "reconstruction_filter": "tent",
+                   "transform": {"position": [0, 3.5, 4], "look_at": [0, 3.5, -2], "up": [0, 1, 0]}},
+        "integrator": {"max_bounces": 3}})";
+    expectAgreement(scene, {}, {128, 256});
+}
+
+/// A laser through slow, dark glass onto a coat of varnish on the left, out of sight, and from there onto the right
+/// wall, out of sight too: what is seen is lit by what the laser scatters there.
+TEST(LightTracer, ShowsALaserThroughSlowGlassAndOffVarnish) {
+    const std::string scene = R"({
+        "media": [{"name": "dark", "type": "homogeneous", "sigma_a": 0.3, "sigma_s": 0, "speed_of_light": 0.5}],
+        "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.7},
+                  {"name": "varnish", "type": "plastic", "albedo": 0.05, "ior": 3}],
+        "primitives": [
+          {"type": "quad", "bsdf": "grey", "transform": {"position": [0, 0, -1.5], "rotation": [90, 0, 0], "scale": 6}},
+          {"type": "quad", "bsdf": "varnish",
+           "transform": {"position": [-2.9, 0.3, 0.5], "rotation": [0, 0, -90], "scale": 0.5}},
+          {"type": "quad", "bsdf": "grey", "transform": {"position": [3, 0, 0.5], "rotation": [0, 0, 90], "scale": 4}},
+          {"type": "cube", "bsdf": {"type": "forward"}, "int_medium": "dark",
+           "transform": {"position": [0.2, 0.75, 1], "scale": 0.8}},
+          {"type": "collimated", "power": 100,
+           "transform": {"position": [2.8, 1.2, 1.5], "look_at": [-2.9, 0.3, 0.5], "up": [0, 1, 0]}}],
+        "camera": {"type": "pinhole", "fov": 40, "reconstruction_filter": "tent",
+                   "transform": {"position": [0, 0, 4], "look_at": [0, 0, -1.5], "up": [0, 1, 0]}},
+        "integrator": {"max_bounces": 10)";
+    expectAgreement(scene + "}}", {}, {128, 256});
+    const std::string frames = R"(, "start_time": 20.5, "transient_time_width": 1, "frame_num": 3}})";
+    expectAgreement(scene + frames, {}, {256, 512});
 }
 
 TEST(LightTracer, WeighsTimeByTheSensorsResponse) {

@@ -62,6 +62,18 @@ TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
     for (int frame = 0; frame < 20; ++frame) EXPECT_EQ(rendered->mean(frame) > 0.0, frame == 15) << frame;
 }
 
+TEST(PhotonMap, DirectLightingIsOneBounce) {
+    const auto mean = [](const std::string& most, const std::string& least) {
+        return renderPhotons(test::litFloor(20), {{"integrator.photon_count=4000", "integrator.max_bounces=" + most,
+                                                   "integrator.min_bounces=" + least},
+                                                  1,
+                                                  1})
+            ->mean(15);
+    };
+    EXPECT_GT(mean("2", "1"), 0.0);
+    EXPECT_EQ(mean("3", "2"), 0.0);
+}
+
 TEST(PhotonMap, AgreesWithPathsInEveryFrame) {
     const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
     const auto points = renderPhotons(json, {{}, 80, 1});
