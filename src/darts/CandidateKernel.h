@@ -136,7 +136,7 @@ struct Candidates {
         std::array<Batch, size_t(Registers)> exponents[Channels], factors[Channels];
         Batch highest(-std::numeric_limits<float>::max());
         for (int r = 0; r < Registers; ++r) {
-            Batch u = lanes::get<Batch>(strata + r * Width) + random.rotation;
+            Batch u = lanes::get<Batch>(strata + size_t(r) * Width) + random.rotation;
             u = u - floor(u);
             Batch through(0.0f);
             const Batch d = proposal.sample(u, r * Width, density[r], through);

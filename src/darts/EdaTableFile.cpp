@@ -72,6 +72,7 @@ std::optional<EdaTable> read(const fs::path& file, const Header& expected, const
     Header comparable = header;
     comparable.floats = 0;
     comparable.checksum = 0;
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c): bit for bit, and without padding
     if (std::memcmp(&comparable, &expected, sizeof expected) != 0) return unfit("holds a table of other parameters");
     if (header.floats > header.rows * std::uint64_t(EdaTable::Row::strideOf(EdaTable::Row::MaxOctaves)))
         return unfit("is damaged");

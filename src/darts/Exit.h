@@ -23,6 +23,7 @@ class Few {
     Few() = default;
     Few(const Few& other) : size_(other.size_) { std::copy_n(other.items_, size_, items_); }
     Few& operator=(const Few& other) {
+        if (this == &other) return *this;
         size_ = other.size_;
         std::copy_n(other.items_, size_, items_);
         return *this;

@@ -15,7 +15,7 @@ std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, c
     if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
-    if (!facts.mediumScattering) return "no medium scatters";
+    if (!facts.mediumScattering) return facts.noScattering();
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
     const bool sealed = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
                         transport::isSealed(scene);
@@ -33,14 +33,15 @@ std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const 
 }
 
 /// Media whose directions come from a table.
-Choice tablesOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
+Choice tablesOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts, const Choice& guidance) {
     if (!guidance.on) return {false, "paths are not guided"};
     const darts::Scheme& scheme = settings.policy.sampling;
     const auto tabled = [&](const Medium& medium) {
         const auto of = scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
         return medium.scatters() && of.direction == darts::Direction::Eda && (of.elliptical || scheme.direction);
     };
-    const bool any = std::any_of(scene.media.begin(), scene.media.end(), tabled);
+    bool any = false;
+    for (size_t i = 0; i < scene.media.size(); ++i) any = any || (tabled(scene.media[i]) && !facts.isOutOfTime(i));
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
 
@@ -63,7 +64,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
                                                                "DARTS sampling of scattering media"};
     plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
                                                                         : "off by default in time-resolved renders"};
-    plan.edaTable = tablesOf(scene, settings, plan.guidance);
+    plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
     plan.chooseLightPaths(scene, settings, facts);
     return plan;
 }

@@ -45,13 +45,14 @@ float radicalInverse(uint32_t index) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
-PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme) {
+PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan) {
     PathGuides guides;
-    for (const Medium& medium : scene.media) {
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        const Medium& medium = scene.media[i];
         darts::Settings settings =
             scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
         // Directions are guided for the sake of control vertices.
-        if (!medium.scatters() || (!settings.elliptical && !scheme.direction))
+        if (!medium.scatters() || plan.isOutOfTime(i) || (!settings.elliptical && !scheme.direction))
             settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
@@ -88,7 +89,7 @@ void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
     targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late);
     if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
-    guides_ = makeGuides(*scene_, settings_.policy.sampling);
+    guides_ = makeGuides(*scene_, settings_.policy.sampling, plan);
     if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
     if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, statistics);

@@ -41,6 +41,7 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics& statistics) {
     forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_);
     if (plan_.edaTable.on) statistics.add("direction tables", photonPass_->guidance()->tables());
+    if (plan_.framesOneByOne.on) statistics.add("frames aimed at", uint64_t(photonPass_->guidance()->frames().frames));
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
 }

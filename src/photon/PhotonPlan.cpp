@@ -17,7 +17,7 @@ namespace {
 constexpr const char* OutOfTime = "what surfaces show arrives after the sensor has closed";
 
 /// Media whose directions come from a table.
-Choice tablesOf(const Scene& scene, const PhotonSettings& settings, const Choice& guidance) {
+Choice tablesOf(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts, const Choice& guidance) {
     if (!guidance.on) return {false, "light paths are not guided"};
     if (scene.transport.cameraUnwarped) return {false, "camera_unwarped: there is nothing to aim at"};
     const auto tabled = [&](const Medium& medium) {
@@ -26,7 +26,8 @@ Choice tablesOf(const Scene& scene, const PhotonSettings& settings, const Choice
                        .settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase)
                        .direction == darts::Direction::Eda;
     };
-    const bool any = std::any_of(scene.media.begin(), scene.media.end(), tabled);
+    bool any = false;
+    for (size_t i = 0; i < scene.media.size(); ++i) any = any || (tabled(scene.media[i]) && !facts.isOutOfTime(i));
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
 
@@ -41,7 +42,7 @@ std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings,
     const bool slices = std::holds_alternative<Slices>(settings.primitive);
     if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
-    if (!facts.mediumScattering) return "no medium scatters";
+    if (!facts.mediumScattering) return facts.noScattering();
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
     if (slices && facts.speedsDiffer && !scene.transport.cameraUnwarped)
         return "with several speeds of light guided slices take longer than they gain";
@@ -67,12 +68,14 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     PhotonPlan plan;
     plan.highestSpeed = facts.highestSpeed;
     plan.lateEmitters = facts.late;
+    plan.mediaOutOfTime = facts.mediaOutOfTime;
+    plan.darkFrames = facts.darkFrames;
     plan.oneSpeed = !facts.speedsDiffer;
     plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
     const std::string obstacle = guidanceObstacle(scene, settings, facts);
     plan.guidance = {obstacle.empty(), obstacle.empty() ? "the scene asks for DARTS" : obstacle};
-    plan.edaTable = tablesOf(scene, settings, plan.guidance);
+    plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
     plan.chooseSensorPaths(scene, settings, facts);
     plan.chooseGuidance(scene, settings, facts);
     plan.chooseStores(scene, settings, facts);
@@ -133,7 +136,7 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     slicesGather = slices && !slicesSplat;
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
-    volume.reason = !facts.mediumScattering ? "no medium scatters: no volume photon is stored or gathered"
+    volume.reason = !facts.mediumScattering ? facts.noScattering() + ": no volume photon is stored or gathered"
                     : !volume.on            ? facts.heterogeneity()
                     : !settings.primitiveReason.empty()
                         ? settings.primitiveReason
@@ -205,7 +208,7 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
                              : "no body of fog in what does not scatter, or left alone",
                   darts);
     if (scene.transport.gate.frames > 1)
-        plan.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts);
+        plan.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts, {"frames aimed at"});
     plan.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
 }
 

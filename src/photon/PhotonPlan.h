@@ -28,7 +28,9 @@ struct PhotonPlan {
     Choice exactCulling;    ///< what arrives outside the gate is known and not stored
     Choice edaTable;        ///< directions come from tables of media
 
-    std::vector<bool> lateEmitters; ///< EffectPlan::late
+    std::vector<bool> lateEmitters;   ///< EffectPlan::late
+    std::vector<bool> mediaOutOfTime; ///< EffectPlan::mediaOutOfTime
+    int darkFrames = 0;               ///< EffectPlan::darkFrames
 
     float highestSpeed = 1.0f; ///< of light, wherever a path can get
     bool oneSpeed = true;

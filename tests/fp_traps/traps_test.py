@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Every place that divides by zero or computes what is no number is known, with a reason (known.txt). Runs unit tests and the hard scenes
-with a library loaded before that traps them in all threads: traps_test.py LIBRARY BINARIES. `--list` prints all places."""
+"""Every place that divides by zero or computes what is no number is known, with a reason (known.txt). Runs unit tests, the hard scenes,
+those of the plan, and small renders of every integrator and primitive with a library loaded before that traps them in all threads:
+traps_test.py LIBRARY BINARIES. `--list` prints all places."""
 
 import argparse
 import os
@@ -15,7 +16,7 @@ UNIT_TESTS = ["medium_tests", "bsdf_tests", "emitter_tests", "camera_tests", "tr
 
 
 def run(arguments, traces):
-    """Unit tests, then the hard scenes by a command that stands for the renderer."""
+    """Unit tests, then scenes by a command that stands for the renderer."""
     for test in UNIT_TESTS:
         binary = arguments.binaries / test
         if binary.exists():
@@ -26,7 +27,7 @@ def run(arguments, traces):
     command = traces.with_name("tungsten")
     command.write_text(f'#!/bin/sh\nFP_TRAPS={traces} LD_PRELOAD={arguments.library} exec {arguments.binaries / "tungsten"} "$@"\n')
     command.chmod(0o755)
-    for script in ("nasty/nasty_test.py", "plan/plan_test.py"):
+    for script in ("nasty/nasty_test.py", "plan/plan_test.py", "render/small_renders.py"):
         done = subprocess.run([sys.executable, str(HERE.parent / script)], env={**os.environ, "TUNGSTEN": str(command)},
                               capture_output=True, text=True)
         print(f"{script}: exit code {done.returncode}")

@@ -6,7 +6,7 @@ SCENE, DARTS, TRANSPORT = ("scene_tests", "*"), ("darts_tests", "*Response*:*Fir
 PLAN, LEFT_OUT, NASTY = (APP, "tests/plan/plan_test.py"), (APP, "tests/plan/left_out_test.py"), (APP, "tests/nasty/nasty_test.py")
 PLAIN = ("path_tests", "PathTracer.*:DirectLight*:Bounces*:Energy*:SingleScattering*:SpecularTime*")
 LIGHT, GUIDED = ("path_tests", "LightTracer*:Energy*"), ("path_tests", "*Guided*:LightVertices*:*DirectLight*")
-MAPS = ("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:Gather*")
+MAPS = ("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:PointGather*")
 SHARED = ("photon_tests", "SharedLight*:SpreadLight*:*GuidedMap*")
 
 FAULTS = [
@@ -51,25 +51,25 @@ FAULTS = [
      "(Rgb(1.0f) / probabilityFlightExits(medium, reach))", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "!rendered(path_.interactions) || !orderCounts()", "!rendered(path_.interactions - 1) || !orderCounts()", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "weighted_ = false; // emitters", "weighted_ = weighted_; // emitters", [PLAIN]),
-    ("src/path/plain/PathWalk.cpp", "path_.time + connection->time + source_->start", "path_.time + connection->time", [PLAIN]),
-    ("src/path/PathTarget.cpp", "target.start += double(length) / double(laser.region.speed);", "target.start += double(length);", [PLAIN]),
-    ("src/path/PathTarget.cpp", "exit->weight * (shading / (1.0f - scatters))", "exit->weight * shading", [PLAIN]),
+    ("src/path/plain/PathWalk.cpp", "path_.time + connection->time + source_->start", "path_.time + connection->time", [LIGHT]),
+    ("src/path/PathTarget.cpp", "target.start += double(length) / double(laser.region.speed);", "target.start += double(length);", [LIGHT]),
+    ("src/path/PathTarget.cpp", "exit->weight * (shading / (1.0f - scatters))", "exit->weight * shading", [LIGHT]),
     ("src/path/light/LightWalk.cpp", "throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction)", "throughput_", [LIGHT]),
     ("src/path/light/LightWalk.cpp", "time_ + (unwarped ? 0.0 : connection->time)", "time_ + connection->time", [LIGHT]),
     ("src/path/light/LightWalk.cpp", "interactions_ + connection->crossings", "interactions_", [LIGHT]),
-    ("src/path/light/LightWalk.cpp", "time_ = emitter.emissionTime;", "time_ = 0.0;", [LIGHT, NASTY]),
+    ("src/path/light/LightWalk.cpp", "time_ = emitter.emissionTime +", "time_ = 0.0 +", [LIGHT, NASTY]),
     ("src/path/techniques/ControlVertices.cpp", "phase / sqr(vertex.toTarget)", "phase / vertex.toTarget", [GUIDED]),
     ("src/path/techniques/ControlVertices.cpp", "vertex.inversePdf * share / chance", "vertex.inversePdf * share", [GUIDED]),
     ("src/path/techniques/EmitterConnections.cpp", "? 1.0f - controlShare : 1.0f", "? 1.0f : 1.0f", [GUIDED]),
-    ("src/path/techniques/LightVertexConnections.cpp", "transmittance = beyond->transmittance(light.distance);", "transmittance = Rgb(1.0f);",
+    ("src/path/techniques/LightVertexConnections.cpp", "transmittance = beyond->transmittance(light.distance);", "transmittance = beyond->transmittance(0.0f);",
      [GUIDED]),
-    ("src/photon/light/LightPath.cpp", "power * (shading / geometric)", "power", [MAPS]),
+    ("src/photon/light/LightPath.cpp", "power * (shading / geometric)", "power * (geometric / shading)", [MAPS]),
     ("src/photon/light/LightPath.cpp", "time += length / double(region.speed);", "time += length;", [MAPS]),
-    ("src/photon/light/LightPath.cpp", "time = emitter.emissionTime;", "time = 0.0;", [MAPS]),
+    ("src/photon/light/LightPath.cpp", "time = emitter.emissionTime +", "time = 0.0 +", [MAPS]),
     ("src/photon/SensorPass.cpp", "surface.wi, wo) / std::abs(wo.z)", "surface.wi, wo)", [MAPS]),
-    ("src/photon/SensorPass.cpp", "state.time + own)", "state.time)", [MAPS]),
+    ("src/photon/SensorPass.cpp", "state.time + own)", "state.time - own)", [MAPS]),
     ("src/photon/SensorPass.cpp", "state.interactions + photon.bounce", "state.interactions + photon.bounce + 1", [MAPS]),
-    ("src/photon/surface/SharedLight.cpp", "scale_ / double(among)", "scale_", [SHARED]),
+    ("src/photon/surface/SharedLight.cpp", "scale_ / double(among)", "scale_ * double(among)", [SHARED]),
     ("src/photon/primitives/beams/BeamGather.cpp", "(2.0f * query.radius * approach->sine)", "(2.0f * query.radius)", [MAPS]),
     ("src/photon/primitives/beams/BeamGather.cpp", "medium.transmittance(s + t)", "medium.transmittance(s)", [MAPS]),
     ("src/photon/primitives/points/PointGather.cpp", "double(offset.length()) * segment.inverseSpeed", "double(along) * segment.inverseSpeed", [MAPS]),

@@ -12,17 +12,21 @@
 namespace tungsten::test {
 namespace {
 
+/// A floor whose shading normals lean towards the camera; lies beside every scene.
+constexpr const char* LeaningFloor = "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nvn 0 0.8 0.6\n"
+                                     "f 1//1 2//1 3//1\nf 1//1 3//1 4//1\n";
+
 /// Means over independent renders, and their standard errors: by frame and pixel (channel means), and of whole frames,
 /// whose pixels may share light paths.
 struct Estimate {
     std::vector<double> mean, error, frameMean, frameError;
 };
-using RenderScene = std::unique_ptr<Rendered>(const std::string&, const RenderOptions&);
-Estimate estimate(RenderScene& render, const std::string& json, RenderOptions options, uint64_t renders) {
+using RenderFile = std::unique_ptr<Rendered>(const std::filesystem::path&, const RenderOptions&);
+Estimate estimate(RenderFile& render, const std::filesystem::path& scene, RenderOptions options, uint64_t renders) {
     Estimate e;
     for (uint64_t i = 0; i < renders; ++i) {
         options.seed += 1;
-        const auto rendered = render(json, options);
+        const auto rendered = render(scene, options);
         EXPECT_EQ(rendered->statistics.counter("non-finite samples"), 0u);
         const Film& film = rendered->film;
         const size_t pixels = size_t(film.width()) * size_t(film.height());
@@ -59,16 +63,19 @@ struct Samples {
 };
 
 void expectAgreement(const std::string& json, const std::vector<std::string>& overrides, const Samples& effort) {
+    const FileFolder folder;
+    folder.write("leaning.obj", LeaningFloor);
+    const std::filesystem::path scene = folder.write("scene.json", json);
     RenderOptions options;
     options.overrides = overrides;
     options.overrides.insert(options.overrides.end(), {"camera.resolution=[6,6]"});
     options.passes = 1;
     options.samplesPerPass = effort.pathSamples;
     options.seed = 1000;
-    const Estimate path = estimate(renderPaths, json, options, effort.renders);
+    const Estimate path = estimate(renderPathFile, scene, options, effort.renders);
     options.samplesPerPass = effort.lightSamples;
     options.seed = 2000;
-    const Estimate light = estimate(renderLight, json, options, effort.renders);
+    const Estimate light = estimate(renderLightFile, scene, options, effort.renders);
     constexpr double Sigmas = 5.0;
     for (size_t frame = 0; frame < path.frameMean.size(); ++frame) {
         const double error = std::hypot(path.frameError[frame], light.frameError[frame]);
@@ -130,6 +137,44 @@ TEST(LightTracer, ShowsSurfacesThroughALens) {
 
 TEST(LightTracer, ShowsSurfacesAlongParallelRays) {
     expectAgreement(room("", R"("type": "orthographic", "orthographic_size": 1.4)"), {}, {128, 256});
+}
+
+/// A wall that a floor with leaning shading normals alone lights: the walk over the floor goes on with their factor.
+TEST(LightTracer, KeepsTheFactorOfShadingNormals) {
+    const std::string scene = R"({"bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.8}],
+        "primitives": [
+          {"type": "mesh", "file": "leaning.obj", "smooth": true, "bsdf": "grey"},
+          {"type": "quad", "bsdf": "grey", "transform": {"position": [0, 3, -2], "rotation": [90, 0, 0], "scale": 4}},
+          {"type": "disk", "bsdf": {"type": "null"}, "emission": 12, "cone_angle": 30,
+           "transform": {"position": [0, 1.5, -0.5], "rotation": [180, 0, 0], "scale": 0.5}}],
+        "camera": {"type": "pinhole", "fov": 30, "reconstruction_filter": "tent",
+                   "transform": {"position": [0, 3.5, 4], "look_at": [0, 3.5, -2], "up": [0, 1, 0]}},
+        "integrator": {"max_bounces": 3}})";
+    expectAgreement(scene, {}, {128, 256});
+}
+
+/// A laser through slow, dark glass onto a coat of varnish on the left, out of sight, and from there onto the right
+/// wall, out of sight too: what is seen is lit by what the laser scatters there.
+TEST(LightTracer, ShowsALaserThroughSlowGlassAndOffVarnish) {
+    const std::string scene = R"({
+        "media": [{"name": "dark", "type": "homogeneous", "sigma_a": 0.3, "sigma_s": 0, "speed_of_light": 0.5}],
+        "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.7},
+                  {"name": "varnish", "type": "plastic", "albedo": 0.05, "ior": 3}],
+        "primitives": [
+          {"type": "quad", "bsdf": "grey", "transform": {"position": [0, 0, -1.5], "rotation": [90, 0, 0], "scale": 6}},
+          {"type": "quad", "bsdf": "varnish",
+           "transform": {"position": [-2.9, 0.3, 0.5], "rotation": [0, 0, -90], "scale": 0.5}},
+          {"type": "quad", "bsdf": "grey", "transform": {"position": [3, 0, 0.5], "rotation": [0, 0, 90], "scale": 4}},
+          {"type": "cube", "bsdf": {"type": "forward"}, "int_medium": "dark",
+           "transform": {"position": [0.2, 0.75, 1], "scale": 0.8}},
+          {"type": "collimated", "power": 100,
+           "transform": {"position": [2.8, 1.2, 1.5], "look_at": [-2.9, 0.3, 0.5], "up": [0, 1, 0]}}],
+        "camera": {"type": "pinhole", "fov": 40, "reconstruction_filter": "tent",
+                   "transform": {"position": [0, 0, 4], "look_at": [0, 0, -1.5], "up": [0, 1, 0]}},
+        "integrator": {"max_bounces": 10)";
+    expectAgreement(scene + "}}", {}, {128, 256});
+    const std::string frames = R"(, "start_time": 20.5, "transient_time_width": 1, "frame_num": 3}})";
+    expectAgreement(scene + frames, {}, {256, 512});
 }
 
 TEST(LightTracer, WeighsTimeByTheSensorsResponse) {

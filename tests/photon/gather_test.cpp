@@ -78,6 +78,17 @@ TEST(PointGather, LosesNoPhotonNotEvenAtTheOrigin) {
     EXPECT_GT(total, 10000u);
 }
 
+/// Beside the ray, time counts the way to the photon itself, 3.0265, not that along the ray.
+TEST(PointGather, CountsTheWayToThePhotonItself) {
+    Scene scene = test::fogScene();
+    scene.transport.gate = {false, false, 3.995, 0.01, 5};
+    const std::vector<Photon> photons{{1.0, {3.0f, 0.4f, 0.0f}, {0.0f, 1.0f, 0.0f}, Rgb(1.0f), 1, 0}};
+    const PointGather gather(scene, scene.transport.gate, photons, 0.5f);
+    FrameSums sums(5, Vec3d(0.0));
+    EXPECT_EQ(gather.gather({{0.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, Infinity, 0.0, 1.0, 0, 0}, sums), 1u);
+    for (size_t frame = 0; frame < sums.size(); ++frame) EXPECT_EQ(sums[frame].x > 0.0, frame == 3) << frame;
+}
+
 TEST(NearestPhotons, MatchBruteForce) {
     const Store<Photon> store = randomStore(5000);
     const NearestPhotons nearest(store.records);

@@ -64,6 +64,36 @@ TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
     for (int frame = 0; frame < 20; ++frame) EXPECT_EQ(rendered->mean(frame) > 0.0, frame == 15) << frame;
 }
 
+TEST(PhotonMap, DirectLightingIsOneBounce) {
+    const auto mean = [](const std::string& most, const std::string& least) {
+        return renderPhotons(test::litFloor(20), {{"integrator.photon_count=4000", "integrator.max_bounces=" + most,
+                                                   "integrator.min_bounces=" + least},
+                                                  1,
+                                                  1})
+            ->mean(15);
+    };
+    EXPECT_GT(mean("2", "1"), 0.0);
+    EXPECT_EQ(mean("3", "2"), 0.0);
+}
+
+/// Under a lamp, a floor whose shading normals lean by 37 degrees is as bright as their cosine says.
+TEST(PhotonMap, ShadingNormalsWeighWhatArrives) {
+    const test::FileFolder folder;
+    folder.write("leaning.obj",
+                 "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nvn 0 0.8 0.6\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n");
+    const auto scene = folder.write("scene.json", R"({"primitives": [
+        {"type": "mesh", "file": "leaning.obj", "smooth": true, "bsdf": {"type": "lambert", "albedo": 0.5}},
+        {"type": "point", "emission": 3, "transform": {"position": [0, 1, 0]}}],
+        "camera": {"type": "orthographic", "orthographic_size": 0.001, "resolution": [1, 1],
+                   "transform": {"position": [0, 2, 0], "look_at": [0, 0, 0], "up": [1, 0, 0]}},
+        "integrator": {"type": "progressive_photon_map", "photon_count": 20000, "gather_radius": 0.05,
+                       "gather_photon_count": 1000000, "alpha": 1, "max_bounces": 2}})");
+    const auto rendered = test::renderPhotonFile(scene, {{}, 100, 1});
+    const double expected = 0.5 / 3.14159265358979 * 3.0 * 0.8;
+    EXPECT_NEAR(rendered->mean(), expected, 4.0 * rendered->pixelError() + 0.01 * expected);
+    EXPECT_LT(rendered->pixelError(), 0.05 * expected);
+}
+
 TEST(PhotonMap, AgreesWithPathsInEveryFrame) {
     const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
     const auto points = renderPhotons(json, {{}, 80, 1});

@@ -174,6 +174,77 @@ class LeftOut(unittest.TestCase):
         self.assertEqual(statistics["counters"].get("rays", 0), 0)
         self.assertLess(statistics["render wall seconds"], 1)
 
+    def counters(self, scene, *options):
+        statistics = self.file.with_name("stats.json")
+        self.command(scene, "-d", self.folder.name, "--stats", str(statistics), *options)
+        return json.loads(statistics.read_text())["counters"]
+
+    def clouds(self, generator, **integrator):
+        """Boxes of two kinds of fog at random places, seen from empty space."""
+        scene = self.scene(**integrator)
+        scene["camera"].pop("medium")
+        scene["media"] = [{"name": "near", "type": "homogeneous", "sigma_s": 0.5, "sigma_a": 0.1},
+                          {"name": "far", "type": "homogeneous", "sigma_s": 0.8, "speed_of_light": generator.choice([0.5, 1, 2])}]
+        scene["primitives"].pop(1)
+        scene["primitives"][0].pop("ext_medium")
+        for name in ("near", "far"):
+            scene["primitives"].append({"type": "cube", "bsdf": {"type": "forward"}, "int_medium": name, "transform": {
+                "position": [3 * x for x in vector(generator)], "scale": 0.8, "rotation": [90 * x for x in vector(generator)]}})
+        scene["integrator"] |= {"transient_time_center": generator.uniform(2, 7), "transient_time_width": 1}
+        return scene
+
+    def test_media_out_of_time_show_nothing(self):
+        """What a medium does that is left out changes no bit, in time."""
+        generator, left = random.Random(SEED), 0
+        for number in range(24):
+            scene = self.clouds(generator, camera_unwarped=number % 4 == 0)
+            reason = self.effects(scene)["media in time"]["reason"]
+            for i, name in enumerate(("near", "far")):
+                if f"'{name}' not before" not in reason:
+                    continue
+                left += 1
+                other = copy.deepcopy(scene)
+                other["media"][i] |= {"sigma_s": 3, "sigma_a": 1}
+                np.testing.assert_array_equal(*(self.image(one, "--effects", "all") for one in (scene, other)), str(number))
+                np.testing.assert_array_equal(self.image(scene), self.image(scene, "--effects", "all"), str(number))
+        self.assertGreater(left, 4)
+
+    def test_media_out_of_time_take_no_tables_and_no_photons(self):
+        for darts in ({"preset": "best", "direction": "eda"}, "off"):
+            for kind in ({"darts": darts}, {"type": "transient_photon_map", "darts": darts, **COUNTS}):
+                scene = self.scene(transient_time_center=1.8, transient_time_width=0.4, **kind)
+                scene["media"].append({"name": "far", "type": "homogeneous", "sigma_s": 2})
+                scene["primitives"].append({"type": "cube", "bsdf": {"type": "forward"}, "int_medium": "far", "ext_medium": "fog",
+                                            "transform": {"position": [0, 0, -4], "scale": 2}})
+                some, every = (self.counters(scene, *options) for options in ([], ["--effects", "all"]))
+                self.assertEqual(some.get("direction tables"), None if darts == "off" else 1)
+                self.assertEqual(every.get("direction tables"), None if darts == "off" else 2)
+                few, all_ = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
+                             for options in ([], ["--effects", "all"]))
+                np.testing.assert_allclose(few, all_, rtol=0.06)
+                # Now that is the only fog.
+                scene["media"] = scene["media"][2:]
+                scene["camera"].pop("medium")
+                for primitive in scene["primitives"]:
+                    primitive.pop("ext_medium", None)
+                some = self.counters(scene)
+                self.assertEqual([some.get(name, 0) for name in ("direction tables", "control vertices", "stored volume photons")], [0] * 3)
+
+    def test_light_paths_aim_at_no_dark_frame(self):
+        frames = {"start_time": 0, "transient_time_width": 0.5, "frame_num": 12}
+        scene = self.scene(type="transient_photon_map", darts={"preset": "best", "single_frames": True}, **frames, **COUNTS)
+        for name in ("transient_time_center", "delta_time_gate"):
+            scene["integrator"].pop(name, None)
+        scene["primitives"].pop(1)
+        self.assertIn("the first 2 frames", self.effects(scene)["frames before all light"]["reason"])
+        self.assertEqual(self.counters(scene)["frames aimed at"], 10)
+        self.assertEqual(self.counters(scene, "--effects", "all")["frames aimed at"], 12)
+        few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(1, 2, 3))
+                      for options in ([], ["--effects", "all"]))
+        self.assertEqual(float(few[:2].max()), 0)
+        np.testing.assert_allclose(few[:7], every[:7], rtol=0.08)  # later ones are noisier
+        np.testing.assert_allclose(few.sum(), every.sum(), rtol=0.04)
+
     def test_surfaces_out_of_time_store_nothing(self):
         scene = self.scene(type="transient_photon_map", transient_time_center=1.6, transient_time_width=0.2, darts="best", **COUNTS)
         scene["primitives"][2]["transform"]["position"] = [0, -3, 0]

@@ -58,6 +58,8 @@ GLOSSY = {"bsdf": {"type": "rough_conductor", "roughness": 0.2}}
 STEADY = {"transient_time_width": 0, "transient_time_center": 0}
 CHECKER = {"type": "checker", "on_color": 0.8, "off_color": 0.2}
 OTHER_PULSE = {"name": "late", "type": "point", "emission": 8, "emission_time": 9, "transform": {"position": [0, 1, 0]}}
+FAR_FOG = {"bsdf": {"type": "forward"}, "int_medium": "fog", "transform": {"position": [0, 0.5, -9]}}
+FRAMED = {**{name: PHOTONS[name] for name in PHOTONS if "center" not in name}, "start_time": 2, "transient_time_width": 1, "frame_num": 4}
 
 # effect, a scene that has it, an element behind it, a scene that lacks it
 EFFECTS = [
@@ -96,6 +98,10 @@ EFFECTS = [
      room({**PATHS, "start_time": 2, "transient_time_width": 1, "frame_num": 4})),
     ("surfaces in time", room(), "primitives", foggy({**PATHS, "transient_time_width": 0.2, "transient_time_center": 2.5},
                                                      primitives__0__transform={"position": [0, -9, 0]})),
+    ("media in time", foggy(), "media[0]", room(surface=FAR_FOG)),
+    ("guided paths", foggy(best(PATHS)), "integrator.darts", room(best(PATHS), surface=FAR_FOG)),
+    ("volume photon points", foggy(PHOTONS), "integrator.volume_photon_type", room(PHOTONS, surface=FAR_FOG)),
+    ("frames one by one", foggy(best(FRAMED, single_frames=True)), "integrator.darts", foggy(best(FRAMED))),
     ("Russian roulette", room({**PATHS, "enable_rr": True}), "integrator.enable_rr", room()),
     ("guided paths", foggy(best(PATHS)), "integrator.darts", foggy()),
     ("EDA table", foggy(best(PATHS, direction="eda")), "integrator.darts", foggy(best(PATHS, direction="connection"))),

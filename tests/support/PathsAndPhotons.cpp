@@ -15,15 +15,19 @@ std::unique_ptr<Rendered> renderBy(const std::filesystem::path& file, const Rend
 }
 } // namespace
 
-std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, RenderOptions options) {
-    options.overrides.emplace_back("integrator.type=path_tracer");
-    return renderBy<path::PathTracer>(file, options);
+std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, const RenderOptions& options) {
+    RenderOptions paths = options;
+    paths.overrides.emplace_back("integrator.type=path_tracer");
+    return renderBy<path::PathTracer>(file, paths);
 }
 std::unique_ptr<Rendered> renderPaths(const std::string& json, const RenderOptions& options) {
     return renderPathFile(SceneFile(json).path(), options);
 }
+std::unique_ptr<Rendered> renderLightFile(const std::filesystem::path& file, const RenderOptions& options) {
+    return renderBy<path::LightTracer>(file, options);
+}
 std::unique_ptr<Rendered> renderLight(const std::string& json, const RenderOptions& options) {
-    return renderBy<path::LightTracer>(SceneFile(json).path(), options);
+    return renderLightFile(SceneFile(json).path(), options);
 }
 
 std::unique_ptr<Rendered> renderPhotonFile(const std::filesystem::path& file, const RenderOptions& options,

@@ -5,9 +5,11 @@
 
 namespace tungsten::test {
 
-std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, RenderOptions options);
+std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, const RenderOptions& options);
 std::unique_ptr<Rendered> renderPaths(const std::string& json, const RenderOptions& options);
-std::unique_ptr<Rendered> renderLight(const std::string& json, const RenderOptions& options); ///< the light tracer
+/// The light tracer.
+std::unique_ptr<Rendered> renderLightFile(const std::filesystem::path& file, const RenderOptions& options);
+std::unique_ptr<Rendered> renderLight(const std::string& json, const RenderOptions& options);
 std::unique_ptr<Rendered> renderPhotonFile(const std::filesystem::path& file, const RenderOptions& options,
                                            bool progressive = true);
 std::unique_ptr<Rendered> renderPhotons(const std::string& json, const RenderOptions& options);

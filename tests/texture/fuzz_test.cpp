@@ -106,5 +106,23 @@ TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
 #endif
 }
 
+/// OpenEXR sizes its buffers by the sampling of channels: a bit too many was 2 GB.
+TEST(ImageFuzz, AbsurdSamplingOfAChannelIsRefused) {
+    const FileFolder folder;
+    writeExr(folder.path("a.exr"), {{"", Image(4, 3), {}, false, 0, 0}});
+    std::ifstream in(folder.path("a.exr"), std::ios::binary);
+    std::string exr((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const std::string name("\0G\0", 3); // after the channel before it
+    exr[exr.find(name) + name.size() + 8 + 3] = '\xf6';
+    test::largestAllocation = 0;
+    try {
+        loadBitmap(folder.write("b.exr", exr));
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("'G' has a sample every"), std::string::npos) << error.what();
+    }
+    EXPECT_LT(test::largestAllocation, size_t(1) << 22);
+}
+
 } // namespace
 } // namespace tungsten

@@ -6,6 +6,7 @@
 #include "tungsten/app/Options.h"
 #include "tungsten/app/PlanCost.h"
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/SystemError.h"
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Job.h"
 #include "tungsten/render/Memory.h"
@@ -275,7 +276,7 @@ int withWholeOutput(int code) {
     std::cout.flush();
     const bool lost = std::fflush(stdout) != 0 || !std::cout || std::ferror(stdout);
     if (!lost || errno == EPIPE) return code;
-    std::cerr << "error: standard output: cannot be written: " << std::strerror(errno) << '\n';
+    std::cerr << "error: standard output: cannot be written: " << systemError(errno) << '\n';
     return std::max(code, ExitBadInput);
 }
 

@@ -1,9 +1,9 @@
 #include "tungsten/core/FileBytes.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/SystemError.h"
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 
 #include <fcntl.h>
@@ -16,7 +16,7 @@ uint64_t requireRegularFile(const std::filesystem::path& file) {
     // A pipe without a writer would keep a blocking open waiting.
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0 && errno == ENOENT) throw InputError(file.string(), "no such file");
-    if (descriptor < 0) throw InputError(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+    if (descriptor < 0) throw InputError(file.string(), "cannot be read: " + systemError(errno));
     struct stat status {};
     const bool known = ::fstat(descriptor, &status) == 0;
     ::close(descriptor);

@@ -48,8 +48,9 @@ InfiniteSphereEmitter makeInfiniteSphere(const Texture& radiance, const Frame& f
         for (int column = 0; column < Columns; ++column) {
             float sum = 0.0f;
             for (int i = 0; i < Strata * Strata; ++i) {
-                const Vec2f uv((float(column) + (float(i % Strata) + 0.5f) / Strata) / Columns,
-                               (float(row) + (float(i / Strata) + 0.5f) / Strata) / Rows);
+                const int across = i % Strata, down = i / Strata;
+                const Vec2f uv((float(column) + (float(across) + 0.5f) / Strata) / Columns,
+                               (float(row) + (float(down) + 0.5f) / Strata) / Rows);
                 sum += meanComponent(radiance.rgb(uv)) * std::sin(uv.y * Pi);
             }
             weights.push_back(sum);

@@ -1,9 +1,9 @@
 #include "tungsten/film/AtomicFile.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/SystemError.h"
 
 #include <cerrno>
-#include <cstring>
 #include <ctime>
 #include <ext/stdio_filebuf.h>
 #include <random>
@@ -46,7 +46,7 @@ class TemporaryFile {
             path_ = folderOf(destination) / randomName();
             descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         } while (descriptor_ < 0 && errno == EEXIST);
-        if (descriptor_ < 0) throw cannotWrite(destination, std::strerror(errno));
+        if (descriptor_ < 0) throw cannotWrite(destination, systemError(errno));
         ::flock(descriptor_, LOCK_EX | LOCK_NB);
     }
     ~TemporaryFile() {
@@ -58,7 +58,7 @@ class TemporaryFile {
 
     void fill(const std::function<void(std::ostream&)>& write) const {
         const int copy = ::dup(descriptor_); // the buffer closes its own
-        if (copy < 0) throw cannotWrite(destination_, std::strerror(errno));
+        if (copy < 0) throw cannotWrite(destination_, systemError(errno));
         __gnu_cxx::stdio_filebuf<char> buffer(copy, std::ios::in | std::ios::out | std::ios::binary);
         std::ostream out(&buffer);
         errno = 0;
@@ -66,12 +66,12 @@ class TemporaryFile {
         out.flush();
         const int reason = errno;
         if (!out || !buffer.close())
-            throw cannotWrite(destination_, reason ? std::strerror(reason) : "the disk is full, or there is a quota");
+            throw cannotWrite(destination_, reason ? systemError(reason) : "the disk is full, or there is a quota");
     }
     void rename() {
         // A full disk may be noticed no sooner than here.
-        if (::fsync(descriptor_) != 0 && errno != EINVAL) throw cannotWrite(destination_, std::strerror(errno));
-        if (::rename(path_.c_str(), destination_.c_str()) != 0) throw cannotWrite(destination_, std::strerror(errno));
+        if (::fsync(descriptor_) != 0 && errno != EINVAL) throw cannotWrite(destination_, systemError(errno));
+        if (::rename(path_.c_str(), destination_.c_str()) != 0) throw cannotWrite(destination_, systemError(errno));
         renamed_ = true;
         const int folder = ::open(folderOf(destination_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (folder < 0) return;

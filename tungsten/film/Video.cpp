@@ -1,6 +1,7 @@
 #include "tungsten/film/Video.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/SystemError.h"
 #include "tungsten/film/AtomicFile.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <sstream>
 
@@ -45,7 +45,7 @@ InputError failure(const fs::path& file, const std::string& why) {
 class Scratch {
   public:
     explicit Scratch(const fs::path& wantedFor) : file_(std::tmpfile(), &std::fclose) {
-        if (!file_) throw failure(wantedFor, std::string("no temporary file: ") + std::strerror(errno));
+        if (!file_) throw failure(wantedFor, "no temporary file: " + systemError(errno));
     }
     [[nodiscard]] int descriptor() const { return ::fileno(file_.get()); }
     void copyTo(std::ostream& out) const {
@@ -114,7 +114,7 @@ class Encoder {
     Encoder(const fs::path& file, std::vector<std::string> words, const Scratch& video, const Scratch& messages)
         : file_(file) {
         int ends[2];
-        if (::pipe2(ends, O_CLOEXEC) != 0) throw failure(file, std::strerror(errno));
+        if (::pipe2(ends, O_CLOEXEC) != 0) throw failure(file, systemError(errno));
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
@@ -129,7 +129,7 @@ class Encoder {
         input_ = ends[1];
         if (error == 0) return;
         ::close(input_);
-        throw failure(file, "ffmpeg cannot be started: " + std::string(std::strerror(error)));
+        throw failure(file, "ffmpeg cannot be started: " + systemError(error));
     }
     ~Encoder() { (void)finish(); }
     Encoder(const Encoder&) = delete;

@@ -138,7 +138,8 @@ class BodyReader {
     /// The length of a list, checked against the bytes that are left.
     size_t nextCount(const Property& list) {
         const double count = next(list.countType);
-        if (!(count >= 0.0) || count > double(remaining() / smallestSize(list.type)) || count != std::floor(count))
+        const auto most = remaining() / smallestSize(list.type);
+        if (!(count >= 0.0) || count > double(most) || count != std::floor(count))
             fail(file_, "a list '" + list.name + "' claims more values than the file holds");
         return size_t(count);
     }

@@ -3,7 +3,7 @@
 #include "tungsten/core/Overloaded.h"
 #include "tungsten/geometry/AnalyticShape.h"
 
-#include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -30,7 +30,7 @@ void setPositions(RTCGeometry geometry, const TriangleMesh& mesh) {
     }
     void* copy = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
                                          positions.size());
-    if (copy) std::memcpy(copy, positions.data(), positions.size() * sizeof(Vec3f));
+    if (copy) std::uninitialized_copy(positions.begin(), positions.end(), static_cast<Vec3f*>(copy));
 }
 
 RTCGeometry makeTriangles(RTCDevice device, const TriangleMesh& mesh) {

@@ -33,13 +33,26 @@ double gapToSensor(const Scene& scene, const Vec3f& centre, float radius) {
     return std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
 }
 
+Vec3f nearestIn(const Imath::Box3f& box, const Vec3f& from) {
+    return {std::clamp(from.x, box.min.x, box.max.x), std::clamp(from.y, box.min.y, box.max.y),
+            std::clamp(from.z, box.min.z, box.max.z)};
+}
+
 /// How far the box is from the sensor at least.
 double gapToSensor(const Scene& scene, const Imath::Box3f& box) {
     if (box.isEmpty()) return Never;
-    const Vec3f from = scene.camera.position();
-    const Vec3f nearest(std::clamp(from.x, box.min.x, box.max.x), std::clamp(from.y, box.min.y, box.max.y),
-                        std::clamp(from.z, box.min.z, box.max.z));
-    return gapToSensor(scene, nearest, 0.0f);
+    return gapToSensor(scene, nearestIn(box, scene.camera.position()), 0.0f);
+}
+
+/// How far the box is from the emitter at least; 0 where the camera's segments, of which it may be one, do not count.
+double gapToEmitter(const Scene& scene, const Emitter& emitter, const Imath::Box3f& box) {
+    if (scene.transport.cameraUnwarped || emitter.isInfinite()) return 0.0;
+    const BoundingSphere sphere = boundingSphere(emitter);
+    const Vec3f nearest = nearestIn(box, sphere.centre);
+    const double way = double((nearest - sphere.centre).length()), radius = double(sphere.radius);
+    const double gap =
+        way - radius - Slack * (way + double(sphere.centre.length()) + double(nearest.length()) + radius);
+    return std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
 }
 
 /// When it starts to shine.
@@ -87,6 +100,7 @@ void planFrames(const Scene& scene, double first, EffectPlan& plan) {
     int dark = 0;
     while (dark < gate.frames && gate.frameStart(dark + 1) < first) ++dark;
     const bool some = gate.frames > 1 && dark > 0;
+    plan.darkFrames = some && !plan.everything ? std::min(dark, gate.frames - 1) : 0;
     plan.describe("frames before all light", some,
                   some ? "the first " + std::to_string(dark) + " frames end before " + formatted(first) +
                              ", when light can arrive at the soonest"
@@ -95,7 +109,55 @@ void planFrames(const Scene& scene, double first, EffectPlan& plan) {
                   {"integrator.start_time"});
 }
 
+void planMediaInTime(const Scene& scene, double end, EffectPlan& plan) {
+    const std::vector<double> earliest = earliestThroughMedia(scene, plan);
+    const std::string until = "the sensor closes at " + formatted(end);
+    Uses scattering, late;
+    for (const int index : reachableMedia(scene)) {
+        const auto i = size_t(index);
+        const Medium& medium = scene.media[i];
+        const std::string name = nameOf(medium.name, i);
+        if (!medium.scatters()) continue;
+        scattering.add(name, medium.path);
+        if (earliest[i] > end) late.add(name + " not before " + formatted(earliest[i]), medium.path);
+    }
+    const bool leaves = late.any() && !plan.everything;
+    if (leaves)
+        for (const double time : earliest) plan.mediaOutOfTime.push_back(time > end);
+    const bool some = scattering.any() && (!leaves || late.count() < scattering.count());
+    plan.mediumScattering = some;
+    plan.describe("media in time", some,
+                  !scattering.any() ? "no reachable medium scatters"
+                  : !late.any()     ? "light may get into every scattering medium and arrive: " + until
+                  : !leaves         ? "nothing shall be left out"
+                                    : until + ", light by way of " + late.names(),
+                  scattering.causes());
+}
+
 } // namespace
+
+std::vector<double> earliestThroughMedia(const Scene& scene, const EffectPlan& plan) {
+    const double first = firstPulse(scene);
+    std::vector<double> earliest(scene.media.size(), Never);
+    const auto lower = [&](int medium, double time) {
+        if (medium >= 0) earliest[size_t(medium)] = std::min(earliest[size_t(medium)], time);
+    };
+    lower(scene.cameraRegion.medium, first);
+    for (const Emitter& emitter : scene.emitters) lower(emitter.medium, first);
+    for (const Primitive& primitive : scene.primitives) {
+        if (!primitive.boundsMedium) continue;
+        const Imath::Box3f box = boundsOf(primitive.shape);
+        if (box.isEmpty()) continue;
+        const double onward = gapToSensor(scene, box);
+        for (const Emitter& emitter : scene.emitters) {
+            const double start = startOf(emitter), gap = gapToEmitter(scene, emitter, box) + onward;
+            const double time = start + gap / double(plan.highestSpeed) - Slack * std::abs(start);
+            lower(primitive.inside.medium, time);
+            lower(primitive.outside.medium, time);
+        }
+    }
+    return earliest;
+}
 
 std::vector<double> earliestArrivals(const Scene& scene, const EffectPlan& plan) {
     std::vector<double> earliest;
@@ -131,6 +193,8 @@ void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
             plan.describe(name, false, "steady state");
         plan.describe("surfaces in time", !scene.primitives.empty(),
                       scene.primitives.empty() ? "there is no surface" : "steady state: all count", {"primitives"});
+        plan.describe("media in time", plan.mediumScattering,
+                      plan.mediumScattering ? "steady state: all count" : "no reachable medium scatters", {"media"});
         return;
     }
     const std::vector<double> earliest = earliestArrivals(scene, plan);
@@ -146,6 +210,7 @@ void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
                          : "what surfaces show does not arrive before " + formatted(surfaces) +
                                ", the sensor closes at " + formatted(end),
                   {"primitives"});
+    planMediaInTime(scene, end, plan);
 }
 
 } // namespace tungsten

@@ -20,7 +20,7 @@ struct Effect {
 struct EffectPlan {
     bool timeResolved = false; ///< gated or frames
     bool multipleFrames = false;
-    bool mediumScattering = false;    ///< some medium a path can reach scatters
+    bool mediumScattering = false;    ///< some medium a path can reach, in time, scatters
     bool surfaceScattering = false;   ///< some surface has a smooth lobe
     bool specularSensorPaths = false; ///< mirrors or refraction exist: sensor paths can fold
     bool speedsDiffer = false;        ///< light travels at different speeds in different regions
@@ -34,14 +34,24 @@ struct EffectPlan {
 
     /// `--effects all`: stages run that the scene does not call for, and nothing is left out. The image is the same.
     bool everything = false;
-    std::vector<bool> late;         ///< by emitter: its light arrives after the gate; empty: none is known to
-    bool nothingArrives = false;    ///< all emitters are late: the image is black, and not rendered
-    bool surfacesOutOfTime = false; ///< whatever surfaces show arrives after the gate
+    std::vector<bool> late;           ///< by emitter: its light arrives after the gate; empty: none is known to
+    bool nothingArrives = false;      ///< all emitters are late: the image is black, and not rendered
+    bool surfacesOutOfTime = false;   ///< whatever surfaces show arrives after the gate
+    std::vector<bool> mediaOutOfTime; ///< by medium: what it scatters arrives after the gate; empty: none is known to
+    int darkFrames = 0;               ///< so many frames end before any light can arrive
 
     /// Why nothing may take a medium's coefficients for constant; empty where it may.
     [[nodiscard]] std::string heterogeneity() const {
         return heterogeneousMedia.empty() ? "" : "coefficients vary from place to place in " + heterogeneousMedia;
     }
+
+    /// Why nothing is done for scattering in media; empty where something is.
+    [[nodiscard]] std::string noScattering() const {
+        if (mediumScattering) return "";
+        return mediaOutOfTime.empty() ? "no medium scatters"
+                                      : "what scattering media show arrives after the sensor has closed";
+    }
+    [[nodiscard]] bool isOutOfTime(size_t medium) const { return !mediaOutOfTime.empty() && mediaOutOfTime[medium]; }
 
     /// Every effect with its reason, integrators' own included, in order of description.
     std::vector<Effect> effects;

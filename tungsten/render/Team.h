@@ -36,6 +36,7 @@ class Team {
 /// A failure that all ranks know of.
 class TeamFailure : public std::exception {
   public:
+    // NOLINTNEXTLINE(bugprone-throw-keyword-missing): a member is set, nothing is to be thrown
     explicit TeamFailure(std::exception_ptr toTell) : toTell_(std::move(toTell)) {}
     /// What this rank is to report; none where another one reports.
     [[nodiscard]] const std::exception_ptr& toTell() const { return toTell_; }

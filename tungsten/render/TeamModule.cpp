@@ -2,6 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 
@@ -13,12 +14,19 @@ namespace {
 
 constexpr const char* ModuleFile = "tungsten-mpi.so";
 
+/// 0 where it is no number.
+int numberIn(std::string_view text) {
+    int number = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    return read.ec == std::errc() ? number : 0;
+}
+
 /// As launchers tell the processes that they start: Open MPI's mpirun, PMI (MPICH, Slurm), and Slurm with PMIx.
 int processesStarted() {
     for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
-        if (const char* size = std::getenv(variable)) return std::atoi(size);
+        if (const char* size = std::getenv(variable)) return numberIn(size);
     const char* size = std::getenv("PMIX_RANK") ? std::getenv("SLURM_STEP_NUM_TASKS") : nullptr;
-    return size ? std::atoi(size) : 1;
+    return size ? numberIn(size) : 1;
 }
 
 std::filesystem::path moduleFile(int processes) {

@@ -168,7 +168,8 @@ const Primitive* wallAbout(const Scene& scene, const Detector& detector) {
     const bool dark = isDark(scene, detector.position);
     const Primitive* wall = nullptr;
     for (int k = 0; k < Side * Side; ++k) {
-        const Vec2f u((float(k % Side) + 0.5f) / Side, (float(k / Side) + 0.5f) / Side);
+        const int column = k % Side, row = k / Side;
+        const Vec2f u((float(column) + 0.5f) / Side, (float(row) + 0.5f) / Side);
         const Ray ray = detector.sampleRay({u.y, u.x}, u);
         const auto hit = scene.geometry->intersect(ray);
         if (!hit || !isWall(scene, *hit)) return nullptr;

@@ -56,7 +56,8 @@ Rgb texelRgb(const Bitmap& bitmap, size_t i) {
 float texelScalar(const Bitmap& bitmap, size_t i) {
     if (!bitmap.hdr.empty()) return meanComponent(texelRgb(bitmap, i));
     const uint8_t* texel = &bitmap.ldr[4 * i];
-    return float((texel[0] + texel[1] + texel[2]) / 3) / 255.0f;
+    const int mean = (texel[0] + texel[1] + texel[2]) / 3;
+    return float(mean) / 255.0f;
 }
 
 } // namespace

@@ -28,6 +28,30 @@ void requireSaneTables(std::string_view content, const std::filesystem::path& fi
     if (!content.empty()) throw InputError(file.string(), "not a readable image: a truncated Huffman table");
 }
 
+uint32_t wordAt(std::string_view bytes, size_t position) {
+    uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + position, sizeof word);
+    return word;
+}
+
+/// Throws if a channel of an EXR image (of the content of an attribute of type chlist) has one sample for an absurd
+/// number of pixels: OpenEXR sizes its line buffers by that.
+void requireSaneSampling(std::string_view channels, const std::filesystem::path& file) {
+    constexpr size_t SamplingAt = 8, Size = 16; // after the name: type, linearity, and the sampling in x and y
+    constexpr uint32_t Coarsest = 16;
+    for (size_t end = channels.find('\0'); end != std::string_view::npos && end > 0; end = channels.find('\0')) {
+        const std::string name(channels.substr(0, end));
+        channels.remove_prefix(end + 1);
+        if (channels.size() < Size) throw InputError(file.string(), "not a readable EXR image: truncated channels");
+        for (const size_t at : {SamplingAt, SamplingAt + sizeof(uint32_t)})
+            if (const uint32_t step = wordAt(channels, at); step == 0 || step > Coarsest)
+                throw InputError(file.string(), "not a readable EXR image: channel '" + name + "' has a sample every " +
+                                                    std::to_string(step) + " pixels; accepted: 1 to " +
+                                                    std::to_string(Coarsest));
+        channels.remove_prefix(Size);
+    }
+}
+
 } // namespace
 
 void requirePlausibleSize(int64_t width, int64_t height, size_t fileBytes, const std::filesystem::path& file,
@@ -108,12 +132,12 @@ void requireSaneExrAttributes(std::string_view bytes, const std::filesystem::pat
     for (bool inHeaders = true; inHeaders;) {
         size_t attributes = 0;
         for (; skipName() > 0; ++attributes) {
-            skipName(); // the type
-            uint32_t size = 0;
-            if (bytes.size() - position < sizeof(size)) throw fail();
-            std::memcpy(&size, bytes.data() + position, sizeof(size));
+            const size_t typeAt = position, typeLength = skipName();
+            if (bytes.size() - position < sizeof(uint32_t)) throw fail();
+            const uint32_t size = wordAt(bytes, position);
             position += sizeof(size);
             if (size > bytes.size() - position) throw fail();
+            if (bytes.substr(typeAt, typeLength) == "chlist") requireSaneSampling(bytes.substr(position, size), file);
             position += size;
         }
         inHeaders = multiPart && attributes > 0; // an empty header ends the list of parts

@@ -16,8 +16,8 @@ Rgb CheckerTexture::maximum() const {
 
 Rgb CheckerTexture::average() const {
     // Cells are on where column + row is odd: half of them, rounded down.
-    const int64_t cells = int64_t(resU) * resV;
-    const float on = cells > 0 ? float(double(cells / 2) / double(cells)) : 0.0f;
+    const int64_t cells = int64_t(resU) * resV, lit = cells / 2;
+    const float on = cells > 0 ? float(double(lit) / double(cells)) : 0.0f;
     return onColor * on + offColor * (1.0f - on);
 }
 

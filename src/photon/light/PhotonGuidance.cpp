@@ -10,19 +10,21 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
       unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), storesPhotons_(plan.ordinaryPhotons.on),
       choosesFrames_(plan.framesOneByOne.on), drawsByResponse_(plan.drawsByResponse),
-      meetsDeltaGate_(plan.meetsDeltaGate), sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
+      meetsDeltaGate_(plan.meetsDeltaGate), darkFrames_(plan.framesOneByOne.on ? plan.darkFrames : 0),
+      sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
     if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
     if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);
-    for (const Medium& medium : scene.media) {
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        const Medium& medium = scene.media[i];
         guides_.emplace_back();
         if (!medium.scatters()) continue;
         darts::Settings settings =
             policy.sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
         const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
         if (width > tuning::WideGate && !choosesFrames_ && !policy.sampling.lengthFirst) settings.lengthFirst = false;
-        if (unwarped_) {
-            // Any place seen will do: nothing to aim at, only the bound in time.
+        if (unwarped_ || (!plan.mediaOutOfTime.empty() && plan.mediaOutOfTime[i])) {
+            // Any place seen will do, or none: nothing to aim at, only the bound in time.
             settings.direction = darts::Direction::Phase;
             settings.greens = darts::Greens::None;
         }
@@ -38,7 +40,7 @@ uint64_t PhotonGuidance::tables() const {
 }
 
 void PhotonGuidance::setGate(const TimeGate& gate) {
-    frames_ = {gate.start, gate.frameWidth, gate.frames};
+    frames_ = {gate.frameStart(darkFrames_), gate.frameWidth, gate.frames - darkFrames_};
     gate_ = {frames_.all().begin - slack_, frames_.all().end + slack_};
 }
 

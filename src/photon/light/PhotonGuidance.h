@@ -42,6 +42,8 @@ class PhotonGuidance {
     [[nodiscard]] bool storesPhotons() const { return storesPhotons_; }
     /// Each light path aims at one frame; otherwise at all of them as one gate.
     [[nodiscard]] bool choosesFrames() const { return choosesFrames_; }
+    /// Where light paths choose frames: without the first ones, which no light reaches.
+    [[nodiscard]] int darkFrames() const { return darkFrames_; }
     [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
     /// The gate of paths that aim at all frames, with the aperture's slack.
     [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
@@ -82,6 +84,7 @@ class PhotonGuidance {
     double speed_;
     double slack_; ///< of arrival times, from the aperture
     bool unwarped_, directView_, storesPhotons_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
+    int darkFrames_;
     transport::Sensor sensor_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;

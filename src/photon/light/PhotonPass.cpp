@@ -106,7 +106,8 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       storeSurface_(plan.surfacePhotons.on), glossySensorPaths_(plan.glossyPaths.on),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
-    for (int frame = 0; frame < scene.transport.gate.frames; ++frame) frameCullings_.push_back(culling_.ofFrame(frame));
+    for (int frame = guidance_->darkFrames(); frame < scene.transport.gate.frames; ++frame)
+        frameCullings_.push_back(culling_.ofFrame(frame));
 }
 
 void PhotonPass::setGate(const TimeGate& gate) {

@@ -8,8 +8,10 @@ namespace tungsten::photon {
 
 /// gamma_i = prod_{k=1..i} (k + alpha) / (k + 1), pass i from 0: = Gamma(i+1+alpha) / (Gamma(1+alpha) Gamma(i+2)).
 inline double radiusScale(uint32_t pass, double alpha) {
+    // std::lgamma leaves the sign in a variable that all threads share.
+    int sign = 0;
     const double i = double(pass);
-    return std::exp(std::lgamma(i + 1.0 + alpha) - std::lgamma(1.0 + alpha) - std::lgamma(i + 2.0));
+    return std::exp(::lgamma_r(i + 1.0 + alpha, &sign) - ::lgamma_r(1.0 + alpha, &sign) - ::lgamma_r(i + 2.0, &sign));
 }
 
 /// Surface radii shrink with the square root of gamma(alpha).

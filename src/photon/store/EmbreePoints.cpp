@@ -1,6 +1,6 @@
 #include "photon/store/EmbreePoints.h"
 
-#include <cstring>
+#include <memory>
 #include <new>
 
 namespace tungsten::photon {
@@ -25,7 +25,7 @@ EmbreePoints::EmbreePoints(const std::vector<PointWithRadius>& discs)
     void* buffer = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                            sizeof(PointWithRadius), discs.size());
     if (!buffer) throw std::bad_alloc();
-    std::memcpy(buffer, discs.data(), discs.size() * sizeof(PointWithRadius));
+    std::uninitialized_copy(discs.begin(), discs.end(), static_cast<PointWithRadius*>(buffer));
     rtcSetSceneFlags(scene_, embree::QueryFilterFlag);
     commit(geometry);
 }
