@@ -28,7 +28,7 @@ def directions(axes):
         axes.plot(1 - h, 4 * np.pi * table.pdf(C, excess, 1.0, h), f"C{colour}", label=f"{C + excess:g}")
         axes.plot(1 - h, 4 * np.pi * sampling.path_lobe_pdf(h, C, excess), f"C{colour}--")
     axes.set(xlabel="cosine to the target", ylabel="density, isotropic = 1", yscale="log", title="table; dashed: lobe")
-    axes.legend(title="path length", fontsize=7)
+    axes.legend(title="path length", fontsize=7, loc="upper left")
 
 
 def vertices(axes):
@@ -54,7 +54,7 @@ def drawn(axes):
                        * step["vertex_inverse_pdf"] / step["to_target"] ** 2)[good]
         print(f"{preset}: light scattered once {light.mean():.6f} +- {light.std() / COUNT ** 0.5:.6f}")
     axes.set(xlabel="cosine to the target", ylabel="drawn directions", yscale="log", title="drawn")
-    axes.legend(fontsize=7)
+    axes.legend(fontsize=7, loc="upper left")
 
 
 left, middle, right = plt.subplots(1, 3, figsize=(11, 3.2))[1]

@@ -1,11 +1,11 @@
 #include "fuzz/Targets.h"
 
 #include "support/SceneFile.h"
+#include "support/UseMesh.h"
 
 #include "darts/EdaTableFile.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Hash.h"
-#include "tungsten/geometry/SceneGeometry.h"
 #include "tungsten/render/Checkpoint.h"
 #include "tungsten/render/PartialState.h"
 #include "tungsten/scene/Duration.h"
@@ -55,22 +55,12 @@ std::string summed(const std::string& bytes) {
     return bytes + std::string(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/// What rendering would do with a mesh, whatever is in it.
-void useMesh(TriangleMesh mesh) {
-    mesh.smooth = true;
-    TriangleMesh recomputed = mesh;
-    recomputeNormals(recomputed);
-    const std::vector<Shape> shapes{std::move(mesh), std::move(recomputed)};
-    const SceneGeometry geometry({&shapes[0], &shapes[1]});
-    const auto hit = geometry.intersect({{0.25f, 0.25f, -10}, Vec3f(0, 0, 1)});
-    require(!hit || std::abs(hit->ng.length() - 1.0f) < 1e-3f, "normals have a length of 1");
-    const SurfaceSample sample = AreaSampler(shapes[0]).sample(shapes[0], {0.3f, 0.7f});
-    require(!std::isnan(sample.normal.length()), "sampled normals are numbers");
-}
-
 template <const char* Name>
 void mesh(const std::string& bytes) {
-    orInputError([&] { useMesh(loadMesh(fileOf(Name, bytes))); });
+    orInputError([&] {
+        const std::string fault = test::useMesh(loadMesh(fileOf(Name, bytes)));
+        require(fault.empty(), fault.c_str());
+    });
 }
 constexpr char Wo3[] = "a.wo3", Obj[] = "a.obj", Ply[] = "a.ply", Gltf[] = "a.gltf", Glb[] = "a.glb";
 

@@ -14,6 +14,9 @@ import time
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scenes import lamp_over_floor  # noqa: E402
+
 TUNGSTEN = os.environ.get("TUNGSTEN", str(Path(__file__).resolve().parents[2] / "build/bin/tungsten"))
 MPIRUN = os.environ.get("MPIRUN") or shutil.which("mpirun")
 if not MPIRUN or not Path(TUNGSTEN).with_name("tungsten-mpi.so").exists():
@@ -24,15 +27,7 @@ FRAMES = {"type": "path_tracer", "max_bounces": 6, "start_time": 3, "transient_t
 PHOTONS = {"type": "progressive_transient_photon_map", "max_bounces": 6, "photon_count": 4000, "volume_photon_count": 4000,
            "volume_gather_radius": 0.1, "fixed_volume_radius": True, "gather_radius": 0.1,
            "transient_time_center": 4.5, "transient_time_width": 2}
-SCENE = {
-    "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.8, "sigma_a": 0.05}],
-    "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.6}],
-    "primitives": [
-        {"name": "floor", "type": "quad", "bsdf": "grey", "transform": {"scale": [4, 1, 4]}},
-        {"name": "lamp", "type": "point", "ext_medium": "fog", "emission": 8, "transform": {"position": [0.5, 1.8, 1]}}],
-    "camera": {"type": "pinhole", "resolution": [24, 17], "fov": 45, "medium": "fog",
-               "transform": {"position": [0, 1.2, 3.5], "look_at": [0, 0.5, 0], "up": [0, 1, 0]}},
-    "integrator": FRAMES, "renderer": {"spp": 15, "spp_step": 2, "output_file": "box.png"}}
+SCENE = lamp_over_floor((24, 17), FRAMES, {"spp": 15, "spp_step": 2, "output_file": "box.png"})
 
 
 def launcher(ranks):

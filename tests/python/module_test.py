@@ -20,18 +20,13 @@ import numpy as np
 import darts_tungsten
 from darts_tungsten import sampling
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scenes import lamp_over_floor  # noqa: E402
+
 PROJECT = Path(__file__).resolve().parents[2]
 TUNGSTEN = os.environ["TUNGSTEN"]
-SCENE = {
-    "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.8, "sigma_a": 0.05}],
-    "bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.6}],
-    "primitives": [
-        {"name": "floor", "type": "quad", "bsdf": "grey", "transform": {"scale": [4, 1, 4]}},
-        {"name": "lamp", "type": "point", "ext_medium": "fog", "emission": 8, "transform": {"position": [0.5, 1.8, 1]}}],
-    "camera": {"type": "pinhole", "resolution": [12, 8], "fov": 45, "medium": "fog",
-               "transform": {"position": [0, 1.2, 3.5], "look_at": [0, 0.5, 0], "up": [0, 1, 0]}},
-    "integrator": {"type": "path_tracer", "max_bounces": 8, "start_time": 3, "transient_time_width": 0.5, "frame_num": 4},
-    "renderer": {"spp": 8, "spp_step": 2}}
+SCENE = lamp_over_floor((12, 8), {"type": "path_tracer", "max_bounces": 8, "start_time": 3, "transient_time_width": 0.5,
+                                 "frame_num": 4}, {"spp": 8, "spp_step": 2})
 
 
 class Render(unittest.TestCase):
