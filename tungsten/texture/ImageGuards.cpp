@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 namespace tungsten {
 
@@ -39,7 +41,13 @@ uint32_t wordAt(std::string_view bytes, size_t position) {
 void requireSaneSampling(std::string_view channels, const std::filesystem::path& file) {
     constexpr size_t SamplingAt = 8, Size = 16; // after the name: type, linearity, and the sampling in x and y
     constexpr uint32_t Coarsest = 16;
-    for (size_t end = channels.find('\0'); end != std::string_view::npos && end > 0; end = channels.find('\0')) {
+    const auto nameLength = [&] {
+        const size_t end = channels.find('\0');
+        if (end == std::string_view::npos)
+            throw InputError(file.string(), "not a readable EXR image: corrupt channels");
+        return end;
+    };
+    for (size_t end = nameLength(); end > 0; end = nameLength()) {
         const std::string name(channels.substr(0, end));
         channels.remove_prefix(end + 1);
         if (channels.size() < Size) throw InputError(file.string(), "not a readable EXR image: truncated channels");
@@ -50,6 +58,19 @@ void requireSaneSampling(std::string_view channels, const std::filesystem::path&
                                                     std::to_string(Coarsest));
         channels.remove_prefix(Size);
     }
+    if (channels.size() != 1) throw InputError(file.string(), "not a readable EXR image: corrupt channels");
+}
+
+/// Of attributes whose content has one size; OpenEXR reads that much, whatever size the file tells.
+std::optional<uint32_t> sizeOfType(std::string_view type) {
+    constexpr std::pair<std::string_view, uint32_t> Sizes[] = {
+        {"box2f", 16}, {"box2i", 16}, {"chromaticities", 32}, {"compression", 1}, {"double", 8},   {"envmap", 1},
+        {"float", 4},  {"int", 4},    {"keycode", 28},        {"lineOrder", 1},   {"m33d", 72},    {"m33f", 36},
+        {"m44d", 128}, {"m44f", 64},  {"rational", 8},        {"tiledesc", 9},    {"timecode", 8}, {"v2d", 16},
+        {"v2f", 8},    {"v2i", 8},    {"deepImageState", 1},  {"v3d", 24},        {"v3f", 12},     {"v3i", 12}};
+    for (const auto& [name, size] : Sizes)
+        if (name == type) return size;
+    return std::nullopt;
 }
 
 } // namespace
@@ -137,7 +158,9 @@ void requireSaneExrAttributes(std::string_view bytes, const std::filesystem::pat
             const uint32_t size = wordAt(bytes, position);
             position += sizeof(size);
             if (size > bytes.size() - position) throw fail();
-            if (bytes.substr(typeAt, typeLength) == "chlist") requireSaneSampling(bytes.substr(position, size), file);
+            const std::string_view type = bytes.substr(typeAt, typeLength);
+            if (sizeOfType(type).value_or(size) != size) throw fail();
+            if (type == "chlist") requireSaneSampling(bytes.substr(position, size), file);
             position += size;
         }
         inHeaders = multiPart && attributes > 0; // an empty header ends the list of parts
