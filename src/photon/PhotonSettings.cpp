@@ -77,8 +77,8 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
     settings.volumeRadius = float(block.number(
         "volume_gather_radius", settings.gatherRadius,
         {"length",
-         "radius in media: of beams, and of points with fixed_volume_radius; by default gather_radius, else of the "
-         "scene's making (--explain)",
+         "radius in media: of beams, and of points with fixed_volume_radius, made for the scene (--explain) where "
+         "gather_radius is left out too; other points: without effect, their radii follow the density",
          "gather_radius"},
         Range::positive()));
     if (primitive) {
@@ -119,8 +119,9 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
                       {"none", "light paths in each pass, and the most photons kept on surfaces"}, {1, MostPhotons}));
     settings.volumePhotonCount = uint64_t(block.integer(
         "volume_photon_count", 1000000, {"none", "the most photons or beams kept in media"}, {1, MostPhotons}));
-    settings.gatherCount = uint32_t(block.integer(
-        "gather_photon_count", 20, {"none", "nearest photons that a point on a surface gathers"}, {1, 1e9}));
+    settings.gatherCount = uint32_t(
+        block.integer("gather_photon_count", 20,
+                      {"none", "nearest photons that a point on a surface gathers, within gather_radius"}, {1, 1e9}));
     settings.gatherRadius = float(
         block.number("gather_radius", Unbounded,
                      {"length", "largest distance of photons gathered on a surface", "unbounded"}, Range::positive()));

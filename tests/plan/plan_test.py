@@ -5,6 +5,7 @@ a render its counters have counted, and are zero where it is off. The renderer i
 import copy
 import json
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -184,12 +185,43 @@ class Plan(unittest.TestCase):
     def test_text_and_json_say_the_same(self):
         scene = foggy(best())
         text = self.run_on(scene, "--explain").stdout.splitlines()[1:]
-        effects = self.plan(scene)["effects"]
+        text, left_open = text[:text.index("what the scene leaves open")], text[text.index("what the scene leaves open") + 1:]
+        plan = self.plan(scene)
+        effects = plan["effects"]
         self.assertEqual(len(text), len(effects))
         for line, effect in zip(text, effects):
             self.assertTrue(line.startswith("  on  " if effect["on"] else "  off "), line)
             self.assertIn(effect["name"], line)
             self.assertTrue(line.endswith(effect["reason"]), line)
+        self.assertEqual([re.sub(" +", " ", line).strip() for line in left_open],
+                         [f"{taken['field']} {taken['value']} ({taken['meaning']})" for taken in plan["defaults"]])
+
+    def defaults(self, scene):
+        return {taken["field"]: taken["value"] for taken in self.plan(scene)["defaults"]}
+
+    def test_what_a_scene_leaves_open_is_said_with_its_value(self):
+        bare = {"type": "progressive_transient_photon_map", "transient_time_center": 4, "transient_time_width": 4}
+        found = self.defaults(foggy(bare))
+        for field, value in {"integrator.max_bounces": "64", "integrator.photon_count": "1000000",
+                             "integrator.volume_photon_count": "1000000", "integrator.gather_photon_count": "20",
+                             "integrator.gather_radius": "unbounded", "integrator.volume_gather_radius": "gather_radius"}.items():
+            self.assertEqual(found[field], value, field)
+        self.assertFalse([field for field in found if field.startswith("renderer.")], "spp and spp_step are given")
+        scene = foggy(bare)
+        scene["renderer"] = {}
+        self.assertEqual({field: value for field, value in self.defaults(scene).items() if field.startswith("renderer.")},
+                         {"renderer.spp": "32", "renderer.spp_step": "16"})
+        given = self.defaults(foggy({**bare, "max_bounces": 5, "photon_count": 7, "gather_radius": 0.1}))
+        for field in ("max_bounces", "photon_count", "gather_radius"):
+            self.assertNotIn(f"integrator.{field}", given)
+
+    def test_a_radius_made_for_the_scene_is_said_with_its_reason(self):
+        for kind in ({"volume_photon_type": "beams"}, {"fixed_volume_radius": True}):
+            beams = {**PHOTONS, **kind}
+            del beams["gather_radius"], beams["volume_gather_radius"]
+            value = self.defaults(foggy(beams))["integrator.volume_gather_radius"]
+            self.assertGreater(float(value.split(",")[0]), 0)
+            self.assertIn("a hundredth of what the image spans", value)
 
     def test_what_an_image_lacks_is_said(self):
         laser = {"type": "directional_point", "emission": 1}

@@ -185,6 +185,7 @@ class Render(unittest.TestCase):
         causes = {effect["name"]: effect["causes"] for effect in plan["effects"]}
         self.assertEqual(causes["medium scattering"], ["media[0]"])
         self.assertEqual(plan["lacks"], [])
+        self.assertTrue(all(taken["field"] and taken["value"] and taken["meaning"] for taken in plan["defaults"]))
         fields = {field["name"]: field for field in darts_tungsten.describe("homogeneous")[0]["fields"]}
         self.assertEqual(fields["sigma_s"]["unit"], "1/length")
         with self.assertRaisesRegex(darts_tungsten.UsageError, "homogeneous"):

@@ -124,12 +124,13 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
     const LoadedScene& loaded = job.loaded;
     loading.reset();
     if (options.explainAsJson) {
-        std::cout << planJson(*loaded.scene, loaded.integratorType, job.plan) << '\n';
+        std::cout << planJson(job, defaultsTaken(job, plugins.registry)) << '\n';
         return 0;
     }
     if (options.explain) {
         std::cout << file.string() << " (" << loaded.integratorType << ")\n";
         printPlan(job.plan, std::cout);
+        printDefaults(defaultsTaken(job, plugins.registry), std::cout);
         return 0;
     }
     OutputFiles outputs;

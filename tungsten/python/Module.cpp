@@ -2,6 +2,7 @@
 
 #include "tungsten/python/Result.h"
 
+#include "tungsten/render/DefaultsTaken.h"
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Progress.h"
 
@@ -141,6 +142,15 @@ py::dict planOf(const py::object& scene, const py::dict& set, const std::filesys
     plan["integrator"] = job.loaded.integratorType;
     plan["effects"] = effects;
     plan["lacks"] = job.plan.lacks;
+    py::list defaults;
+    for (const DefaultTaken& taken : defaultsTaken(job, plugins().registry)) {
+        py::dict entry;
+        entry["field"] = taken.field;
+        entry["value"] = taken.value;
+        entry["meaning"] = taken.meaning;
+        defaults.append(entry);
+    }
+    plan["defaults"] = defaults;
     return plan;
 }
 

@@ -36,12 +36,30 @@ void writeEffects(const std::vector<Effect>& effects, const Statistics& statisti
     json.endArray();
 }
 
-std::string planJson(const Scene& scene, const std::string& integrator, const EffectPlan& plan) {
+void printDefaults(const std::vector<DefaultTaken>& defaults, std::ostream& out) {
+    size_t width = 0;
+    for (const DefaultTaken& taken : defaults) width = std::max(width, taken.field.size());
+    if (!defaults.empty()) out << "what the scene leaves open\n";
+    for (const DefaultTaken& taken : defaults)
+        out << "  " << std::left << std::setw(int(width)) << taken.field << "  " << taken.value << " (" << taken.meaning
+            << ")\n";
+}
+
+std::string planJson(const Job& job, const std::vector<DefaultTaken>& defaults) {
     JsonWriter json;
-    json.field("scene", scene.file.string());
-    json.field("integrator", integrator);
-    writeEffects(plan.effects, {}, json);
-    json.field("lacks", plan.lacks);
+    json.field("scene", job.loaded.scene->file.string());
+    json.field("integrator", job.loaded.integratorType);
+    writeEffects(job.plan.effects, {}, json);
+    json.field("lacks", job.plan.lacks);
+    json.beginArray("defaults");
+    for (const DefaultTaken& taken : defaults) {
+        json.beginObject();
+        json.field("field", taken.field);
+        json.field("value", taken.value);
+        json.field("meaning", taken.meaning);
+        json.endObject();
+    }
+    json.endArray();
     return json.finish();
 }
 

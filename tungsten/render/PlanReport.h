@@ -1,7 +1,7 @@
 #pragma once
 // The plan for readers: text for `--explain`, JSON for `--explain=json` and `--stats`.
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/DefaultsTaken.h"
 #include "tungsten/render/Statistics.h"
 #include "tungsten/scene/JsonWriter.h"
 
@@ -10,9 +10,11 @@
 namespace tungsten {
 
 void printPlan(const EffectPlan& plan, std::ostream& out);
+/// What the scene leaves open, below a heading; nothing where it leaves nothing.
+void printDefaults(const std::vector<DefaultTaken>& defaults, std::ostream& out);
 /// An array `effects`: name, on, reason, causes and counters with what they have reached.
 void writeEffects(const std::vector<Effect>& effects, const Statistics& statistics, JsonWriter& json);
-/// Scene, integrator, `effects` and `lacks`; nothing has been counted.
-std::string planJson(const Scene& scene, const std::string& integrator, const EffectPlan& plan);
+/// Scene, integrator, `effects`, `lacks` and `defaults`; nothing has been counted.
+std::string planJson(const Job& job, const std::vector<DefaultTaken>& defaults);
 
 } // namespace tungsten

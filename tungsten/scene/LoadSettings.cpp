@@ -156,10 +156,14 @@ std::string readIntegratorType(const ObjectReader& integrator) {
 
 TransportSettings readTransport(const ObjectReader& reader, const std::string& type) {
     TransportSettings transport;
-    transport.minBounces =
-        int(reader.integer("min_bounces", 0, {"none", "interactions that light must have had"}, {0, 2e9}));
+    transport.minBounces = int(reader.integer(
+        "min_bounces", 0, {"none", "interactions, as max_bounces counts them, that light must have had"}, {0, 2e9}));
     transport.maxBounces =
-        int(reader.integer("max_bounces", 64, {"none", "interactions that light must have had fewer of"}, {0, 2e9}));
+        int(reader.integer("max_bounces", 64,
+                           {"none", "interactions that light must have had fewer of: each scattering, reflection, "
+                                    "refraction and straight passage through a surface is one; 1: emitters "
+                                    "seen directly alone, 2: what was scattered or reflected once, too"},
+                           {0, 2e9}));
     transport.twoSidedShading =
         reader.flag("enable_two_sided_shading", true, {"none", "opaque surfaces scatter on both sides"});
     transport.consistencyChecks =
@@ -214,7 +218,9 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     renderer.enableResume =
         reader.flag("enable_resume_render", false, {"none", "the state is saved, and read when there is one"});
     renderer.spp = reader.integer("spp", renderer.spp, {"samples/pixel", "in total"}, {1, 1e12});
-    renderer.sppStep = reader.integer("spp_step", renderer.sppStep, {"samples/pixel", "in each pass"}, {1, 1e6});
+    renderer.sppStep =
+        reader.integer("spp_step", renderer.sppStep,
+                       {"samples/pixel", "in each pass; each pass of a photon map has photons of its own"}, {1, 1e6});
     renderer.checkpointSeconds = reader.durationSeconds(
         "checkpoint_interval", 0.0, {"duration", "how often images and state are saved; no unit: minutes"});
     renderer.timeoutSeconds =
