@@ -154,8 +154,24 @@ class Mpi(unittest.TestCase):
         self.assertIn("--passes", self.run_with(2, scene, "--passes", "0:2", code=2).stderr)
         self.assertEqual(self.run_with(2, scene, "--no-such-option", code=2).stderr.count("error: "), 1)
 
-    def test_explain_is_said_once(self):
+    def test_what_renders_nothing_is_said_once(self):
         self.assertEqual(self.run_with(2, self.scene(), "--explain").stdout.count("(path_tracer)"), 1)
+
+    def run_bare(self, ranks, *arguments):
+        """As if there was no scene; without what mpirun says of exit codes."""
+        result = subprocess.run((launcher(ranks) if ranks > 1 else []) + [TUNGSTEN, *arguments], capture_output=True, text=True,
+                                timeout=120, cwd=self.folder)
+        errors = [line for line in result.stderr.splitlines() if line.startswith(("error: ", "warning: "))]
+        return result.returncode, result.stdout, errors
+
+    def test_answers_and_bad_usage_are_those_of_one_process(self):
+        for arguments in (["--help"], ["--version"], ["--list"], ["--describe", "mirror"], ["--manual"], ["--completion"],
+                          ["merge", "--help"], [], ["--timeout", "soon", "none.json"], ["--describe", "mirrror"], ["merge"],
+                          ["merge", "none.state", "-e", "none.exr"]):
+            with self.subTest(arguments=arguments):
+                one = self.run_bare(1, *arguments)
+                self.assertTrue(one[1] or one[2])
+                self.assertEqual(self.run_bare(3, *arguments), one)
 
     def start(self, *more):
         process = subprocess.Popen(self.command(2, self.scene(spp=10_000_000), "-e", "film.npy", "--quiet", *more),

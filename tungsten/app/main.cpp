@@ -5,6 +5,7 @@
 #include "tungsten/app/Merge.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/app/PlanCost.h"
+#include "tungsten/app/Silence.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/SystemError.h"
 #include "tungsten/render/Describe.h"
@@ -289,8 +290,11 @@ int main(int argc, char** argv) {
     using namespace tungsten;
     std::unique_ptr<Team> team;
     try {
-        if (argc > 1 && std::strcmp(argv[1], "merge") == 0) return withWholeOutput(mergeCommand(argc - 1, argv + 1));
         team = joinTeam();
+        std::optional<Silence> silence;
+        if (!speaks(team.get())) silence.emplace(); // --help, --version and what else the parser prints
+        if (argc > 1 && std::strcmp(argv[1], "merge") == 0)
+            return withWholeOutput(speaks(team.get()) ? mergeCommand(argc - 1, argv + 1) : 0);
         const auto options = parseOptions(argc, argv);
         return withWholeOutput(options ? run(*options, team.get()) : 0);
     } catch (...) { // before any rank waits for another: all meet it
