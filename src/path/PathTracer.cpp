@@ -45,9 +45,11 @@ float radicalInverse(uint32_t index) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
-PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan) {
+PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan, const PassWatch& watch) {
     PathGuides guides;
+    watch.stage("guides of media", scene.media.size());
     for (size_t i = 0; i < scene.media.size(); ++i) {
+        watch.poll();
         const Medium& medium = scene.media[i];
         darts::Settings settings =
             scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
@@ -81,7 +83,7 @@ void PathTracer::plan(EffectPlan& plan) const {
     PathPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
 }
 
-void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
+void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) {
     plan_ = PathPlan::of(*scene_, settings_, plan);
     bound_.emplace(*scene_, plan);
     lights_.emplace(*scene_, plan.late);
@@ -89,10 +91,10 @@ void PathTracer::prepare(const EffectPlan& plan, Statistics& statistics) {
     targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late);
     if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
-    guides_ = makeGuides(*scene_, settings_.policy.sampling, plan);
+    guides_ = makeGuides(*scene_, settings_.policy.sampling, plan, watch);
     if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
-    if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, statistics);
+    if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, watch, statistics);
 }
 
 void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {

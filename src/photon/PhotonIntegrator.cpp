@@ -36,10 +36,10 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
     PhotonPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
 }
 
-void PhotonIntegrator::prepare(const EffectPlan& plan, Statistics& statistics) {
+void PhotonIntegrator::prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) {
     plan_ = PhotonPlan::of(*scene_, settings_, plan);
     forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
-    photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_);
+    photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_, watch);
     if (plan_.edaTable.on) statistics.add("direction tables", photonPass_->guidance()->tables());
     if (plan_.framesOneByOne.on) statistics.add("frames aimed at", uint64_t(photonPass_->guidance()->frames().frames));
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};

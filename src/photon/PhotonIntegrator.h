@@ -15,7 +15,7 @@ class PhotonIntegrator : public Integrator {
   public:
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
     void plan(EffectPlan& plan) const override;
-    void prepare(const EffectPlan& plan, Statistics& statistics) override;
+    void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) override;
     [[nodiscard]] double memoryBytes() const override;
     [[nodiscard]] bool leavesBias(const EffectPlan& plan) const override;
     /// Of the volume's kernels, where there are any, else of surfaces'.

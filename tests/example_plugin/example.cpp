@@ -21,7 +21,7 @@ class AmbientOcclusion : public Integrator {
     void plan(EffectPlan& plan) const override {
         plan.describe("ambient occlusion", true, "the hemisphere above the first surface is tested");
     }
-    void prepare(const EffectPlan&, Statistics&) override {}
+    void prepare(const EffectPlan&, const PassWatch&, Statistics&) override {}
 
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {
         const StageTimer timer(statistics, "occlusion");

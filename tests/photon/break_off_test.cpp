@@ -42,7 +42,7 @@ class Render {
         throwIfProblems(*loaded_.diagnostics);
         EffectPlan plan = analyseScene(*loaded_.scene);
         integrator_->plan(plan);
-        integrator_->prepare(plan, statistics_);
+        integrator_->prepare(plan, {}, statistics_);
     }
 
     /// Renders a pass that stops at the poll of this number; false: it did. Counts polls and notes stages.

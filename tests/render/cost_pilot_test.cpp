@@ -23,7 +23,7 @@ class KnownPasses : public Integrator {
     std::vector<uint32_t> indices;
 
     void plan(EffectPlan&) const override {}
-    void prepare(const EffectPlan&, Statistics&) override {}
+    void prepare(const EffectPlan&, const PassWatch&, Statistics&) override {}
     [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return kernels; }
     [[nodiscard]] double kernelWidth(uint32_t pass) const override {
         return std::pow(double(pass) + 1.0, 0.5 * bias.exponent);

@@ -16,13 +16,17 @@ class FakeIntegrator : public Integrator {
   public:
     std::vector<PassInfo> passes;
     std::function<void(const PassInfo&)> afterPass = [](const PassInfo&) {};
+    std::function<void(const PassWatch&)> preparing = [](const PassWatch&) {};
     float noise = 1.0f; ///< pixels are uniform in [1 - noise, 1]
     float bias = 0.0f;  ///< that it says it leaves, with a noise of its own; 0: it leaves none
     bool prepared = false;
     bool cutsPaths = false; ///< that it says it can
 
     void plan(EffectPlan& plan) const override { plan.describe("fake", true, "a test"); }
-    void prepare(const EffectPlan&, Statistics&) override { prepared = true; }
+    void prepare(const EffectPlan&, const PassWatch& watch, Statistics&) override {
+        preparing(watch);
+        prepared = true;
+    }
     [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return bias > 0.0f; }
     [[nodiscard]] bool cutsLightPaths() const override { return cutsPaths; }
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {

@@ -135,6 +135,56 @@ TEST(PassWatch, WhatIsThrownWithinAPassEndsTheRender) {
     EXPECT_FALSE(session.has("TungstenRender.png"));
 }
 
+/// Prepares without end.
+void hangInPreparing(SessionFixture& session) {
+    session.integrator.preparing = [](const PassWatch& watch) {
+        watch.stage("tables", 1000);
+        for (;; watch.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+}
+
+TEST(PassWatch, PreparingIsBrokenOffAsPassesAre) {
+    for (const bool partial : {false, true}) {
+        SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
+        if (partial) session.options.passes = PassRange{0, 2};
+        hangInPreparing(session);
+        session.options.timeoutSeconds = 0.2;
+        const auto start = std::chrono::steady_clock::now();
+        EXPECT_EQ(session.run().reason, StopReason::TimedOut);
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+        std::atomic<bool> interrupted{false};
+        session.options.timeoutSeconds = 0.0;
+        session.options.interrupted = &interrupted;
+        session.options.duringPass = [&] { interrupted = true; };
+        EXPECT_EQ(session.run().reason, StopReason::Interrupted);
+        session.options.duringPass = [] { throw UsageError("mine"); };
+        interrupted = false;
+        EXPECT_THROW(session.run(), UsageError);
+        EXPECT_TRUE(session.integrator.passes.empty());
+        EXPECT_FALSE(session.integrator.prepared);
+        EXPECT_FALSE(session.has("TungstenRender.png"));
+        EXPECT_FALSE(std::filesystem::exists(session.outputs.partialState(0, 2)));
+    }
+}
+
+TEST(PassWatch, ARenderThatIsResumedAndNotPreparedInTimeKeepsItsPasses) {
+    SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
+    session.options.resumeEnabled = true;
+    session.options.spp = 4;
+    session.run();
+    std::filesystem::remove(session.folder() / "TungstenRender.png");
+    hangInPreparing(session);
+    session.options.spp = 8;
+    session.options.timeoutSeconds = 0.1;
+    const SessionResult& result = session.run();
+    EXPECT_EQ(result.reason, StopReason::TimedOut);
+    EXPECT_EQ(result.film.passes(), 2u);
+    EXPECT_TRUE(session.has("TungstenRender.png"));
+    session.options.timeoutSeconds = 0.0;
+    session.integrator.preparing = [](const PassWatch&) {};
+    EXPECT_EQ(session.run().film.passes(), 4u);
+}
+
 TEST(PassWatch, PartialStatesHaveWholePassesOrNone) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
     session.options.timeoutSeconds = 0.2;

@@ -119,7 +119,7 @@ class PassRenderer {
         throwIfProblems(*loaded.diagnostics);
         EffectPlan plan = analyseScene(*scene_);
         integrator_->plan(plan);
-        integrator_->prepare(plan, statistics_);
+        integrator_->prepare(plan, {}, statistics_);
         film_ = filmOf(*scene_);
     }
     /// The film holds the pass until the next one.

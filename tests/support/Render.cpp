@@ -25,7 +25,7 @@ std::unique_ptr<Rendered> render(const std::filesystem::path& file, const Render
     throwIfProblems(*loaded.diagnostics);
     EffectPlan plan = analyseScene(*loaded.scene);
     integrator->plan(plan);
-    integrator->prepare(plan, rendered->statistics);
+    integrator->prepare(plan, {}, rendered->statistics);
     rendered->film = filmOf(*loaded.scene);
     rendered->bias = filmOf(*loaded.scene, PassWeight::Repeats);
     for (uint32_t pass = 0; pass < options.passes; ++pass) {

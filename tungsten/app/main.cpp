@@ -37,10 +37,13 @@ namespace {
 
 constexpr int ExitBadInput = 1, ExitBadUsage = 2, ExitInterrupted = 130;
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> interrupted{false}, atLoading{false};
 
-/// First signal: break the pass off and write what those before it gave. Second: leave at once.
+/// First signal: break the pass off and write what those before it gave. Second, or while a scene is loaded: leave at
+/// once.
 void onInterrupt(int) {
+    constexpr char Message[] = "interrupted while loading: nothing was written\n";
+    if (atLoading && write(STDERR_FILENO, Message, sizeof Message - 1) >= 0) _exit(ExitInterrupted);
     if (interrupted.exchange(true)) _exit(ExitInterrupted);
 }
 
@@ -107,10 +110,12 @@ void printSummary(const SessionResult& result) {
 /// Job and outputs of a scene that is rendered; only rank 0 warns.
 Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
     std::optional<Job> job;
+    atLoading = true;
     together(team, [&] {
         job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins,
                       options.everything);
     });
+    atLoading = false;
     const Diagnostics& diagnostics = *job->loaded.diagnostics;
     if (speaks(team)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
     return std::move(*job);

@@ -186,7 +186,8 @@ std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrato
     const bool measuresBias = integrator.leavesBias(plan);
     const double wall = wallNow(), cpu = processCpuSeconds();
     Statistics preparing;
-    integrator.prepare(plan, preparing);
+    PassMonitor monitor([&] { return options.interrupted && options.interrupted->load(); });
+    integrator.prepare(plan, PassWatch(monitor), preparing);
     const double prepareWall = wallNow() - wall, prepareCpu = processCpuSeconds() - cpu;
     std::array<Sample, Indices.size()> samples;
     for (Sample& sample : samples) {

@@ -43,8 +43,9 @@ class Integrator {
     virtual ~Integrator() = default;
     /// Called once before the first pass, and for `--explain`: adds the effects the integrator decides on to the plan.
     virtual void plan(EffectPlan& plan) const = 0;
-    /// Called once after plan(): builds what the plan names (tables, distributions).
-    virtual void prepare(const EffectPlan& plan, Statistics& statistics) = 0;
+    /// Called once after plan(): builds what the plan names (tables, distributions). Where that may take a second,
+    /// `watch` is polled as in a pass; once it has thrown PassBrokenOff nothing is rendered.
+    virtual void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) = 0;
     /// Bytes that prepare() and a pass may take as settings and scene stand; asked after plan(), before prepare().
     [[nodiscard]] virtual double memoryBytes() const { return 0.0; }
     /// Whether kernels blur the image; `plan` is complete.

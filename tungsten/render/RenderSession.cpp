@@ -48,14 +48,10 @@ class Session {
         together(options_.team, [&] { begin(plan); });
         shared_.shareResumed();
         black_ = plan.nothingArrives;
-        if (!black_)
-            together(options_.team, [&] {
-                const StageTimer timer(result_.statistics, "prepare");
-                integrator_.prepare(plan, result_.statistics);
-            });
-        if (stopBeforeFirstPass()) return;
-        if (options_.passes) return renderPartially();
-        renderPasses();
+        const bool prepared = prepare(plan);
+        if (agreed_.interrupted) return; // while loading or preparing: there is nothing to write
+        if (options_.passes) return prepared ? renderPartially() : void();
+        if (prepared) renderPasses();
         shared_.gatherStatistics();
         if (result_.film.passes() > 0 && shared_.speaks()) files_.finish();
     }
@@ -99,11 +95,22 @@ class Session {
         }
     }
 
-    /// Interrupted while loading: there is nothing to write.
-    bool stopBeforeFirstPass() {
-        agree();
+    /// False: it was broken off, in some rank, and there are no passes.
+    bool prepare(const EffectPlan& plan) {
+        bool whole = true;
+        together(options_.team, [&] {
+            const StageTimer timer(result_.statistics, "prepare");
+            const auto build = [&](const PassInfo& pass, Statistics& statistics) {
+                if (!black_) integrator_.prepare(plan, pass.watch.part(0.0, 0.0), statistics);
+            };
+            whole = watched_.run({}, endOfTime(), build);
+        });
+        watched_.rethrow();
+        const auto ranks = size_t(result_.ranks);
+        const bool prepared = agree(whole, ranks) == ranks;
+        if (!prepared) result_.reason = StopReason::TimedOut;
         if (agreed_.interrupted) result_.reason = StopReason::Interrupted;
-        return agreed_.interrupted;
+        return prepared;
     }
 
     void renderPasses() {
@@ -183,16 +190,19 @@ class Session {
     /// Before a pass of this run has ended; a partial state has whole passes.
     [[nodiscard]] bool mayCut() const { return !endedAPass_ && !options_.passes && sizes_.canCut(); }
 
+    static Clock::time_point after(Clock::time_point start, double seconds) {
+        constexpr double Ever = 1e9; // the clock counts nanoseconds in 64 bits
+        return start +
+               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, Ever)));
+    }
+    [[nodiscard]] Clock::time_point endOfTime() const {
+        return options_.timeoutSeconds > 0.0 ? after(begin_, options_.timeoutSeconds) : Clock::time_point::max();
+    }
     /// When the pass that begins now is to end.
     [[nodiscard]] Clock::time_point deadline() const {
-        const auto after = [](Clock::time_point start, double seconds) {
-            constexpr double Ever = 1e9; // the clock counts nanoseconds in 64 bits
-            return start +
-                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, Ever)));
-        };
-        if (options_.timeoutSeconds <= 0.0) return Clock::time_point::max();
-        const auto end = after(begin_, options_.timeoutSeconds);
-        return mayCut() ? std::min(end, after(Clock::now(), FirstPassPart * options_.timeoutSeconds)) : end;
+        const auto end = endOfTime();
+        if (options_.timeoutSeconds <= 0.0 || !mayCut()) return end;
+        return std::min(end, after(Clock::now(), FirstPassPart * options_.timeoutSeconds));
     }
 
     /// Whether the render ends with the pass that was broken off; else passes are smaller from now on.
@@ -280,7 +290,7 @@ class Session {
     bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;
     ProgressReporter reporter_;
-    Clock::time_point start_;
+    Clock::time_point start_ = begin_; ///< of passes
 };
 
 } // namespace

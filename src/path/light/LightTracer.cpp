@@ -93,7 +93,7 @@ void LightTracer::plan(EffectPlan& plan) const {
                                    : "off by default in time-resolved renders");
 }
 
-void LightTracer::prepare(const EffectPlan& plan, Statistics&) {
+void LightTracer::prepare(const EffectPlan& plan, const PassWatch&, Statistics&) {
     forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
     emitters_ = emitterDistribution(
         *scene_, [](const Emitter&) { return true; }, plan.late);

@@ -12,7 +12,7 @@ class LightTracer : public Integrator {
   public:
     LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings);
     void plan(EffectPlan& plan) const override;
-    void prepare(const EffectPlan& plan, Statistics& statistics) override;
+    void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:

@@ -33,14 +33,15 @@ bool LightPaths::reflectedIn(const Scene& scene) {
     });
 }
 
-void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, Statistics& statistics) {
+void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, const PassWatch& watch,
+                         Statistics& statistics) {
     vertices_.resize(scene.emitters.size());
     reflected_.resize(scene.emitters.size());
     if (!reflectedIn(scene)) return;
     flights_ = flightsIn(scene);
     for (size_t i = 0; i < reflected_.size(); ++i) {
         if (!(targets.probability(i) > 0.0f) || scene.emitters[i].isDelta()) continue;
-        reflected_[i].prepare(scene, scene.emitters[i], flights_);
+        reflected_[i].prepare(scene, scene.emitters[i], flights_, watch);
         statistics.add("light paths", tuning::PilotPaths);
     }
 }

@@ -13,7 +13,7 @@ class LightPaths {
     /// Light is followed beyond the first surface.
     [[nodiscard]] static bool reflectedIn(const Scene& scene);
 
-    void prepare(const Scene& scene, const TargetChoice& targets, Statistics& statistics);
+    void prepare(const Scene& scene, const TargetChoice& targets, const PassWatch& watch, Statistics& statistics);
     void trace(const Scene& scene, const TargetChoice& targets, const PassInfo& pass, Statistics& statistics);
     /// None for emitters without light vertices.
     [[nodiscard]] const LightVertexCache* vertices(int emitter) const {

@@ -57,8 +57,9 @@ bool endsReflectedLight(LobeMask lobes) {
     return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
 }
 
-void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights) {
-    trace(scene, emitter, 1.0f, tuning::PilotPaths, PassInfo{.index = PilotPass}, flights);
+void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights,
+                                  const PassWatch& watch) {
+    trace(scene, emitter, 1.0f, tuning::PilotPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
     candidates_ =
         vertices_.empty() ? 0.0f : float(ArrivalWindow::Size) * float(tuning::PilotPaths) / float(vertices_.size());
 }

@@ -4,7 +4,8 @@
 
 namespace tungsten::photon {
 
-PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan)
+PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan,
+                               const PassWatch& watch)
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
       camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
@@ -15,7 +16,9 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
     if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
     if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);
+    watch.stage("guides of media", scene.media.size());
     for (size_t i = 0; i < scene.media.size(); ++i) {
+        watch.poll();
         const Medium& medium = scene.media[i];
         guides_.emplace_back();
         if (!medium.scatters()) continue;

@@ -9,6 +9,7 @@
 
 #include "transport/WaysOut.h"
 
+#include "tungsten/render/PassWatch.h"
 #include "tungsten/scene/Scene.h"
 
 #include <memory>
@@ -17,8 +18,8 @@ namespace tungsten::photon {
 
 class PhotonGuidance {
   public:
-    /// Where plan.guidance is on.
-    PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan);
+    /// Where plan.guidance is on. Polls `watch` before each medium, whose table may take a fraction of a second.
+    PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan, const PassWatch& watch);
 
     /// Null in regions where nothing scatters.
     [[nodiscard]] const darts::Guide* guide(const Region& region) const {

@@ -99,9 +99,10 @@ void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Stat
 
 } // namespace
 
-PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan)
+PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan,
+                       const PassWatch& watch)
     : scene_(scene), settings_(settings), culling_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
-      guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan) : nullptr),
+      guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan, watch) : nullptr),
       emitters_(powerDistribution(scene, plan.lateEmitters)), storeVolume_(plan.volume.on),
       storeSurface_(plan.surfacePhotons.on), glossySensorPaths_(plan.glossyPaths.on),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {

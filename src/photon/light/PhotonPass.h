@@ -23,7 +23,7 @@ struct PhotonMaps {
 
 class PhotonPass {
   public:
-    PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan);
+    PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan, const PassWatch& watch = {});
 
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
