@@ -197,6 +197,35 @@ TEST(ImageIo, ExrKeepsLayersAndParts) {
     EXPECT_THROW(readExr(folder.path() / "one.exr", 0, "nothing."), InputError);
 }
 
+TEST(ImageIo, PartsAreMadeOneByOneAndWrittenAsIfAllWereThere) {
+    const TemporaryFolder folder;
+    const auto named = [&](const char* name) { return folder.path() / name; };
+    const auto bytesOf = [](const std::filesystem::path& file) {
+        std::ifstream in(file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    std::vector<Image> images;
+    std::vector<ExrPart> parts;
+    for (int i = 0; i < 3; ++i) {
+        images.push_back(gradient(5, 3));
+        images.back().at(0, 0) = Rgb(float(40 + i));
+        parts.push_back({"frame." + std::to_string(i), images.back(), gradient(5, 3), true, 1.0 * i, 1.0 + i});
+    }
+    std::vector<int> asked;
+    const auto part = [&](int i) {
+        asked.push_back(i);
+        return parts[size_t(i)];
+    };
+    writeExr(named("all.exr"), parts, "what it is");
+    writeExr(named("each.exr"), 3, part, "what it is");
+    EXPECT_EQ(bytesOf(named("each.exr")), bytesOf(named("all.exr")));
+    EXPECT_EQ(asked, (std::vector<int>{0, 1, 2, 0, 1, 2}));
+    const std::vector<Image> frames(4, images[0]);
+    writeNpy(named("all.npy"), frames);
+    writeNpy(named("each.npy"), 4, [&](int i) { return frames[size_t(i)]; });
+    EXPECT_EQ(bytesOf(named("each.npy")), bytesOf(named("all.npy")));
+}
+
 TEST(ImageIo, NumpyReadsTheCube) {
     if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
         GTEST_SKIP() << "python3-numpy is not installed";

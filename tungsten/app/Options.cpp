@@ -183,7 +183,7 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("--target-error", options.targetError,
                    "stop when the relative error, noise and the bias of kernels, is at most this (0.01 is 1 %) with a "
                    "confidence of 95 %")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1e-6, 1e6));
     app.add_flag("--bias", options.bias,
                  "estimate what the kernels of photon maps leave, as a number and by pixel (layer bias of .exr); "
                  "--target-error does so, too");

@@ -70,21 +70,22 @@ class ExrStream : public Imf::OStream {
     std::ostream& out_;
 };
 
-void writeParts(std::ostream& stream, const std::filesystem::path& file, const std::vector<ExrPart>& parts,
-                const std::string& metadata) {
+void writeParts(std::ostream& stream, const std::filesystem::path& file, int parts,
+                const std::function<ExrPart(int)>& partOf, const std::string& metadata) {
     try {
         std::vector<Imf::Header> headers;
-        for (const ExrPart& part : parts) headers.push_back(headerOf(part, parts.size() > 1));
+        for (int i = 0; i < parts; ++i) headers.push_back(headerOf(partOf(i), parts > 1));
         if (!metadata.empty()) headers.at(0).insert(MetadataName, Imf::StringAttribute(metadata));
         ExrStream target(stream, file);
         Imf::MultiPartOutputFile out(target, headers.data(), int(headers.size()));
-        for (size_t i = 0; i < parts.size(); ++i) {
+        for (int i = 0; i < parts; ++i) {
+            const ExrPart images = partOf(i);
             Imf::FrameBuffer buffer;
-            insertLayer(buffer, "", parts[i].colour);
-            for (const auto& [layer, image] : layersOf(parts[i])) insertLayer(buffer, layer, *image);
-            Imf::OutputPart part(out, int(i));
+            insertLayer(buffer, "", images.colour);
+            for (const auto& [layer, image] : layersOf(images)) insertLayer(buffer, layer, *image);
+            Imf::OutputPart part(out, i);
             part.setFrameBuffer(buffer);
-            part.writePixels(parts[i].colour.height);
+            part.writePixels(images.colour.height);
         }
     } catch (const std::exception& error) {
         throw InputError(file.string(), std::string("cannot be written: ") + error.what());
@@ -94,7 +95,13 @@ void writeParts(std::ostream& stream, const std::filesystem::path& file, const s
 } // namespace
 
 void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts, const std::string& metadata) {
-    writeAtomically(file, [&](std::ostream& out) { writeParts(out, file, parts, metadata); });
+    writeExr(
+        file, int(parts.size()), [&](int i) { return parts[size_t(i)]; }, metadata);
+}
+
+void writeExr(const std::filesystem::path& file, int parts, const std::function<ExrPart(int)>& part,
+              const std::string& metadata) {
+    writeAtomically(file, [&](std::ostream& out) { writeParts(out, file, parts, part, metadata); });
 }
 
 std::string readExrMetadata(const std::filesystem::path& file) {

@@ -6,6 +6,7 @@
 #include "tungsten/film/ToneMap.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct ExrPart {
 /// Float channels, ZIP compression. One part: an ordinary file; several: a multi-part file. `metadata` becomes a string
 /// attribute of the first part, unless it is empty.
 void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts, const std::string& metadata = "");
+/// The same of parts that are made when they are written, so that few are in memory: `part` is asked twice for each.
+void writeExr(const std::filesystem::path& file, int parts, const std::function<ExrPart(int)>& part,
+              const std::string& metadata = "");
 /// That attribute; empty: there is none.
 std::string readExrMetadata(const std::filesystem::path& file);
 /// RGB of part `part`, layer `layer` (such as "" or "stderr."). Missing channels: InputError.
@@ -40,6 +44,8 @@ int exrPartCount(const std::filesystem::path& file);
 
 /// (frames, height, width, 3) float32 in C order, as numpy.load reads it.
 void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frames);
+/// The same of at least one frame of one size, each made when it is written.
+void writeNpy(const std::filesystem::path& file, int frames, const std::function<Image(int)>& frame);
 
 /// Writes text by way of a temporary file and rename.
 void writeTextFile(const std::filesystem::path& file, const std::string& text);

@@ -128,12 +128,17 @@ std::vector<float> valuesOf(const Image& image, int channels) {
 }
 
 void writeNpy(const std::filesystem::path& file, const std::vector<Image>& frames) {
-    const int width = frames.empty() ? 0 : frames[0].width, height = frames.empty() ? 0 : frames[0].height;
+    writeNpy(file, int(frames.size()), [&](int frame) { return frames[size_t(frame)]; });
+}
+
+void writeNpy(const std::filesystem::path& file, int frames, const std::function<Image(int)>& frame) {
     writeAtomically(file, [&](std::ostream& out) {
-        out << imagesHeader(frames.size(), height, width, 3);
-        for (const Image& frame : frames)
-            out.write(reinterpret_cast<const char*>(frame.pixels.data()),
-                      std::streamsize(frame.pixels.size() * sizeof(Rgb)));
+        for (int i = 0; i < frames; ++i) {
+            const Image image = frame(i);
+            if (i == 0) out << imagesHeader(size_t(frames), image.height, image.width, 3);
+            out.write(reinterpret_cast<const char*>(image.pixels.data()),
+                      std::streamsize(image.pixels.size() * sizeof(Rgb)));
+        }
     });
 }
 

@@ -50,7 +50,9 @@ class ImageWriter {
         else if (extension == ".h5")
             writeHdf5(image.file, resultContent(film_, bias_, scene_, metadata_));
         else if (extension == ".exr")
-            writeExr(image.file, frame ? std::vector<ExrPart>{exrPart(image.frame)} : allFrames(), metadata_);
+            writeExr(
+                image.file, frame ? 1 : film_.frames(), [&](int i) { return exrPart(frame ? image.frame : i); },
+                metadata_);
         else if (extension == ".pfm")
             writePfm(image.file, frame ? overFrame(film_.mean(image.frame)) : wholeImage());
         else
@@ -106,15 +108,8 @@ class ImageWriter {
         part.biasError = overFrame(bias_.standardError(frame));
         return part;
     }
-    [[nodiscard]] std::vector<ExrPart> allFrames() const {
-        std::vector<ExrPart> parts;
-        for (int frame = 0; frame < film_.frames(); ++frame) parts.push_back(exrPart(frame));
-        return parts;
-    }
     void writeCube(const fs::path& file) const {
-        std::vector<Image> frames;
-        for (int frame = 0; frame < film_.frames(); ++frame) frames.push_back(overFrame(film_.mean(frame)));
-        writeNpy(file, frames);
+        writeNpy(file, film_.frames(), [this](int frame) { return overFrame(film_.mean(frame)); });
     }
 
     const Film &film_, &bias_;
