@@ -10,6 +10,6 @@ cmake -S . -B build-tidy -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_PRE
 if [[ $# -gt 0 ]]; then
   files=("$@")
 else
-  mapfile -t files < <(git ls-files src tungsten | grep '[.]cpp$' | grep -v -e tungsten/python -e tungsten/mpi)
+  mapfile -t files < <(git ls-files src tungsten | grep '[.]cpp$' | grep -v -e tungsten/python -e src/darts/python -e tungsten/mpi)
 fi
 printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build-tidy --quiet

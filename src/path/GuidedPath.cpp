@@ -1,8 +1,10 @@
 #include "path/GuidedPath.h"
 
-#include "path/techniques/ReflectedLight.h"
-
 namespace tungsten::path {
+
+bool endsReflectedLight(LobeMask lobes) {
+    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
+}
 
 std::optional<transport::Connection> GuidedPath::connectInRegion(const transport::Vertex& here,
                                                                  const transport::ConnectionEnd& end) {

@@ -10,6 +10,9 @@
 
 namespace tungsten::path {
 
+/// Surfaces that light may be followed to: all lobes smooth, none transmits.
+bool endsReflectedLight(LobeMask lobes);
+
 class LightPaths;
 
 /// Sampling by medium.

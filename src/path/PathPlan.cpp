@@ -102,4 +102,16 @@ void countArrivals(EffectPlan& plan) {
     plan.count("temporal response", {"arrivals weighed by the response"});
 }
 
+std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    if (!PathPlan::of(scene, settings, facts).guidance.on || !settings.policy.sampling.elliptical)
+        return "plain paths meet a delta gate with probability zero; give the gate a width, or set \"darts\": \"best\"";
+    if (facts.surfaceScattering || facts.surfaceEmission)
+        return "light from diffuse, glossy or emitting surfaces meets a delta gate with probability zero; give the "
+               "gate a width";
+    if (facts.speedsDiffer)
+        return "connections through regions of different speeds meet a delta gate with probability zero; give the "
+               "gate a width";
+    return {};
+}
+
 } // namespace tungsten::path

@@ -30,6 +30,9 @@ struct PathPlan {
     void chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
 };
 
+/// Why a delta gate cannot be rendered; empty if it can. Only control vertices arrive at one moment.
+std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
+
 /// Names in the plan the counters of steps and arrivals that every integrator of this plugin keeps.
 void countArrivals(EffectPlan& plan);
 

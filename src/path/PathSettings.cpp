@@ -1,25 +1,12 @@
 #include "path/PathSettings.h"
 
-#include "path/PathPlan.h"
+#include "tungsten/render/EffectPlan.h"
 
 #include <algorithm>
 
 namespace tungsten::path {
 
 namespace {
-
-/// Why a delta gate cannot be rendered; empty if it can. Only control vertices arrive at one moment.
-std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
-    if (!PathPlan::of(scene, settings, facts).guidance.on || !settings.policy.sampling.elliptical)
-        return "plain paths meet a delta gate with probability zero; give the gate a width, or set \"darts\": \"best\"";
-    if (facts.surfaceScattering || facts.surfaceEmission)
-        return "light from diffuse, glossy or emitting surfaces meets a delta gate with probability zero; give the "
-               "gate a width";
-    if (facts.speedsDiffer)
-        return "connections through regions of different speeds meet a delta gate with probability zero; give the "
-               "gate a width";
-    return {};
-}
 
 void warnAboutUnguided(const ObjectReader& block, const EffectPlan& facts, const PathSettings& settings) {
     if (!settings.policy.guides()) return;
@@ -78,10 +65,6 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     settings.policy = transport::readPolicy(block);
     warnAboutUnguided(block, facts, settings);
     warnAboutSingleDirections(block, scene);
-    if (scene.transport.gate.delta) {
-        const std::string problem = deltaGateProblem(scene, settings, facts);
-        if (!problem.empty()) block.problem("delta_time_gate", problem);
-    }
     acceptPhotonSettings(block);
     return settings;
 }

@@ -76,7 +76,11 @@ PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme, const Eff
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
     : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)),
-      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)) {}
+      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)) {
+    if (!scene_->transport.gate.delta) return;
+    const std::string problem = deltaGateProblem(*scene_, settings_, analyseScene(*scene_));
+    if (!problem.empty()) settings.problem("delta_time_gate", problem);
+}
 
 void PathTracer::plan(EffectPlan& plan) const {
     leaveOutLate(*scene_, lastTime(*scene_), plan);

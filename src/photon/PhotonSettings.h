@@ -10,7 +10,7 @@
 
 namespace tungsten::photon {
 
-struct PhotonSettings {
+struct PhotonSettings : KernelSettings {
     /// With counts for a part of a pass (PassInfo::share).
     [[nodiscard]] PhotonSettings ofShare(double share) const;
 
@@ -21,17 +21,13 @@ struct PhotonSettings {
     uint32_t gatherCount = 20;            ///< nearest surface photons used
     std::string radiusReason;             ///< of volumeRadius, where the scene leaves it open
     float gatherRadius = 1e30f;           ///< largest distance of a gathered surface photon
-    float volumeRadius = 1e30f;           ///< radius of the point kernel, when fixed, and of the beam kernel
     double temporalRadius = 0.0;          ///< half-width of a delta gate's temporal kernel in the first pass
-    bool fixedVolumeRadius = false;       ///< false: the radius follows the photons' density
     bool lowOrderScattering = true;       ///< false: no photon on the first medium vertex after a light or surface, and
                                           ///< no beam from a light or surface
     bool excludeNonMis = false;           ///< slices: classes alone that volumes and balls both make
     bool shortFlights = false;            ///< slices: flights end at random lengths
     bool includeSurfaces = true;          ///< false: no surface photons, no visible emission
     bool progressive = true;
-    float alpha = 0.3f;       ///< surface radius reduction
-    float volumeAlpha = 0.3f; ///< volume radius reduction
     transport::Policy policy; ///< how light paths are guided
 
     /// From sensor rays that a record of the volume primitive can show on.

@@ -10,7 +10,6 @@ PROJECT = Path(__file__).resolve().parents[2]
 # A room may include itself, and these.
 ROOMS = {
     "tungsten": set(),
-    "tungsten/python": {"tungsten", "src/darts"},
     "src/darts": set(),
     "src/transport": {"tungsten", "src/darts"},
     "src/photon": {"tungsten", "src/darts", "src/transport"},

@@ -48,7 +48,7 @@ inline AgreementScene shippedScene(const std::string& name, std::vector<std::str
 /// Twenty frames that hold all scattered light there is; the ball itself is left out, which would outshine the rest.
 inline AgreementScene fogSequence() {
     AgreementScene scene =
-        builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 80, 24, 50000});
+        builtScene("sequence", fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.0), 0.16, {32, 56, 18, 36000});
     scene.overrides = {"integrator.min_bounces=2", "integrator.start_time=5", "integrator.transient_time_width=0.5",
                        "integrator.frame_num=20", "integrator.transient_time_center=-1"};
     return scene;

@@ -62,13 +62,13 @@ std::vector<SharedFields> shareFields(const DescribedKind& kind) {
                 row->second.push_back(type->name);
         }
     std::vector<SharedFields> tables;
-    for (const auto& [field, types] : rows) {
+    for (const auto& row : rows) {
         const auto table =
-            std::find_if(tables.begin(), tables.end(), [&](const SharedFields& t) { return t.types == types; });
+            std::find_if(tables.begin(), tables.end(), [&](const SharedFields& t) { return t.types == row.second; });
         if (table == tables.end())
-            tables.push_back({types, {field}});
+            tables.push_back({row.second, {row.first}});
         else
-            table->fields.push_back(field);
+            table->fields.push_back(row.first);
     }
     std::stable_sort(tables.begin(), tables.end(),
                      [](const SharedFields& a, const SharedFields& b) { return a.types.size() > b.types.size(); });

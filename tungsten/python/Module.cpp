@@ -226,7 +226,6 @@ void declare(py::module_& module) {
     module.attr("__version__") = TUNGSTEN_VERSION;
     declareErrors(module);
     declareResult(module);
-    declareSampling(module);
     using namespace py::literals;
     const auto renderWith = [](const py::object& scene, const py::dict& set, std::optional<double> seconds,
                                std::optional<int64_t> passes, std::optional<int64_t> samples, double targetError,

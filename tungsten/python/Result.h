@@ -34,9 +34,5 @@ class Result {
 };
 
 void declareResult(pybind11::module_& module);
-/// The submodule `sampling`: densities and samplers of src/darts over arrays.
-void declareSampling(pybind11::module_& module);
-/// Its part about whole steps of a walk.
-void declareGuides(pybind11::module_& sampling);
 
 } // namespace tungsten::python

@@ -1,5 +1,7 @@
 #include "path/techniques/ReflectedLight.h"
 
+#include "path/GuidedPath.h"
+
 #include "path/Tuning.h"
 
 #include <tbb/parallel_for.h>
@@ -51,10 +53,6 @@ void traceReflection(const Scene& scene, const Emitter& emitter, float probabili
 
 bool reflectsSharply(LobeMask lobes) {
     return (lobes & lobe::GlossyReflection) != 0 && (lobes & lobe::Through) == 0;
-}
-
-bool endsReflectedLight(LobeMask lobes) {
-    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
 }
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights,

@@ -38,8 +38,6 @@ struct Flights {
 
 /// Surfaces from which light is followed.
 bool reflectsSharply(LobeMask lobes);
-/// Surfaces that light may be followed to: all lobes smooth, none transmits.
-bool endsReflectedLight(LobeMask lobes);
 
 /// Reflected light of one emitter.
 class ReflectedLightCache {

@@ -120,11 +120,7 @@ void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
     chain_.end();
     if (!path_.arriveOnSurface(hit)) return false;
-    auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
-    if (flights && path_.context.storeVolume)
-        chain_.leaveSurface(chainRules(), path_.surface,
-                            {hit.position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
-                            path_.region, path_.sampler, *flights);
+    path_.leaveBall(chain_, hit.position);
     if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0)
         connectToSurfaces({scene_, path_.surface, path_.ray.direction, TransportMode::Photons, path_.region},
                           2.0f * InSphere);
@@ -258,29 +254,24 @@ void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList
 
 void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {}
 
-FlightChain::Rules GuidedPhotonWalk::chainRules() const {
-    return {scene_, *path_.culling, std::get<Slices>(path_.context.settings.primitive).classes,
-            path_.context.sliceWorth};
-}
-
 void GuidedPhotonWalk::leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start) {
     auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
     if (!flights || !path_.context.storeVolume || !guidance_.guide(path_.region) || !path_.mayBounce()) return;
-    chain_.leaveLight(chainRules(), emitter, probability, start,
+    chain_.leaveLight(path_.chainRules(), emitter, probability, start,
                       {start.position, Vec3f(0.0f), path_.power, path_.time, Infinity, path_.bounce},
                       path_.region.medium, path_.sampler, *flights);
 }
 
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<CollapsedFlights>& flights) {
     const Ray& ray = path_.ray;
-    chain_.fly(chainRules(), {ray.origin, ray.direction, path_.power, path_.time, flight.surface, path_.bounce},
+    chain_.fly(path_.chainRules(), {ray.origin, ray.direction, path_.power, path_.time, flight.surface, path_.bounce},
                path_.region.medium, path_.sampler, flights);
 }
 
 void GuidedPhotonWalk::leaveAt(float distance, const Flight&, DepositList<CollapsedFlights>& flights) {
     const Vec3f position = path_.ray.at(distance);
     const double time = path_.time + distanceBetween(path_.ray.origin, position) / double(path_.region.speed);
-    chain_.scatter(chainRules(), {position, path_.ray.direction, path_.power, time, Infinity, path_.bounce + 1},
+    chain_.scatter(path_.chainRules(), {position, path_.ray.direction, path_.power, time, Infinity, path_.bounce + 1},
                    path_.sampler, flights);
 }
 

@@ -4,7 +4,6 @@
 
 #include "photon/light/LightPath.h"
 #include "photon/light/PhotonGuidance.h"
-#include "photon/primitives/sliced/FlightChain.h"
 #include "photon/surface/SurfaceConnections.h"
 
 #include "transport/GuidedStep.h"
@@ -63,7 +62,6 @@ class GuidedPhotonWalk {
     void leaveAt(float distance, const Flight& flight, DepositList<Photon>& points);
     void leaveAt(float distance, const Flight& flight, DepositList<PhotonBeam>& beams);
     void leaveAt(float distance, const Flight& flight, DepositList<CollapsedFlights>& flights);
-    [[nodiscard]] FlightChain::Rules chainRules() const;
     /// Slices: what is seen of a light in this medium, in whatever direction the path goes on.
     void leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start);
     [[nodiscard]] bool storesVertices() const {

@@ -86,4 +86,15 @@ bool LightPath::leaveSurface() {
     return true;
 }
 
+FlightChain::Rules LightPath::chainRules() const {
+    return {context.scene, *culling, std::get<Slices>(context.settings.primitive).classes, context.sliceWorth};
+}
+
+void LightPath::leaveBall(FlightChain& chain, const Vec3f& position) {
+    auto* list = std::get_if<DepositList<CollapsedFlights>>(&deposits.volume);
+    if (list && context.storeVolume)
+        chain.leaveSurface(chainRules(), surface, {position, ray.direction, power, time, Infinity, bounce}, region,
+                           sampler, *list);
+}
+
 } // namespace tungsten::photon

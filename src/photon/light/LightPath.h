@@ -3,6 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
+#include "photon/primitives/sliced/FlightChain.h"
 #include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
 #include "transport/StepCounters.h"
@@ -64,6 +65,10 @@ struct LightPath {
     bool deposit(DepositList<Photon>& list, const Vec3f& position, const Rgb& carried, int medium);
     /// A flight through a medium up to `reach`.
     void depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
+    /// What the chain's records obey.
+    [[nodiscard]] FlightChain::Rules chainRules() const;
+    /// Of slices: the ball that the light leaves which has arrived at `position` on `surface`.
+    void leaveBall(FlightChain& chain, const Vec3f& position);
     /// Whether what has been scattered so often in this medium is to be stored, counting `further` scatterings.
     [[nodiscard]] bool orderCounts(int further = 0) const {
         return context.settings.lowOrderScattering || consecutiveMedium + further > 1;

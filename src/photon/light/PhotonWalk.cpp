@@ -51,33 +51,26 @@ void PhotonWalk::depositVertex(DepositList<Photon>& points, const Vec3f& positio
 
 void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
 
-FlightChain::Rules PhotonWalk::chainRules() const {
-    return {scene_, *path_.culling, std::get<Slices>(path_.context.settings.primitive).classes};
-}
-
 void PhotonWalk::depositFlight(DepositList<CollapsedFlights>& flights, const Medium&, float reach) {
-    chain_.fly(chainRules(), {path_.ray.origin, path_.ray.direction, path_.power, path_.time, reach, path_.bounce},
+    chain_.fly(path_.chainRules(),
+               {path_.ray.origin, path_.ray.direction, path_.power, path_.time, reach, path_.bounce},
                path_.region.medium, path_.sampler, flights);
 }
 
 void PhotonWalk::depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position) {
-    chain_.scatter(chainRules(), {position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
+    chain_.scatter(path_.chainRules(), {position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
                    path_.sampler, flights);
 }
 
 void PhotonWalk::endChain() {
     if (auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume))
-        chain_.end(chainRules(), path_.sampler, *flights);
+        chain_.end(path_.chainRules(), path_.sampler, *flights);
 }
 
 bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
     endChain();
     if (!path_.arriveOnSurface(hit)) return false;
-    auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
-    if (flights && path_.context.storeVolume)
-        chain_.leaveSurface(chainRules(), path_.surface,
-                            {hit.position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
-                            path_.region, path_.sampler, *flights);
+    path_.leaveBall(chain_, hit.position);
     return path_.leaveSurface();
 }
 

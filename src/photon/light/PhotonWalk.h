@@ -2,7 +2,6 @@
 // Plain light paths: free flights and directions by the scene's own distributions.
 
 #include "photon/light/LightPath.h"
-#include "photon/primitives/sliced/FlightChain.h"
 
 namespace tungsten::photon {
 
@@ -26,7 +25,6 @@ class PhotonWalk {
     void depositVertex(DepositList<Photon>& points, const Vec3f& position);
     void depositVertex(DepositList<PhotonBeam>& beams, const Vec3f& position);
     void depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position);
-    [[nodiscard]] FlightChain::Rules chainRules() const;
     /// The path leaves the medium, or ends.
     void endChain();
 

@@ -1,16 +1,15 @@
 #include "photon/primitives/beams/Beams.h"
 
-#include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/beams/BeamSplat.h"
 
 namespace tungsten::photon {
 
-float Beams::reach(const PhotonSettings& settings) {
+float Beams::reach(const KernelSettings& settings) {
     return settings.volumeRadius;
 }
 
-Radii Beams::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step,
+Radii Beams::radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step,
                    const PassWatch&) {
     return settings.volumeRadius *
            (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));

@@ -1,6 +1,7 @@
 #pragma once
 // Photon beams: every flight through a medium, gathered with a one-dimensional kernel about camera rays.
 
+#include "photon/primitives/KernelSettings.h"
 #include "photon/primitives/Radii.h"
 #include "photon/primitives/beams/PhotonBeam.h"
 
@@ -11,7 +12,6 @@ class PassWatch;
 
 namespace tungsten::photon {
 
-struct PhotonSettings;
 struct SensorRecord;
 class BeamGather;
 
@@ -26,8 +26,8 @@ struct Beams {
     static constexpr const char* Stored = "photon beams";
     static constexpr const char* Gathered = "gathered beams";
 
-    static float reach(const PhotonSettings& settings);
-    static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
+    static float reach(const KernelSettings& settings);
+    static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
                        uint32_t step, const PassWatch& watch);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);

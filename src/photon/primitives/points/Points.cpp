@@ -1,17 +1,16 @@
 #include "photon/primitives/points/Points.h"
 
-#include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/points/PointGather.h"
 #include "photon/primitives/points/PointSplat.h"
 
 namespace tungsten::photon {
 
-float Points::reach(const PhotonSettings& settings) {
+float Points::reach(const KernelSettings& settings) {
     return settings.fixedVolumeRadius ? settings.volumeRadius : Infinity;
 }
 
-Radii Points::radii(const PhotonSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step,
+Radii Points::radii(const KernelSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step,
                     const PassWatch& watch) {
     const float factor = pointRadiusFactor(step, settings.volumeAlpha);
     if (settings.fixedVolumeRadius) return settings.volumeRadius * factor;

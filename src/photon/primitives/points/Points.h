@@ -1,6 +1,7 @@
 #pragma once
 // Photon points: a deposit where a light path scatters, gathered with a two-dimensional kernel about camera rays.
 
+#include "photon/primitives/KernelSettings.h"
 #include "photon/primitives/Radii.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/store/Store.h"
@@ -12,7 +13,6 @@ class PassWatch;
 
 namespace tungsten::photon {
 
-struct PhotonSettings;
 struct SensorRecord;
 class PointGather;
 
@@ -28,8 +28,8 @@ struct Points {
 
     /// From sensor rays that a record can show on. Any, where radii follow the density: they are known when the store
     /// is full, and what is stored makes the density.
-    static float reach(const PhotonSettings& settings);
-    static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
+    static float reach(const KernelSettings& settings);
+    static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
                        uint32_t step, const PassWatch& watch);
     /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,

@@ -1,12 +1,11 @@
 #include "photon/primitives/sliced/Slices.h"
 
-#include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/sliced/SliceSplat.h"
 
 namespace tungsten::photon {
 
-Radii Slices::radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&, uint32_t step,
+Radii Slices::radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&, uint32_t step,
                     const PassWatch&) {
     // Of the beams among them.
     return settings.volumeRadius *

@@ -2,6 +2,7 @@
 // Planes, volumes, balls and hypervolumes: flights that are integrated over instead of blurred by a kernel. One type of
 // the set for all of them, since each brings others for the paths that it cannot make.
 
+#include "photon/primitives/KernelSettings.h"
 #include "photon/primitives/Radii.h"
 #include "photon/primitives/sliced/SliceKind.h"
 #include "photon/store/ArrivalCulling.h"
@@ -15,7 +16,6 @@ class PassWatch;
 
 namespace tungsten::photon {
 
-struct PhotonSettings;
 struct SensorRecord;
 class SliceGather;
 
@@ -31,8 +31,8 @@ struct Slices {
     SliceKind kind = SliceKind::Planes;
     SliceClasses classes{};
 
-    static float reach(const PhotonSettings&) { return Infinity; }
-    static Radii radii(const PhotonSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
+    static float reach(const KernelSettings&) { return Infinity; }
+    static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
                        uint32_t step, const PassWatch& watch);
     /// All.
     static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,

@@ -1,13 +1,13 @@
 // `darts_tungsten.sampling.Guide`: whole steps of a guided walk over numpy arrays; and first passage out of a body.
 
-#include "tungsten/python/Result.h"
+#include "darts/python/Guides.h"
 
 #include "darts/FirstPassage.h"
 #include "darts/Guide.h"
 
 #include <random>
 
-namespace tungsten::python {
+namespace darts::python {
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -146,4 +146,4 @@ void declareGuides(py::module_& sampling) {
         "thickness"_a = std::numeric_limits<double>::infinity(), "relative_index"_a = 1.0, "allowance"_a = 1.0);
 }
 
-} // namespace tungsten::python
+} // namespace darts::python

@@ -1,7 +1,7 @@
 // `darts_tungsten.sampling`: src/darts over numpy arrays, which broadcast against each other. Names and units are those
 // of the headers.
 
-#include "tungsten/python/Result.h"
+#include "darts/python/Guides.h"
 
 #include "darts/ConnectionLobe.h"
 #include "darts/ControlVertex.h"
@@ -13,7 +13,7 @@
 
 #include <pybind11/stl.h>
 
-namespace tungsten::python {
+namespace darts::python {
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -140,8 +140,7 @@ void declareDistances(py::module_& module) {
 
 } // namespace
 
-void declareSampling(py::module_& module) {
-    py::module_ sampling = module.def_submodule("sampling", "Densities and samplers of src/darts over numpy arrays.");
+void declareSampling(py::module_& sampling) {
     sampling.def("diffusion_log", py::vectorize(diffusionLog),
                  "log of the diffusion Green's function at distance rho after path length s", "rho"_a, "s"_a,
                  "sigma_a"_a, "sigma_s"_a, "g"_a = 0.0);
@@ -154,4 +153,9 @@ void declareSampling(py::module_& module) {
     declareGuides(sampling);
 }
 
-} // namespace tungsten::python
+} // namespace darts::python
+
+PYBIND11_MODULE(sampling, module) {
+    module.doc() = "Densities and samplers of src/darts over numpy arrays.";
+    darts::python::declareSampling(module);
+}
