@@ -203,7 +203,7 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
     if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
     const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
     plan.describe("light towards bodies", bodies > 0,
-                  bodies > 0 ? "half of what lamps outside fog send goes towards " + std::to_string(bodies) +
+                  bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +
                                    (bodies > 1 ? " bodies" : " body") + " of it"
                              : "no body of fog in what does not scatter, or left alone",
                   darts);

@@ -114,7 +114,7 @@ TEST(PhotonResponseOfBodies, ConnectionsByResponseAndByLengthAgree) {
                        {"type": "point", "emission": 1000, "transform": {"position": [3, 0, 9]}}],
         "camera": {"type": "pinhole", "fov": 7, "resolution": 4, "reconstruction_filter": "box",
                    "transform": {"position": [0, 0, 9], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
-        "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 1024, "photon_count": 10000,
+        "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 1024, "photon_count": 25000,
                        "gather_radius": 0.1, "volume_gather_radius": 0.1, "volume_photon_type": "points",
                        "fixed_volume_radius": true, "temporal_response": {"type": "gaussian", "center": 19.5, "sigma": 0.5}}})";
     struct Mean {
