@@ -58,8 +58,10 @@ void measure(Method& method, const std::filesystem::path& file, const Options& o
             return;
         }
         method.costs = measurePasses(*job.loaded.scene, *job.integrator, job.plan,
-                                     {options.seed, uint32_t(job.loaded.renderer.sppStep),
-                                      options.timeoutSeconds.value_or(DefaultPilotSeconds), &interrupted});
+                                     {.seed = options.seed,
+                                      .samplesPerPass = uint32_t(job.loaded.renderer.sppStep),
+                                      .seconds = options.timeoutSeconds.value_or(DefaultPilotSeconds),
+                                      .interrupted = &interrupted});
         if (!method.costs) method.refusal = "black: nothing arrived in the passes of the pilot";
     } catch (const InputError& error) {
         const Problem& first = error.problems().front();

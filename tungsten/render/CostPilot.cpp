@@ -12,7 +12,6 @@ namespace tungsten {
 namespace {
 
 constexpr std::array<uint32_t, 3> Indices{0, 15, 255};
-constexpr uint32_t LeastRounds = 2;
 constexpr double MostPasses = 1e9;
 
 double wallNow() {
@@ -68,17 +67,31 @@ double squaredBoundFactor(const std::array<Sample, Indices.size()>& samples) {
     return factor > 0.0 ? factor * factor : 4.0;
 }
 
+/// Of the samples' bias images, as far apart as the law of the passes' variance says: few passes of noise that pixels
+/// share know none of them well, but all together. None where one is unknown.
+std::optional<PowerLaw> biasVariance(const std::array<Sample, Indices.size()>& samples, const PowerLaw& passes) {
+    double scale = 0.0;
+    for (size_t k = 0; k < samples.size(); ++k) {
+        const double variance = samples[k].bias.meanSquaredError();
+        if (!(variance > 0.0)) return std::nullopt;
+        scale += variance / PowerLaw{1.0, passes.exponent}.at(Indices[k]) / double(samples.size());
+    }
+    return PowerLaw{scale, passes.exponent};
+}
+
 /// Every sample's bias image over the square of its kernels' width is that of the first pass, with noise: their mean by
 /// inverse variances. 0 where that does not rise above its own noise.
-PowerLaw biasLaw(const std::array<Sample, Indices.size()>& samples, const Integrator& integrator) {
+PowerLaw biasLaw(const std::array<Sample, Indices.size()>& samples, const PowerLaw& passes,
+                 const Integrator& integrator) {
+    const std::optional<PowerLaw> variances = biasVariance(samples, passes);
+    if (!variances) return {};
     const auto squaredWidth = [&](size_t k) { return std::pow(integrator.kernelWidth(Indices[k]), 2.0); };
     const Film& first = samples[0].bias;
     std::vector<Vec3d> sums(size_t(first.frames()) * size_t(first.width()) * size_t(first.height()), Vec3d(0.0));
     double weights = 0.0;
     for (size_t k = 0; k < samples.size(); ++k) {
         const Film& bias = samples[k].bias;
-        const double variance = bias.meanSquaredError(), width = squaredWidth(k);
-        if (!(variance > 0.0)) return {};
+        const double variance = variances->at(Indices[k]), width = squaredWidth(k);
         size_t i = 0;
         for (int frame = 0; frame < bias.frames(); ++frame)
             for (const Rgb& pixel : bias.mean(frame).pixels)
@@ -141,7 +154,7 @@ PassCosts costsOf(const std::array<Sample, Indices.size()>& samples, const Integ
         costs.variance = fitted(variance, 0.0, -3.0 * widthExponent(integrator));
         costs.cpuSeconds = fitted(cpu);
         costs.wallSeconds = fitted(wall);
-        costs.bias = biasLaw(samples, integrator);
+        costs.bias = biasLaw(samples, costs.variance, integrator);
         costs.bias.first /= mean;
     } else { // no kernels: all passes are alike
         costs.variance.first = meanOf(variance);
@@ -153,6 +166,10 @@ PassCosts costsOf(const std::array<Sample, Indices.size()>& samples, const Integ
 }
 
 } // namespace
+
+double PowerLaw::at(uint32_t pass) const {
+    return first * std::pow(double(pass) + 1.0, exponent);
+}
 
 double PowerLaw::sum(double n) const {
     constexpr double Exact = 256.0;
@@ -195,7 +212,7 @@ std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrato
         if (measuresBias) sample.bias = filmOf(scene);
     }
     const double start = wallNow();
-    for (uint32_t round = 0; round < LeastRounds || wallNow() - start < options.seconds; ++round)
+    for (uint32_t round = 0; round < options.rounds || wallNow() - start < options.seconds; ++round)
         renderRound(integrator, samples, measuresBias, options, round);
     const double mean = meanOf(each(samples, [](const Sample& s) { return s.film.meanValue(); }));
     if (!(mean > 0.0)) return std::nullopt;

@@ -12,6 +12,7 @@ namespace tungsten {
 struct PowerLaw {
     double first = 0.0, exponent = 0.0;
 
+    [[nodiscard]] double at(uint32_t pass) const;
     /// Of passes 0 to n - 1; n >= 1 need not be whole.
     [[nodiscard]] double sum(double n) const;
 };
@@ -35,7 +36,8 @@ struct PassCosts {
 struct PilotOptions {
     uint64_t seed = 0xBA5EBA11u;
     uint32_t samplesPerPass = 1;                    ///< per pixel
-    double seconds = 3.0;                           ///< passes are rendered for so long, but a least number in any case
+    double seconds = 3.0;                           ///< passes are rendered for so long,
+    uint32_t rounds = 2;                            ///< and at least so many of each index
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: PassBrokenOff
 };
 
