@@ -292,24 +292,6 @@ TEST(Bsdf, GrazingAndDegenerateDirectionsStayFinite) {
         }
 }
 
-TEST(Fresnel, DielectricAtNormalIncidenceBrewsterAndCritical) {
-    EXPECT_NEAR(fresnelDielectric(1.0f / 1.5f, 1.0f), 0.04f, 1e-6f);
-    EXPECT_NEAR(fresnelDielectric(1.0f / 1.5f, -1.0f), 0.04f, 1e-6f);
-    EXPECT_EQ(fresnelDielectric(1.5f, 0.5f), 1.0f);
-    EXPECT_NEAR(averageFresnel(1.5f), 0.59635f, 2e-5f);
-}
-
-TEST(Fresnel, ConductorAgreesWithComplexArithmetic) {
-    for (const double cosTheta : {1.0, 0.7, 0.2, 0.01}) {
-        const std::complex<double> n(0.2, 3.9), one(1.0, 0.0);
-        const std::complex<double> cosT = std::sqrt(one - (1.0 - cosTheta * cosTheta) / (n * n));
-        const auto rs = (cosTheta - n * cosT) / (cosTheta + n * cosT),
-                   rp = (n * cosTheta - cosT) / (n * cosTheta + cosT);
-        const double expected = 0.5 * (std::norm(rs) + std::norm(rp));
-        EXPECT_NEAR(double(fresnelConductor(Rgb(0.2f), Rgb(3.9f), float(cosTheta)).x), expected, 1e-4);
-    }
-}
-
 TEST(Bsdf, PlasticFollowsItsFormula) {
     const Bsdf plastic("", makePlastic(1.5f, 2.0f, Rgb(0.1f)), Texture(0.5f));
     const Vec3f wi = Vec3f(0.6f, 0.0f, 0.8f), wo = Vec3f(0.0f, 0.8f, 0.6f);
@@ -317,12 +299,6 @@ TEST(Bsdf, PlasticFollowsItsFormula) {
     const double expected = (1 - fi) * (1 - fo) / 2.25 / 3.14159265358979 * 0.5 / (1 - 0.5 * 0.59635) *
                             std::exp(-2.0 * 0.1 * (1 / 0.8 + 1 / 0.6)) * 0.6;
     EXPECT_NEAR(double(plastic.eval({}, wi, wo).x), expected, 1e-4 * expected);
-}
-
-TEST(Conductors, KnownByName) {
-    EXPECT_EQ(conductorNames().size(), 7u);
-    EXPECT_FALSE(conductorByName("Unobtainium"));
-    EXPECT_FLOAT_EQ(conductorByName("Ag")->second.x, 4.8283433224f);
 }
 
 } // namespace

@@ -45,4 +45,26 @@ std::unique_ptr<Rendered> renderBeams(const std::string& json, RenderOptions opt
     return renderPhotons(json, options);
 }
 
+void expectSameBlocks(const Rendered& a, const Rendered& b, int frame, double bias, double largestError) {
+    const Image va = a.film.mean(frame), vb = b.film.mean(frame);
+    const Image ea = a.film.standardError(frame), eb = b.film.standardError(frame);
+    const double average = b.mean(frame);
+    ASSERT_GT(average, 0.0);
+    double errors = 0.0;
+    const int columns = va.width / 8, blocks = columns * (va.height / 8);
+    for (int block = 0; block < blocks; ++block) {
+        double difference = 0.0, correlated = 0.0, independent = 0.0;
+        for (int i = 0; i < 64; ++i) {
+            const int x = 8 * (block % columns) + i % 8, y = 8 * (block / columns) + i / 8;
+            difference += double(va.at(x, y).y - vb.at(x, y).y) / 64.0;
+            correlated += double(ea.at(x, y).y) / 64.0;
+            independent += double(eb.at(x, y).y * eb.at(x, y).y) / (64.0 * 64.0);
+        }
+        const double error = std::sqrt(correlated * correlated + independent);
+        EXPECT_LT(std::abs(difference), 4.0 * error + bias * average) << "frame " << frame << " block " << block;
+        errors += error / blocks;
+    }
+    EXPECT_LT(errors, largestError * average) << "frame " << frame << ": the test would not see a wrong value";
+}
+
 } // namespace tungsten::test

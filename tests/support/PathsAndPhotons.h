@@ -15,4 +15,8 @@ std::unique_ptr<Rendered> renderPhotonFile(const std::filesystem::path& file, co
 std::unique_ptr<Rendered> renderPhotons(const std::string& json, const RenderOptions& options);
 std::unique_ptr<Rendered> renderBeams(const std::string& json, RenderOptions options);
 
+/// Block means of two renders, 8 x 8 pixels, each within its combined error and `bias`, relative to the image's mean.
+/// Pixels of a pass share photons: their errors add up at worst.
+void expectSameBlocks(const Rendered& a, const Rendered& b, int frame, double bias, double largestError);
+
 } // namespace tungsten::test
