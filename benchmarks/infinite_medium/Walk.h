@@ -114,8 +114,8 @@ class Walk {
             if (!state.residual.alive()) return order;
             if (!guide_.settings().elliptical) connectByChance(state, order, use);
             if (order == route_.mostScatterings) return order;
-            const float survival =
-                guide_.survival(guide_.logUsefulness(state.residual, state.throughput), state.usefulnessAtStart);
+            const float survival = guide_.survival(
+                state.residual.way, guide_.logUsefulness(state.residual, state.throughput), state.usefulnessAtStart);
             if (survival < 1 && !(random() < survival)) return order;
             const darts::HenyeyGreenstein scatterer{state.direction, guide_.medium().g};
             connection = guide_.sampleConnection(state.residual, random());

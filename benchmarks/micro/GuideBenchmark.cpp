@@ -45,7 +45,7 @@ void guideVertex(benchmark::State& state, const Settings& settings, float g) {
         const DirectionSample sample = guide.sampleDirection(residual, connection, phase, NoView{}, random);
         benchmark::DoNotOptimize(guide.controlVertex(residual, connection, sample.h, INFINITY));
         benchmark::DoNotOptimize(guide.sampleDistance(residual, sample, INFINITY, {1, 1, 1}, random));
-        benchmark::DoNotOptimize(guide.survival(guide.logUsefulness(residual, 1.0f), 0.0f));
+        benchmark::DoNotOptimize(guide.survival(residual.way, guide.logUsefulness(residual, 1.0f), 0.0f));
     }
 }
 BENCHMARK_CAPTURE(guideVertex, published, published(Mode::Path), 0.0f);

@@ -103,7 +103,8 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
     if (!scatters_ || !(draw.probability > 0) || !(draw.bound > 0)) return sample;
     draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
     draw.proposals = settings_.proposals;
-    if (settings_.mixDenseOnly && meanSigmaT_ * residual.C < 4.0f) draw.proposals = Proposals::Exponential;
+    if (residual.way == Way::Out ? settings_.exponentialOut : settings_.mixDenseOnly && meanSigmaT_ * residual.C < 4.0f)
+        draw.proposals = Proposals::Exponential;
     draw.overlap = settings_.overlap;
     draw.floor = floor(residual);
     draw.throughput = throughput;

@@ -167,9 +167,10 @@ class Guide {
         return own;
     }
     /// Probability of going on at a usefulness, given the walk's first one (logarithms).
-    [[nodiscard]] float survival(float logUseful, float logFirst) const {
-        if (!(settings_.roulette > 0)) return 1.0f;
-        return std::min(std::exp(logUseful - logFirst) / settings_.roulette, 1.0f);
+    [[nodiscard]] float survival(Way way, float logUseful, float logFirst) const {
+        const float roulette = way == Way::Out ? settings_.rouletteOut : settings_.roulette;
+        if (!(roulette > 0)) return 1.0f;
+        return std::min(std::exp(logUseful - logFirst) / roulette, 1.0f);
     }
     /// Into how many a walk splits that has become more useful than it was at first: the other side of survival(). At
     /// most `most`, and 16 at once.

@@ -37,12 +37,13 @@ struct Scheme {
         set(s.direction, direction);
         set(s.greens, greens);
         set(s.proposals, proposals);
-        if (proposals) s.mixDenseOnly = false;
+        if (proposals) s.mixDenseOnly = s.exponentialOut = false;
         set(s.candidates, candidates);
         set(s.alpha, alpha);
         set(s.focus, focus);
         set(s.thinFocus, focus);
         set(s.roulette, roulette);
+        set(s.rouletteOut, roulette);
         set(s.floor, floor);
         set(s.bounded, bounded);
         set(s.lengthFirst, lengthFirst);

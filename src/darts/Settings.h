@@ -69,12 +69,16 @@ struct Settings {
     bool splitsHeavyOut = false; ///< out of bodies walks that are too heavy split too, not by the way left alone
     bool scattererOut = false;   ///< out of bodies directions are the scatterer's own
     bool mixDenseOnly = false;   ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
+    /// Out of bodies candidates are Exponential: usefulness hardly varies within a flight there, and each of many
+    /// flights would multiply the walk's weight by the noise of a mixture that reaches up to the bound.
+    bool exponentialOut = false;
 
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
     bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
     float surfaceOdds = 1.0f;   ///< factor on the odds of a surface in reach against scattering before it
     float roulette = 0.1f;      ///< walks end at random below this part of their first usefulness; 0: never
+    float rouletteOut = 0.1f;   ///< the same on the way out of bodies
 };
 
 /// The sampler of He et al. 2024: eight exponential candidates against the diffusion approximation, the EDA table mixed
@@ -91,7 +95,7 @@ inline Settings published(Mode mode) {
     s.greens = Greens::Diffusion;
     s.proposals = Proposals::Exponential;
     s.overlap = false;
-    s.roulette = 0.0f;
+    s.roulette = s.rouletteOut = 0.0f;
     return s;
 }
 
@@ -109,15 +113,17 @@ inline Settings best(Mode mode, float g) {
         s.alpha = 0.2f;
         s.focus = 0.1f;
         s.thinFocus = peaked ? 0.1f : 0.3f;
-        s.roulette = peaked ? 0.1f : 0.3f;
+        s.roulette = s.rouletteOut = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
         s.mixDenseOnly = !peaked;
         s.strays = 0.2f;
         s.splitsHeavyOut = true;
     } else {
+        s.exponentialOut = true;
         s.scattererOut = peaked;
         s.candidates = 16;
         s.roulette = 0.03f;
+        s.rouletteOut = 0.3f;
         s.greens = peaked ? Greens::Diffusion : Greens::Causal;
     }
     return s;
@@ -138,7 +144,7 @@ inline Settings timeBoundAlone(const Settings& settings) {
     Settings s = plainFlights(settings);
     s.direction = Direction::Phase;
     s.elliptical = s.peakLengths = false;
-    s.roulette = 0.0f;
+    s.roulette = s.rouletteOut = 0.0f;
     return s;
 }
 

@@ -37,6 +37,7 @@ struct GuidedContext {
     const PathSettings& settings;
     const transport::Sensor& sensor;
     const PathGuides& guides;
+    const TargetChoice* targets; ///< among whose points paths choose where they enter bodies, or null
     const LightPaths& lightPaths;
     const ArrivalBound& bound;
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite

@@ -1,5 +1,7 @@
 #include "path/PathPlan.h"
 
+#include "path/PathTarget.h"
+#include "path/Tuning.h"
 #include "path/techniques/LightPaths.h"
 
 #include "transport/StepCounters.h"
@@ -11,6 +13,32 @@ namespace tungsten::path {
 
 namespace {
 
+bool scattersIn(const std::vector<transport::Body>& bodies, const Region& region) {
+    return region.medium >= 0 && bodies[size_t(region.medium)].scatters();
+}
+
+/// Camera and lights are all outside what scatters.
+bool looksFromOutside(const Scene& scene, const std::vector<transport::Body>& bodies) {
+    return !scattersIn(bodies, scene.cameraRegion) &&
+           std::none_of(scene.emitters.begin(), scene.emitters.end(), [&](const Emitter& e) {
+               return scattersIn(bodies, {e.medium, 1.0f});
+           });
+}
+
+/// The gate's length in transport mean free paths of the densest medium; 0 if it counts not from outside.
+float gateInBodies(const Scene& scene) {
+    const std::vector<transport::Body> bodies = transport::bodiesOf(scene);
+    const TimeGate& gate = scene.transport.gate;
+    if (!looksFromOutside(scene, bodies) || gate.frames > 1) return 0.0f; // each frame is short
+    float longest = 0.0f;
+    for (const Primitive& primitive : scene.primitives)
+        for (const Region& region : {primitive.inside, primitive.outside})
+            if (primitive.boundsMedium && scattersIn(bodies, region))
+                longest = std::max(longest, float(gate.end() - gate.start) * region.speed *
+                                                bodies[size_t(region.medium)].reducedSigmaT);
+    return longest;
+}
+
 std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
     if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
@@ -19,7 +47,10 @@ std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, c
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
     const bool sealed = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
                         transport::isSealed(scene);
-    return sealed ? "all that scatters lies behind walls that refract: no connection is complete" : "";
+    if (sealed) return "all that scatters lies behind walls that refract: no connection is complete";
+    const bool wide = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
+                      gateInBodies(scene) > tuning::WidestGate;
+    return wide ? "a gate so wide that most light which leaves the bodies is in time" : "";
 }
 
 std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
@@ -45,6 +76,17 @@ Choice tablesOf(const Scene& scene, const PathSettings& settings, const EffectPl
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
 
+Choice entryPointsOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
+    if (!guidance.on) return {false, "paths are not guided"};
+    if (!transport::WaysOut::make(scene, settings.policy))
+        return {false, "no body of a scattering medium that light must leave, or left alone"};
+    if (!looksFromOutside(scene, transport::bodiesOf(scene)))
+        return {false, "camera or lights are in what scatters: light gets into bodies by way of it, too"};
+    const bool any = std::any_of(scene.emitters.begin(), scene.emitters.end(), TargetChoice::hasOthers);
+    return {any, any ? "paths choose again where they enter a body, by what of their light gets out in time"
+                     : "lights are points, or infinite, or of a single direction"};
+}
+
 } // namespace
 
 PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
@@ -65,6 +107,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
     plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
                                                                         : "off by default in time-resolved renders"};
     plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
+    plan.entryPoints = entryPointsOf(scene, settings, plan.guidance);
     plan.chooseLightPaths(scene, settings, facts);
     return plan;
 }
@@ -90,6 +133,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
     add("guided paths", guidance, {"integrator.darts"}, {"control vertices"});
     add("EDA table", edaTable, {"integrator.darts"}, {"direction tables"});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);
+    add("points of lights", entryPoints, {"integrator.darts"}, {"points of lights chosen anew"});
     add("light vertices", lightVertices, {"integrator.darts"}, {"light vertex connections", "light paths"});
     add("reflected light", reflectedLight, lobeUses(scene, lobe::GlossyReflection | lobe::SpecularReflection).causes(),
         {"reflected light connections"});

@@ -41,6 +41,17 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
     return target;
 }
 
+bool TargetChoice::hasOthers(const Emitter& emitter) {
+    return !emitter.isDelta() && !emitter.isInfinite() && boundingSphere(emitter).radius > 0.0f;
+}
+
+std::optional<PathTarget> TargetChoice::another(const PathTarget& target, Sampler& sampler) const {
+    if (target.index < 0 || !(target.reach > 0.0f)) return std::nullopt;
+    PathTarget other = target;
+    other.vertex = {scene_, *target.emitter, sampleEmissionPoint(*target.emitter, sampler.next2D())};
+    return other;
+}
+
 /// Light on its straight or specular way from the emitter to its first scattering vertex.
 struct TargetChoice::Laser {
     Ray ray;

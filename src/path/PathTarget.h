@@ -48,6 +48,10 @@ class TargetChoice {
     [[nodiscard]] float probability(size_t emitter) const { return distribution_.probability(emitter); }
     /// `u` chooses the emitter. None when light that starts in a single direction is absorbed or escapes.
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, PathCounters& counters) const;
+    /// The emitter has more than one point to choose.
+    [[nodiscard]] static bool hasOthers(const Emitter& emitter);
+    /// Another point of the target's emitter, drawn as it was. None if there is no other, or for virtual sources.
+    [[nodiscard]] std::optional<PathTarget> another(const PathTarget& target, Sampler& sampler) const;
 
   private:
     struct Laser;

@@ -23,6 +23,7 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("rays", counters.rays);
     statistics.add("shadow rays", counters.shadowRays);
     statistics.add("control vertices", counters.controlVertices);
+    statistics.add("points of lights chosen anew", counters.pointsChosen);
     statistics.add("light vertex connections", counters.lightVertices);
     statistics.add("reflected light connections", counters.reflectedLight);
     statistics.add("connections", counters.connections);
@@ -166,8 +167,9 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
 }
 
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const GuidedContext context{*scene_,     settings_, sensor_,        guides_,
-                                lightPaths_, *bound_,   waysOut_.get(), plan_.forwardBoundaries};
+    const TargetChoice* targets = plan_.entryPoints.on ? &*targets_ : nullptr;
+    const GuidedContext context{
+        *scene_, settings_, sensor_, guides_, targets, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries};
     renderTiles(pass, film, statistics,
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
                     const std::optional<PathTarget> target = targets_->sample(u, sampler, counters);

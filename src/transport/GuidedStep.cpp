@@ -24,7 +24,7 @@ float GuidedStep::survival(const darts::Guide& guide, int medium, float throughp
     if (!(guide.settings().roulette > 0.0f)) return 1.0f;
     useful_ = guide.logUsefulness(reachable_, throughput);
     if (first_ && first_->medium == medium && first_->way == reachable_.way) {
-        const float survival = guide.survival(useful_, first_->usefulness);
+        const float survival = guide.survival(reachable_.way, useful_, first_->usefulness);
         lineage_ *= survival;
         return survival;
     }

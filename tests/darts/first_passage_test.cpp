@@ -298,5 +298,30 @@ TEST(DistancesOut, StraysBoundWeights) {
     EXPECT_LT(heaviest(0.0f, Long), 2.0f);
 }
 
+/// Deep in a body usefulness hardly varies within a flight: nor may weights, which multiply over hundreds of them.
+TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
+    const auto spread = [](bool exponential) {
+        Settings settings = best(Mode::Path, 0.0f);
+        settings.exponentialOut = exponential;
+        const DistanceSampler sampler(settings, medium(0.0f));
+        const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
+        double squares = 0.0;
+        constexpr int Count = 5000;
+        for (uint64_t i = 0; i < Count; ++i) {
+            Sampler s(34, RandomStream::Test, 0, i);
+            const Heading ray{directionAbout(residual.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
+            const DistanceSample sample = sampler.sample(residual, residual.heading(ray.direction), 1e30f, {1, 1, 1},
+                                                         {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+            const double log = std::log(10.02 * double(sample.transmittanceOverPdf.x));
+            squares += log * log;
+        }
+        return std::sqrt(squares / Count);
+    };
+    const double exponential = spread(best(Mode::Path, 0.0f).exponentialOut);
+    RecordProperty("exponential", std::to_string(exponential));
+    RecordProperty("mixed", std::to_string(spread(false)));
+    EXPECT_LT(exponential, 0.6 * spread(false));
+}
+
 } // namespace
 } // namespace darts

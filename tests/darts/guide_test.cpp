@@ -134,7 +134,7 @@ TEST(Guide, ControlVerticesStayExactAtTheHardCases) {
         ASSERT_TRUE(near(vertex->inversePdf, exact.firstLegPerLength() * (long double)connection.inversePdf));
         const float useful = guide.logUsefulness(residual, 1.0f);
         ASSERT_TRUE(!std::isnan(useful) && useful < 1e30f) << C << " " << high;
-        const float survival = guide.survival(useful, useful + 3.0f);
+        const float survival = guide.survival(residual.way, useful, useful + 3.0f);
         ASSERT_TRUE(survival >= 0.0f && survival <= 1.0f);
     }
     EXPECT_GT(tested, 100000u);

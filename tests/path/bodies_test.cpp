@@ -107,5 +107,37 @@ TEST(Bodies, GuidedPathsAgreeWithPlainOnesSeenFromAfar) {
     }
 }
 
+/// A cube of milk under a lamp as large, of which half the points face away and few let light arrive in a short gate.
+std::string underALamp(double width) {
+    std::ostringstream json;
+    json << R"({"media": [{"name": "milk", "type": "homogeneous", "sigma_s": 40, "sigma_a": 0.1}],
+        "primitives": [{"type": "cube", "int_medium": "milk", "bsdf": {"type": "forward"}},
+                       {"type": "sphere", "bsdf": {"type": "null"}, "emission": 10,
+                        "transform": {"position": [1, 2, 1.5], "scale": 0.5}}],
+        "camera": {"type": "pinhole", "fov": 14, "resolution": 3, "transform": {"position": [0, 0.5, 4],
+                   "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "path_tracer", "max_bounces": 512, "transient_time_center": 6,
+                       "transient_time_width": )"
+         << width << R"(}, "renderer": {}})";
+    return json.str();
+}
+
+TEST(Bodies, PathsThatEnterChooseAmongPointsOfALampUnlessTheGateIsWide) {
+    for (const double width : {0.05, 0.5}) { // 2 and 20 transport mean free paths
+        double mean[2], error[2];
+        for (const bool guided : {false, true}) {
+            const auto rendered =
+                renderPaths(underALamp(width),
+                            {{guided ? "integrator.darts=best" : "integrator.darts=off"}, guided ? 64u : 512u, 16, 8});
+            mean[guided] = rendered->mean();
+            error[guided] = rendered->pixelError(0) / 3.0;
+            for (const char* counter : {"points of lights chosen anew", "control vertices"})
+                EXPECT_EQ(rendered->statistics.counter(counter) > 0, guided && width < 0.1) << counter;
+        }
+        EXPECT_NEAR(mean[1], mean[0], 4.5 * std::hypot(error[0], error[1])) << width;
+        EXPECT_LT(std::hypot(error[0], error[1]), 0.1 * mean[0]) << width;
+    }
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -92,6 +92,16 @@ TEST(GuidedStep, OutOfBodiesHeavyPhotonsSplit) {
     EXPECT_GT(copiesOf(darts::Mode::Photon, 9.5), halved);
 }
 
+TEST(GuidedStep, OutOfBodiesCameraPathsEndSooner) {
+    const darts::Guide guide(darts::best(darts::Mode::Path, 0.0f), Fog);
+    for (const bool out : {false, true}) {
+        GuidedStep step;
+        step.look(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
+        EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
+        EXPECT_NEAR(step.survival(guide, 0, 0.06f), out ? 0.2f : 1.0f, 1e-4f);
+    }
+}
+
 /// Both ways to a control vertex must arrive after the length that was drawn.
 void expectArrivesAfter(float length, const GuidedStep::OnWay& met) {
     const Vec3f vertex = Aslant * met.vertex.distance;

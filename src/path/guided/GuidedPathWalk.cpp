@@ -2,14 +2,25 @@
 
 #include "path/guided/GuidedPathWalk.h"
 
+#include "path/Tuning.h"
 #include "path/techniques/ControlVertices.h"
 #include "path/techniques/EmitterConnections.h"
 #include "path/techniques/ShellChord.h"
 
+#include <numeric>
+
 namespace tungsten::path {
 
-void GuidedPathWalk::run(const Ray& ray, const PathTarget& target) {
+namespace {
+
+/// Logarithm of what is too little to matter.
+constexpr float NoUse = -1e30f;
+
+} // namespace
+
+void GuidedPathWalk::run(const Ray& ray, PathTarget target) {
     path_.target = &target;
+    if (context_.targets) target_ = &target;
     path_.state.ray = ray;
     path_.state.region = scene_.cameraRegion;
     ++path_.state.counters.paths;
@@ -49,6 +60,46 @@ void GuidedPathWalk::lookOut(const transport::Start& start) {
     path_.step.lookOut(*context_.waysOut, start, path_.state.region, aim, path_.state.counters.rays);
 }
 
+float GuidedPathWalk::logUsefulTarget() {
+    lookAhead(path_.state.ray.origin);
+    if (!path_.step.reachable().alive()) return NoUse;
+    lookOut(transport::Start::along(path_.state.ray));
+    const darts::Residual& residual = path_.step.reachable();
+    if (residual.way != darts::Way::Out) return NoUse;
+    const float light = meanComponent(path_.target->intensity(-darts::to<Vec3f>(residual.axis)));
+    return light > 0.0f ? path_.guideOf(path_.state.region).logUsefulness(residual, light / sqr(residual.C)) : NoUse;
+}
+
+/// Resampled importance sampling: for any weights the estimate of whatever depends on the point stays exact.
+void GuidedPathWalk::chooseTarget() {
+    constexpr size_t Points = tuning::EntryPoints;
+    CameraPath& state = path_.state;
+    PathTarget& target = *std::exchange(target_, nullptr);
+    if (state.scattered || !TargetChoice::hasOthers(*target.emitter)) return;
+    std::array<std::optional<PathTarget>, Points> points;
+    std::array<float, Points> weights;
+    points[0] = target;
+    for (size_t i = 0; i < Points; ++i) {
+        if (i > 0) points[i] = context_.targets->another(target, state.sampler);
+        if (!points[i]) return;
+        target = *points[i];
+        weights[i] = logUsefulTarget();
+    }
+    const float highest = *std::max_element(weights.begin(), weights.end());
+    for (float& weight : weights) weight = std::exp(weight - highest); // alike if there is no use
+    float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
+    const float least = tuning::LeastPoint * sum / float(Points);
+    sum += least * float(Points);
+    float rest = path_.next() * sum;
+    size_t chosen = 0;
+    while (chosen + 1 < Points && (rest -= weights[chosen] + least) >= 0.0f) ++chosen;
+    target = *points[chosen];
+    lookAhead(state.ray.origin);
+    lookOut(transport::Start::along(state.ray));
+    state.throughput = state.throughput * (sum / (float(Points) * (weights[chosen] + least)));
+    ++state.counters.pointsChosen;
+}
+
 bool GuidedPathWalk::survives(const darts::Guide& guide) {
     CameraPath& state = path_.state;
     const float survival = path_.step.survival(guide, state.region.medium, meanComponent(state.throughput));
@@ -78,9 +129,11 @@ bool GuidedPathWalk::crossEmpty() {
 bool GuidedPathWalk::crossMedium(const Medium& medium) {
     CameraPath& state = path_.state;
     transport::GuidedStep& step = path_.step;
-    if (!path_.mayFly(&medium) || !step.reachable().alive()) return false;
-    ++state.flights;
+    if (!path_.mayFly(&medium)) return false;
     lookOut(transport::Start::along(state.ray));
+    if (target_ && step.reachable().way == darts::Way::Out) chooseTarget();
+    if (!step.reachable().alive()) return false;
+    ++state.flights;
     const darts::Guide& guide = path_.guideOf(state.region);
     step.startRoulette(guide, state.region.medium, meanComponent(state.throughput));
     const darts::Heading heading = step.heading(state.ray.direction);

@@ -20,7 +20,7 @@ class GuidedPathWalk {
     GuidedPathWalk(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler)
         : context_(context), scene_(context.scene), path_(context, sink, counters, sampler) {}
 
-    void run(const Ray& ray, const PathTarget& target);
+    void run(const Ray& ray, PathTarget target);
 
   private:
     // Flights. False ends the path.
@@ -38,6 +38,10 @@ class GuidedPathWalk {
     void lookAhead(const Vec3f& position);
     /// How light gets from here to the target; once, before anything is sampled.
     void lookOut(const transport::Start& start);
+    /// A walk that enters a body chooses among points of its emitter by how much of their light gets out to it in time.
+    void chooseTarget();
+    /// The target's usefulness from the ray's origin, per area of its emitter; logarithm, NoUse if there is none.
+    [[nodiscard]] float logUsefulTarget();
     /// False ends the path.
     bool survives(const darts::Guide& guide);
     /// The copies share the throughput, goOn(copy) is each one's rest.
@@ -64,6 +68,7 @@ class GuidedPathWalk {
     const GuidedContext& context_;
     const Scene& scene_;
     GuidedPath path_;
+    PathTarget* target_ = nullptr; ///< path_.target, until it is final
 };
 
 } // namespace tungsten::path
