@@ -187,10 +187,10 @@ def arguments():
     parser.add_argument("--slices", action="store_true", help="sliced primitives against paths and beams")
     parser.add_argument("--fast", action="store_true", help="a handful of scenes, for the tests")
     parser.add_argument("--scenes", nargs="+", default=[], metavar="NAME", help="those whose names hold one of these")
-    parser.add_argument("--effort", type=float, help="factor on all samples and light paths (1; fast: 0.1)")
+    parser.add_argument("--effort", type=float, help="factor on all samples and light paths (1; fast: 0.07)")
     parser.add_argument("--jobs", type=int, default=2, help="renders at a time, one thread each (2)")
     options = parser.parse_args()
-    options.effort = options.effort or (0.1 if options.fast else 1.0)
+    options.effort = options.effort or (0.07 if options.fast else 1.0)
     return options
 
 

@@ -126,7 +126,7 @@ class Mpi(unittest.TestCase):
     def test_time_outs_end_all(self):
         scene = self.scene(spp=10_000_000, spp_step=200)  # passes that take a while: the last ones are broken off
         start = time.monotonic()
-        result = self.run_with(2, scene, "--timeout", "4s", "-e", "film.npy")
+        result = self.run_with(2, scene, "--timeout", "2s", "-e", "film.npy")
         self.assertLess(time.monotonic() - start, 30)
         self.assertIn("time-out", result.stdout)
         self.assertEqual(result.stdout.count("passes, "), 1, "one rank speaks")
@@ -134,7 +134,7 @@ class Mpi(unittest.TestCase):
         self.run_with(1, scene, "--spp", str(200 * passes), "-e", "one.npy", "-o", "one.png")
         self.assertEqual(self.bytes_of("film.npy"), self.bytes_of("one.npy"))
         # One pass as long as the time-out and more: it is cut, in both.
-        result = self.run_with(2, self.scene(spp=10_000_000, spp_step=1_000_000), "--timeout", "2s", "-e", "film.npy")
+        result = self.run_with(2, self.scene(spp=10_000_000, spp_step=1_000_000), "--timeout", "1s", "-e", "film.npy")
         self.assertEqual(result.stderr.count("passes are cut to"), 1, result.stderr)
 
     def test_one_bar(self):

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 TUNGSTEN = os.environ.get("TUNGSTEN", str(Path(__file__).resolve().parents[2] / "build/bin/tungsten"))
-SCENES = 48
+SCENES = 24
 SEED = 20261123
 COUNTS = {"photon_count": 3000, "volume_photon_count": 3000, "gather_radius": 0.5, "volume_gather_radius": 0.5}
 
@@ -219,9 +219,9 @@ class LeftOut(unittest.TestCase):
                 some, every = (self.counters(scene, *options) for options in ([], ["--effects", "all"]))
                 self.assertEqual(some.get("direction tables"), None if darts == "off" else 1)
                 self.assertEqual(every.get("direction tables"), None if darts == "off" else 2)
-                few, all_ = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
+                few, all_ = (self.image(scene, "--spp", "1024", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
                              for options in ([], ["--effects", "all"]))
-                np.testing.assert_allclose(few, all_, rtol=0.06)
+                np.testing.assert_allclose(few, all_, rtol=0.085)
                 # Now that is the only fog.
                 scene["media"] = scene["media"][2:]
                 scene["camera"].pop("medium")
@@ -239,11 +239,11 @@ class LeftOut(unittest.TestCase):
         self.assertIn("the first 2 frames", self.effects(scene)["frames before all light"]["reason"])
         self.assertEqual(self.counters(scene)["frames aimed at"], 10)
         self.assertEqual(self.counters(scene, "--effects", "all")["frames aimed at"], 12)
-        few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(1, 2, 3))
+        few, every = (self.image(scene, "--spp", "1024", "--set", "renderer.spp_step=64", *options).mean(axis=(1, 2, 3))
                       for options in ([], ["--effects", "all"]))
         self.assertEqual(float(few[:2].max()), 0)
-        np.testing.assert_allclose(few[:7], every[:7], rtol=0.08)  # later ones are noisier
-        np.testing.assert_allclose(few.sum(), every.sum(), rtol=0.04)
+        np.testing.assert_allclose(few[:7], every[:7], rtol=0.11)  # later ones are noisier
+        np.testing.assert_allclose(few.sum(), every.sum(), rtol=0.055)
 
     def test_surfaces_out_of_time_store_nothing(self):
         scene = self.scene(type="transient_photon_map", transient_time_center=1.6, transient_time_width=0.2, darts="best", **COUNTS)

@@ -186,7 +186,7 @@ class TinyStudy(unittest.TestCase):
         code, text = call("new", scene)
         self.assertEqual(code, 0, text)
         self.assertIn("references", text)
-        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "4"]
+        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "1.5"]
         self.assertEqual(call(file, "check")[0], 1)
         self.assertEqual(call(file, "references", *options, "--seeds", "2")[0], 0)
         self.assertEqual(call(file, "check")[0], 0)
