@@ -127,8 +127,7 @@ Result render(const py::object& scene, const py::dict& set, const Limits& limits
     runSession(job.loaded, *job.integrator, job.plan, {}, options, *session);
     if (session->film.passes() == 0 && session->reason == StopReason::TimedOut) {
         const py::gil_scoped_acquire gil;
-        PyErr_SetString(PyExc_TimeoutError, "not one pass ended in time: give it more seconds, a smaller resolution, a "
-                                            "smaller renderer.spp_step or fewer photons");
+        PyErr_SetString(PyExc_TimeoutError, whyNoPass(options, *session).c_str());
         throw py::error_already_set();
     }
     return {job.loaded, options, std::move(session)};
