@@ -53,6 +53,10 @@ TEST(Detectors, RefuseWhatIsNone) {
          "camera.detectors[1].numerical_aperture: expected a number from 1e-6 to 1"},
         {R"("detectors": [{"direction": [0, 0, 0]}])", "camera.detectors[0].direction: expected a direction"},
         {R"("detectors": [{"position": [0, NaN, 0]}])", "camera.detectors[0].position"},
+        {R"("detectors": [{"diameter": 0.1}])",
+         "camera.detectors[0].diameter: unknown field, expected direction, name, numerical_aperture, position or "
+         "radius: radius is half of it"},
+        {R"("detectors": [{"positon": 0.1}])", "did you mean 'position'?"},
         {R"("detectors": [{}], "resolution": 4)", "camera.resolution: the image has a pixel for each detector"}};
     for (const auto& [camera, expected] : bad)
         EXPECT_NE(problemsOf(camera).find(expected), std::string::npos) << camera << "\n" << problemsOf(camera);

@@ -60,7 +60,11 @@ Detector readDetector(const ObjectReader& block, const Transform& placement) {
                                            {"none", "sine of the half angle within which it accepts light; 1: a bucket "
                                                     "that accepts a hemisphere"},
                                            {1e-6, 1.0}));
-    block.warnAboutUnknown();
+    block.refuseUnknown({{"aperture", "numerical_aperture is the sine of the cone's half angle"},
+                         {"angle", "numerical_aperture is the sine of the cone's half angle"},
+                         {"na", "numerical_aperture is meant"},
+                         {"diameter", "radius is half of it"},
+                         {"look_at", "direction is look_at - position"}});
     return detector;
 }
 
