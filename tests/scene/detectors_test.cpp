@@ -73,6 +73,22 @@ TEST(Detectors, WarnInsideWalls) {
     EXPECT_EQ(warningsOf(at("[0, 0, 6.5]")), "") << "behind it, looking away";
 }
 
+TEST(Detectors, WarnInAndAcrossSurfaces) {
+    const auto at = [](const std::string& position, const std::string& direction) {
+        return warningsOf(R"("detectors": [{}, {"name": "tip", "radius": 0.01, "position": )" + position +
+                          R"(, "direction": )" + direction + "}]");
+    };
+    const std::string in = "camera.detectors[1]: 'tip' lies in the surface 'block'",
+                      across = "camera.detectors[1]: 'tip' reaches through 'block'";
+    EXPECT_NE(at("[0.3, 0.2, 4]", "[0, 0, -1]").find(in), std::string::npos) << "a face looks out";
+    EXPECT_NE(at("[1, 0.2, 4.7]", "[0, 0.6, 0.8]").find(in), std::string::npos) << "along the face";
+    EXPECT_EQ(at("[0.3, 0.2, 3.9999]", "[0, 0, -1]"), "") << "moved off";
+    EXPECT_NE(at("[1.005, 0, 5]", "[0, 0, -1]").find(across), std::string::npos);
+    EXPECT_NE(at("[1.005, 0, 5]", "[0, 0, -1]").find("(radius 0.01)"), std::string::npos);
+    EXPECT_EQ(at("[1.011, 0, 5]", "[0, 0, -1]"), "") << "clear of it";
+    EXPECT_EQ(at("[1.005, 0, 5]", "[1, 0, 0]"), "") << "flat before it";
+}
+
 TEST(Detectors, RaysAndConnectionsAreWithinTheirAcceptance) {
     Camera camera;
     camera.resolution = {3, 1};
