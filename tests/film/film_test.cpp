@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <sys/resource.h>
+
 namespace tungsten {
 namespace {
 
@@ -195,6 +197,30 @@ TEST(ImageIo, ExrKeepsLayersAndParts) {
     EXPECT_EQ(exrPartCount(folder.path() / "many.exr"), 3);
     EXPECT_EQ(readExr(folder.path() / "many.exr", 2).at(0, 0), Rgb(42.0f));
     EXPECT_THROW(readExr(folder.path() / "one.exr", 0, "nothing."), InputError);
+}
+
+/// Bytes.
+double peakMemory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * double(usage.ru_maxrss);
+}
+
+TEST(ImageIo, ManyPartsOfAnExrTakeLittleMemory) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "what is freed stays";
+#endif
+    const TemporaryFolder folder;
+    constexpr int Parts = 400;
+    Image noise(256, 64);
+    Sampler random(7, RandomStream::Test, 0, 0);
+    for (Rgb& pixel : noise.pixels) pixel = Rgb(random.next1D(), random.next1D(), random.next1D());
+    const double before = peakMemory();
+    writeExr(folder.path() / "many.exr", Parts, [&](int i) {
+        return ExrPart{"frame." + std::to_string(i), noise, noise, true, double(i), double(i) + 1.0};
+    });
+    EXPECT_LT(peakMemory() - before, 40e6) << "131 MB in blocks of 16 lines, which are kept for each part";
+    EXPECT_EQ(readExr(folder.path() / "many.exr", Parts - 1, "stderr.").pixels, noise.pixels);
 }
 
 TEST(ImageIo, PartsAreMadeOneByOneAndWrittenAsIfAllWereThere) {

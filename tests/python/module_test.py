@@ -162,6 +162,32 @@ class Render(unittest.TestCase):
         thread.join()
         self.assertEqual(len(ticks), 20)
 
+    def test_ctrl_c_while_a_scene_is_loaded(self):
+        side, mesh = 1400, self.folder / "big.obj"  # text that takes seconds to read
+        lines = [f"v {i % side} {i // side} 0\n" for i in range(side * side)]
+        lines += [f"f {i} {i + 1} {i + side + 1}\n" for i in range(1, side * side - side)]
+        mesh.write_text("".join(lines))
+        scene = self.folder / "big.json"
+        scene.write_text(json.dumps({**SCENE, "primitives": SCENE["primitives"] + [{"type": "mesh", "file": mesh.name}]}))
+        before = darts_tungsten.render(SCENE, passes=1, seed=4).mean
+        for load in darts_tungsten.render, darts_tungsten.plan:
+            # Its own process: threads of this one must not be needed. It tells when it has sent the signal.
+            sender = subprocess.Popen(["sh", "-c", f"sleep 0.3; kill -INT {os.getpid()}; date +%s.%N"], stdout=subprocess.PIPE)
+            with self.assertRaises(KeyboardInterrupt):
+                load(scene)
+            ended = time.time()
+            sent = float(sender.communicate()[0])
+            self.assertLess(ended - sent, 1, "the mesh takes some three seconds")
+        np.testing.assert_array_equal(darts_tungsten.render(SCENE, passes=1, seed=4).mean, before)
+
+    def test_files_are_beside_the_scene(self):
+        (self.folder / "lone.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.file.write_text(json.dumps({**SCENE, "primitives": SCENE["primitives"] + [{"type": "mesh", "file": "lone.obj"}]}))
+        self.assertEqual(darts_tungsten.plan(self.file)["integrator"], "path_tracer")
+        self.assertEqual(darts_tungsten.render(self.file, passes=1).passes, 1)
+        with self.assertRaisesRegex(darts_tungsten.InputError, "lone.obj: no such file"):
+            darts_tungsten.plan(self.file, folder=PROJECT)
+
     def test_passes_are_broken_off(self):
         endless = {"renderer.spp_step": 10 ** 6, "renderer.spp": 10 ** 6, "camera.resolution": [256, 256]}
         interrupt = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
@@ -169,7 +195,7 @@ class Render(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt):
             darts_tungsten.render(SCENE, set=endless, seconds=600)
         interrupt.join()
-        with self.assertRaisesRegex(TimeoutError, "not one pass"):
+        with self.assertRaisesRegex(TimeoutError, "not one pass ended within 0.001 s"):
             darts_tungsten.render(SCENE, set={**endless, "renderer.spp_step": 1, "camera.resolution": [2048, 2048]}, seconds=0.001)
         result = darts_tungsten.render(SCENE, set=endless, seconds=2)
         self.assertEqual(result.reason, "time-out")

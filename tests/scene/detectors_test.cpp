@@ -53,6 +53,10 @@ TEST(Detectors, RefuseWhatIsNone) {
          "camera.detectors[1].numerical_aperture: expected a number from 1e-6 to 1"},
         {R"("detectors": [{"direction": [0, 0, 0]}])", "camera.detectors[0].direction: expected a direction"},
         {R"("detectors": [{"position": [0, NaN, 0]}])", "camera.detectors[0].position"},
+        {R"("detectors": [{"diameter": 0.1}])",
+         "camera.detectors[0].diameter: unknown field, expected direction, name, numerical_aperture, position or "
+         "radius: radius is half of it"},
+        {R"("detectors": [{"positon": 0.1}])", "did you mean 'position'?"},
         {R"("detectors": [{}], "resolution": 4)", "camera.resolution: the image has a pixel for each detector"}};
     for (const auto& [camera, expected] : bad)
         EXPECT_NE(problemsOf(camera).find(expected), std::string::npos) << camera << "\n" << problemsOf(camera);
@@ -67,6 +71,22 @@ TEST(Detectors, WarnInsideWalls) {
     EXPECT_NE(warningsOf(at("[0, 0, 3.999]")).find(blind), std::string::npos) << "right before it";
     EXPECT_EQ(warningsOf(at("[0, 0, 3.9]")), "");
     EXPECT_EQ(warningsOf(at("[0, 0, 6.5]")), "") << "behind it, looking away";
+}
+
+TEST(Detectors, WarnInAndAcrossSurfaces) {
+    const auto at = [](const std::string& position, const std::string& direction) {
+        return warningsOf(R"("detectors": [{}, {"name": "tip", "radius": 0.01, "position": )" + position +
+                          R"(, "direction": )" + direction + "}]");
+    };
+    const std::string in = "camera.detectors[1]: 'tip' lies in the surface 'block'",
+                      across = "camera.detectors[1]: 'tip' reaches through 'block'";
+    EXPECT_NE(at("[0.3, 0.2, 4]", "[0, 0, -1]").find(in), std::string::npos) << "a face looks out";
+    EXPECT_NE(at("[1, 0.2, 4.7]", "[0, 0.6, 0.8]").find(in), std::string::npos) << "along the face";
+    EXPECT_EQ(at("[0.3, 0.2, 3.9999]", "[0, 0, -1]"), "") << "moved off";
+    EXPECT_NE(at("[1.005, 0, 5]", "[0, 0, -1]").find(across), std::string::npos);
+    EXPECT_NE(at("[1.005, 0, 5]", "[0, 0, -1]").find("(radius 0.01)"), std::string::npos);
+    EXPECT_EQ(at("[1.011, 0, 5]", "[0, 0, -1]"), "") << "clear of it";
+    EXPECT_EQ(at("[1.005, 0, 5]", "[1, 0, 0]"), "") << "flat before it";
 }
 
 TEST(Detectors, RaysAndConnectionsAreWithinTheirAcceptance) {

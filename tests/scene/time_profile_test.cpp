@@ -108,12 +108,22 @@ TEST(TimeProfiles, PulsesAreOfEmitters) {
         {R"({"type": "gaussian", "sigma": 0})", "primitives[0].pulse.sigma"},
         {R"({"type": "exponential", "decay": 0})", "primitives[0].pulse.decay"},
         {R"({"type": "exponentil"})", "did you mean 'exponential'?"},
+        {R"({"type": "gaussian"})", "primitives[0].pulse.sigma: missing, expected a number from 1e-18"},
+        {R"({"type": "exponential", "start": 2})", "primitives[0].pulse.decay: missing, expected"},
+        {R"({"type": "box", "start": 2})", "primitives[0].pulse.end: missing, expected a number"},
+        {R"({"type": "gaussian", "fwhm": 0.5})", "primitives[0].pulse.fwhm: unknown field, expected center, sigma or "
+                                                 "type: a gaussian's sigma is fwhm / 2.3548"},
+        {R"({"type": "gaussian", "sigme": 0.5})", "did you mean 'sigma'?"},
+        {R"({"sigma": 0.5})",
+         "pulse.sigma: unknown field, expected times, type or values: that takes the type gaussian"},
         {R"("long")", "primitives[0].pulse"}};
     for (const auto& [fields, expected] : bad)
         EXPECT_NE(problemsOf(scene(R"("pulse": )" + fields, gate)).find(expected), std::string::npos)
             << fields << "\n"
             << problemsOf(scene(R"("pulse": )" + fields, gate));
-    const std::string box = R"("pulse": {"type": "box"})";
+    const std::string notANumber = problemsOf(scene(R"("pulse": {"times": [0, 1], "values": [1, NaN]})", gate));
+    EXPECT_EQ(notANumber.find("as many values"), std::string::npos) << "one mistake, one error: " << notANumber;
+    const std::string box = R"("pulse": {"type": "box", "end": 1})";
     for (const char* integrator :
          {R"("delta_time_gate": true)", R"("temporal_response": {"type": "box", "start": 2, "end": 3})"})
         EXPECT_NE(problemsOf(scene(box, integrator)).find("primitives[0].pulse: "), std::string::npos) << integrator;

@@ -67,8 +67,8 @@ TEST(SceneWarnings, WhatIsNotDoneIsSaid) {
     const std::string gate = lamp + R"("integrator": {"type": "path_tracer", "transient_time_width": 0.5)";
     EXPECT_NE(warningsOf(gate + R"(, "transient_time_center": -2}})").find("steady state"), std::string::npos);
     EXPECT_NE(warningsOf(gate + "}}").find("steady state"), std::string::npos);
-    for (const char* more :
-         {R"(, "transient_time_center": 2}})", R"(, "frame_num": 2}})", R"(, "temporal_response": {"type": "box"}}})"})
+    for (const char* more : {R"(, "transient_time_center": 2}})", R"(, "frame_num": 2}})",
+                             R"(, "temporal_response": {"type": "box", "end": 1}}})"})
         EXPECT_EQ(warningsOf(gate + more).find("steady state"), std::string::npos) << more;
 }
 
@@ -89,7 +89,7 @@ TEST(SceneWarnings, TimesThatAreNotLookedAtAreSaid) {
               std::string::npos)
         << centre;
     EXPECT_EQ(warningsOf(gate + R"("transient_time_center": -1}})"), "");
-    EXPECT_EQ(warningsOf(gate + R"("transient_time_center": 1, "temporal_response": {"type": "box"}}})"), "");
+    EXPECT_EQ(warningsOf(gate + R"("transient_time_center": 1, "temporal_response": {"type": "box", "end": 1}}})"), "");
     EXPECT_EQ(warningsOf(gate + R"("transient_time_center": 1, "delta_time_gate": true, "darts": "best"}})"), "");
 }
 

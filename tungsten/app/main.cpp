@@ -99,14 +99,6 @@ void printSummary(const SessionResult& result) {
     std::fflush(stdout);
 }
 
-[[noreturn]] void failWithoutPass(const std::filesystem::path& file, const SessionOptions& session) {
-    char seconds[32];
-    std::snprintf(seconds, sizeof seconds, "%.3g", session.timeoutSeconds);
-    throw InputError(file.string(), "time-out: not one pass ended within " + std::string(seconds) +
-                                        " s, and nothing was written; give it more time, a smaller --resolution, "
-                                        "fewer samples in a pass (renderer.spp_step) or fewer photons");
-}
-
 /// Job and outputs of a scene that is rendered; only rank 0 warns.
 Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
     std::optional<Job> job;
@@ -144,7 +136,7 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
     const SessionOptions session = sessionOptions(options, loaded.renderer, team);
     runSession(loaded, *job.integrator, job.plan, outputs, session, result);
     if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
-        together(team, [&] { failWithoutPass(file, session); });
+        together(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
     if (!options.quiet && speaks(team)) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }

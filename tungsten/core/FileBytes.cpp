@@ -3,6 +3,7 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/SystemError.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 
@@ -25,13 +26,17 @@ uint64_t requireRegularFile(const std::filesystem::path& file) {
     return uint64_t(status.st_size);
 }
 
-std::vector<char> readFileBytes(const std::filesystem::path& file) {
-    constexpr uint64_t LargestFile = uint64_t(1) << 32;
+std::vector<char> readFileBytes(const std::filesystem::path& file, const LoadWatch& watch) {
+    constexpr uint64_t LargestFile = uint64_t(1) << 32, Part = uint64_t(1) << 23;
     const uint64_t size = requireRegularFile(file);
     if (size > LargestFile) throw InputError(file.string(), "larger than 4 GiB");
     std::vector<char> bytes(size);
     std::ifstream in(file, std::ios::binary);
-    if (!in.read(bytes.data(), std::streamsize(size))) throw InputError(file.string(), "cannot be read");
+    for (uint64_t at = 0; at < size && in; at += Part) {
+        watch.poll();
+        in.read(bytes.data() + at, std::streamsize(std::min(Part, size - at)));
+    }
+    if (!in) throw InputError(file.string(), "cannot be read");
     return bytes;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // Whole files in memory, for the loaders of scenes, meshes and images.
 
+#include "tungsten/core/LoadWatch.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -12,6 +14,6 @@ namespace tungsten {
 uint64_t requireRegularFile(const std::filesystem::path& file);
 
 /// The bytes of a regular file of up to 4 GiB; otherwise throws as above.
-std::vector<char> readFileBytes(const std::filesystem::path& file);
+std::vector<char> readFileBytes(const std::filesystem::path& file, const LoadWatch& watch = {});
 
 } // namespace tungsten

@@ -40,16 +40,26 @@ std::vector<std::pair<std::string, const Image*>> layersOf(const ExrPart& part) 
     return layers;
 }
 
-Imf::Header headerOf(const ExrPart& part, bool multiPart) {
+/// OpenEXR keeps three buffers of a block of lines for each part until the file is complete: 300 MB for 1024 parts of
+/// 256 pixels and six channels in blocks of 16 lines. Many parts are compressed line by line instead.
+Imf::Compression compressionOf(const Imf::Header& header, int parts) {
+    constexpr double MostBytes = 32.0 * 1024 * 1024, LinesOfBlock = 16.0, Buffers = 3.0;
+    double channels = 0.0;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) channels += 1.0;
+    const double line = channels * sizeof(float) * (double(header.dataWindow().max.x) + 1.0);
+    return double(parts) * Buffers * LinesOfBlock * line <= MostBytes ? Imf::ZIP_COMPRESSION : Imf::ZIPS_COMPRESSION;
+}
+
+Imf::Header headerOf(const ExrPart& part, int parts) {
     Imf::Header header(part.colour.width, part.colour.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
     header.setType(Imf::SCANLINEIMAGE);
-    if (multiPart) header.setName(part.name);
+    if (parts > 1) header.setName(part.name);
     for (const char* component : Components) {
         header.channels().insert(component, Imf::Channel(Imf::FLOAT));
         for (const auto& [layer, image] : layersOf(part))
             header.channels().insert(layer + component, Imf::Channel(Imf::FLOAT));
     }
+    header.compression() = compressionOf(header, parts);
     if (part.hasTime) {
         header.insert("timeStart", Imf::DoubleAttribute(part.timeStart));
         header.insert("timeEnd", Imf::DoubleAttribute(part.timeEnd));
@@ -74,7 +84,7 @@ void writeParts(std::ostream& stream, const std::filesystem::path& file, int par
                 const std::function<ExrPart(int)>& partOf, const std::string& metadata) {
     try {
         std::vector<Imf::Header> headers;
-        for (int i = 0; i < parts; ++i) headers.push_back(headerOf(partOf(i), parts > 1));
+        for (int i = 0; i < parts; ++i) headers.push_back(headerOf(partOf(i), parts));
         if (!metadata.empty()) headers.at(0).insert(MetadataName, Imf::StringAttribute(metadata));
         ExrStream target(stream, file);
         Imf::MultiPartOutputFile out(target, headers.data(), int(headers.size()));

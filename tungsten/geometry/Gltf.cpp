@@ -54,7 +54,8 @@ NodeTransform localTransform(const tinygltf::Node& node) {
 /// Collects the triangles of the nodes it is given.
 class Merger {
   public:
-    Merger(const tinygltf::Model& model, const std::filesystem::path& file) : model_(model), file_(file) {}
+    Merger(const tinygltf::Model& model, const std::filesystem::path& file, const LoadWatch& watch)
+        : model_(model), file_(file), watch_(watch) {}
 
     void addMesh(int index, const NodeTransform& transform) {
         if (size_t(index) >= model_.meshes.size()) failGltf(file_, "mesh " + std::to_string(index) + " does not exist");
@@ -78,9 +79,11 @@ class Merger {
         if (!positions.isFloat()) failGltf(file_, "positions must be floats");
         const size_t first = mesh_.positions.size();
         if (positions.count() > MostElements - first) failGltf(file_, "has more than 2^26 vertices");
-        for (size_t i = 0; i < positions.count(); ++i)
+        for (size_t i = 0; i < positions.count(); ++i) {
+            watch_.pollEvery(i);
             mesh_.positions.push_back(
                 Vec3f(transform.point(Vec3d(positions.real(i, 0), positions.real(i, 1), positions.real(i, 2)))));
+        }
         addNormals(primitive, positions.count(), transform);
         addUvs(primitive, positions.count());
         addTriangles(primitive, uint32_t(first), positions.count(), transform.mirrors());
@@ -122,6 +125,7 @@ class Merger {
         if (mesh_.triangles.size() + corners.size() > MostElements) failGltf(file_, "has more than 2^26 triangles");
         const auto add = [&](size_t a, size_t b, size_t c) {
             if (mirrored) std::swap(b, c);
+            watch_.pollEvery(a);
             mesh_.triangles.push_back({{first + corners[a], first + corners[b], first + corners[c]}});
             mesh_.materials.push_back(primitive.material);
         };
@@ -136,6 +140,7 @@ class Merger {
 
     const tinygltf::Model& model_;
     std::filesystem::path file_;
+    const LoadWatch& watch_;
     TriangleMesh mesh_;
 };
 
@@ -154,8 +159,8 @@ std::vector<int> rootNodes(const tinygltf::Model& model) {
     return roots;
 }
 
-TriangleMesh mergeScene(const tinygltf::Model& model, const std::filesystem::path& file) {
-    Merger merger(model, file);
+TriangleMesh mergeScene(const tinygltf::Model& model, const std::filesystem::path& file, const LoadWatch& watch) {
+    Merger merger(model, file, watch);
     struct Visit {
         int node;
         NodeTransform parent;
@@ -184,12 +189,13 @@ TriangleMesh mergeScene(const tinygltf::Model& model, const std::filesystem::pat
 
 } // namespace
 
-TriangleMesh loadGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within) {
+TriangleMesh loadGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within,
+                      const LoadWatch& watch) {
     const tinygltf::Model model = parseGltf(file, within);
     for (const std::string& extension : model.extensionsRequired)
         if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
             failGltf(file, "needs the glTF extension " + extension + ", which is not supported");
-    return mergeScene(model, file);
+    return mergeScene(model, file, watch);
 }
 
 } // namespace tungsten

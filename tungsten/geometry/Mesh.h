@@ -1,6 +1,7 @@
 #pragma once
 // Triangle meshes in world space and their files.
 
+#include "tungsten/core/LoadWatch.h"
 #include "tungsten/core/Transform.h"
 #include "tungsten/core/Types.h"
 
@@ -35,23 +36,16 @@ struct TriangleMesh {
 /// Reads .wo3, .obj, .ply, .gltf, .glb (by extension, case-insensitive; glTF node transforms applied, all nodes
 /// merged). Throws InputError naming the file for anything missing, truncated, corrupt or out of range (indices, counts
 /// against the file's size, non-finite positions). A file without triangles gives an empty mesh. Normals and uvs that
-/// are not finite become 0 (the face normal is used there).
-TriangleMesh loadMesh(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within = {});
-
-TriangleMesh loadWo3(const std::filesystem::path& file);
-/// Groups, objects and materials are ignored; a corner without a normal gets (0, 1, 0), without uv (0, 0).
-TriangleMesh loadObj(const std::filesystem::path& file);
-/// ASCII and binary, both endians; elements vertex (x y z, nx ny nz, s t or u v) and face (vertex_indices).
-TriangleMesh loadPly(const std::filesystem::path& file);
-/// Triangles of the default scene's nodes; material index = glTF material; v flipped to the convention that 1 is the
-/// top. Buffers in files of their own must lie `within` that folder, if there is one.
-TriangleMesh loadGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within = {});
+/// are not finite become 0 (the face normal is used there). Buffers of a glTF in files of their own must lie `within`
+/// that folder, if there is one.
+TriangleMesh loadMesh(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within = {},
+                      const LoadWatch& watch = {});
 
 /// Frees what rendering will not read: the normals of a mesh that is not smooth.
 void dropUnused(TriangleMesh& mesh);
 
 /// Replaces the vertex normals by area-weighted ones with the format's 27 degree crease rule (may split vertices).
-void recomputeNormals(TriangleMesh& mesh);
+void recomputeNormals(TriangleMesh& mesh, const LoadWatch& watch = {});
 
 /// Positions by M; normals by S^-2 M (S the column lengths of M, applied on the left as the format does), normalised.
 void transformMesh(TriangleMesh& mesh, const Transform& transform);

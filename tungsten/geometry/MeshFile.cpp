@@ -52,12 +52,13 @@ void finishMesh(TriangleMesh& mesh, const std::filesystem::path& file) {
     mesh.materials.shrink_to_fit();
 }
 
-TriangleMesh loadMesh(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within) {
+TriangleMesh loadMesh(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within,
+                      const LoadWatch& watch) {
     const std::string extension = lowerCaseExtension(file);
-    if (extension == ".wo3") return loadWo3(file);
-    if (extension == ".obj") return loadObj(file);
-    if (extension == ".ply") return loadPly(file);
-    if (extension == ".gltf" || extension == ".glb") return loadGltf(file, within);
+    if (extension == ".wo3") return loadWo3(file, watch);
+    if (extension == ".obj") return loadObj(file, watch);
+    if (extension == ".ply") return loadPly(file, watch);
+    if (extension == ".gltf" || extension == ".glb") return loadGltf(file, within, watch);
     throw InputError(file.string(), "a mesh of type '" + extension + "'; accepted: .wo3, .obj, .ply, .gltf or .glb");
 }
 

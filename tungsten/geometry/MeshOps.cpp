@@ -73,16 +73,21 @@ Vec3f TriangleMesh::pointOn(uint32_t triangle, float b1, float b2) const {
     return p0 + ((positions[v[1]] - p0) * b1 + (positions[v[2]] - p0) * b2);
 }
 
-void recomputeNormals(TriangleMesh& mesh) {
+void recomputeNormals(TriangleMesh& mesh, const LoadWatch& watch) {
     const float cosCrease = std::cos(0.15f * Pi);
     const size_t originals = mesh.positions.size();
     const std::vector<Vec3f> faceNormals = splitCreases(mesh, cosCrease);
     std::unordered_map<Vec3f, std::vector<uint32_t>, PositionHash> verticesAt;
     verticesAt.reserve(originals);
-    for (size_t v = 0; v < originals; ++v) verticesAt[mesh.positions[v]].push_back(uint32_t(v));
+    for (size_t v = 0; v < originals; ++v) {
+        watch.pollEvery(v);
+        verticesAt[mesh.positions[v]].push_back(uint32_t(v));
+    }
 
     std::vector<Vec3d> sums(originals, Vec3d(0.0));
+    size_t done = 0;
     for (const Triangle& triangle : mesh.triangles) {
+        watch.pollEvery(done++);
         const Vec3d weighted = scaledNormal(mesh, triangle);
         if (weighted == Vec3d(0.0)) continue;
         const Vec3f normal = unitOrUp(weighted);

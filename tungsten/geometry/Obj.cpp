@@ -32,14 +32,14 @@ struct CornerHash {
 
 class ObjReader {
   public:
-    explicit ObjReader(const std::filesystem::path& file) : file_(file) {}
+    ObjReader(const std::filesystem::path& file, const LoadWatch& watch) : file_(file), watch_(watch) {}
 
     TriangleMesh read() {
-        std::vector<char> bytes = readFileBytes(file_);
+        std::vector<char> bytes = readFileBytes(file_, watch_);
         joinContinuedLines(bytes);
         TextCursor text({bytes.data(), bytes.size()});
         while (!text.atEnd()) {
-            ++line_;
+            watch_.pollEvery(++line_);
             readLine(text.nextLine());
         }
         if (uvs_.empty()) mesh_.uvs.clear();
@@ -136,6 +136,7 @@ class ObjReader {
     }
 
     std::filesystem::path file_;
+    const LoadWatch& watch_;
     size_t line_ = 0;
     std::vector<Vec3f> positions_, normals_;
     std::vector<Vec2f> uvs_;
@@ -145,8 +146,8 @@ class ObjReader {
 
 } // namespace
 
-TriangleMesh loadObj(const std::filesystem::path& file) {
-    return ObjReader(file).read();
+TriangleMesh loadObj(const std::filesystem::path& file, const LoadWatch& watch) {
+    return ObjReader(file, watch).read();
 }
 
 } // namespace tungsten

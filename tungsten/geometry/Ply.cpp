@@ -115,8 +115,8 @@ Header readHeader(std::string_view text, const std::filesystem::path& file) {
 /// The values of the body, one after the other.
 class BodyReader {
   public:
-    BodyReader(std::string_view body, Encoding encoding, const std::filesystem::path& file)
-        : body_(body), text_(body), encoding_(encoding), file_(file) {}
+    BodyReader(std::string_view body, Encoding encoding, const std::filesystem::path& file, const LoadWatch& watch)
+        : body_(body), text_(body), encoding_(encoding), file_(file), watch_(watch) {}
 
     double next(const ScalarType& type) {
         if (encoding_ == Encoding::Ascii) {
@@ -135,6 +135,9 @@ class BodyReader {
         return decode(raw.data(), type);
     }
 
+    /// Before each record of an element.
+    void startRecord(uint64_t index) const { watch_.pollEvery(index); }
+
     /// The length of a list, checked against the bytes that are left.
     size_t nextCount(const Property& list) {
         const double count = next(list.countType);
@@ -142,6 +145,11 @@ class BodyReader {
         if (!(count >= 0.0) || count > double(most) || count != std::floor(count))
             fail(file_, "a list '" + list.name + "' claims more values than the file holds");
         return size_t(count);
+    }
+
+    void skip(const Property& property) {
+        const size_t values = property.isList ? nextCount(property) : 1;
+        for (size_t k = 0; k < values; ++k) next(property.type);
     }
 
     /// Throws unless `element.count` records can possibly fit into the rest of the file.
@@ -186,6 +194,7 @@ class BodyReader {
     size_t position_ = 0;
     Encoding encoding_;
     std::filesystem::path file_;
+    const LoadWatch& watch_;
 };
 
 /// Which vertex quantity a property is: 0-2 position, 3-5 normal, 6-7 uv, 8 none of them.
@@ -213,6 +222,7 @@ void readVertices(BodyReader& body, const Element& element, TriangleMesh& mesh, 
     if (hasUvs) mesh.uvs.reserve(element.count);
     std::array<float, Quantities + 1> value{};
     for (uint64_t i = 0; i < element.count; ++i) {
+        body.startRecord(i);
         for (size_t p = 0; p < quantities.size(); ++p) {
             const Property& property = element.properties[p];
             const size_t values = property.isList ? body.nextCount(property) : 1;
@@ -240,32 +250,31 @@ void readPolygon(BodyReader& body, const Property& list, TriangleMesh& mesh, con
 }
 
 void readFaces(BodyReader& body, const Element& element, TriangleMesh& mesh, const std::filesystem::path& file) {
-    for (uint64_t i = 0; i < element.count; ++i)
+    for (uint64_t i = 0; i < element.count; ++i) {
+        body.startRecord(i);
         for (const Property& property : element.properties) {
-            if (property.isList && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+            if (property.isList && (property.name == "vertex_indices" || property.name == "vertex_index"))
                 readPolygon(body, property, mesh, file);
-                continue;
-            }
-            const size_t values = property.isList ? body.nextCount(property) : 1;
-            for (size_t k = 0; k < values; ++k) body.next(property.type);
+            else
+                body.skip(property);
         }
+    }
 }
 
 void skipElement(BodyReader& body, const Element& element) {
-    for (uint64_t i = 0; i < element.count; ++i)
-        for (const Property& property : element.properties) {
-            const size_t values = property.isList ? body.nextCount(property) : 1;
-            for (size_t k = 0; k < values; ++k) body.next(property.type);
-        }
+    for (uint64_t i = 0; i < element.count; ++i) {
+        body.startRecord(i);
+        for (const Property& property : element.properties) body.skip(property);
+    }
 }
 
 } // namespace
 
-TriangleMesh loadPly(const std::filesystem::path& file) {
-    const std::vector<char> bytes = readFileBytes(file);
+TriangleMesh loadPly(const std::filesystem::path& file, const LoadWatch& watch) {
+    const std::vector<char> bytes = readFileBytes(file, watch);
     const std::string_view text(bytes.data(), bytes.size());
     const Header header = readHeader(text, file);
-    BodyReader body(text.substr(header.bytes), header.encoding, file);
+    BodyReader body(text.substr(header.bytes), header.encoding, file, watch);
     TriangleMesh mesh;
     bool hasVertices = false;
     for (const Element& element : header.elements) {

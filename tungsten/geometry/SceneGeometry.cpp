@@ -196,31 +196,37 @@ bool canBeTraced(const Ray& ray) {
 
 } // namespace
 
-SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes) : shapes_(shapes) {
-    device_ = rtcNewDevice(nullptr);
+SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes, const LoadWatch& watch)
+    : shapes_(shapes), device_(rtcNewDevice(nullptr)) {
     if (!device_) throw std::runtime_error("Embree: no device");
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    for (size_t i = 0; i < shapes_.size(); ++i) {
-        const RTCGeometry geometry = makeGeometry(device_, *shapes_[i]);
-        if (!geometry) continue;
-        triangleCount_ += trianglesOf(*shapes_[i]);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(scene_, geometry, unsigned(i));
-        rtcReleaseGeometry(geometry);
-    }
-    rtcCommitScene(scene_);
-    requireNoError(device_);
+    scene_.reset(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    attachShapes(watch);
+    // Embree's builders end where the monitor says false.
+    rtcSetSceneProgressMonitorFunction(
+        scene_.get(), [](void* asked, double) { return static_cast<const LoadWatch*>(asked)->goesOn(); },
+        const_cast<LoadWatch*>(&watch));
+    rtcCommitScene(scene_.get());
+    watch.poll();
+    rtcSetSceneProgressMonitorFunction(scene_.get(), nullptr, nullptr);
+    requireNoError(device_.get());
     RTCBounds bounds{};
-    rtcGetSceneBounds(scene_, &bounds);
+    rtcGetSceneBounds(scene_.get(), &bounds);
     if (bounds.lower_x > bounds.upper_x) return; // nothing in it
     boundsMin_ = {bounds.lower_x, bounds.lower_y, bounds.lower_z};
     boundsMax_ = {bounds.upper_x, bounds.upper_y, bounds.upper_z};
 }
 
-SceneGeometry::~SceneGeometry() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
+void SceneGeometry::attachShapes(const LoadWatch& watch) {
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+        watch.poll();
+        const RTCGeometry geometry = makeGeometry(device_.get(), *shapes_[i]);
+        if (!geometry) continue;
+        triangleCount_ += trianglesOf(*shapes_[i]);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometryByID(scene_.get(), geometry, unsigned(i));
+        rtcReleaseGeometry(geometry);
+    }
 }
 
 std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
@@ -228,7 +234,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
     RTCRayHit query{};
     query.ray = embreeRay(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    embree::intersect(scene_, query);
+    embree::intersect(scene_.get(), query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     SurfaceHit hit;
     hit.t = query.ray.tfar;
@@ -243,7 +249,7 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
 bool SceneGeometry::occluded(const Ray& ray) const {
     if (!(ray.tMin < ray.tMax) || !canBeTraced(ray)) return false; // below 0 the end would pass for Embree's answer
     RTCRay query = embreeRay(ray);
-    return embree::occluded(scene_, query);
+    return embree::occluded(scene_.get(), query);
 }
 
 } // namespace tungsten

@@ -33,8 +33,7 @@ struct SurfaceHit {
 class SceneGeometry {
   public:
     /// `shapes` must stay alive and at the same address.
-    explicit SceneGeometry(const std::vector<const Shape*>& shapes);
-    ~SceneGeometry();
+    explicit SceneGeometry(const std::vector<const Shape*>& shapes, const LoadWatch& watch = {});
     SceneGeometry(const SceneGeometry&) = delete;
     SceneGeometry& operator=(const SceneGeometry&) = delete;
 
@@ -48,9 +47,15 @@ class SceneGeometry {
     [[nodiscard]] size_t triangleCount() const { return triangleCount_; }
 
   private:
+    void attachShapes(const LoadWatch& watch);
+
+    struct Release {
+        void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+    };
     std::vector<const Shape*> shapes_;
-    RTCDevice device_ = nullptr;
-    RTCScene scene_ = nullptr;
+    std::unique_ptr<RTCDeviceTy, Release> device_;
+    std::unique_ptr<RTCSceneTy, Release> scene_;
     Vec3f boundsMin_{0, 0, 0}, boundsMax_{0, 0, 0};
     size_t triangleCount_ = 0;
 };

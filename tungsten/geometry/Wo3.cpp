@@ -27,8 +27,8 @@ uint64_t readCount(const std::vector<char>& bytes, uint64_t offset, uint64_t rec
 
 } // namespace
 
-TriangleMesh loadWo3(const std::filesystem::path& file) {
-    const std::vector<char> bytes = readFileBytes(file);
+TriangleMesh loadWo3(const std::filesystem::path& file, const LoadWatch& watch) {
+    const std::vector<char> bytes = readFileBytes(file, watch);
     const uint64_t vertices = readCount(bytes, 0, VertexBytes, "vertices", file);
     const uint64_t trianglesAt = CountBytes + vertices * VertexBytes;
     const uint64_t triangles = readCount(bytes, trianglesAt, TriangleBytes, "triangles", file);
@@ -43,6 +43,7 @@ TriangleMesh loadWo3(const std::filesystem::path& file) {
     mesh.uvs.resize(vertices);
     const char* record = bytes.data() + CountBytes;
     for (uint64_t i = 0; i < vertices; ++i, record += VertexBytes) {
+        watch.pollEvery(i);
         std::memcpy(mesh.positions[i].getValue(), record, 12);
         std::memcpy(mesh.normals[i].getValue(), record + 12, 12);
         std::memcpy(mesh.uvs[i].getValue(), record + 24, 8);
@@ -51,6 +52,7 @@ TriangleMesh loadWo3(const std::filesystem::path& file) {
     mesh.materials.resize(triangles);
     record = bytes.data() + trianglesAt + CountBytes;
     for (uint64_t i = 0; i < triangles; ++i, record += TriangleBytes) {
+        watch.pollEvery(i);
         std::memcpy(mesh.triangles[i].v, record, 12);
         std::memcpy(&mesh.materials[i], record + 12, 4);
     }

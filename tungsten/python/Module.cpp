@@ -19,6 +19,9 @@ namespace py = pybind11;
 
 namespace {
 
+/// Of a scene's files; none: beside the scene.
+using Folder = std::optional<std::filesystem::path>;
+
 /// Loaded once; immutable from then on.
 const Plugins& plugins() {
     static const Plugins loaded;
@@ -33,9 +36,22 @@ void warn(const Problem& problem) {
     if (PyErr_WarnEx(PyExc_UserWarning, problem.text().c_str(), 1) != 0) throw py::error_already_set();
 }
 
+/// Ctrl-C becomes KeyboardInterrupt.
+void lookForSignals() {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+/// Python's other threads run meanwhile.
+Job loadJob(const std::filesystem::path& file, LoadOptions options, const Plugins& known) {
+    const py::gil_scoped_release released;
+    options.watch = LoadWatch(lookForSignals);
+    return makeJob(file, options, known);
+}
+
 /// A scene as a dict, or the name of a file; `set` as --set takes it.
-Job jobOf(const py::object& scene, const py::dict& set, const std::filesystem::path& folder, bool allowOutside) {
-    LoadOptions options{folder, {}, allowOutside};
+Job jobOf(const py::object& scene, const py::dict& set, const Folder& folder, bool allowOutside) {
+    LoadOptions options{folder.value_or(""), {}, allowOutside};
     for (const auto& [path, value] : set) options.overrides.push_back(path.cast<std::string>() + "=" + jsonOf(value));
     std::filesystem::path file = "scene";
     if (py::isinstance<py::dict>(scene))
@@ -43,7 +59,7 @@ Job jobOf(const py::object& scene, const py::dict& set, const std::filesystem::p
     else
         file = scene.cast<std::filesystem::path>();
     for (const Problem& problem : plugins().problems) warn(problem);
-    Job job = makeJob(file, options, plugins());
+    Job job = loadJob(file, options, plugins());
     for (const Problem& problem : job.loaded.diagnostics->warnings) warn(problem);
     return job;
 }
@@ -82,12 +98,6 @@ py::dict stateOf(const SessionResult& session, const SessionOptions& options) {
     return state;
 }
 
-/// Ctrl-C becomes KeyboardInterrupt.
-void lookForSignals() {
-    const py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 /// Between passes `progress` is called; where it says False, the render stops.
 void listen(const SessionResult& session, const SessionOptions& options, const py::object& progress,
             std::atomic<bool>& interrupted) {
@@ -99,8 +109,7 @@ void listen(const SessionResult& session, const SessionOptions& options, const p
 }
 
 Result render(const py::object& scene, const py::dict& set, const Limits& limits, uint64_t seed,
-              std::optional<int> threads, const py::object& progress, const std::filesystem::path& folder,
-              bool allowOutside) {
+              std::optional<int> threads, const py::object& progress, const Folder& folder, bool allowOutside) {
     if (threads && (*threads < 1 || *threads > 1024)) throw UsageError("threads: expected a number from 1 to 1024");
     const Job job = jobOf(scene, set, folder, allowOutside);
     SessionOptions options = sessionOptions(job.loaded.renderer, limits);
@@ -118,15 +127,14 @@ Result render(const py::object& scene, const py::dict& set, const Limits& limits
     runSession(job.loaded, *job.integrator, job.plan, {}, options, *session);
     if (session->film.passes() == 0 && session->reason == StopReason::TimedOut) {
         const py::gil_scoped_acquire gil;
-        PyErr_SetString(PyExc_TimeoutError, "not one pass ended in time: give it more seconds, a smaller resolution, a "
-                                            "smaller renderer.spp_step or fewer photons");
+        PyErr_SetString(PyExc_TimeoutError, whyNoPass(options, *session).c_str());
         throw py::error_already_set();
     }
     return {job.loaded, options, std::move(session)};
 }
 
 /// What --explain says.
-py::dict planOf(const py::object& scene, const py::dict& set, const std::filesystem::path& folder, bool allowOutside) {
+py::dict planOf(const py::object& scene, const py::dict& set, const Folder& folder, bool allowOutside) {
     const Job job = jobOf(scene, set, folder, allowOutside);
     py::list effects;
     for (const Effect& effect : job.plan.effects) {
@@ -230,16 +238,16 @@ void declare(py::module_& module) {
     const auto renderWith = [](const py::object& scene, const py::dict& set, std::optional<double> seconds,
                                std::optional<int64_t> passes, std::optional<int64_t> samples, double targetError,
                                uint64_t seed, std::optional<int> threads, const py::object& progress,
-                               const std::filesystem::path& folder, bool allowOutside) {
+                               const Folder& folder, bool allowOutside) {
         return render(scene, set, {seconds, passes, samples, targetError}, seed, threads, progress, folder,
                       allowOutside);
     };
     module.def("render", renderWith, RenderText, "scene"_a, py::kw_only(), "set"_a = py::dict(),
                "seconds"_a = py::none(), "passes"_a = py::none(), "samples"_a = py::none(), "target_error"_a = 0.0,
                "seed"_a = SessionOptions().seed, "threads"_a = py::none(), "progress"_a = py::none(),
-               "folder"_a = std::filesystem::path(), "allow_outside"_a = false);
+               "folder"_a = py::none(), "allow_outside"_a = false);
     module.def("plan", planOf, "Which effects a scene calls for, and why (--explain).", "scene"_a, py::kw_only(),
-               "set"_a = py::dict(), "folder"_a = std::filesystem::path(), "allow_outside"_a = false);
+               "set"_a = py::dict(), "folder"_a = py::none(), "allow_outside"_a = false);
     module.def("describe", describe, "The fields of a type, kind or block, or of all (--describe).", "type"_a = "");
 }
 

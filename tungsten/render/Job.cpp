@@ -37,7 +37,9 @@ void warnAboutBlackImage(const Job& job) {
 
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins, bool everything) {
     Job job{loadScene(file, options), nullptr, {}};
+    options.watch.poll();
     job.integrator = makeIntegrator(job.loaded, plugins);
+    options.watch.poll();
     job.plan = analyseScene(*job.loaded.scene, everything);
     job.integrator->plan(job.plan);
     if (job.plan.nothingArrives) warnAboutBlackImage(job);

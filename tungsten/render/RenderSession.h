@@ -25,6 +25,10 @@ enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
 std::string toString(StopReason reason);
 
 struct SessionResult;
+struct SessionOptions;
+
+/// What a time-out has left without one pass, and what helps.
+std::string whyNoPass(const SessionOptions& options, const SessionResult& result);
 
 struct SessionOptions {
     uint64_t seed = 0xBA5EBA11u;
@@ -59,6 +63,7 @@ struct SessionResult {
     int ranks = 1;                 ///< of the team that rendered
     double othersCpuSeconds = 0.0; ///< of ranks but the first
     double othersPeakMemory = 0.0; ///< bytes: the largest of them
+    PassProgress brokenOff;        ///< where the preparing, or the pass, was that was broken off last
     std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
     std::vector<Effect> effects; ///< of the plan

@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace tungsten {
 
@@ -22,6 +23,28 @@ std::string toString(StopReason reason) {
         return "interrupted";
     }
     return "";
+}
+
+std::string whyNoPass(const SessionOptions& options, const SessionResult& result) {
+    const auto text = [](const char* format, double number) {
+        char buffer[64];
+        std::snprintf(buffer, sizeof buffer, format, number);
+        return std::string(buffer);
+    };
+    const double limit = options.timeoutSeconds;
+    const auto stages = result.statistics.stages();
+    const auto prepare = stages.find("prepare");
+    const double preparing = prepare == stages.end() ? 0.0 : prepare->second.wallSeconds;
+    std::string why = "not one pass ended within " + text("%.3g s", limit);
+    if (preparing >= 0.9 * limit) {
+        why += ", which went into preparing";
+        if (!stages.contains("passes") && !result.brokenOff.stage.empty())
+            why += " (" + result.brokenOff.stage + text(", %.0f %% done)", 100.0 * result.brokenOff.ofStage);
+        return why + "; nothing was written. Give it more time: that is spent before the first photon or sample";
+    }
+    if (preparing >= 0.5 * limit) why += text(", of which %.2g s went into preparing", preparing);
+    return why + "; nothing was written. Give it more time, a smaller resolution, fewer samples in a pass "
+                 "(renderer.spp_step) or fewer photons";
 }
 
 std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result) {

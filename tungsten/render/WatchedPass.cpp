@@ -11,7 +11,7 @@ bool WatchedPass::run(PassInfo pass, Clock::time_point end,
     try {
         render(pass, statistics);
     } catch (const PassBrokenOff&) {
-        brokenAt_ = monitor_->progress().ofPass;
+        result_.brokenOff = monitor_->progress();
         return false;
     }
     timer.discard();

@@ -27,7 +27,7 @@ class WatchedPass {
     bool run(PassInfo pass, Clock::time_point end, const std::function<void(const PassInfo&, Statistics&)>& render);
 
     /// Part of the last pass that was broken off which had been rendered.
-    [[nodiscard]] double brokenAt() const { return brokenAt_; }
+    [[nodiscard]] double brokenAt() const { return result_.brokenOff.ofPass; }
     [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted->load(); }
     /// What SessionOptions::duringPass has thrown: later, since within a pass it would not end other threads' parts.
     void rethrow() const {
@@ -44,7 +44,6 @@ class WatchedPass {
     std::optional<PassMonitor> monitor_; ///< of the pass in progress
     std::thread::id thread_ = std::this_thread::get_id();
     Clock::time_point lastLook_ = Clock::now();
-    double brokenAt_ = 0.0;
     std::atomic<bool> failed_{false};
     std::exception_ptr failure_; ///< if failed_
 };

@@ -60,7 +60,11 @@ Detector readDetector(const ObjectReader& block, const Transform& placement) {
                                            {"none", "sine of the half angle within which it accepts light; 1: a bucket "
                                                     "that accepts a hemisphere"},
                                            {1e-6, 1.0}));
-    block.warnAboutUnknown();
+    block.refuseUnknown({{"aperture", "numerical_aperture is the sine of the cone's half angle"},
+                         {"angle", "numerical_aperture is the sine of the cone's half angle"},
+                         {"na", "numerical_aperture is meant"},
+                         {"diameter", "radius is half of it"},
+                         {"look_at", "direction is look_at - position"}});
     return detector;
 }
 
@@ -138,58 +142,6 @@ void readCamera(LoadContext& context, const ObjectReader& root, const ObjectRead
     scene.cameraRegion = {medium, medium >= 0 ? scene.media[size_t(medium)].speedOfLight : scene.transport.vacuumSpeed};
     reader.accept({"name"});
     reader.warnAboutUnknown();
-}
-
-namespace {
-
-/// Light that does not come from an emitter right behind it cannot pass.
-bool isWall(const Scene& scene, const SurfaceHit& hit) {
-    const Primitive& primitive = scene.primitives[hit.shape];
-    return primitive.emitter < 0 && !primitive.boundsRegion && (scene.bsdfOf(hit).lobes() & lobe::Through) == 0;
-}
-
-/// No light is in sight from here.
-bool isDark(const Scene& scene, const Vec3f& position) {
-    return std::none_of(scene.emitters.begin(), scene.emitters.end(), [&](const Emitter& emitter) {
-        const Vec3f way = boundingSphere(emitter).centre - position;
-        if (emitter.isInfinite() || !(way.length() > 0.0f)) return true;
-        Ray ray{position, way.normalized()};
-        ray.tMax = way.length();
-        const auto hit = scene.geometry->intersect(ray);
-        return !hit || !isWall(scene, *hit);
-    });
-}
-
-/// What covers it: a wall nearer than its radius wherever it looks, or one all around it. Null if it may see.
-const Primitive* wallAbout(const Scene& scene, const Detector& detector) {
-    constexpr int Side = 6;
-    const Ray back{detector.position, -detector.frame.n};
-    const auto behind = scene.geometry->intersect(back);
-    const bool dark = isDark(scene, detector.position);
-    const Primitive* wall = nullptr;
-    for (int k = 0; k < Side * Side; ++k) {
-        const int column = k % Side, row = k / Side;
-        const Vec2f u((float(column) + 0.5f) / Side, (float(row) + 0.5f) / Side);
-        const Ray ray = detector.sampleRay({u.y, u.x}, u);
-        const auto hit = scene.geometry->intersect(ray);
-        if (!hit || !isWall(scene, *hit)) return nullptr;
-        const bool inside = dark && behind && behind->shape == hit->shape && hit->ng.dot(ray.direction) > 0.0f &&
-                            behind->ng.dot(back.direction) > 0.0f;
-        if (!inside && hit->t >= detector.radius) return nullptr;
-        wall = &scene.primitives[hit->shape];
-    }
-    return wall;
-}
-
-} // namespace
-
-void warnAboutBlindDetectors(const LoadContext& context, const ObjectReader& camera) {
-    const auto* detectors = std::get_if<Detectors>(&context.scene.camera.model);
-    for (size_t i = 0; detectors && i < detectors->row.size(); ++i)
-        if (const Primitive* wall = wallAbout(context.scene, detectors->row[i]))
-            camera.warn("detectors[" + std::to_string(i) + "]",
-                        "sees nothing but " + (wall->name.empty() ? "a surface" : "'" + wall->name + "'") +
-                            ": it lies inside a wall, or looks into one nearer than its own radius");
 }
 
 } // namespace tungsten

@@ -65,18 +65,6 @@ int mediumAround(const Scene& scene, const Emitter& emitter) {
     return medium;
 }
 
-/// The first surface that a point lies in, but for rounding; none if it is clear of all.
-std::optional<uint32_t> surfaceAt(const Scene& scene, const Vec3f& position) {
-    const float rounding = 8.0f * std::numeric_limits<float>::epsilon() *
-                           std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z), 1e-20f});
-    for (const Vec3f& axis : {Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)}) {
-        Ray across{position - axis * rounding, axis};
-        across.tMax = 2.0f * rounding;
-        if (const auto hit = scene.geometry->intersect(across)) return hit->shape;
-    }
-    return std::nullopt;
-}
-
 void readPoint(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
     const Strength strength = readStrength(context, reader, {"power/steradian", "intensity in every direction"});
     const Rgb intensity = strength.isPower ? pointIntensityFromPower(strength.value) : strength.value;
@@ -203,20 +191,6 @@ void warnAboutMediaOfEmitters(const LoadContext& context) {
                                                    "' but names no ext_medium: its photons start in vacuum, while "
                                                    "camera paths find it in '" +
                                                    name + "'");
-    }
-}
-
-void warnAboutLightsOnSurfaces(const LoadContext& context) {
-    const Scene& scene = context.scene;
-    constexpr size_t MostLooked = 1000; // at lights: a warning is not worth more
-    for (size_t i = 0; i < std::min(context.emitters.size(), MostLooked); ++i) {
-        const Emitter& emitter = scene.emitters[i];
-        if (emitter.isInfinite() || emitter.primitive()) continue;
-        const auto surface = surfaceAt(scene, boundingSphere(emitter).centre);
-        if (!surface) continue;
-        context.emitters[i].warn("transform", "light '" + emitter.name + "' lies in the surface '" +
-                                                  scene.primitives[*surface].name +
-                                                  "': rounding decides whether it is seen; move it off a little");
     }
 }
 

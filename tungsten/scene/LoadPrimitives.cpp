@@ -24,13 +24,13 @@ Shape readMesh(LoadContext& context, const ObjectReader& reader, const Transform
         return mesh;
     }
     try {
-        mesh = loadMesh(context.resource(file), context.allowedFolder());
+        mesh = loadMesh(context.resource(file), context.allowedFolder(), context.watch);
     } catch (const InputError& error) {
         reader.problem("file", error.what());
         return TriangleMesh{};
     }
     mesh.smooth = smooth;
-    if (smooth && recompute) recomputeNormals(mesh);
+    if (smooth && recompute) recomputeNormals(mesh, context.watch);
     if (!smooth) std::vector<Vec3f>().swap(mesh.normals);
     transformMesh(mesh, transform);
     return mesh;
@@ -180,8 +180,10 @@ void describePrimitive(const std::shared_ptr<Description>& description) {
 }
 
 void readPrimitives(LoadContext& context, const ObjectReader& root) {
-    for (const ObjectReader& primitive : root.objects("primitives", {"none", "surfaces and light sources"}))
+    for (const ObjectReader& primitive : root.objects("primitives", {"none", "surfaces and light sources"})) {
+        context.watch.poll();
         readPrimitive(context, primitive);
+    }
     finishEmitters(context, root);
 }
 

@@ -196,7 +196,7 @@ FilmContents readFilm(const ObjectReader& reader) {
                                       {0, 256}));
     film.batchBlock = int(reader.integer("batch_block", 4, {"pixels", "side of those blocks"}, {1, 4096}));
     if (film.batches == 1) reader.problem("batches", "expected 0, or 2 and more: one batch tells no error, found 1");
-    reader.warnAboutUnknown();
+    reader.refuseUnknown();
     return film;
 }
 

@@ -16,6 +16,7 @@ std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::stri
                             (clamp ? 'c' : '-') + std::to_string(std::bit_cast<uint32_t>(scale));
     auto& entry = context.bitmaps[key];
     if (entry) return entry;
+    context.watch.poll();
     const std::shared_ptr<Bitmap> bitmap = loadBitmap(path);
     bitmap->gammaCorrect = gammaCorrect;
     bitmap->interpolate = interpolate;

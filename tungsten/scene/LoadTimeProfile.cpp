@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 namespace tungsten {
 
@@ -31,6 +32,36 @@ std::string profileProblem(const TimeProfile& profile) {
     return {};
 }
 
+/// How long it lasts is the scene's to say: no unit of time suits all. `instead` where that is missing.
+double width(const ObjectReader& block, const std::string& field, const Meaning& meaning, Range range,
+             double instead = 1.0) {
+    if (!block.has(field) && !block.describes()) block.problem(field, "missing, expected " + describe(range));
+    return block.number(field, instead, meaning, range);
+}
+
+/// What fields of other names and types are here.
+const std::map<std::string, std::string>& hints() {
+    static const std::map<std::string, std::string> known{{"fwhm", "a gaussian's sigma is fwhm / 2.3548"},
+                                                          {"width", "a gaussian's sigma is its full width at half "
+                                                                    "maximum / 2.3548, a box's end is start + width"},
+                                                          {"duration", "a box's end is start + duration"},
+                                                          {"stddev", "a gaussian's sigma is meant"},
+                                                          {"std", "a gaussian's sigma is meant"},
+                                                          {"mean", "a gaussian's center is meant"},
+                                                          {"mu", "a gaussian's center is meant"},
+                                                          {"tau", "an exponential's decay is meant"},
+                                                          {"lifetime", "an exponential's decay is meant"},
+                                                          {"half_life", "an exponential's decay is half_life / 0.6931"},
+                                                          {"center", "that takes the type gaussian"},
+                                                          {"sigma", "that takes the type gaussian"},
+                                                          {"start", "that takes the type box or exponential"},
+                                                          {"end", "that takes the type box"},
+                                                          {"decay", "that takes the type exponential"},
+                                                          {"times", "that takes the type tabulated"},
+                                                          {"values", "that takes the type tabulated"}};
+    return known;
+}
+
 TimeProfile readShape(const ObjectReader& block, const std::string& type) {
     TimeProfile profile;
     if (type == "tabulated" || block.describes()) {
@@ -40,8 +71,8 @@ TimeProfile readShape(const ObjectReader& block, const std::string& type) {
     }
     if (type == "gaussian" || block.describes()) {
         const double centre = block.number("center", 0.0, {"time", "gaussian: where it is largest"}, Range::measure());
-        const double sigma =
-            block.number("sigma", 1.0, {"time", "gaussian: standard deviation, cut at four"}, Range::positiveMeasure());
+        const double sigma = width(block, "sigma", {"time", "gaussian: standard deviation, cut at four", "required"},
+                                   Range::positiveMeasure());
         constexpr double Reach = 4.0; // standard deviations
         profile = pointsOf([](double x) { return std::exp(-0.5 * x * x); }, -Reach, Reach, 65, centre, sigma);
     }
@@ -49,13 +80,15 @@ TimeProfile readShape(const ObjectReader& block, const std::string& type) {
         const double start =
             block.number("start", 0.0, {"time", "box and exponential: when it begins"}, Range::measure());
         if (type == "exponential" || block.describes()) {
-            const double decay =
-                block.number("decay", 1.0, {"time", "exponential: until it has fallen to 1 / e; cut at 16 of these"},
-                             Range::positiveMeasure());
+            const double decay = width(
+                block, "decay", {"time", "exponential: until it has fallen to 1 / e; cut at 16 of these", "required"},
+                Range::positiveMeasure());
             profile = pointsOf([](double x) { return std::exp(-x); }, 0.0, 16.0, 257, start, decay);
         }
         if (type == "box" || block.describes())
-            profile = {{start, block.number("end", 1.0, {"time", "box: when it ends"}, Range::measure())}, {1.0, 1.0}};
+            profile = {
+                {start, width(block, "end", {"time", "box: when it ends", "required"}, Range::measure(), start + 1.0)},
+                {1.0, 1.0}};
     }
     return profile;
 }
@@ -67,11 +100,14 @@ TimeProfile readTimeProfile(const ObjectReader& reader, const std::string& field
     if (!block) return {};
     const std::string type = block->choice("type", "tabulated", {"box", "exponential", "gaussian", "tabulated"},
                                            {"none", "shape of the density over time, whose integral counts as 1"});
+    const auto problems = [&] { return reader.diagnostics()->problems.size() + reader.diagnostics()->moreProblems; };
+    const size_t before = problems();
     TimeProfile profile = readShape(*block, type);
-    const std::string problem = profileProblem(profile);
+    const bool read = problems() == before; // else its numbers are not those of the scene
+    const std::string problem = read ? profileProblem(profile) : "";
     if (!problem.empty()) block->problem(type == "box" ? "end" : "times", problem);
-    block->warnAboutUnknown();
-    return problem.empty() ? profile : TimeProfile{};
+    block->refuseUnknown(hints());
+    return read && problem.empty() ? profile : TimeProfile{};
 }
 
 } // namespace tungsten

@@ -7,6 +7,7 @@
 #include "tungsten/scene/Field.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -28,9 +29,9 @@ struct Diagnostics {
     [[nodiscard]] bool listsMore() const { return problems.size() < MostListed; }
 };
 
-/// A view of a JSON object at a known path. Reading a field marks it as known; warnAboutUnknown() then names the others
-/// with the nearest known name. A missing field yields the default; a bad value records a problem and yields the
-/// default. Cheap to copy: copies share what is known. Keeps the document alive.
+/// A view of a JSON object at a known path. Reading a field marks it as known; warnAboutUnknown() or refuseUnknown()
+/// then name the others with the nearest known name. A missing field yields the default; a bad value records a problem
+/// and yields the default. Cheap to copy: copies share what is known. Keeps the document alive.
 ///
 /// Every reading call declares its field. A describing reader collects the declarations over an object that holds
 /// nothing but its type: loaders run as always, every field takes its default and problems go nowhere.
@@ -94,6 +95,9 @@ class ObjectReader {
     void accept(const std::vector<std::string>& names) const;
     /// Warns, once per field, about fields nobody asked for and fields given more than once.
     void warnAboutUnknown() const;
+    /// The same as problems, for blocks that the format does not have: what is no field of theirs is a mistake. Names
+    /// that people may try have `hints`.
+    void refuseUnknown(const std::map<std::string, std::string>& hints = {}) const;
     void problem(const std::string& field, const std::string& message) const;
     void warn(const std::string& field, const std::string& message) const;
 
@@ -103,6 +107,8 @@ class ObjectReader {
 
   private:
     [[nodiscard]] const Node* find(const std::string& name) const;
+    /// Fields nobody asked for, each once; warns about those given more than once.
+    [[nodiscard]] std::vector<std::string> unknownNames() const;
     [[nodiscard]] double readNumber(const std::string& name, double fallback, Range range) const;
     [[nodiscard]] std::vector<double> readNumbers(const std::string& name, Range range) const;
     [[nodiscard]] Vec3f readVec3(const std::string& name, const Vec3f& fallback, Range range) const;

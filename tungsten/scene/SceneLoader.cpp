@@ -50,10 +50,10 @@ ObjectReader blockOf(const ObjectReader& root, const std::string& name, const Me
 }
 
 /// What can only be known once every primitive is there.
-void finishGeometry(Scene& scene) {
+void finishGeometry(Scene& scene, const LoadWatch& watch = {}) {
     std::vector<const Shape*> shapes;
     for (const Primitive& primitive : scene.primitives) shapes.push_back(&primitive.shape);
-    scene.geometry = std::make_unique<SceneGeometry>(shapes);
+    scene.geometry = std::make_unique<SceneGeometry>(shapes, watch);
     const Vec3f low = scene.geometry->boundsMin(), high = scene.geometry->boundsMax();
     const float radius = std::max((high - low).length() * 0.5f, 1e-6f);
     for (Emitter& emitter : scene.emitters) encloseScene(emitter, (low + high) * 0.5f, radius);
@@ -137,11 +137,12 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     scene->file = file;
     LoadContext context{*scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory,
                         options.allowOutside};
+    context.watch = options.watch;
     const Blocks blocks = readScene(context, root);
     checkReach(*scene, root);
     throwIfProblems(*diagnostics);
 
-    finishGeometry(*scene);
+    finishGeometry(*scene, options.watch);
     warnAboutMediaOfEmitters(context);
     warnAboutLightsOnSurfaces(context);
     warnAboutBlindDetectors(context, blocks.camera);

@@ -40,6 +40,7 @@ struct LoadOptions {
     std::vector<std::string> overrides;   ///< "path.to.field=value", applied to the JSON in order
     bool allowOutside = false;            ///< resources may lie outside that directory
     std::optional<std::string> text = {}; ///< the scene itself: the file's name is then only told in messages
+    LoadWatch watch = {};                 ///< what it throws ends the loading
 };
 
 struct LoadedScene {

@@ -1,0 +1,41 @@
+#include "tungsten/core/LoadWatch.h"
+
+#include <atomic>
+#include <exception>
+
+namespace tungsten {
+
+using Clock = std::chrono::steady_clock;
+
+struct LoadWatch::State {
+    std::function<void()> look;
+    std::chrono::milliseconds between;
+    std::thread::id thread = std::this_thread::get_id();
+    Clock::time_point last = Clock::now();
+    std::atomic<bool> failed{false};
+    std::exception_ptr failure{}; ///< if failed
+};
+
+LoadWatch::LoadWatch(std::function<void()> look, std::chrono::milliseconds between)
+    : state_(std::make_shared<State>(std::move(look), between)) {}
+
+bool LoadWatch::goesOn() const noexcept {
+    if (!state_ || state_->failed) return !state_;
+    if (std::this_thread::get_id() != state_->thread) return true;
+    const auto now = Clock::now();
+    if (now - state_->last < state_->between) return true;
+    state_->last = now;
+    try {
+        state_->look();
+    } catch (...) {
+        state_->failure = std::current_exception();
+        state_->failed = true;
+    }
+    return !state_->failed;
+}
+
+void LoadWatch::poll() const {
+    if (!goesOn()) std::rethrow_exception(state_->failure);
+}
+
+} // namespace tungsten

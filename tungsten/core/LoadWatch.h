@@ -1,0 +1,36 @@
+#pragma once
+// Scenes that take long to load: whoever waits for one is asked, on the way, whether to go on.
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <thread>
+
+namespace tungsten {
+
+/// Copies share what they call. One thread loads: the one that made this.
+class LoadWatch {
+  public:
+    /// Nobody waits.
+    LoadWatch() = default;
+    /// `look` is called once every `between`, as long as work goes on; what it throws ends the loading.
+    explicit LoadWatch(std::function<void()> look, std::chrono::milliseconds between = std::chrono::milliseconds(50));
+
+    /// Costs a look at a clock.
+    void poll() const;
+    /// In a loop over what takes about a microsecond each.
+    void pollEvery(size_t index) const {
+        constexpr size_t Span = 1024;
+        if (state_ && index % Span == 0) poll();
+    }
+    /// The same where nothing may be thrown, from any thread: false once the loading is to end, which the next poll()
+    /// then does.
+    [[nodiscard]] bool goesOn() const noexcept;
+
+  private:
+    struct State;
+    std::shared_ptr<State> state_;
+};
+
+} // namespace tungsten
