@@ -2,12 +2,15 @@
 
 #include <atomic>
 #include <exception>
+#include <utility>
 
 namespace tungsten {
 
 using Clock = std::chrono::steady_clock;
 
 struct LoadWatch::State {
+    State(std::function<void()> calls, std::chrono::milliseconds every) : look(std::move(calls)), between(every) {}
+
     std::function<void()> look;
     std::chrono::milliseconds between;
     std::thread::id thread = std::this_thread::get_id();
