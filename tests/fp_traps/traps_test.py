@@ -36,7 +36,7 @@ def run(arguments, traces):
 
 
 def places(traces):
-    """{(functions, kind): how often} in the project's modules; functions: the innermost that is inlined first."""
+    """{(functions, kind): how often} in the project's modules; functions, with their files: the innermost that is inlined first."""
     modules = {}
     for line in traces.read_text().splitlines():
         module, offset, kind, count = line.split("\t")
@@ -46,7 +46,9 @@ def places(traces):
     for module, counts in modules.items():
         for (offset, kind), count in counts.items():
             done = subprocess.run(["addr2line", "-C", "-f", "-i", "-e", module, offset], capture_output=True, text=True)
-            found[" < ".join(done.stdout.splitlines()[::2]), kind] += count
+            lines = done.stdout.splitlines()
+            inlined = [f"{function} in {Path(place.split(':')[0]).name}" for function, place in zip(lines[::2], lines[1::2])]
+            found[" < ".join(inlined), kind] += count
     return found
 
 
