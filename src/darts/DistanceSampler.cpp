@@ -54,9 +54,11 @@ Shape shapeOf(Greens greens) {
 
 DistanceSampler::Kernels DistanceSampler::chooseKernels(const Settings& settings, bool grey, bool scalar) {
     const auto kernel = [&](Shape shape) { return kernelFor(shape, settings.candidates, grey, scalar); };
+    const bool alone = settings.aloneBehindRefraction;
     // Without a Green's function nothing but the bound in time is wanted.
     const bool shaped = settings.greens != Greens::None;
-    return {kernel(shapeOf(settings.greens)), kernel(shaped ? Shape::FirstPassage : Shape::TimeBound),
+    const Kernel out = kernel(shaped ? Shape::FirstPassage : Shape::TimeBound);
+    return {kernel(shapeOf(settings.greens)), out, alone ? kernelFor(Shape::TimeBound, 1, grey, scalar) : out,
             kernel(Shape::TimeBound)};
 }
 
@@ -112,7 +114,7 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
     draw.exit = &residual.exit;
     draw.direction = ray.direction;
     const Kernel kernel = residual.way == Way::Through ? kernels_.through
-                          : residual.way == Way::Out   ? kernels_.out
+                          : residual.way == Way::Out   ? residual.exit.connects ? kernels_.out : kernels_.refracted
                                                        : kernels_.unknown;
     sample.distance = kernel(draw, random, sample.transmittanceOverPdf);
     return sample;

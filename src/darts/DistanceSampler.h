@@ -49,7 +49,7 @@ class DistanceSampler {
     using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3& transmittanceOverPdf);
     /// By how light gets to the target.
     struct Kernels {
-        Kernel through = nullptr, out = nullptr, unknown = nullptr;
+        Kernel through = nullptr, out = nullptr, refracted = nullptr, unknown = nullptr;
     };
     /// Of usefulness, relative to the candidates' mean. Diffusion knows little of the last few scatterings in a body:
     /// what it calls useless still shows, too bright for its odds. Over a long way a constant floor would lead every

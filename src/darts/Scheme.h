@@ -39,6 +39,7 @@ struct Scheme {
         set(s.proposals, proposals);
         if (proposals) s.mixDenseOnly = s.exponentialOut = false;
         set(s.candidates, candidates);
+        if (candidates) s.aloneBehindRefraction = false;
         set(s.alpha, alpha);
         set(s.focus, focus);
         set(s.thinFocus, focus);

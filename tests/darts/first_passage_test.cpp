@@ -234,11 +234,12 @@ TEST(DirectionsOut, SampleTheirDensity) {
 }
 
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time.
-void expectDistancesOf(Mode mode, const Place& p, float g, double h, float leaveOdds) {
+void expectDistancesOf(Mode mode, const Place& p, float g, double h, float leaveOdds, bool connects = true) {
     SCOPED_TRACE(testing::Message() << int(mode) << " " << p.depth << " " << g << " " << h << " " << leaveOdds);
     const DistanceSampler sampler(best(mode, g), medium(g));
     Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
     residual.exit.leaveOdds = leaveOdds;
+    residual.exit.connects = connects;
     const Heading ray{directionAbout(residual.axis, float(h), 0.3f), float(h)};
     const double surface = h < 1.0 ? p.depth / (1.0 - h) : 1e30,
                  end = std::min(double(residual.latest(float(h)).firstLeg()), surface);
@@ -271,6 +272,8 @@ TEST(DistancesOut, MeansMatchQuadrature) {
             for (const float g : {0.0f, 0.8f})
                 for (const double h : {0.05, 1.0, 1.9})
                     for (const float leaveOdds : {1.0f, 0.1f}) expectDistancesOf(mode, p, g, h, leaveOdds);
+    for (const Place& p : Places)
+        for (const double h : {0.05, 1.0, 1.9}) expectDistancesOf(Mode::Photon, p, 0.0f, h, 1.0f, false);
 }
 
 /// Light that goes deep with little length left is what half-spaces call useless: its weight is bounded by the floor,
@@ -296,6 +299,27 @@ TEST(DistancesOut, StraysBoundWeights) {
     EXPECT_LT(heaviest(0.2f, Short), 5.0f);    // 3.2
     EXPECT_LT(heaviest(0.2f, Long), 2.0f);
     EXPECT_LT(heaviest(0.0f, Long), 2.0f);
+}
+
+/// Where light leaves by refraction nothing is known of where: no weight is above that of a free flight, or twice that
+/// of a uniform proposal beside it.
+TEST(DistancesOut, NothingIsRareBehindRefraction) {
+    const auto heaviest = [](bool connects) {
+        const DistanceSampler sampler(best(Mode::Photon, 0.0f), medium(0.0f));
+        Residual residual = outOf(0.5, 3.0, 4.1, 0.09);
+        residual.exit.connects = connects;
+        float most = 0.0f;
+        for (uint64_t i = 0; i < 50000; ++i) {
+            Sampler s(35, RandomStream::Test, 0, i);
+            const Heading ray{directionAbout(residual.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
+            const DistanceSample sample = sampler.sample(residual, residual.heading(ray.direction), 1e30f, {1, 1, 1},
+                                                         {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+            most = std::max(most, 10.02f * sample.transmittanceOverPdf.x);
+        }
+        return most;
+    };
+    EXPECT_LE(heaviest(false), 2.0f);
+    EXPECT_GT(heaviest(true), 2.0f);
 }
 
 /// Deep in a body usefulness hardly varies within a flight: nor may weights, which multiply over hundreds of them.

@@ -71,7 +71,8 @@ def main():
         reason = next((reason for part, of, reason in known() if part in functions and of == kind), None)
         unknown += not reason
         if arguments.list or not reason:
-            print(f"{functions[:300]} | {kind} | {reason or '?'}   ({count} times)")
+            inlined = functions.split(" < ")
+            print(f"{inlined[-1][:200]}: {inlined[0][:100]} | {kind} | {reason or '?'}   ({count} times)")
     sys.exit(f"{unknown} places are not in known.txt" if unknown else 0)
 
 

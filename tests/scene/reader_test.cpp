@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <cmath>
 #include <fstream>
 
@@ -158,4 +160,25 @@ TEST(Override, PathsThatLeadNowhereNameTheNearest) {
 }
 
 } // namespace
+/// What RapidJSON reads as 10^80 and 10^-118, depending on the compiler.
+TEST(Reader, TakesZerosWithLargeExponentsForZero) {
+    for (const char* zero : {"0e99", "-0e99", "0e-99", "0.000e300", "1e-400"}) {
+        const auto document = parseJson(std::string("{\"x\": ") + zero + "}", "a.json");
+        EXPECT_EQ((*document)["x"].GetDouble(), 0.0) << zero;
+    }
+}
+
+TEST(Reader, ReadsNumbersExactly) {
+    const auto document = parseJson(
+        R"({"x": [18446744073709551615, -9223372036854775808, 0.1, 4.9e-324, 123456789012345678901]})", "a.json");
+    const auto& numbers = (*document)["x"];
+    EXPECT_EQ(numbers[0].GetUint64(), 18446744073709551615u);
+    EXPECT_EQ(numbers[1].GetInt64(), std::numeric_limits<int64_t>::min());
+    EXPECT_EQ(numbers[2].GetDouble(), 0.1);
+    EXPECT_EQ(numbers[3].GetDouble(), std::numeric_limits<double>::denorm_min());
+    EXPECT_EQ(numbers[4].GetDouble(), 123456789012345678901.0);
+    EXPECT_THROW(parseJson(R"({"x": 1e400})", "a.json"), InputError);
+    EXPECT_THROW(parseJson(R"({"x": -1e400})", "a.json"), InputError);
+}
+
 } // namespace tungsten

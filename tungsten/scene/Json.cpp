@@ -8,16 +8,26 @@
 #include <rapidjson/reader.h>
 
 #include <algorithm>
+#include <charconv>
+#include <locale>
+#include <sstream>
 
 namespace tungsten {
 
 namespace {
 
 constexpr unsigned Grammar = rapidjson::kParseCommentsFlag | rapidjson::kParseTrailingCommasFlag |
-                             rapidjson::kParseNanAndInfFlag | rapidjson::kParseFullPrecisionFlag |
+                             rapidjson::kParseNanAndInfFlag | rapidjson::kParseNumbersAsStringsFlag |
                              rapidjson::kParseIterativeFlag;
 constexpr size_t LargestScene = size_t(1) << 30;
 constexpr int DeepestJson = 256;
+
+template <typename Number>
+bool isAll(const std::string& text, Number& number) {
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    return error == std::errc() && stop == end;
+}
 
 /// Passes what the parser finds on to a document, as long as it is not nested too deeply: whatever walks through the
 /// values later recurses.
@@ -25,6 +35,7 @@ class ShallowHandler {
   public:
     explicit ShallowHandler(rapidjson::Document& document) : document_(document) {}
     [[nodiscard]] bool tooDeep() const { return depth_ > DeepestJson; }
+    [[nodiscard]] bool tooLarge() const { return tooLarge_; }
 
     bool Null() { return document_.Null(); }
     bool Bool(bool value) { return document_.Bool(value); }
@@ -33,7 +44,20 @@ class ShallowHandler {
     bool Int64(int64_t value) { return document_.Int64(value); }
     bool Uint64(uint64_t value) { return document_.Uint64(value); }
     bool Double(double value) { return document_.Double(value); }
-    bool RawNumber(const char* text, unsigned length, bool copy) { return document_.RawNumber(text, length, copy); }
+    /// Numbers are read by the standard library: RapidJSON takes 0e99 for 10^80.
+    bool RawNumber(const char* text, unsigned length, bool) {
+        const std::string number(text, length);
+        int64_t whole = 0;
+        uint64_t large = 0;
+        double value = 0.0;
+        if (isAll(number, whole)) return document_.Int64(whole);
+        if (isAll(number, large)) return document_.Uint64(large);
+        if (isAll(number, value)) return document_.Double(value);
+        std::istringstream outOfRange(number); // too small, which is read as 0, or too large
+        outOfRange.imbue(std::locale::classic());
+        tooLarge_ = !(outOfRange >> value);
+        return !tooLarge_ && document_.Double(value);
+    }
     bool String(const char* text, unsigned length, bool copy) { return document_.String(text, length, copy); }
     bool Key(const char* text, unsigned length, bool copy) { return document_.Key(text, length, copy); }
     bool StartObject() { return ++depth_ <= DeepestJson && document_.StartObject(); }
@@ -44,15 +68,16 @@ class ShallowHandler {
   private:
     rapidjson::Document& document_;
     int depth_ = 0;
+    bool tooLarge_ = false;
 };
 
 struct ParseOutcome {
     rapidjson::ParseResult result;
-    bool tooDeep = false;
+    bool tooDeep = false, tooLarge = false;
 
     [[nodiscard]] std::string message() const {
-        return tooDeep ? "nested more than " + std::to_string(DeepestJson) + " levels deep"
-                       : rapidjson::GetParseError_En(result.Code());
+        if (tooDeep) return "nested more than " + std::to_string(DeepestJson) + " levels deep";
+        return rapidjson::GetParseError_En(tooLarge ? rapidjson::kParseErrorNumberTooBig : result.Code());
     }
 };
 
@@ -65,6 +90,7 @@ ParseOutcome parseInto(rapidjson::Document& document, const std::string& text) {
         ShallowHandler handler(target);
         outcome.result = reader.Parse<Grammar>(stream, handler);
         outcome.tooDeep = handler.tooDeep();
+        outcome.tooLarge = handler.tooLarge();
         return !outcome.result.IsError();
     };
     document.Populate(parse);
