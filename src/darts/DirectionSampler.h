@@ -148,8 +148,7 @@ class DirectionSampler {
 
   private:
     static constexpr int MostDirections = 8;
-    // Bench: study bodies, paths.
-    /// Where boundaries of unknown kind lie between, the lobe is a rougher guess.
+    /// Where boundaries of unknown kind lie between, the lobe is a rougher guess. (Bench: study bodies, paths.)
     static constexpr float LeastAlphaOutside = 0.5f;
     /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
     /// study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)

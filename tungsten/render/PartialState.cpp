@@ -3,11 +3,11 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
 #include "tungsten/film/Checksum.h"
+#include "tungsten/render/PartialStateHeader.h"
 #include "tungsten/scene/JsonWriter.h"
 
 #include <zlib.h>
 
-#include <cmath>
 #include <cstring>
 
 namespace tungsten {
@@ -15,24 +15,6 @@ namespace tungsten {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The last two are the version.
-constexpr char Magic[8] = {'T', 'P', 'A', 'R', 'T', 'S', '0', '3'};
-constexpr size_t VersionAt = 6;
-
-/// Fixed part of the file's start; texts, passes, an end and the checksum follow.
-struct Header {
-    char magic[8];
-    uint64_t content, seed;
-    int64_t sppStep;
-    int32_t width, height, frames;
-    uint32_t firstPass;
-    int32_t filmBatches, filmBatchBlock;
-    double gateStart, frameWidth, lengthUnit, exposureStops;
-    float vacuumSpeed, cameraSpeed;
-    uint8_t steadyState, delta, hasResponse, cameraUnwarped, integrate, toneMap, filmChannels, filmMoments;
-    uint8_t exposureGiven, exposureAutomatic, unused[6];
-};
 
 /// Of a detector, after its name.
 struct DetectorState {
@@ -48,56 +30,6 @@ struct PassHeader {
 
 size_t passBytes(const Film& film) {
     return film.passValues().size() * sizeof(float);
-}
-
-Header headerOf(const PartialIdentity& identity, uint32_t firstPass) {
-    const Scene& scene = *identity.scene;
-    const TransportSettings& transport = scene.transport;
-    Header header{};
-    std::memcpy(header.magic, Magic, sizeof Magic);
-    header.content = identity.content;
-    header.seed = identity.seed;
-    header.sppStep = identity.sppStep;
-    header.width = scene.camera.resolution.x;
-    header.height = scene.camera.resolution.y;
-    header.frames = transport.gate.frames;
-    header.firstPass = firstPass;
-    header.gateStart = transport.gate.start;
-    header.frameWidth = transport.gate.frameWidth;
-    header.lengthUnit = scene.lengthUnit;
-    header.vacuumSpeed = transport.vacuumSpeed;
-    header.cameraSpeed = scene.cameraRegion.speed;
-    header.steadyState = transport.gate.steadyState;
-    header.delta = transport.gate.delta;
-    header.hasResponse = !transport.response.empty();
-    header.cameraUnwarped = transport.cameraUnwarped;
-    header.integrate = transport.integrateOverGate;
-    header.toneMap = uint8_t(scene.toneMap);
-    header.filmChannels = uint8_t(scene.film.channels);
-    header.filmMoments = scene.film.moments;
-    header.filmBatches = scene.film.batches;
-    header.filmBatchBlock = scene.film.batchBlock;
-    header.exposureGiven = identity.exposure.has_value();
-    header.exposureAutomatic = identity.exposure && identity.exposure->automatic;
-    header.exposureStops = identity.exposure ? identity.exposure->stops : 0.0;
-    return header;
-}
-
-/// A scene of what images need.
-std::shared_ptr<Scene> sceneOf(const Header& header) {
-    auto scene = std::make_shared<Scene>();
-    scene->camera.resolution = Vec2i(header.width, header.height);
-    TransportSettings& transport = scene->transport;
-    transport.gate = {header.steadyState != 0, header.delta != 0, header.gateStart, header.frameWidth, header.frames};
-    transport.vacuumSpeed = header.vacuumSpeed;
-    transport.cameraUnwarped = header.cameraUnwarped != 0;
-    transport.integrateOverGate = header.integrate != 0;
-    if (header.hasResponse) transport.response = {{header.gateStart, transport.gate.end()}, {1.0, 1.0}};
-    scene->lengthUnit = header.lengthUnit;
-    scene->cameraRegion.speed = header.cameraSpeed;
-    scene->toneMap = ToneMap(header.toneMap);
-    scene->film = {header.filmChannels, header.filmMoments != 0, header.filmBatches, header.filmBatchBlock};
-    return scene;
 }
 
 template <typename Value>
@@ -160,28 +92,19 @@ void readDetectors(std::istream& in, Scene& scene, uint64_t size, const fs::path
     if (!detectors.row.empty()) scene.camera.model = std::move(detectors);
 }
 
-void requirePlausible(const Header& header, const fs::path& file) {
-    const bool sizes = header.width > 0 && header.height > 0 && header.frames > 0;
-    const bool contents = header.filmChannels == 1 || header.filmChannels == 3;
-    const bool numbers = std::isfinite(header.gateStart) && header.frameWidth >= 0.0 && header.lengthUnit >= 0.0;
-    const bool batches = header.filmBatches >= 0 && header.filmBatches <= 256 && header.filmBatchBlock > 0;
-    if (!sizes || !contents || !numbers || !batches || header.sppStep <= 0 || header.toneMap > uint8_t(ToneMap::Pbrt))
-        throw implausible(file);
-}
-
 /// Of a file that is whole; the stream goes on behind it.
-Header readHeader(std::istream& in, const fs::path& file) {
+PartialStateHeader readHeader(std::istream& in, const fs::path& file) {
     const uint64_t size = requireRegularFile(file);
-    const auto header = readValue<Header>(in);
-    if (!in || std::memcmp(header.magic, Magic, VersionAt) != 0)
+    const auto header = readValue<PartialStateHeader>(in);
+    if (!in || std::memcmp(header.magic, header.Magic, header.VersionAt) != 0)
         throw InputError(file.string(), "not a partial state, as --passes writes, or damaged");
-    if (std::memcmp(header.magic, Magic, sizeof Magic) != 0)
+    if (std::memcmp(header.magic, header.Magic, sizeof header.Magic) != 0)
         throw InputError(file.string(), "a partial state of another version of this program");
     in.seekg(0);
     if (!endsWithChecksum(in, size))
         throw InputError(file.string(), "the partial state is damaged or truncated (its checksum is wrong)");
     in.seekg(sizeof header);
-    requirePlausible(header, file);
+    if (!header.plausible()) throw implausible(file);
     return header;
 }
 
@@ -216,7 +139,7 @@ struct PartialStateWriter::Implementation {
 PartialStateWriter::PartialStateWriter(std::ostream& out, std::string file, const PartialIdentity& identity,
                                        uint32_t firstPass)
     : implementation_(std::make_unique<Implementation>(out, std::move(file))) {
-    writeValue(implementation_->out, headerOf(identity, firstPass));
+    writeValue(implementation_->out, PartialStateHeader::of(identity, firstPass));
     for (const std::string& text :
          {std::string(TUNGSTEN_VERSION), identity.scene->file.string(), identity.integrator, identity.sceneText})
         writeText(implementation_->out, text);
@@ -248,10 +171,10 @@ void PartialStateWriter::finish(const std::string& statistics, double cpuSeconds
 PartialStateReader::PartialStateReader(const fs::path& file) : file_(file) {
     const uint64_t size = requireRegularFile(file);
     std::ifstream in(file, std::ios::binary);
-    const Header header = readHeader(in, file);
+    const PartialStateHeader header = readHeader(in, file);
     first_ = header.firstPass;
     build_ = readText(in, size, file);
-    const std::shared_ptr<Scene> scene = sceneOf(header);
+    const std::shared_ptr<Scene> scene = header.scene();
     scene->file = readText(in, size, file);
     const std::string integrator = readText(in, size, file);
     identity_ = {header.content, header.seed, header.sppStep, scene, integrator, readText(in, size, file), {}};

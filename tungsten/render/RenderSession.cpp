@@ -9,6 +9,7 @@
 #include "tungsten/render/SceneFilm.h"
 #include "tungsten/render/SessionFiles.h"
 #include "tungsten/render/SharedResult.h"
+#include "tungsten/render/TimeLimit.h"
 #include "tungsten/render/WatchedPass.h"
 
 #include <bit>
@@ -39,7 +40,7 @@ class Session {
         : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options), result_(result),
           files_(loaded, outputs, options, result), shared_(options.team, result),
           firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
-          sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()),
+          sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()), limit_(options.timeoutSeconds),
           watched_(options, result, [this](const PassMonitor& monitor) { showPass(monitor); }),
           trace_(shared_.speaks() ? options.trace : std::filesystem::path(), *loaded.scene, options.seed),
           reporter_(options.quiet || !shared_.speaks()) {}
@@ -103,7 +104,7 @@ class Session {
             const auto build = [&](const PassInfo& pass, Statistics& statistics) {
                 if (!black_) integrator_.prepare(plan, pass.watch.part(0.0, 0.0), statistics);
             };
-            whole = watched_.run({}, endOfTime(), build);
+            whole = watched_.run({}, limit_.end(), build);
         });
         watched_.rethrow();
         const auto ranks = size_t(result_.ranks);
@@ -174,9 +175,10 @@ class Session {
             result_.bias.beginPass();
             if (passesOfItsBias(planned.index) > 0) pass.bias = &result_.bias;
         }
-        return watched_.run(pass, deadline(), [this](const PassInfo& watched, Statistics& statistics) {
-            if (!black_) integrator_.renderPass(watched, result_.film, statistics);
-        });
+        return watched_.run(pass, mayCut() ? limit_.endOfFirstPass() : limit_.end(),
+                            [this](const PassInfo& watched, Statistics& statistics) {
+                                if (!black_) integrator_.renderPass(watched, result_.film, statistics);
+                            });
     }
 
     void showPass(const PassMonitor& monitor) {
@@ -190,21 +192,6 @@ class Session {
     /// Before a pass of this run has ended; a partial state has whole passes.
     [[nodiscard]] bool mayCut() const { return !endedAPass_ && !options_.passes && sizes_.canCut(); }
 
-    static Clock::time_point after(Clock::time_point start, double seconds) {
-        constexpr double Ever = 1e9; // the clock counts nanoseconds in 64 bits
-        return start +
-               std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(seconds, Ever)));
-    }
-    [[nodiscard]] Clock::time_point endOfTime() const {
-        return options_.timeoutSeconds > 0.0 ? after(begin_, options_.timeoutSeconds) : Clock::time_point::max();
-    }
-    /// When the pass that begins now is to end.
-    [[nodiscard]] Clock::time_point deadline() const {
-        const auto end = endOfTime();
-        if (options_.timeoutSeconds <= 0.0 || !mayCut()) return end;
-        return std::min(end, after(Clock::now(), FirstPassPart * options_.timeoutSeconds));
-    }
-
     /// Whether the render ends with the pass that was broken off; else passes are smaller from now on.
     bool afterBreak() {
         if (agreed_.interrupted || agreed_.timedOut) {
@@ -213,19 +200,18 @@ class Session {
         }
         sizes_.cut(brokenAt_);
         if (shared_.speaks())
-            std::fprintf(
-                stderr, "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
-                loaded_.diagnostics->file.c_str(), FirstPassPart * options_.timeoutSeconds, sizes_.text().c_str());
+            std::fprintf(stderr,
+                         "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
+                         loaded_.diagnostics->file.c_str(), limit_.firstPassSeconds(), sizes_.text().c_str());
         return false;
     }
 
     /// What any rank has met counts for all. Returns how many passes of the round there are before the first that was
     /// broken off.
     size_t agree(bool whole = true, size_t passes = 0, bool wantsFilm = false) {
-        const bool timedOut = options_.timeoutSeconds > 0.0 && secondsSince(begin_) >= options_.timeoutSeconds;
         const double broken = whole ? double(result_.ranks) : double(shared_.rank());
-        const auto all = shared_.largest({double(watched_.interrupted()), double(timedOut), double(wantsFilm), -broken,
-                                          whole ? -1.0 : -watched_.brokenAt()});
+        const auto all = shared_.largest({double(watched_.interrupted()), double(limit_.isOver()), double(wantsFilm),
+                                          -broken, whole ? -1.0 : -watched_.brokenAt()});
         agreed_ = {all[0] > 0.0, all[1] > 0.0, all[2] > 0.0};
         brokenAt_ = -all[4];
         return std::min(passes, size_t(-all[3]));
@@ -284,13 +270,13 @@ class Session {
     bool endedAPass_ = false; ///< in this run
     bool targetReached_ = false;
     double brokenAt_ = 0.0; ///< where the last pass that was broken off was, in any rank
-    Clock::time_point begin_ = Clock::now();
+    TimeLimit limit_;
     WatchedPass watched_;
     PartialStateWriter* partial_ = nullptr;
     bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;
     ProgressReporter reporter_;
-    Clock::time_point start_ = begin_; ///< of passes
+    Clock::time_point start_; ///< of passes
 };
 
 } // namespace

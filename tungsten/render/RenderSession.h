@@ -77,9 +77,6 @@ struct SessionResult {
     [[nodiscard]] double errorBound() const { return std::hypot(film.relativeErrorBound(), relativeBias().bound); }
 };
 
-/// Part of a time-out that the first pass may take before passes are cut (PassSizes).
-inline constexpr double FirstPassPart = 0.25;
-
 /// Renders and writes every output. A pass that a time-out or an interrupt finds in progress is broken off: the film
 /// holds whole passes alone. Where not one has ended, nothing is written. `plan` is complete (Integrator::plan was
 /// called). Throws InputError before the first pass when an output cannot be written. In a team every rank calls this
