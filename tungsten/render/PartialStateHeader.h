@@ -1,5 +1,6 @@
 #pragma once
-// The fixed part at the start of a partial state: what passes of one render agree in, and what images need of the scene.
+// The fixed part at the start of a partial state: what passes of one render agree in, and what images need of the
+// scene.
 
 #include "tungsten/render/PartialState.h"
 
