@@ -143,7 +143,7 @@ Scheme readScheme(const Block& block, const ReadMore& readMore) {
         const auto object = block.block("darts", {"none", Text, Without});
         detail::readSwitches(*object, scheme);
         readMore(*object);
-        object->warnAboutUnknown();
+        object->refuseUnknown();
     }
     return scheme;
 }

@@ -1,12 +1,9 @@
 // First passage out of a body: probabilities against the integrated flux, slopes against differences, registers against
 // single places.
 
-#include "darts/DirectionSampler.h"
-#include "darts/DistanceSampler.h"
 #include "darts/Guide.h"
 
 #include "support/BodyExit.h"
-#include "support/ChiSquare.h"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
@@ -14,8 +11,6 @@
 namespace darts {
 namespace {
 
-using tungsten::RandomStream;
-using tungsten::Sampler;
 using tungsten::test::outOf;
 using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 
@@ -199,152 +194,6 @@ TEST(FirstPassage, RegistersAndSinglePlacesAgree) {
     lanes::put(logs.data(), Batch(power + xsimd::log(factor)));
     for (size_t i = 0; i < along.size(); ++i)
         EXPECT_NEAR(logs[i], passage.log({residual.exit, latest, direction, along[i], 0.05f}), 1e-3f) << i;
-}
-
-struct Place {
-    double depth, height, longest, gate;
-};
-const Place Places[] = {{0.3, 3.0, 4.5, 0.2}, {1.0, 0.5, 1.7, 0.05}, {0.02, 5.0, 5.5, 0.4}, {2.0, 2.0, 30.0, 1.0}};
-
-void expectDirectionsOf(Mode mode, const Place& p, float g, bool connects) {
-    const HenyeyGreenstein phase{{0.6f, 0.0f, 0.8f}, g};
-    const DirectionSampler sampler(best(mode, g), medium(g));
-    Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
-    residual.exit.connects = connects;
-    const float excess = std::max(residual.excess, 0.2f); // narrower lobes are thinner than the test's cells
-    const double value = tungsten::test::chiSquareSphere(
-        [&](Sampler& s) {
-            const auto sample = sampler.sample(residual, excess, phase, NoView{}, [&s] { return s.next1D(); });
-            const float pdf = sampler.pdf(residual, excess, sample.direction, phase, NoView{});
-            EXPECT_NEAR(sample.inversePdf * pdf, 1.0f, 2e-3f);
-            return std::optional(tungsten::Vec3f(sample.direction.x, sample.direction.y, sample.direction.z));
-        },
-        [&](const tungsten::Vec3f& d) {
-            return double(sampler.pdf(residual, excess, {d.x, d.y, d.z}, phase, NoView{}));
-        });
-    EXPECT_GT(value, tungsten::test::SmallestPValue) << int(mode) << " " << p.depth << " " << g << " " << connects;
-}
-
-TEST(DirectionsOut, SampleTheirDensity) {
-    for (const Place& p : Places)
-        for (const float g : {0.0f, 0.5f, -0.3f})
-            for (const bool connects : {true, false}) expectDirectionsOf(Mode::Path, p, g, connects);
-    for (const Place& p : Places)
-        expectDirectionsOf(Mode::Photon, p, 0.5f, true); // camera paths take the phase function
-}
-
-/// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time.
-void expectDistancesOf(Mode mode, const Place& p, float g, double h, float leaveOdds, bool connects = true) {
-    SCOPED_TRACE(testing::Message() << int(mode) << " " << p.depth << " " << g << " " << h << " " << leaveOdds);
-    const DistanceSampler sampler(best(mode, g), medium(g));
-    Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
-    residual.exit.leaveOdds = leaveOdds;
-    residual.exit.connects = connects;
-    const Heading ray{directionAbout(residual.axis, float(h), 0.3f), float(h)};
-    const double surface = h < 1.0 ? p.depth / (1.0 - h) : 1e30,
-                 end = std::min(double(residual.latest(float(h)).firstLeg()), surface);
-    double sum = 0.0, squares = 0.0, reached = 0.0, reachedSquares = 0.0;
-    constexpr int Count = 20000;
-    for (uint64_t i = 0; i < Count; ++i) {
-        Sampler s(32, RandomStream::Test, 0, i);
-        const DistanceSample sample =
-            sampler.sample(residual, ray, float(surface), {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
-        const double weight = double(sample.transmittanceOverPdf.x);
-        const double x = sample.surface ? 0.0 : weight * (1.0 + double(sample.distance));
-        sum += x, squares += x * x;
-        reached += sample.surface ? weight : 0.0;
-        reachedSquares += sample.surface ? weight * weight : 0.0;
-    }
-    const auto error = [](double total, double totalSquares) {
-        return std::sqrt((totalSquares / Count - total * total / (double(Count) * Count)) / Count);
-    };
-    const double expected =
-        Quadrature::integrate([](double d) { return std::exp(-10.02 * d) * (1.0 + d); }, 0.0, end, 15, 1e-10);
-    EXPECT_NEAR(sum / Count, expected, 5.0 * error(sum, squares) + 1e-5 * expected);
-    if (end == surface && end < 0.6) {
-        EXPECT_NEAR(reached / Count, std::exp(-10.02 * surface), 5.0 * error(reached, reachedSquares) + 1e-6);
-    }
-}
-
-TEST(DistancesOut, MeansMatchQuadrature) {
-    for (const Mode mode : {Mode::Path, Mode::Photon})
-        for (const Place& p : Places)
-            for (const float g : {0.0f, 0.8f})
-                for (const double h : {0.05, 1.0, 1.9})
-                    for (const float leaveOdds : {1.0f, 0.1f}) expectDistancesOf(mode, p, g, h, leaveOdds);
-    for (const Place& p : Places)
-        for (const double h : {0.05, 1.0, 1.9}) expectDistancesOf(Mode::Photon, p, 0.0f, h, 1.0f, false);
-}
-
-/// Light that goes deep with little length left is what half-spaces call useless: its weight is bounded by the floor,
-/// which fades with the scatterings to come.
-TEST(DistancesOut, StraysBoundWeights) {
-    const auto heaviest = [](float strays, double longest) {
-        Settings settings = best(Mode::Photon, 0.0f);
-        settings.strays = strays;
-        const DistanceSampler sampler(settings, medium(0.0f));
-        const Residual residual = outOf(0.5, 3.0, 3.5 + longest, 0.09);
-        const Heading down{directionAbout(residual.axis, 1.9f, 0.3f), 1.9f};
-        float most = 0.0f;
-        for (uint64_t i = 0; i < 50000; ++i) {
-            Sampler s(33, RandomStream::Test, 0, i);
-            const DistanceSample sample =
-                sampler.sample(residual, down, 1e30f, {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
-            most = std::max(most, 10.02f * sample.transmittanceOverPdf.x);
-        }
-        return most;
-    };
-    constexpr double Short = 0.6, Long = 30.0; // 6 and 300 mean free paths
-    EXPECT_GT(heaviest(0.0f, Short), 20.0f);   // 106 in 2e5 draws
-    EXPECT_LT(heaviest(0.2f, Short), 5.0f);    // 3.2
-    EXPECT_LT(heaviest(0.2f, Long), 2.0f);
-    EXPECT_LT(heaviest(0.0f, Long), 2.0f);
-}
-
-/// Where light leaves by refraction nothing is known of where: no weight is above that of a free flight, or twice that
-/// of a uniform proposal beside it.
-TEST(DistancesOut, NothingIsRareBehindRefraction) {
-    const auto heaviest = [](bool connects) {
-        const DistanceSampler sampler(best(Mode::Photon, 0.0f), medium(0.0f));
-        Residual residual = outOf(0.5, 3.0, 4.1, 0.09);
-        residual.exit.connects = connects;
-        float most = 0.0f;
-        for (uint64_t i = 0; i < 50000; ++i) {
-            Sampler s(35, RandomStream::Test, 0, i);
-            const Heading ray{directionAbout(residual.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
-            const DistanceSample sample = sampler.sample(residual, residual.heading(ray.direction), 1e30f, {1, 1, 1},
-                                                         {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
-            most = std::max(most, 10.02f * sample.transmittanceOverPdf.x);
-        }
-        return most;
-    };
-    EXPECT_LE(heaviest(false), 2.0f);
-    EXPECT_GT(heaviest(true), 2.0f);
-}
-
-/// Deep in a body usefulness hardly varies within a flight: nor may weights, which multiply over hundreds of them.
-TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
-    const auto spread = [](bool exponential) {
-        Settings settings = best(Mode::Path, 0.0f);
-        settings.exponentialOut = exponential;
-        const DistanceSampler sampler(settings, medium(0.0f));
-        const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
-        double squares = 0.0;
-        constexpr int Count = 5000;
-        for (uint64_t i = 0; i < Count; ++i) {
-            Sampler s(34, RandomStream::Test, 0, i);
-            const Heading ray{directionAbout(residual.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
-            const DistanceSample sample = sampler.sample(residual, residual.heading(ray.direction), 1e30f, {1, 1, 1},
-                                                         {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
-            const double log = std::log(10.02 * double(sample.transmittanceOverPdf.x));
-            squares += log * log;
-        }
-        return std::sqrt(squares / Count);
-    };
-    const double exponential = spread(best(Mode::Path, 0.0f).exponentialOut);
-    RecordProperty("exponential", std::to_string(exponential));
-    RecordProperty("mixed", std::to_string(spread(false)));
-    EXPECT_LT(exponential, 0.6 * spread(false));
 }
 
 } // namespace

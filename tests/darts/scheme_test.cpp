@@ -43,7 +43,7 @@ class Block {
         return otherwise;
     }
     void problem(const std::string& field, const std::string& what) const { problems_->push_back(field + ": " + what); }
-    void warnAboutUnknown() const {}
+    void refuseUnknown() const {}
 
   private:
     template <typename T>

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The Python module: renders against the command (the environment's TUNGSTEN), errors, interruption, and sampling against closed
-forms."""
+"""The Python module: renders against the command (the environment's TUNGSTEN), errors and
+interruption."""
 
 import gc
 import json
@@ -18,7 +18,6 @@ from pathlib import Path
 import numpy as np
 
 import darts_tungsten
-from darts_tungsten import sampling
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scenes import lamp_over_floor  # noqa: E402
@@ -216,111 +215,6 @@ class Render(unittest.TestCase):
         self.assertEqual(fields["sigma_s"]["unit"], "1/length")
         with self.assertRaisesRegex(darts_tungsten.UsageError, "homogeneous"):
             darts_tungsten.describe("homogenous")
-
-
-class Sampling(unittest.TestCase):
-    """A density's integral is 1; samples spread as their density says; weights average to the transmittance."""
-
-    def test_directions(self):
-        h = (np.arange(200000) + 0.5) / 100000
-        u = (np.arange(100000) + 0.5) / 100000
-        table = sampling.EdaTable(0.9, 0.3)
-        for name, pdf, sample in (
-                ("path", lambda h: sampling.path_lobe_pdf(h, 2.0, 0.5), lambda u: sampling.path_lobe_sample(u, 2.0, 0.5)),
-                ("photon", lambda h: sampling.photon_lobe_pdf(h, 2.0, 0.5), lambda u: sampling.photon_lobe_sample(u, 2.0, 0.5)),
-                ("eda", lambda h: table.pdf(2.0, 0.5, 1.0, h), lambda u: table.sample(2.0, 0.5, 1.0, u))):
-            density = 2 * np.pi * pdf(h)
-            self.assertAlmostEqual(density.mean() * 2, 1, delta=1e-4, msg=name)
-            # Quantiles are where the density's integral says.
-            below = np.interp(sample(u[::5000]), h, np.cumsum(density) / 100000)
-            np.testing.assert_allclose(below, u[::5000], atol=1e-3, err_msg=name)
-
-    def test_connection_lengths(self):
-        offset = (np.arange(100000) + 0.5) / 50000
-        density = sampling.connection_length_pdf(offset, 0.1, 2.0, 1.5)
-        np.testing.assert_allclose(density, 1.5 * np.exp(-1.5 * offset) / -np.expm1(-3), rtol=1e-6)
-        u = np.linspace(0, 0.99, 12)
-        np.testing.assert_allclose(sampling.connection_length_sample(u, 0.1, 2.0, 1.5), -np.log1p(u * np.expm1(-3)) / 1.5, rtol=1e-6,
-                                   atol=1e-12)
-
-    def test_connections_have_their_length(self):
-        h = np.linspace(0, 2, 9)
-        first, second = sampling.first_leg(2.0, 0.5, h), sampling.second_leg(2.0, 0.5, h)
-        np.testing.assert_allclose(first + second, 2.5)
-        np.testing.assert_allclose(second, np.sqrt((first - 2) ** 2 + 4 * first * h), rtol=1e-12)
-
-    def test_guides_sum_to_light_scattered_once(self):
-        """Connections of one scattering from an isotropic vertex, against the integral over their lengths."""
-        C, low, high, sigma_s = 1.0, 1.5, 1.6, 0.8
-        S = np.linspace(low, high, 20001)
-        light = np.exp(-S) * np.log((S + C) / (S - C)) / (C * S)
-        exact = sigma_s * ((light[1:] + light[:-1]) / 2).mean() * (high - low)
-        for preset in ("published", "best"):
-            for mode in ("path", "photon"):
-                guide = sampling.Guide(preset, mode, 0.2, sigma_s)
-                drawn = guide.sample(C, low, high, 200000, seed=5)
-                self.assertTrue(((drawn["length"] >= low - 1e-5) & (drawn["length"] <= high + 1e-5)).all())
-                good = drawn["vertex_inverse_pdf"] > 0
-                np.testing.assert_allclose(drawn["vertex"][good] + drawn["to_target"][good], drawn["length"][good], rtol=1e-5)
-                value = np.zeros(len(good))
-                value[good] = (sigma_s * np.exp(-drawn["length"]) * drawn["vertex_inverse_pdf"] * drawn["direction_inverse_pdf"]
-                               * drawn["phase"] / np.square(drawn["to_target"]))[good]
-                self.assertAlmostEqual(value.mean(), exact, delta=4.5 * value.std() / len(value) ** 0.5, msg=(preset, mode))
-                pdf = guide.vertex_pdf(C, low, high, drawn["h"][good][:1000], drawn["vertex"][good][:1000])
-                np.testing.assert_allclose(pdf, 1 / drawn["vertex_inverse_pdf"][good][:1000], rtol=2e-3)
-                flight = -np.expm1(-sampling.first_leg(C, high - C, drawn["h"]))
-                weight = drawn["transmittance_over_pdf"]
-                self.assertAlmostEqual((weight - flight).mean(), 0, delta=4.5 * (weight - flight).std() / len(weight) ** 0.5)
-        with self.assertRaisesRegex(ValueError, "high > low"):
-            guide.sample(1.0, 2.0, 1.5, 10)
-        with self.assertRaisesRegex(ValueError, "preset"):
-            sampling.Guide("worst", "path", 0.2, 0.8)
-
-    def test_first_passage_is_the_integrated_flux(self):
-        sigma_a, reduced, gate = 0.02, 10.0, 0.3
-        D = 1 / (3 * (sigma_a + reduced))
-        depth, longest = np.array([[0.05], [0.3], [1.0]]), np.array([2.0, 5.0, 12.0])
-        y, s = (depth + 2 * D)[..., None], np.linspace(longest - gate, longest, 4001).T[None]
-        flux = y / np.sqrt(4 * np.pi * D * s ** 3) * np.exp(-y ** 2 / (4 * D * s))
-        expected = np.log(((flux[..., 1:] + flux[..., :-1]) / 2).mean(axis=-1) * gate) - sigma_a * longest
-        found = sampling.first_passage_log(depth, longest, gate, sigma_a, reduced, allowance=0)
-        np.testing.assert_allclose(found, expected, atol=3e-3)
-        self.assertLess(sampling.first_passage_log(0.3, 5.0, gate, sigma_a, reduced, thickness=0.5),
-                        sampling.first_passage_log(0.3, 5.0, gate, sigma_a, reduced))
-        self.assertEqual(sampling.first_passage_log(1.0, 0.5, gate, sigma_a, reduced), -np.inf)
-
-    def test_greens_functions(self):
-        rho, s = np.array([[1.0], [2.0]]), np.array([2.5, 4.0, 8.0])
-        D = 1 / (3 * (0.1 + 0.9 * 0.5))
-        expected = -1.5 * np.log(4 * np.pi * D * s) - rho ** 2 / (4 * D * s) - 0.1 * s
-        np.testing.assert_allclose(sampling.diffusion_log(rho, s, 0.1, 0.9, 0.5), expected)
-        self.assertEqual(sampling.causal_log(2.0, 1.0, 0.1, 0.9), -np.inf)
-
-    def test_weights_of_distances_average_to_the_transmittance(self):
-        random = np.random.default_rng(7).random((200000, 4), dtype=np.float32)
-        for preset in ("published", "best"):
-            for mode in ("path", "photon"):
-                distance, weight = sampling.DistanceSampler(preset, mode, 0.1, 0.9).sample(2.0, 4.8, 5.0, 0.7, random)
-                reach = sampling.first_leg(2.0, 3.0, 0.7)
-                self.assertLessEqual(distance[weight > 0].max(), reach * 1.0001)
-                error = weight.std() / len(weight) ** 0.5
-                self.assertAlmostEqual(weight.mean(), -np.expm1(-reach), delta=4.5 * error, msg=f"{preset}, {mode}")
-                self.assertLess(error, 0.01)
-
-    def test_responses(self):
-        response = sampling.TemporalResponse.gaussian(3.0, 0.5)
-        time = np.linspace(1, 5, 4001)
-        self.assertAlmostEqual(response.pdf(time).sum() * 0.001, 1, delta=1e-3)
-        np.testing.assert_allclose(response.distribution(response.quantile([0.1, 0.5, 0.9])), [0.1, 0.5, 0.9])
-
-    def test_bad_input(self):
-        random = np.zeros((2, 4), np.float32)
-        for bad in (lambda: sampling.DistanceSampler("beste", "path", 0, 1), lambda: sampling.DistanceSampler("best", "light", 0, 1),
-                    lambda: sampling.DistanceSampler("best", "path", -1, 1), lambda: sampling.EdaTable(2.0, 0.0),
-                    lambda: sampling.DistanceSampler("best", "path", 0, 1).sample(1, 2, 3, 5, random),
-                    lambda: sampling.DistanceSampler("best", "path", 0, 1).sample(1, 2, 3, 1, random[:, :3])):
-            with self.assertRaises(ValueError):
-                bad()
 
 
 if __name__ == "__main__":

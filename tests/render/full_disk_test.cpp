@@ -94,6 +94,16 @@ TEST_F(FullDisk, FilesThatCannotGrowLeaveTheEarlierOnes) {
     }
 }
 
+/// What stands beside an array is that array's.
+TEST_F(FullDisk, AnArrayThatFailsKeepsItsMetadata) {
+    const auto run = [&](const std::string& size) { return render({"-e", "box.npy", "--resolution", size}); };
+    ASSERT_EQ(run("8x8").exitCode, 0);
+    const std::string before = contentOf(out() / "box.npy.json");
+    const FileSizeLimit limit(30000); // enough for the text, not for 64 x 64 pixels
+    EXPECT_EQ(run("64x64").exitCode, BadInput);
+    EXPECT_EQ(contentOf(out() / "box.npy.json"), before);
+}
+
 /// Where in the file the disk is full makes no difference.
 TEST_F(FullDisk, ImagesAreWholeWhereverTheyAreCut) {
     const TemporaryFolder folder;

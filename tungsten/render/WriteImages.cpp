@@ -22,11 +22,15 @@ class ImageWriter {
         : film_(film), bias_(bias), scene_(scene), metadata_(metadata),
           exposure_(exposure.value_or(ExposureChoice{!scene.transport.gate.steadyState, 0.0})) {}
 
+    /// What an array holds is told (by the file that follows it) only where the array was written.
     void write(const PlannedImage& image) {
+        if (image.content == Content::Metadata && lastFailed_) return;
+        lastFailed_ = true;
         try {
             makeFolderOf(image.file);
             writeContent(image);
             written_.push_back(image.file);
+            lastFailed_ = false;
         } catch (const InputError& error) {
             problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
         }
@@ -117,6 +121,7 @@ class ImageWriter {
     const std::string& metadata_;
     ExposureChoice exposure_;
     std::optional<float> framesFactor_; ///< once it is known
+    bool lastFailed_ = false;
     std::vector<fs::path> written_;
     std::vector<Problem> problems_;
 };
