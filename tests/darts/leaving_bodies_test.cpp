@@ -1,4 +1,4 @@
-// Directions and distances of light that leaves a body: densities by chi-square, means by quadrature, bounds of weights.
+// Directions and distances of light that leaves a body: densities by chi-square, means by quadrature, weights bounded.
 
 #include "darts/DirectionSampler.h"
 #include "darts/DistanceSampler.h"
