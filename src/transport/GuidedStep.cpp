@@ -20,16 +20,14 @@ void GuidedStep::startRoulette(const darts::Guide& guide, int medium, float thro
     first_ = First{guide.logUsefulness(reachable_, throughput), medium, reachable_.way};
 }
 
-float GuidedStep::survival(const darts::Guide& guide, int medium, float throughput) {
+float GuidedStep::survival(const darts::Guide& guide, int medium, float throughput, float others) {
     if (!(guide.settings().roulette > 0.0f)) return 1.0f;
     useful_ = guide.logUsefulness(reachable_, throughput);
-    if (first_ && first_->medium == medium && first_->way == reachable_.way) {
-        const float survival = guide.survival(reachable_.way, useful_, first_->usefulness);
-        lineage_ *= survival;
-        return survival;
-    }
-    first_ = First{useful_, medium, reachable_.way};
-    return 1.0f;
+    if (!(first_ && first_->medium == medium && first_->way == reachable_.way))
+        first_ = First{std::max(useful_, others), medium, reachable_.way};
+    const float survival = guide.survival(reachable_.way, useful_, first_->usefulness);
+    lineage_ *= survival;
+    return survival;
 }
 
 int GuidedStep::copies(const darts::Guide& guide) {

@@ -151,7 +151,16 @@ float GuidedPhotonWalk::redirect(const darts::Guide& guide, const Scatterer& sca
 }
 
 bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
-    const float survival = step_.survival(guide, path_.region.medium, meanComponent(path_.power));
+    const int medium = path_.region.medium;
+    const float power = meanComponent(path_.power);
+    const bool out = step_.residual().way == darts::Way::Out;
+    if (path_.context.measured && out) {
+        path_.context.measured->record(medium, guide.logUsefulness(step_.reachable(), power));
+        return false;
+    }
+    const float others =
+        out && path_.context.first ? path_.context.first->logged(medium) : transport::GuidedStep::NoOthers;
+    const float survival = step_.survival(guide, medium, power, others);
     if (survival >= 1.0f) return true;
     if (path_.sampler.next1D() >= survival) return false;
     path_.power = path_.power / survival;

@@ -3,6 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
+#include "photon/light/FirstUsefulness.h"
 #include "photon/primitives/sliced/FlightChain.h"
 #include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
@@ -36,6 +37,8 @@ struct WalkContext {
     bool densityPhotons = false;
     bool glossySensorPaths = false;         ///< SensorPathRules::glossy
     const SliceWorth* sliceWorth = nullptr; ///< of guided paths
+    const FirstUsefulness* first = nullptr; ///< likewise: in bodies that light must leave
+    FirstUsefulness* measured = nullptr;    ///< of pilot paths, which end at their first vertex there
 };
 
 struct LightPath {

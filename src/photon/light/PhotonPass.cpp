@@ -116,11 +116,31 @@ void PhotonPass::setGate(const TimeGate& gate) {
     if (guidance_) guidance_->setGate(gate);
 }
 
+std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
+                                                             Statistics& statistics) const {
+    if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
+    auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
+    // Paths of their own: the mean must not depend on the paths that it is for.
+    const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
+    WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, false};
+    context.measured = first.get();
+    Batch pilot(settings_.primitive);
+    for (uint64_t path = 0; path < paths; ++path) {
+        pass.watch.poll(0);
+        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
+        GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
+    }
+    statistics.add("rays", pilot.counters.rays);
+    return first;
+}
+
 void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings,
-                                       SurfaceConnections& connections, Statistics& statistics) const {
+                                       const FirstUsefulness* first, SurfaceConnections& connections,
+                                       Statistics& statistics) const {
     // Paths of their own: it must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, storeVolume_};
+    WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, storeVolume_};
+    context.first = first;
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths, Batch(settings_.primitive));
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
@@ -146,14 +166,15 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
     connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
 }
 
-std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, Statistics& statistics) const {
+std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, const FirstUsefulness* first,
+                                                   Statistics& statistics) const {
     const auto* slices = std::get_if<Slices>(&settings_.primitive);
     if (!slices || !guidance_ || !storeVolume_) return nullptr;
     auto worth = std::make_unique<SliceWorth>(scene_, culling_.gate());
     // Paths of their own: the numbers must not depend on the paths that they are for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings_, culling_, {},    0.0f,  emitters_,
-                              false,  true,      false,    false, false, worth.get()};
+    const WalkContext context{scene_, settings_, culling_, {},    0.0f,        emitters_, false,
+                              true,   false,     false,    false, worth.get(), first};
     Batch pilot(settings_.primitive);
     for (uint64_t path = 0; path < paths; ++path) {
         pass.watch.poll(0);
@@ -176,8 +197,9 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
     const PhotonSettings settings = settingsOf(pass);
-    if (connections) setLightPerConnection(pass, settings, *connections, statistics);
-    const auto worth = sliceWorth(pass, statistics);
+    const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
+    if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
+    const auto worth = sliceWorth(pass, usefulAtFirst.get(), statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);
@@ -207,7 +229,8 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   connections != nullptr,
                                   densityPhotons_,
                                   glossySensorPaths_,
-                                  worth.get()};
+                                  worth.get(),
+                                  usefulAtFirst.get()};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * tuning::PathsPerBatch,
                            last = std::min(first + tuning::PathsPerBatch, traced + wave);

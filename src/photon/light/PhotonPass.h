@@ -2,6 +2,7 @@
 // The photon pass: light paths from the emitters, plain or guided, and what they deposit in the stores.
 
 #include "photon/PhotonSettings.h"
+#include "photon/light/FirstUsefulness.h"
 #include "photon/light/PhotonGuidance.h"
 #include "photon/primitives/VolumePrimitive.h"
 #include "photon/primitives/sliced/SliceWorth.h"
@@ -39,12 +40,16 @@ class PhotonPass {
   private:
     /// Of its part of a whole pass, and with its kernels.
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
+    /// What light paths are useful for at first in bodies that they must leave, from what a few find; null without any.
+    [[nodiscard]] std::unique_ptr<FirstUsefulness> firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
+                                                                   Statistics& statistics) const;
     /// Tells connections what each of them is to bring, from what a few paths find.
-    void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, SurfaceConnections& connections,
-                               Statistics& statistics) const;
+    void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, const FirstUsefulness* first,
+                               SurfaceConnections& connections, Statistics& statistics) const;
 
     /// Guided slices: how many records a base leaves, from what a few paths find.
-    [[nodiscard]] std::unique_ptr<SliceWorth> sliceWorth(const PassInfo& pass, Statistics& statistics) const;
+    [[nodiscard]] std::unique_ptr<SliceWorth> sliceWorth(const PassInfo& pass, const FirstUsefulness* first,
+                                                         Statistics& statistics) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;
