@@ -13,32 +13,6 @@ namespace tungsten::path {
 
 namespace {
 
-bool scattersIn(const std::vector<transport::Body>& bodies, const Region& region) {
-    return region.medium >= 0 && bodies[size_t(region.medium)].scatters();
-}
-
-/// Camera and lights are all outside what scatters.
-bool looksFromOutside(const Scene& scene, const std::vector<transport::Body>& bodies) {
-    return !scattersIn(bodies, scene.cameraRegion) &&
-           std::none_of(scene.emitters.begin(), scene.emitters.end(), [&](const Emitter& e) {
-               return scattersIn(bodies, {e.medium, 1.0f});
-           });
-}
-
-/// The gate's length in transport mean free paths of the densest medium; 0 if it counts not from outside.
-float gateInBodies(const Scene& scene) {
-    const std::vector<transport::Body> bodies = transport::bodiesOf(scene);
-    const TimeGate& gate = scene.transport.gate;
-    if (!looksFromOutside(scene, bodies) || gate.frames > 1) return 0.0f; // each frame is short
-    float longest = 0.0f;
-    for (const Primitive& primitive : scene.primitives)
-        for (const Region& region : {primitive.inside, primitive.outside})
-            if (primitive.boundsMedium && scattersIn(bodies, region))
-                longest = std::max(longest, float(gate.end() - gate.start) * region.speed *
-                                                bodies[size_t(region.medium)].reducedSigmaT);
-    return longest;
-}
-
 std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
     if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
@@ -48,8 +22,10 @@ std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, c
     const bool sealed = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
                         transport::isSealed(scene);
     if (sealed) return "all that scatters lies behind walls that refract: no connection is complete";
-    const bool wide = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
-                      gateInBodies(scene) > tuning::WidestGate;
+    const TimeGate& gate = scene.transport.gate;
+    const bool wide = settings.policy.followsBodies() && !facts.surfaceScattering && !gate.delta &&
+                      gate.frames == 1 && // each of many is short
+                      transport::gateInBodies(scene).transport > tuning::WidestGate;
     return wide ? "a gate so wide that most light which leaves the bodies is in time" : "";
 }
 
@@ -80,7 +56,7 @@ Choice entryPointsOf(const Scene& scene, const PathSettings& settings, const Cho
     if (!guidance.on) return {false, "paths are not guided"};
     if (!transport::WaysOut::make(scene, settings.policy))
         return {false, "no body of a scattering medium that light must leave, or left alone"};
-    if (!looksFromOutside(scene, transport::bodiesOf(scene)))
+    if (!transport::looksFromOutside(scene, transport::bodiesOf(scene)))
         return {false, "camera or lights are in what scatters: light gets into bodies by way of it, too"};
     const bool any = std::any_of(scene.emitters.begin(), scene.emitters.end(), TargetChoice::hasOthers);
     return {any, any ? "paths choose again where they enter a body, by what of their light gets out in time"

@@ -113,12 +113,18 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
                                                 : "light paths aim at the whole sequence as one gate";
     drawsByResponse = exact && !scene.transport.response.empty();
     meetsDeltaGate = exact && gate.delta && policy.sampling.elliptical;
+    boundsAlone.on = guidance.on && policy.followsBodies() && !facts.surfaceScattering && !gate.delta &&
+                     !scene.transport.cameraUnwarped && transport::gateInBodies(scene).collisions > tuning::WidestGate;
+    boundsAlone.reason = boundsAlone.on ? "a gate so wide that most light which leaves the bodies is in time"
+                                        : "the gate is short, or not all is seen and lit from outside";
     const bool points = std::holds_alternative<Points>(settings.primitive);
-    ordinaryPhotons.on = points && (!directView || (policy.directView == transport::DirectView::Auto &&
-                                                    !policy.sampling.published && !meetsDeltaGate && !drawsByResponse));
+    ordinaryPhotons.on = points && (boundsAlone.on || !directView ||
+                                    (policy.directView == transport::DirectView::Auto && !policy.sampling.published &&
+                                     !meetsDeltaGate && !drawsByResponse));
     ordinaryPhotons.reason = !points ? "no points are stored: there are no control vertices"
                              : !directView
                                  ? "mirrors, refraction or different speeds: control vertices alone are not complete"
+                             : boundsAlone.on     ? "bounds in time alone: there are no control vertices"
                              : ordinaryPhotons.on ? "by the balance heuristic, where the gate lets as many of them pass"
                              : meetsDeltaGate     ? "delta gate: none of them arrives on it"
                              : drawsByResponse    ? "control vertices are drawn by the sensor's response"
@@ -200,7 +206,9 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
                   bsdfUses(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).causes(),
                   {"glossy sensor reflections"});
     if (!guidance.on) return;
-    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
+    plan.describe("bounds in time alone", boundsAlone.on, boundsAlone.reason, {"integrator.darts"});
+    if (!scene.transport.cameraUnwarped && !boundsAlone.on)
+        transport::WaysOut::plan(scene, settings.policy, false, plan);
     const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
     plan.describe("light towards bodies", bodies > 0,
                   bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +

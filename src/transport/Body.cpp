@@ -122,6 +122,29 @@ std::vector<Body> bodiesOf(const Scene& scene) {
     return bodies;
 }
 
+bool looksFromOutside(const Scene& scene, const std::vector<Body>& bodies) {
+    const auto scatters = [&](int medium) { return medium >= 0 && bodies[size_t(medium)].scatters(); };
+    return !scatters(scene.cameraRegion.medium) &&
+           std::none_of(scene.emitters.begin(), scene.emitters.end(),
+                        [&](const Emitter& emitter) { return scatters(emitter.medium); });
+}
+
+GateInBodies gateInBodies(const Scene& scene) {
+    const std::vector<Body> bodies = bodiesOf(scene);
+    GateInBodies longest;
+    if (!looksFromOutside(scene, bodies)) return longest;
+    const TimeGate& gate = scene.transport.gate;
+    for (const Primitive& primitive : scene.primitives)
+        for (const Region& region : {primitive.inside, primitive.outside}) {
+            if (!primitive.boundsMedium || region.medium < 0 || !bodies[size_t(region.medium)].scatters()) continue;
+            const float length = float(gate.end() - gate.start) * region.speed;
+            const float sigmaT = meanComponent(scene.media[size_t(region.medium)].sigmaT());
+            longest.collisions = std::max(longest.collisions, length * sigmaT);
+            longest.transport = std::max(longest.transport, length * bodies[size_t(region.medium)].reducedSigmaT);
+        }
+    return longest;
+}
+
 std::vector<BodySphere> spheresAboutBodies(const Scene& scene) {
     const auto scatters = [&](int medium) { return medium >= 0 && scene.media[size_t(medium)].scatters(); };
     std::vector<BodySphere> spheres;

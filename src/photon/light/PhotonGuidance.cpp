@@ -13,7 +13,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
       choosesFrames_(plan.framesOneByOne.on), drawsByResponse_(plan.drawsByResponse),
       meetsDeltaGate_(plan.meetsDeltaGate), darkFrames_(plan.framesOneByOne.on ? plan.darkFrames : 0),
       sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
-    if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
+    if (!unwarped_ && !plan.boundsAlone.on) waysOut_ = transport::WaysOut::make(scene, policy);
     if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);
     watch.stage("guides of media", scene.media.size());
@@ -31,6 +31,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
             settings.direction = darts::Direction::Phase;
             settings.greens = darts::Greens::None;
         }
+        if (plan.boundsAlone.on) settings = darts::timeBoundAlone(settings);
         guides_.back() = std::make_unique<darts::Guide>(
             settings, darts::Medium{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()});
     }

@@ -80,7 +80,7 @@ class PhotonGuidance {
     std::vector<std::unique_ptr<darts::Guide>> guides_; ///< by medium
     CameraView view_;
     std::array<Vec3f, 4> sides_;                        ///< of the view
-    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
+    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite, or bounds in time do
     std::vector<transport::BodySphere> bodies_;
     int cameraMedium_;
     Vec3f camera_;
