@@ -50,6 +50,27 @@ TEST(GuidedStep, LooksInTwoStages) {
     EXPECT_FALSE(step.hasLooked());
 }
 
+TEST(GuidedStep, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
+    const darts::Guide guide = guideWith(0.1f);
+    const auto started = [&](float throughput, float others) {
+        GuidedStep step;
+        step.look(ahead());
+        return step.survival(guide, 0, throughput, others);
+    };
+    const float own = guide.logUsefulness(ahead(), 1.0f);
+    EXPECT_FLOAT_EQ(started(1.0f, own), 1.0f);
+    EXPECT_FLOAT_EQ(started(1.0f, own - 5.0f), 1.0f);
+    EXPECT_FLOAT_EQ(started(1.0f, own + std::log(9.0f)), 1.0f); // not below a tenth
+    EXPECT_NEAR(started(1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
+    // And goes on by it: what has survived has made up for it.
+    GuidedStep step;
+    step.look(ahead());
+    EXPECT_NEAR(step.survival(guide, 0, 1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
+    EXPECT_FLOAT_EQ(step.survival(guide, 0, 4.0f, own + std::log(40.0f)), 1.0f);
+    EXPECT_NEAR(step.survival(guide, 0, 0.4f), 0.1f, 1e-4f);
+    EXPECT_EQ(step.copies(guide), 1);
+}
+
 TEST(GuidedStep, WhatHasBecomeTooUsefulSplits) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedStep step;

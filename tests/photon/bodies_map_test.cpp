@@ -1,0 +1,88 @@
+// Photon maps of bodies that light must leave: against paths, and what is spent on light that is of no use.
+
+#include "photon/light/FirstUsefulness.h"
+
+#include "support/PathsAndPhotons.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::photon {
+namespace {
+
+TEST(FirstUsefulness, IsTheRootMeanSquareByMedium) {
+    FirstUsefulness first(2);
+    EXPECT_LT(first.logged(0), -1e20f);
+    // Far beyond what the exponential of a float holds, in either order.
+    for (const float logged : {-200.0f + std::log(3.0f), -200.0f, -200.0f + std::log(5.0f)}) first.record(0, logged);
+    EXPECT_NEAR(first.logged(0), -200.0f + 0.5f * std::log(35.0f / 3.0f), 1e-4f);
+    for (int i = 0; i < 3; ++i) first.record(1, 4.0f);
+    EXPECT_FLOAT_EQ(first.logged(1), 4.0f);
+}
+
+/// A slab lit from close by, of which the camera sees a small part; `size` is its width.
+std::string slabScene(double size, double gate) {
+    std::ostringstream json;
+    json << R"({"media": [{"name": "tissue", "type": "homogeneous", "sigma_s": 20, "sigma_a": 0.1}],
+        "primitives": [{"type": "cube", "int_medium": "tissue", "bsdf": {"type": "forward"},
+                        "transform": {"scale": [)"
+         << size << ", 2, " << size << R"(]}},
+                       {"type": "point", "emission": 100, "transform": {"position": [1, 3, 0]}}],
+        "camera": {"type": "pinhole", "fov": 10, "resolution": 4, "transform": {"position": [0, 9, 0],
+                   "look_at": [0, 0, 0], "up": [0, 0, 1]}},
+        "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 512, "photon_count": 2000,
+                       "fixed_volume_radius": true, "volume_gather_radius": 0.1,
+                       "transient_time_center": 11.5, "transient_time_width": )"
+         << gate << R"(}, "renderer": {}})";
+    return json.str();
+}
+
+struct Photons {
+    double mean = 0.0, error = 0.0; ///< of whole images of several seeds, whose pixels err together
+    double eventsPerPath = 0.0;
+    uint64_t controlVertices = 0;
+};
+
+Photons renderBest(const std::string& scene) {
+    constexpr int Seeds = 8;
+    Photons result;
+    double squares = 0.0, events = 0.0, paths = 0.0;
+    for (int seed = 1; seed <= Seeds; ++seed) {
+        const auto rendered = test::renderPhotons(scene, {{"integrator.darts=best"}, 24, 1, uint64_t(seed)});
+        result.mean += rendered->mean() / Seeds;
+        squares += rendered->mean() * rendered->mean() / Seeds;
+        events += double(rendered->statistics.counter("medium events"));
+        paths += double(rendered->statistics.counter("photons"));
+        result.controlVertices += rendered->statistics.counter("control vertices");
+    }
+    result.error = std::sqrt((squares - result.mean * result.mean) / (Seeds - 1));
+    result.eventsPerPath = events / paths;
+    return result;
+}
+
+void expectSameMean(const Photons& photons, const test::Rendered& paths) {
+    const double error = std::hypot(photons.error, paths.pixelError() / 4.0); // pixels of paths are independent
+    EXPECT_NEAR(photons.mean, paths.mean(), 4.5 * error + 0.02 * paths.mean()); // and the kernel
+    EXPECT_LT(error, 0.05 * paths.mean());
+}
+
+TEST(PhotonMapsOfBodies, LightThatGetsInWhereItIsOfNoUseEndsSoon) {
+    // Scatterings of a light path without it: 8.9 and 5.6.
+    for (const auto& [size, most] : {std::pair{3.0, 6.5}, std::pair{40.0, 4.4}}) {
+        const std::string scene = slabScene(size, 0.1);
+        const Photons photons = renderBest(scene);
+        EXPECT_LT(photons.eventsPerPath, most) << size;
+        expectSameMean(photons, *test::renderPaths(scene, {{"integrator.darts=best"}, 32, 64}));
+    }
+}
+
+TEST(PhotonMapsOfBodies, HaveBoundsInTimeAloneUnderWideGates) {
+    for (const double gate : {0.5, 6.0}) { // 10 and 120 mean free paths
+        const std::string scene = slabScene(3, gate);
+        const Photons photons = renderBest(scene);
+        EXPECT_EQ(photons.controlVertices > 0, gate < 1.0);
+        expectSameMean(photons, *test::renderPaths(scene, {{"integrator.darts=off"}, 32, 64}));
+    }
+}
+
+} // namespace
+} // namespace tungsten::photon
