@@ -48,6 +48,21 @@ TEST(Energy, RoomWithAFixedNumberOfBounces) {
     }
 }
 
+/// Walls of albedo 1 are met as often as there are bounces, of which fog takes its share: the mean chord is 4 V / S.
+/// Light that leaks, or a throughput that drifts by more than 10^-7 a bounce, shows.
+TEST(Energy, IsKeptOverTenThousandBounces) {
+    constexpr double Bounces = 10000.0, MeanChord = 4.0 * 8.0 / 24.0, SigmaS = 1.0;
+    for (const std::string medium : {"", "cloud"}) {
+        const auto rendered =
+            renderPaths(glowingRoom(R"({"type": "lambert", "albedo": 1})", medium,
+                                    R"("enable_rr": false, "max_bounces": 10000, "enable_light_sampling": false,
+                                       "enable_volume_light_sampling": false)"),
+                        {{}, 5, 20});
+        const double expected = 0.5 * Bounces / (medium.empty() ? 1.0 : 1.0 + SigmaS * MeanChord);
+        EXPECT_NEAR(rendered->mean() / expected, 1.0, 1e-3) << medium;
+    }
+}
+
 /// Emitters seen in a mirror cannot be connected to: what the walk finds there counts in full.
 TEST(Energy, RoomOfHalfMirrors) {
     const std::string mixed = R"({"type": "mixed", "ratio": 0.5, "bsdf0": {"type": "mirror", "albedo": 0.6},
