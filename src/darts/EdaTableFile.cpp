@@ -54,7 +54,7 @@ std::uint64_t checksum(Header header, std::span<const std::uint8_t> octaves, std
                 hash(octaves.data(), octaves.size_bytes(), hash(&header, sizeof header)));
 }
 
-/// The table, or in `reason` what is wrong with the file.
+/// loadEdaTable() with the header that is expected.
 std::optional<EdaTable> read(const fs::path& file, const Header& expected, const EdaResolution& resolution,
                              std::string& reason) {
     const auto unfit = [&](const char* why) {
@@ -121,6 +121,12 @@ bool write(const fs::path& file, const EdaTable& table, Header header) {
 }
 
 } // namespace
+
+std::optional<EdaTable> loadEdaTable(const fs::path& file, float albedo, float g, const EdaResolution& resolution,
+                                     std::string& reason) {
+    EdaTable::requireValid(albedo, g, resolution);
+    return read(file, headerOf(albedo, g, resolution), resolution, reason);
+}
 
 CachedEdaTable loadOrBuildEdaTable(const fs::path& file, float albedo, float g, const EdaResolution& resolution,
                                    unsigned threads) {

@@ -4,6 +4,7 @@
 #include "darts/EdaTable.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace darts {
@@ -13,6 +14,11 @@ struct CachedEdaTable {
     bool built = false;  // rather than read
     std::string warning; // empty unless the file was unfit or could not be written
 };
+
+/// The table of this albedo, g and resolution if the file holds it; else none, and in `reason` what is wrong with the
+/// file.
+[[nodiscard]] std::optional<EdaTable> loadEdaTable(const std::filesystem::path& file, float albedo, float g,
+                                                   const EdaResolution& resolution, std::string& reason);
 
 /// The table of this albedo, g and resolution: read from `file` if that holds it, otherwise built and written there, by
 /// way of a temporary file and rename. The outcome is the same either way: a file that is damaged, of another version

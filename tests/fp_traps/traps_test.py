@@ -30,9 +30,8 @@ def run(arguments, traces):
     for script in ("nasty/nasty_test.py", "plan/plan_test.py", "render/small_renders.py"):
         done = subprocess.run([sys.executable, str(HERE.parent / script)], env={**os.environ, "TUNGSTEN": str(command)},
                               capture_output=True, text=True)
-        print(f"{script}: exit code {done.returncode}")
-        if done.returncode != 0:
-            print(done.stdout[-1500:] + done.stderr[-1500:])
+        if done.returncode != 0:  # what has not run has not been looked at
+            sys.exit(f"{script} fails under traps:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
 
 
 def places(traces):

@@ -140,12 +140,22 @@ void partial(const std::string& bytes) {
     orInputError([&] { (void)mergePartialStates({fileOf("a.part", summed(bytes))}); });
 }
 
-/// A small table: what does not fit is built anew, every time the same.
-void table(const std::string& bytes) {
+/// A small table. The checksum in its header is made right, over all bytes with 0 in its place.
+void table(const std::string& input) {
+    std::string bytes = input;
+    constexpr size_t ChecksumAt = 56, HeaderSize = 64;
+    if (bytes.size() >= HeaderSize) {
+        bytes.replace(ChecksumAt, HeaderSize - ChecksumAt, HeaderSize - ChecksumAt, '\0');
+        const std::string sum = summed(bytes).substr(bytes.size());
+        bytes.replace(ChecksumAt, sum.size(), sum);
+    }
     const darts::EdaResolution resolution{2, 0, -1, 2, 0, 0.02f};
-    const darts::CachedEdaTable read = darts::loadOrBuildEdaTable(fileOf("a.eda", bytes), 0.9f, 0.5f, resolution, 1);
+    std::string reason;
+    const auto read = darts::loadEdaTable(fileOf("a.eda", bytes), 0.9f, 0.5f, resolution, reason);
+    require(read.has_value() == reason.empty(), "a table, or what is wrong");
+    if (!read) return;
     for (const float u : {0.0f, 0.5f, 0.999f}) {
-        const float h = read.table.sample(1.0f, 0.5f, 1.0f, u);
+        const float h = read->sample(1.0f, 0.5f, 1.0f, u);
         require(h >= 0.0f && h <= 2.0f, "sampled h lie within 0 and 2");
     }
 }

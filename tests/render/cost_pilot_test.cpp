@@ -4,6 +4,7 @@
 #include "support/Folders.h"
 #include "support/SceneFile.h"
 
+#include "tungsten/core/Errors.h"
 #include "tungsten/core/Random.h"
 #include "tungsten/render/CostPilot.h"
 #include "tungsten/scene/SceneLoader.h"
@@ -51,6 +52,28 @@ std::optional<PassCosts> costsOf(KnownPasses& integrator, uint32_t rounds = 40, 
     const LoadedScene loaded = loadScene(file.path());
     return measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene),
                          {.seed = seed, .seconds = 0.0, .rounds = rounds});
+}
+
+/// Passes that end only when they are told to.
+class EndlessPasses : public KnownPasses {
+  public:
+    void renderPass(const PassInfo& pass, Film&, Statistics&) override {
+        while (true) pass.watch.poll();
+    }
+};
+
+TEST(CostPilot, PassesThatTakeTooLongAreRefused) {
+    const test::SceneFile file(R"({"integrator": {"type": "path_tracer"}})");
+    const LoadedScene loaded = loadScene(file.path());
+    EndlessPasses integrator;
+    try {
+        (void)measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene),
+                            {.seconds = 0.0, .mostSeconds = 0.05});
+        FAIL() << "endless passes have no price";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.problems().front().message, "the passes of the pilot take more than 0.05 s; a longer --timeout "
+                                                    "lets them, fewer photons make them shorter");
+    }
 }
 
 TEST(PowerLaw, SumsAreThoseOfTheirTerms) {

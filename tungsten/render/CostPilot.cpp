@@ -1,5 +1,6 @@
 #include "tungsten/render/CostPilot.h"
 
+#include "tungsten/core/Errors.h"
 #include "tungsten/render/SceneFilm.h"
 
 #include <algorithm>
@@ -119,12 +120,11 @@ double meanOf(const std::array<double, Indices.size()>& values) {
 }
 
 void renderRound(Integrator& integrator, std::array<Sample, Indices.size()>& samples, bool measuresBias,
-                 const PilotOptions& options, uint32_t round) {
+                 const PilotOptions& options, PassMonitor& monitor, uint32_t round) {
     for (size_t k = 0; k < samples.size(); ++k) {
         Sample& sample = samples[k];
         PassInfo pass{Indices[k], uint64_t(Indices[k]) * options.samplesPerPass, options.samplesPerPass,
                       options.seed + round, measuresBias ? &sample.bias : nullptr};
-        PassMonitor monitor([&] { return options.interrupted && options.interrupted->load(); });
         pass.watch = PassWatch(monitor);
         pass.watch.poll(0);
         Statistics statistics;
@@ -202,18 +202,28 @@ std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrato
                                        const PilotOptions& options) {
     const bool measuresBias = integrator.leavesBias(plan);
     const double wall = wallNow(), cpu = processCpuSeconds();
-    Statistics preparing;
-    PassMonitor monitor([&] { return options.interrupted && options.interrupted->load(); });
-    integrator.prepare(plan, PassWatch(monitor), preparing);
-    const double prepareWall = wallNow() - wall, prepareCpu = processCpuSeconds() - cpu;
+    const double most = std::max(options.mostSeconds, 10.0 * options.seconds);
+    const auto interrupted = [&] { return options.interrupted && options.interrupted->load(); };
+    PassMonitor monitor([&] { return interrupted() || wallNow() - wall > most; });
     std::array<Sample, Indices.size()> samples;
-    for (Sample& sample : samples) {
-        sample.film = filmOf(scene);
-        if (measuresBias) sample.bias = filmOf(scene);
+    double prepareWall = 0.0, prepareCpu = 0.0;
+    try {
+        Statistics preparing;
+        integrator.prepare(plan, PassWatch(monitor), preparing);
+        prepareWall = wallNow() - wall;
+        prepareCpu = processCpuSeconds() - cpu;
+        for (Sample& sample : samples) {
+            sample.film = filmOf(scene);
+            if (measuresBias) sample.bias = filmOf(scene);
+        }
+        const double start = wallNow();
+        for (uint32_t round = 0; round < options.rounds || wallNow() - start < options.seconds; ++round)
+            renderRound(integrator, samples, measuresBias, options, monitor, round);
+    } catch (const PassBrokenOff&) {
+        if (interrupted()) throw;
+        throw InputError(scene.file.string(), "the passes of the pilot take more than " + brief(most) +
+                                                  " s; a longer --timeout lets them, fewer photons make them shorter");
     }
-    const double start = wallNow();
-    for (uint32_t round = 0; round < options.rounds || wallNow() - start < options.seconds; ++round)
-        renderRound(integrator, samples, measuresBias, options, round);
     const double mean = meanOf(each(samples, [](const Sample& s) { return s.film.meanValue(); }));
     if (!(mean > 0.0)) return std::nullopt;
     PassCosts costs = costsOf(samples, integrator, measuresBias, mean);

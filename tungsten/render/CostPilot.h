@@ -37,13 +37,15 @@ struct PilotOptions {
     uint64_t seed = 0xBA5EBA11u;
     uint32_t samplesPerPass = 1;                    ///< per pixel
     double seconds = 3.0;                           ///< passes are rendered for so long,
-    uint32_t rounds = 2;                            ///< and at least so many of each index
+    uint32_t rounds = 2;                            ///< and at least so many of each index,
+    double mostSeconds = 30.0;                      ///< which may take so long, or ten times `seconds`
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: PassBrokenOff
 };
 
 /// Renders passes 0, 15 and 255, again and again with other random numbers: a pass depends on nothing but its index, so
 /// that what late passes bring need not be guessed. `plan` is complete (Integrator::plan was called); the integrator
-/// is prepared here. None where all is black. Throws PassBrokenOff when it is interrupted.
+/// is prepared here. None where all is black. Throws PassBrokenOff when it is interrupted, InputError where passes take
+/// too long.
 std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
                                        const PilotOptions& options);
 

@@ -5,15 +5,16 @@ namespace tungsten::photon {
 ImageBand::ImageBand(const SensorRecord& record, size_t number, int frames)
     : firstRow(int(number) * Rows), lastRow(std::min(firstRow + Rows, record.height) - 1),
       stride(size_t(record.width + Lanes)), x(), y(), z(), record_(record), frames_(frames) {
-    x = rowsOf(record.x);
-    y = rowsOf(record.y);
-    z = rowsOf(record.z);
+    // Beyond the image no piece is seen, but lanes are computed there: with a direction, and one along no axis.
+    x = rowsOf(record.x, 0.48f);
+    y = rowsOf(record.y, 0.6f);
+    z = rowsOf(record.z, 0.64f);
     for (size_t k = 0; k < record.pieces.size(); ++k) addPiece(k);
 }
 
 template <typename T>
-std::vector<float> ImageBand::rowsOf(const std::vector<T>& image) const {
-    std::vector<float> rows(size_t(lastRow - firstRow + 1) * stride);
+std::vector<float> ImageBand::rowsOf(const std::vector<T>& image, float beyond) const {
+    std::vector<float> rows(size_t(lastRow - firstRow + 1) * stride, beyond);
     const auto width = size_t(record_.width);
     for (int row = firstRow; row <= lastRow; ++row)
         for (size_t column = 0; column < width; ++column)

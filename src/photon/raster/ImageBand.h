@@ -57,7 +57,7 @@ class ImageBand {
 
   private:
     template <typename T>
-    std::vector<float> rowsOf(const std::vector<T>& image) const;
+    std::vector<float> rowsOf(const std::vector<T>& image, float beyond = 0.0f) const;
     void addPiece(size_t number);
 
     const SensorRecord& record_;

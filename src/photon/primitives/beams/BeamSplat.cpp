@@ -138,16 +138,18 @@ class Splatter {
         const Vec3f &w = r.direction, &a = r.foot, &n = r.normal;
         const Batch cosine = dx * w.x + dy * w.y + dz * w.z;
         const Batch px = dx - cosine * w.x, py = dy - cosine * w.y, pz = dz - cosine * w.z;
-        const Batch squaredSine = px * px + py * py + pz * pz, inverse = 1.0f / squaredSine;
+        const Batch squaredSine = px * px + py * py + pz * pz;
+        const Batch inverse = 1.0f / xsimd::max(squaredSine, Batch(LeastSine * LeastSine));
         const Batch t = (dx * a.x + dy * a.y + dz * a.z) * inverse, s = cosine * t;
         const Batch across = dx * n.x + dy * n.y + dz * n.z, squaredDistance = across * across * inverse;
         const auto inside = squaredSine > LeastSine * LeastSine && squaredDistance < radius_ * radius_ && s >= r.low &&
                             s < r.high && t > start && t <= load(piece.end);
         if (!xsimd::any(inside)) return false;
         Batch weight = xsimd::sqrt(inverse);
-        if (r.simple)
-            weight =
-                weight * xsimd::exp((start - t - s - r.fromBase) * r.sigmaT) * henyeyGreenstein(r.g, w, dx, dy, dz);
+        if (r.simple) {
+            const Batch exponent = xsimd::select(inside, (start - t - s - r.fromBase) * r.sigmaT, Batch(0.0f));
+            weight = weight * xsimd::exp(exponent) * henyeyGreenstein(r.g, w, dx, dy, dz);
+        }
         xsimd::select(inside, weight, Batch(0.0f)).store_aligned(found.weight);
         s.store_aligned(found.alongBeam);
         t.store_aligned(found.alongRay);

@@ -42,9 +42,10 @@ struct ChordLanes {
     /// `factor`: without lengths.
     [[nodiscard]] LaneReach reach(const LaneRecord& record, const LaneMask& met, const Batch& factor,
                                   const Batch& u) const {
-        const Batch rise = slopeSum() + 1.0f, fall = xsimd::abs(rise), chord = end - start;
+        const Batch first = xsimd::select(met, start, Batch(0.0f)), last = xsimd::select(met, end, Batch(0.0f));
+        const Batch rise = slopeSum() + 1.0f, fall = xsimd::abs(rise), chord = last - first;
         const LaneMask falls = rise >= 0.0f;
-        Batch t = xsimd::select(falls, start, end);
+        Batch t = xsimd::select(falls, first, last);
         LaneReach reach{met, t, offsetSum() + rise * t, factor};
         if (!record.drawsPoints) {
             reach.integrated = true;
@@ -54,9 +55,11 @@ struct ChordLanes {
         }
         const Batch sigma(meanComponent(record.sigmaT)), z = sigma * fall * chord;
         const Batch v = xsimd::select(falls, u, 1.0f - u); // from the bright end, as drawn from the start
-        const Batch left = 1.0f - v * (1.0f - xsimd::exp(-z));
-        const Batch along = xsimd::min(xsimd::select(z < 1e-3f, v * chord, -xsimd::log(left) / (sigma * fall)), chord);
-        t = xsimd::select(falls, start + along, end - along);
+        // u = 0 stands for what is below 2^-24: v is 1 there, and all of a long chord's light would be left of nothing.
+        const Batch left = xsimd::max(1.0f - v * (1.0f - xsimd::exp(-z)), Batch(0x1p-25f));
+        const Batch exact = -xsimd::log(left) / xsimd::max(sigma * fall, Batch(1e-30f));
+        const Batch along = xsimd::min(xsimd::select(z < 1e-3f, v * chord, exact), chord);
+        t = xsimd::select(falls, first + along, last - along);
         reach.alongRay = t;
         reach.length = offsetSum() + rise * t;
         reach.factor = factor * chord * meanOfFall(z) / left;

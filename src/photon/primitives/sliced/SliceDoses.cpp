@@ -1,5 +1,7 @@
 #include "photon/primitives/sliced/SliceDoses.h"
 
+#include <limits>
+
 namespace tungsten::photon {
 
 namespace {
@@ -33,7 +35,8 @@ Batch SliceDoses::tested(const SliceEstimate& estimate, const LaneRecord& record
     const Batch sum = filled + brightness / dose, whole = xsimd::floor(sum);
     (sum - whole).store_unaligned(filled_.data() + first);
     if (!xsimd::any(whole > 0.0f)) return Batch(0.0f);
-    LaneArray factors = stored(xsimd::select(whole > 0.0f, whole * dose / brightness, Batch(0.0f)));
+    const Batch lit = xsimd::max(brightness, Batch(std::numeric_limits<float>::min()));
+    LaneArray factors = stored(xsimd::select(whole > 0.0f, whole * dose / lit, Batch(0.0f)));
     const Lanes3 at = rays.toOrigin + rays.direction * reach.alongRay;
     const LaneArray x = stored(at.x), y = stored(at.y), z = stored(at.z);
     std::array<LaneArray, 4> lengths;

@@ -116,7 +116,8 @@ struct LaneRecord {
 
 /// Mean of e^{-x} from 0 to z >= 0.
 inline Batch meanOfFall(const Batch& z) {
-    return xsimd::select(z < 0.02f, 1.0f - z * (0.5f - z * (1.0f / 6.0f)), (1.0f - xsimd::exp(-z)) / z);
+    return xsimd::select(z < 0.02f, 1.0f - z * (0.5f - z * (1.0f / 6.0f)),
+                         (1.0f - xsimd::exp(-z)) / xsimd::max(z, Batch(0.02f)));
 }
 
 /// What a register of rays meets of a record: a point of each ray, or a chord that is integrated over.
@@ -131,7 +132,7 @@ struct LaneReach {
 
     /// Without the part of the ray before `start`.
     [[nodiscard]] Batch weight(float sigmaT, const Batch& start) const {
-        const Batch w = factor * xsimd::exp(-sigmaT * (length - start));
+        const Batch w = factor * xsimd::exp(xsimd::select(met, -sigmaT * (length - start), Batch(0.0f)));
         return integrated ? w * chord * meanOfFall(sigmaT * fall * chord) : w;
     }
 };
