@@ -4,7 +4,7 @@
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
 #include "photon/primitives/sliced/FlightChain.h"
-#include "photon/primitives/sliced/SliceWorth.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/store/ArrivalCulling.h"
 #include "transport/StepCounters.h"
 
@@ -34,8 +34,8 @@ struct WalkContext {
     /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
     /// photons are, not from how dense those few are that bring what connections cannot.
     bool densityPhotons = false;
-    bool glossySensorPaths = false;         ///< SensorPathRules::glossy
-    const SliceWorth* sliceWorth = nullptr; ///< of guided paths
+    bool glossySensorPaths = false;             ///< SensorPathRules::glossy
+    const RecordCounts* recordCounts = nullptr; ///< of guided paths
 };
 
 struct LightPath {

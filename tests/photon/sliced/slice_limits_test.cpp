@@ -6,7 +6,7 @@
 #include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
-#include "photon/primitives/sliced/SliceWorth.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/primitives/sliced/SliceKind.h"
 #include "photon/sliced/box_of_fog.h"
 
@@ -197,7 +197,7 @@ TEST(ClosedBox, KeepsItsLightOverThousandsOfBounces) {
 }
 
 /// A ball on a light brings what a ball does that the light's whole power collides in.
-TEST(SliceWorth, CountsTheLightOfLights) {
+TEST(RecordCounts, CountsTheLightOfLights) {
     const test::SceneFile file(test::configurationA(3, false));
     const auto loaded = loadScene(file.path(), {});
     const Scene& scene = *loaded.scene;
@@ -205,10 +205,10 @@ TEST(SliceWorth, CountsTheLightOfLights) {
     scattered.emitter = -1;
     scattered.power = emitterPower(scene.emitters[0]);
     light.power = Rgb(1.0f);
-    SliceWorth worth(scene, scene.transport.gate);
-    worth.measure(std::array{scattered, light}, {});
-    EXPECT_NEAR(worth.expected(light), worth.expected(scattered), 1e-5);
-    EXPECT_NEAR(worth.expected(scattered), 1.0, 1e-5);
+    RecordCounts counts(scene, scene.transport.gate);
+    counts.measure(std::array{scattered, light}, {});
+    EXPECT_NEAR(counts.expected(light), counts.expected(scattered), 1e-5);
+    EXPECT_NEAR(counts.expected(scattered), 1.0, 1e-5);
 }
 
 } // namespace
