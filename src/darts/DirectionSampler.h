@@ -43,6 +43,8 @@ struct AboutTarget {
         return guide * last * (1.0f / Uniform) + Floor;
     }
 };
+template <typename Lobe>
+AboutTarget(Lobe, Vec3) -> AboutTarget<Lobe>; // Clang before 17 does not deduce an aggregate's
 
 /// The guided distribution at a vertex: a base of directions (AboutTarget, DirectionsOut), and the view's to the coming
 /// control vertex.

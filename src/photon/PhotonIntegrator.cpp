@@ -63,12 +63,8 @@ bool PhotonIntegrator::leavesBias(const EffectPlan& facts) const {
 double PhotonIntegrator::kernelWidth(uint32_t pass) const {
     const uint32_t at = settings_.progressive ? pass : 0;
     if (!plan_.volume.on) return double(surfaceRadiusFactor(at, settings_.alpha));
-    if (std::holds_alternative<Points>(settings_.primitive)) {
-        const double factor = double(pointRadiusFactor(at, settings_.volumeAlpha));
-        return settings_.fixedVolumeRadius ? factor : std::sqrt(factor);
-    }
-    return scene_->transport.gate.delta ? deltaGateFactor(at, settings_.volumeAlpha)
-                                        : double(beamRadiusFactor(at, settings_.alpha));
+    return std::visit([&](const auto& p) { return p.kernelWidth(settings_, scene_->transport.gate.delta, at); },
+                      settings_.primitive);
 }
 
 uint32_t PhotonIntegrator::step(const PassInfo& pass) const {

@@ -106,9 +106,9 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
         policy.directView == transport::DirectView::Auto ? straight : policy.directView == transport::DirectView::On;
     const bool pointLike = scene.transport.cameraUnwarped || scene.camera.aperture() == 0.0f;
     const bool exact = guidance.on && directView && straight && pointLike;
-    const bool slices = std::holds_alternative<Slices>(settings.primitive);
-    framesOneByOne.on = exact && gate.frames > 1 && policy.aimsAtSingleFrames() && !slices;
-    framesOneByOne.reason = slices              ? "a sliced primitive shows in many frames"
+    const bool manyFrames = std::visit([](const auto& p) { return p.ManyFrames; }, settings.primitive);
+    framesOneByOne.on = exact && gate.frames > 1 && policy.aimsAtSingleFrames() && !manyFrames;
+    framesOneByOne.reason = manyFrames          ? "a sliced primitive shows in many frames"
                             : framesOneByOne.on ? "each light path aims at one frame"
                                                 : "light paths aim at the whole sequence as one gate";
     drawsByResponse = exact && !scene.transport.response.empty();
@@ -117,11 +117,11 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
                      !scene.transport.cameraUnwarped && transport::gateInBodies(scene).collisions > tuning::WidestGate;
     boundsAlone.reason = boundsAlone.on ? "a gate so wide that most light which leaves the bodies is in time"
                                         : "the gate is short, or not all is seen and lit from outside";
-    const bool points = std::holds_alternative<Points>(settings.primitive);
-    ordinaryPhotons.on = points && (boundsAlone.on || !directView ||
-                                    (policy.directView == transport::DirectView::Auto && !policy.sampling.published &&
-                                     !meetsDeltaGate && !drawsByResponse));
-    ordinaryPhotons.reason = !points ? "no points are stored: there are no control vertices"
+    const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
+    ordinaryPhotons.on = atVertices && (boundsAlone.on || !directView ||
+                                        (policy.directView == transport::DirectView::Auto &&
+                                         !policy.sampling.published && !meetsDeltaGate && !drawsByResponse));
+    ordinaryPhotons.reason = !atVertices ? "no points are stored: there are no control vertices"
                              : !directView
                                  ? "mirrors, refraction or different speeds: control vertices alone are not complete"
                              : boundsAlone.on     ? "bounds in time alone: there are no control vertices"

@@ -88,11 +88,10 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
         settings.primitive = chosen.primitive;
         settings.primitiveReason = chosen.reason;
     }
-    const bool beams = std::holds_alternative<Beams>(settings.primitive);
     settings.fixedVolumeRadius = block.flag(
         "fixed_volume_radius", false, {"none", "points: one radius, instead of one that follows the photons' density"});
-    const bool points = std::holds_alternative<Points>(settings.primitive);
-    if (beams || (points && settings.fixedVolumeRadius)) requireRadius(block, scene, settings);
+    if (std::visit([&](const auto& p) { return p.hasRadius(settings); }, settings.primitive))
+        requireRadius(block, scene, settings);
     if (!scene.transport.gate.delta) return;
     settings.temporalRadius =
         0.5 * block.number("transient_time_width", 0.1, {"time", "width of the temporal kernel in the first pass"},

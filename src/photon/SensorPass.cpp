@@ -17,6 +17,18 @@ struct SensorCounters {
     uint64_t gathered = 0, gatheredInVolumes = 0, nonFinite = 0;
 };
 
+void report(const SensorCounters& counters, const VolumeGathers& volume, Statistics& statistics) {
+    report(counters.steps, statistics);
+    statistics.add("gathered photons", counters.gathered);
+    statistics.add("photons gathered on surfaces", counters.gathered);
+    statistics.add("gathered records", counters.gatheredInVolumes);
+    std::visit(
+        Overloaded{[](std::monostate) {},
+                   [&](const auto& gather) { statistics.add(gather.GatheredCounter, counters.gatheredInVolumes); }},
+        volume);
+    statistics.add("non-finite samples", counters.nonFinite);
+}
+
 /// Buffers that a worker reuses from pixel to pixel.
 struct Workspace {
     FrameSums volume, sums;
@@ -223,15 +235,7 @@ void renderSensorPass(const Scene& scene, const GatherStructures& structures, co
                 renderPixel(int(x), int(y), workspace, counters);
             pass.watch.poll(tile.cols().size());
         }
-        report(counters.steps, statistics);
-        statistics.add("gathered photons", counters.gathered);
-        statistics.add("photons gathered on surfaces", counters.gathered);
-        statistics.add("gathered records", counters.gatheredInVolumes);
-        std::visit(
-            Overloaded{[](std::monostate) {},
-                       [&](const auto& gather) { statistics.add(gather.GatheredCounter, counters.gatheredInVolumes); }},
-            structures.volume);
-        statistics.add("non-finite samples", counters.nonFinite);
+        report(counters, structures.volume, statistics);
     });
 }
 

@@ -126,7 +126,7 @@ inline constexpr float NarrowKernel = 0.70710678f;
 inline constexpr float PieceInRadii = 16.0f, MostPieces = 16.0f;
 
 /// Light paths traced by one task, tasks whose photons are then appended in order, and paths before a pass that tell
-/// what connections are worth.
+/// what connections bring.
 inline constexpr uint64_t PathsPerBatch = 256, BatchesPerWave = 16, PilotPaths = 256;
 
 } // namespace tungsten::photon::tuning

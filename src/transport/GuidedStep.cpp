@@ -33,8 +33,8 @@ float GuidedStep::survival(const darts::Guide& guide, int medium, float throughp
 int GuidedStep::copies(const darts::Guide& guide) {
     const bool out = reachable_.way == darts::Way::Out;
     int copies = out ? splits_.copies(guide.splits(reachable_)) : 1;
-    const bool byWorth = out ? guide.settings().splitsHeavyOut : reachable_.way != darts::Way::Unknown;
-    if (byWorth && first_)
+    const bool byUsefulness = out ? guide.settings().splitsHeavyOut : reachable_.way != darts::Way::Unknown;
+    if (byUsefulness && first_)
         copies *= guide.copies(useful_ - std::log(float(copies)), first_->usefulness, tuning::MostCopies / lineage_);
     lineage_ *= float(copies);
     return copies;

@@ -1,6 +1,7 @@
 // Random numbers, warps, distributions, transforms, names.
 
 #include "support/ChiSquare.h"
+#include "support/ExpectNear.h"
 
 #include "tungsten/core/Distribution.h"
 #include "tungsten/core/Errors.h"
@@ -103,10 +104,6 @@ TEST(Distribution, TwoDimensionalDensityMatchesSamples) {
     EXPECT_GT(test::chiSquarePValue(observed, expected), test::SmallestPValue);
 }
 
-void expectNear(const Vec3f& a, const Vec3f& b) {
-    EXPECT_LT((a - b).length(), 1e-5f) << a << " against " << b;
-}
-
 TEST(Transform, LookAtAndUpGiveARightHandedFrame) {
     TransformRecipe recipe;
     recipe.position = Vec3f(1, 2, 3);
@@ -114,10 +111,10 @@ TEST(Transform, LookAtAndUpGiveARightHandedFrame) {
     recipe.zAxis = Vec3f(0, 0, -5);
     recipe.yAxis = Vec3f(0, 1, 0.1f);
     const Transform t = composeTransform(recipe);
-    expectNear(t.z, Vec3f(0, 0, -1));
-    expectNear(t.y, Vec3f(0, 1, 0));
-    expectNear(t.x, t.y.cross(t.z));
-    expectNear(t.translation, Vec3f(1, 2, 3));
+    test::expectNear(t.z, Vec3f(0, 0, -1));
+    test::expectNear(t.y, Vec3f(0, 1, 0));
+    test::expectNear(t.x, t.y.cross(t.z));
+    test::expectNear(t.translation, Vec3f(1, 2, 3));
 }
 
 TEST(Transform, ExplicitAxesAreKeptInTheirOrder) {
@@ -126,8 +123,8 @@ TEST(Transform, ExplicitAxesAreKeptInTheirOrder) {
     recipe.xAxis = Vec3f(1, 0, 1);
     recipe.zAxis = Vec3f(0, 0, 1);
     const Transform t = composeTransform(recipe); // x and z given: z is kept, x orthogonalised
-    expectNear(t.z, Vec3f(0, 0, 1));
-    expectNear(t.x, Vec3f(1, 0, 0));
+    test::expectNear(t.z, Vec3f(0, 0, 1));
+    test::expectNear(t.x, Vec3f(1, 0, 0));
     EXPECT_GT(t.determinant(), 0.99f);
     TransformRecipe parallel;
     parallel.hasZ = parallel.hasY = true;
@@ -139,10 +136,10 @@ TEST(Transform, RotatesAboutNegatedYThenXThenZ) {
     TransformRecipe recipe;
     recipe.scale = Vec3f(2, 1, 1);
     recipe.rotationDegrees = Vec3f(0, 90, 0);
-    expectNear(composeTransform(recipe).x, Vec3f(0, 0, 2)); // -90 degrees about y takes x to +z
+    test::expectNear(composeTransform(recipe).x, Vec3f(0, 0, 2)); // -90 degrees about y takes x to +z
     recipe.rotationDegrees = Vec3f(90, 0, 90);
     // z first (x -> y), then x (y -> z).
-    expectNear(composeTransform(recipe).x, Vec3f(0, 0, 2));
+    test::expectNear(composeTransform(recipe).x, Vec3f(0, 0, 2));
 }
 
 TEST(Errors, NamesNearEnough) {

@@ -7,6 +7,8 @@
 #include "darts/GreensFunction.h"
 #include "darts/Guide.h"
 
+#include "support/LogUniform.h"
+
 #include "tungsten/core/Random.h"
 
 #include <boost/math/constants/constants.hpp>
@@ -19,6 +21,7 @@ namespace {
 using Exact = boost::multiprecision::cpp_bin_float_50;
 using tungsten::RandomStream;
 using tungsten::Sampler;
+using tungsten::test::logUniform;
 const Exact ExactPi = boost::math::constants::pi<Exact>();
 
 /// Relative to the exact value.
@@ -175,10 +178,6 @@ TEST(Accuracy, GreensFunctions) {
             }
     EXPECT_EQ(std::exp(DiffusionGreensFunction<float>{}.log(2.0f, 2.0f)), 0.0f);
     EXPECT_EQ(std::exp(CausalGreensFunction<float>{}.log(0.0f, 2.0f)), 0.0f);
-}
-
-double logUniform(Sampler& s, double low, double high) {
-    return low * std::pow(high / low, s.nextDouble());
 }
 
 TEST(Accuracy, Residuals) {

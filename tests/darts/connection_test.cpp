@@ -83,12 +83,12 @@ TEST(ConnectionLength, SamplesFollowTheDensityOfForwardPeaks) {
             }
 }
 
-using Lobe = ConnectionLobe<double>;
+using DoubleLobe = ConnectionLobe<double>;
 
-void testLobe(Lobe (*make)(double C, double delta)) {
+void testLobe(DoubleLobe (*make)(double C, double delta)) {
     for (const double C : {1e-9, 0.5, 1.0, 1e4})
         for (const double delta : {1e-6, 1e-2, 1.0, 1e3}) {
-            const Lobe lobe = make(C, delta);
+            const DoubleLobe lobe = make(C, delta);
             // Uniform after mapping by the density's own integral over h (2 pi per unit of h).
             const auto cumulative = [&](double h) {
                 const auto integrand = [&](double x) { return TwoPi * lobe.pdf(std::exp(x)) * std::exp(x); };
@@ -108,16 +108,16 @@ void testLobe(Lobe (*make)(double C, double delta)) {
 }
 
 TEST(ConnectionLobe, PathLobeSamplesItsDensity) {
-    testLobe(Lobe::path);
+    testLobe(DoubleLobe::path);
 }
 TEST(ConnectionLobe, PhotonLobeSamplesItsDensity) {
-    testLobe(Lobe::photon);
+    testLobe(DoubleLobe::photon);
 }
 
 TEST(ConnectionLobe, PathLobeCancelsTheConnectionWeight) {
     // 1 / (r (delta + C h)) over the lobe's density does not depend on the direction.
     const double C = 1.3, delta = 0.01;
-    const Lobe lobe = Lobe::path(C, delta);
+    const DoubleLobe lobe = DoubleLobe::path(C, delta);
     double first = 0.0;
     for (const double h : {1e-8, 1e-3, 0.4, 1.9}) {
         const Ellipse<double> e{C, delta, h};

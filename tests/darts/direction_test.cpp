@@ -34,20 +34,20 @@ struct ConeView {
     }
 };
 
-struct Case {
+struct DirectionCase {
     float C, excess, g;
     float alpha;
 };
-const Case Cases[] = {{1.0f, 0.3f, 0.0f, 0.1f},
-                      {1.0f, 0.02f, 0.3f, 0.5f},
-                      {2.0f, 8.0f, -0.6f, 0.2f},
-                      {0.5f, 0.1f, 0.7f, 1.0f},
-                      {1e-6f, 1.0f, 0.4f, 0.1f}};
+const DirectionCase DirectionCases[] = {{1.0f, 0.3f, 0.0f, 0.1f},
+                                        {1.0f, 0.02f, 0.3f, 0.5f},
+                                        {2.0f, 8.0f, -0.6f, 0.2f},
+                                        {0.5f, 0.1f, 0.7f, 1.0f},
+                                        {1e-6f, 1.0f, 0.4f, 0.1f}};
 const Vec3 Before = Vec3{0.6f, 0.0f, 0.8f};
 const Vec3 ToTarget = Vec3{0.48f, 0.64f, -0.6f};
 
 /// Coloured, of mean sigmaT 2 and mean albedo 0.8.
-Medium medium(float g) {
+Medium coloured(float g) {
     return {{0.3f, 0.4f, 0.5f}, {1.7f, 1.6f, 1.5f}, g};
 }
 
@@ -65,8 +65,8 @@ TEST(HenyeyGreenstein, SamplesItsDensity) {
 }
 
 template <typename View>
-void expectSamplesDensity(const Settings& settings, const Case& c, const View& view) {
-    const DirectionSampler sampler(settings, medium(c.g));
+void expectSamplesDensity(const Settings& settings, const DirectionCase& c, const View& view) {
+    const DirectionSampler sampler(settings, coloured(c.g));
     const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
     const HenyeyGreenstein phase{Before, c.g};
     const double p = tungsten::test::chiSquareSphere(
@@ -81,7 +81,7 @@ void expectSamplesDensity(const Settings& settings, const Case& c, const View& v
 }
 
 TEST(DirectionSampler, MixturesSampleTheirDensity) {
-    for (const Case& c : Cases)
+    for (const DirectionCase& c : DirectionCases)
         for (const Lobe lobe : {Lobe::Path, Lobe::Photon}) {
             Settings settings = best(Mode::Photon, 0.0f);
             settings.alpha = c.alpha;
@@ -92,7 +92,7 @@ TEST(DirectionSampler, MixturesSampleTheirDensity) {
 }
 
 TEST(DirectionSampler, TheCamerasViewBelongsToTheDensity) {
-    for (const Case& c : Cases)
+    for (const DirectionCase& c : DirectionCases)
         for (const float focus : {0.1f, 1.0f}) {
             Settings settings = best(Mode::Photon, 0.0f);
             settings.focus = focus;
@@ -104,7 +104,7 @@ TEST(DirectionSampler, TheCamerasViewBelongsToTheDensity) {
 }
 
 TEST(DirectionSampler, MixturesWithTheEdaTableSampleTheirDensity) {
-    for (const Case& c : Cases)
+    for (const DirectionCase& c : DirectionCases)
         for (const Mode mode : {Mode::Path, Mode::Photon})
             for (const float focus : {0.0f, 0.3f}) {
                 if (focus > 0 && (mode == Mode::Path || c.C < 0.1f || c.excess < 0.2f)) continue; // as above
@@ -129,7 +129,7 @@ TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
                 Settings settings = best(Mode::Path, 0.0f);
                 settings.direction = direction;
                 settings.lobe = lobe;
-                const DirectionSampler sampler(settings, medium(0.0f));
+                const DirectionSampler sampler(settings, coloured(0.0f));
                 const Residual residual = Residual::of(ToTarget, {1.0, 1.0 + double(excess)});
                 const auto density = [&](double h) {
                     const Vec3 d = directionAbout(residual.axis, float(h), 0.3f);
@@ -155,8 +155,8 @@ TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
 
 TEST(DirectionSampler, TheEdaTablesShareIsTheTablesOwnDensity) {
     const auto table = std::make_shared<const EdaTable>(EdaTable::build(0.8f, 0.3f));
-    const DirectionSampler built(published(Mode::Path), medium(0.3f));
-    const DirectionSampler given(published(Mode::Path), medium(0.3f), table);
+    const DirectionSampler built(published(Mode::Path), coloured(0.3f));
+    const DirectionSampler given(published(Mode::Path), coloured(0.3f), table);
     const HenyeyGreenstein phase{Before, 0.3f};
     for (uint64_t i = 0; i < 2000; ++i) {
         Sampler s(22, RandomStream::Test, 0, i);
@@ -182,7 +182,7 @@ TEST(DirectionSampler, EmptyMediaHaveNoTableAndUseThePhaseFunction) {
 TEST(DirectionSampler, WithoutAShareOfThePhaseFunctionATargetAtTheVertexStillHasDirections) {
     Settings settings = best(Mode::Path, 0.0f);
     settings.alpha = 0.0f;
-    const DirectionSampler sampler(settings, medium(0.0f));
+    const DirectionSampler sampler(settings, coloured(0.0f));
     const Residual residual = Residual::of({0, 0, 0}, {0.0, 1.0});
     const auto sample = sampler.sample(residual, 1.0f, HenyeyGreenstein{}, NoView{}, [] { return 0.25f; });
     EXPECT_NEAR(sample.inversePdf, 4.0f * Pi, 1e-4f);
@@ -190,14 +190,14 @@ TEST(DirectionSampler, WithoutAShareOfThePhaseFunctionATargetAtTheVertexStillHas
 
 /// Resampled directions: E[F(w) inverse pdf] = the integral of F over the sphere.
 TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
-    for (const Case& c : Cases)
+    for (const DirectionCase& c : DirectionCases)
         for (const int count : {2, 4, 8})
             for (const float focus : {0.0f, 0.2f}) {
                 Settings settings = best(Mode::Photon, 0.7f);
                 settings.direction = Direction::Ris;
                 settings.directionCandidates = count;
                 settings.focus = focus;
-                const DirectionSampler sampler(settings, medium(c.g));
+                const DirectionSampler sampler(settings, coloured(c.g));
                 const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
                 const HenyeyGreenstein phase{Before, c.g};
                 const ConeView view{{0, 1, 0}};

@@ -4,6 +4,7 @@
 #include "darts/Stratification.h"
 
 #include "support/ChiSquare.h"
+#include "support/LogUniform.h"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
@@ -15,6 +16,7 @@ namespace {
 
 using tungsten::RandomStream;
 using tungsten::Sampler;
+using tungsten::test::logUniform;
 constexpr double Infinite = std::numeric_limits<double>::infinity();
 
 TEST(Stratification, EveryRowHasOneNumberInEveryStratumAndColumnsFillTheirs) {
@@ -41,7 +43,7 @@ TEST(Stratification, EitherHalfOfARowIsStratifiedOverTheUnitInterval) {
     }
 }
 
-struct Case {
+struct DistanceCase {
     const char* name;
     double C, S, h, surface;
     Medium medium;
@@ -49,7 +51,7 @@ struct Case {
 
 const Medium Grey{{0.1f, 0.1f, 0.1f}, {1.2f, 1.2f, 1.2f}, 0.3f};
 const Medium Coloured{{0.1f, 0.0f, 0.3f}, {0.4f, 1.6f, 0.9f}, 0.0f};
-const Case Cases[] = {
+const DistanceCase DistanceCases[] = {
     {"bounded by time", 1.0, 1.5, 0.4, Infinite, Grey},
     {"bounded by a surface", 1.0, 3.0, 0.4, 0.6, Grey},
     {"near the front", 2.0, 2.02, 0.01, Infinite, Grey},
@@ -71,12 +73,12 @@ struct Sums {
     }
 };
 
-Residual residualOf(const Case& c) {
+Residual residualOf(const DistanceCase& c) {
     return Residual::of({0, 0, float(c.C)}, {0.98 * c.S, c.S});
 }
 
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time, and the surface's share.
-void expectUnbiased(const Case& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0) {
+void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0) {
     const DistanceSampler sampler(settings, c.medium, scalar);
     const Residual residual = residualOf(c);
     const double last = residual.latest(float(c.h)).firstLeg(), bound = std::min(last, c.surface);
@@ -109,7 +111,7 @@ void expectUnbiased(const Case& c, const Settings& settings, bool scalar, uint64
 
 TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
     uint64_t seed = 100;
-    for (const Case& c : Cases)
+    for (const DistanceCase& c : DistanceCases)
         for (const Greens greens : {Greens::None, Greens::Diffusion, Greens::Causal})
             for (const Proposals proposals :
                  {Proposals::Exponential, Proposals::MixedUniform, Proposals::MixedQuarter, Proposals::Equiangular})
@@ -126,7 +128,7 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
 
 TEST(DistanceSampler, BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean) {
     uint64_t seed = 1500;
-    for (const Case& c : Cases)
+    for (const DistanceCase& c : DistanceCases)
         for (const float odds : {0.3f, 4.0f}) {
             Settings settings = best(Mode::Path, 0.0f);
             settings.surfaceOdds = odds;
@@ -143,7 +145,7 @@ TEST(DistanceSampler, BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean
 }
 TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     uint64_t seed = 900;
-    for (const Case& c : Cases) {
+    for (const DistanceCase& c : DistanceCases) {
         if (c.S < 1.1 * c.C || c.medium.sigmaS.x < 1e-3f) continue; // nearly all its candidates are too late there
         for (const bool overlap : {false, true})
             for (const float floor : {0.0f, 0.05f})
@@ -157,7 +159,7 @@ TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
 }
 
 TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
-    for (const Case& c : Cases) {
+    for (const DistanceCase& c : DistanceCases) {
         const Settings settings = best(Mode::Path, 0.0f);
         const DistanceSampler simd(settings, c.medium), scalar(settings, c.medium, true);
         for (uint64_t i = 0; i < 500; ++i) {
@@ -186,11 +188,8 @@ TEST(DistanceSampler, NothingScattersInAnAbsorber) {
 TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
     for (uint64_t i = 0; i < 100000; ++i) {
         Sampler s(5, RandomStream::Test, 1, i);
-        const auto logUniform = [&](double low, double high) {
-            return std::exp(std::log(low) + s.nextDouble() * std::log(high / low));
-        };
-        const double scale = logUniform(1e-4, 1e5), C = s.next1D() < 0.1f ? 0.0 : scale;
-        const double S = C + scale * logUniform(1e-7, 10.0), depth = logUniform(1e-6, 1e4) / S;
+        const double scale = logUniform(s, 1e-4, 1e5), C = s.next1D() < 0.1f ? 0.0 : scale;
+        const double S = C + scale * logUniform(s, 1e-7, 10.0), depth = logUniform(s, 1e-6, 1e4) / S;
         const double albedo = double(int(s.next1D() * 3.0f)) * 0.5, g = 0.99 * (2.0 * s.nextDouble() - 1.0);
         const auto sigmaS = float(depth * albedo), sigmaA = float(depth * (1.0 - albedo));
         const Medium medium{{sigmaA, sigmaA, sigmaA}, {sigmaS, sigmaS, sigmaS}, float(g)};
@@ -199,8 +198,8 @@ TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
         if (s.next1D() < 0.2f) settings = published(Mode::Path);
         const DistanceSampler sampler(settings, medium);
         const Residual residual = Residual::of({0, 0, float(C)}, {S * (1.0 - 1e-7), S});
-        const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(1e-12, 2.0));
-        const float surface = s.next1D() < 0.5f ? float(scale * logUniform(1e-6, 10.0)) : float(Infinite);
+        const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(s, 1e-12, 2.0));
+        const float surface = s.next1D() < 0.5f ? float(scale * logUniform(s, 1e-6, 10.0)) : float(Infinite);
         if (!residual.alive() || residual.latest(h).isNeedle()) continue;
         const DistanceSample sample =
             sampler.sample(residual, {{}, h}, surface, {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});

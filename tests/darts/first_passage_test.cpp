@@ -12,14 +12,11 @@ namespace darts {
 namespace {
 
 using tungsten::test::outOf;
+using tungsten::test::thickMedium;
 using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 
 constexpr double SigmaA = 0.02, ReducedS = 10.0;
 constexpr double D = 1.0 / (3.0 * (SigmaA + ReducedS));
-
-Medium medium(float g) {
-    return {{0.02f, 0.02f, 0.02f}, {10.0f, 10.0f, 10.0f}, g};
-}
 
 double logPassage(const Residual& residual, float allowance) {
     const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit, allowance);
@@ -106,7 +103,7 @@ TEST(FirstPassage, IsNeverZero) {
 
 /// A control vertex as deep as can be, seen from a boundary that hides nearer ones: rare, but not lost.
 TEST(Guide, TracesControlVerticesInBodiesOftenEnough) {
-    const Guide guide(best(Mode::Path, 0.0f), medium(0.0f));
+    const Guide guide(best(Mode::Path, 0.0f), thickMedium(0.0f));
     const Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
     const Vec3 down = residual.axis * -1.0f;
     EXPECT_FLOAT_EQ(guide.chance(residual, down, {20.0f, 23.0f, 1.0f}, 0.08f), 0.1f);
@@ -118,7 +115,7 @@ TEST(Guide, TracesControlVerticesInBodiesOftenEnough) {
 
 /// In two whenever the length left has halved, however many vertices that takes.
 TEST(Guide, SplitsWalksThatLeaveSoon) {
-    const Guide guide(best(Mode::Path, 0.0f), medium(0.0f)); // a mean free path is 0.1
+    const Guide guide(best(Mode::Path, 0.0f), thickMedium(0.0f)); // a mean free path is 0.1
     int copies = 1;
     Splits splits;
     for (const double left : {3.0, 1.2, 1.3, 0.7, 0.15, 0.01, 0.001}) {

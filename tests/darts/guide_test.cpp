@@ -3,6 +3,7 @@
 #include "darts/Guide.h"
 
 #include "support/ChiSquare.h"
+#include "support/LogUniform.h"
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
@@ -12,6 +13,7 @@ namespace {
 
 using tungsten::RandomStream;
 using tungsten::Sampler;
+using tungsten::test::logUniform;
 
 /// From an isotropic vertex, all connections of one scattering with length in [low, high): the integral of
 /// e^{-sigmaT S} ln((S + C) / (S - C)) / (C S) times sigmaS (the density g_1 of a walk of two flights, times 4 pi).
@@ -110,10 +112,9 @@ TEST(Guide, ControlVerticesStayExactAtTheHardCases) {
     uint64_t tested = 0;
     for (uint64_t i = 0; i < 200000; ++i) {
         Sampler s(6, RandomStream::Test, 0, i);
-        const auto logUniform = [&](double low, double high) { return low * std::pow(high / low, s.nextDouble()); };
-        const double scale = logUniform(1e-4, 1e5), C = s.next1D() < 0.1f ? 0.0 : scale;
-        const double high = C + scale * logUniform(1e-6, 1e2), width = high * logUniform(1e-7, 1.0);
-        const double depth = logUniform(1e-6, 1e4);
+        const double scale = logUniform(s, 1e-4, 1e5), C = s.next1D() < 0.1f ? 0.0 : scale;
+        const double high = C + scale * logUniform(s, 1e-6, 1e2), width = high * logUniform(s, 1e-7, 1.0);
+        const double depth = logUniform(s, 1e-6, 1e4);
         const auto sigma = float(depth / high);
         const Guide guide(best(Mode::Photon, 0.0f), Medium{{0, 0, 0}, {sigma, sigma, sigma}, 0.0f});
         const Residual residual = Residual::of({0, float(C), 0}, {high - width, high});
@@ -121,7 +122,7 @@ TEST(Guide, ControlVerticesStayExactAtTheHardCases) {
         const ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
         ASSERT_TRUE(std::isfinite(connection.inversePdf) && connection.inversePdf >= 0.0f);
         ASSERT_TRUE(connection.excess >= residual.low && connection.excess <= residual.excess * 1.000001f);
-        const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(1e-12, 2.0));
+        const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(s, 1e-12, 2.0));
         const auto vertex = guide.controlVertex(residual, connection, h, INFINITY);
         if (!vertex) continue;
         ++tested;
@@ -143,11 +144,10 @@ TEST(Guide, ControlVerticesStayExactAtTheHardCases) {
 TEST(Guide, DirectionsStayFiniteAtTheHardCases) {
     for (uint64_t i = 0; i < 100000; ++i) {
         Sampler s(8, RandomStream::Test, 0, i);
-        const auto logUniform = [&](double low, double high) { return low * std::pow(high / low, s.nextDouble()); };
-        const double scale = logUniform(1e-4, 1e5), C = s.next1D() < 0.1f ? 0.0 : scale;
+        const double scale = logUniform(s, 1e-4, 1e5), C = s.next1D() < 0.1f ? 0.0 : scale;
         const float g = 0.99f * (2.0f * s.next1D() - 1.0f);
         const Guide guide(best(s.next1D() < 0.5f ? Mode::Path : Mode::Photon, g), Medium{{0, 0, 0}, {1, 1, 1}, g});
-        const Residual residual = Residual::of({0, 0, float(C)}, {0.0, C + scale * logUniform(1e-6, 1e2)});
+        const Residual residual = Residual::of({0, 0, float(C)}, {0.0, C + scale * logUniform(s, 1e-6, 1e2)});
         if (!residual.alive()) continue;
         const ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
         const HenyeyGreenstein phase{{0, 1, 0}, g};

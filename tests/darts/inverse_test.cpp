@@ -6,6 +6,8 @@
 #include "darts/Ellipse.h"
 #include "darts/PhaseFunction.h"
 
+#include "support/LogUniform.h"
+
 #include "tungsten/core/Random.h"
 
 #include <gtest/gtest.h>
@@ -15,12 +17,10 @@ namespace {
 
 using tungsten::RandomStream;
 using tungsten::Sampler;
+using tungsten::test::logUniform;
 
 constexpr uint64_t Configurations = 100000;
 
-double logUniform(Sampler& s, double low, double high) {
-    return low * std::pow(high / low, s.nextDouble());
-}
 /// Two numbers in [0, 1), the first not above the second; now and then the ends.
 std::pair<float, float> ordered(Sampler& s) {
     const float a = s.next1D(), b = s.next1D();

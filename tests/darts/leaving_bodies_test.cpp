@@ -15,11 +15,8 @@ namespace {
 using tungsten::RandomStream;
 using tungsten::Sampler;
 using tungsten::test::outOf;
+using tungsten::test::thickMedium;
 using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
-
-Medium medium(float g) {
-    return {{0.02f, 0.02f, 0.02f}, {10.0f, 10.0f, 10.0f}, g};
-}
 
 struct Place {
     double depth, height, longest, gate;
@@ -28,7 +25,7 @@ const Place Places[] = {{0.3, 3.0, 4.5, 0.2}, {1.0, 0.5, 1.7, 0.05}, {0.02, 5.0,
 
 void expectDirectionsOf(Mode mode, const Place& p, float g, bool connects) {
     const HenyeyGreenstein phase{{0.6f, 0.0f, 0.8f}, g};
-    const DirectionSampler sampler(best(mode, g), medium(g));
+    const DirectionSampler sampler(best(mode, g), thickMedium(g));
     Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
     residual.exit.connects = connects;
     const float excess = std::max(residual.excess, 0.2f); // narrower lobes are thinner than the test's cells
@@ -56,7 +53,7 @@ TEST(DirectionsOut, SampleTheirDensity) {
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time.
 void expectDistancesOf(Mode mode, const Place& p, float g, double h, float leaveOdds, bool connects = true) {
     SCOPED_TRACE(testing::Message() << int(mode) << " " << p.depth << " " << g << " " << h << " " << leaveOdds);
-    const DistanceSampler sampler(best(mode, g), medium(g));
+    const DistanceSampler sampler(best(mode, g), thickMedium(g));
     Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
     residual.exit.leaveOdds = leaveOdds;
     residual.exit.connects = connects;
@@ -102,7 +99,7 @@ TEST(DistancesOut, StraysBoundWeights) {
     const auto heaviest = [](float strays, double longest) {
         Settings settings = best(Mode::Photon, 0.0f);
         settings.strays = strays;
-        const DistanceSampler sampler(settings, medium(0.0f));
+        const DistanceSampler sampler(settings, thickMedium(0.0f));
         const Residual residual = outOf(0.5, 3.0, 3.5 + longest, 0.09);
         const Heading down{directionAbout(residual.axis, 1.9f, 0.3f), 1.9f};
         float most = 0.0f;
@@ -125,7 +122,7 @@ TEST(DistancesOut, StraysBoundWeights) {
 /// of a uniform proposal beside it.
 TEST(DistancesOut, NothingIsRareBehindRefraction) {
     const auto heaviest = [](bool connects) {
-        const DistanceSampler sampler(best(Mode::Photon, 0.0f), medium(0.0f));
+        const DistanceSampler sampler(best(Mode::Photon, 0.0f), thickMedium(0.0f));
         Residual residual = outOf(0.5, 3.0, 4.1, 0.09);
         residual.exit.connects = connects;
         float most = 0.0f;
@@ -147,7 +144,7 @@ TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
     const auto spread = [](bool exponential) {
         Settings settings = best(Mode::Path, 0.0f);
         settings.exponentialOut = exponential;
-        const DistanceSampler sampler(settings, medium(0.0f));
+        const DistanceSampler sampler(settings, thickMedium(0.0f));
         const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
         double squares = 0.0;
         constexpr int Count = 5000;

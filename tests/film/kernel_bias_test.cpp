@@ -10,7 +10,7 @@
 namespace tungsten {
 namespace {
 
-constexpr int Side = 12;
+constexpr int BoardSide = 12;
 
 float gaussian(Sampler& sampler) {
     const float u = std::max(sampler.next1D(), 1e-12f), v = sampler.next1D();
@@ -24,18 +24,18 @@ void addPasses(Film& film, uint32_t passes, float values, float noise, uint32_t 
         if (standsFor == 0) continue;
         Sampler sampler(seed, RandomStream::Test, pass, 0);
         film.beginPass();
-        for (int y = 0; y < Side; ++y)
-            for (int x = 0; x < Side; ++x)
+        for (int y = 0; y < BoardSide; ++y)
+            for (int x = 0; x < BoardSide; ++x)
                 film.set(0, x, y, Rgb(((x + y) % 2 == 0 ? values : -values) + noise * gaussian(sampler)));
         film.endPass(double(standsFor));
     }
 }
 
 Film even(float value) {
-    Film film(Side, Side, 1);
+    Film film(BoardSide, BoardSide, 1);
     film.beginPass();
-    for (int y = 0; y < Side; ++y)
-        for (int x = 0; x < Side; ++x) film.set(0, x, y, Rgb(value));
+    for (int y = 0; y < BoardSide; ++y)
+        for (int x = 0; x < BoardSide; ++x) film.set(0, x, y, Rgb(value));
     film.endPass(1.0);
     return film;
 }
@@ -58,11 +58,11 @@ TEST(KernelBias, StandardErrorOfUnlikeWeightsIsThatOfTheirMean) {
     constexpr uint32_t Films = 600, Passes = 40;
     double squared = 0.0, claimed = 0.0, pixels = 0.0;
     for (uint32_t f = 0; f < Films; ++f) {
-        Film film(Side, Side, 1, {}, PassWeight::Repeats);
+        Film film(BoardSide, BoardSide, 1, {}, PassWeight::Repeats);
         addPasses(film, Passes, 0.0f, 1.0f, f);
         claimed += film.meanSquaredError();
         for (const Rgb& pixel : film.mean(0).pixels) squared += double(pixel.x) * double(pixel.x);
-        pixels += Side * Side;
+        pixels += BoardSide * BoardSide;
     }
     // Relative standard error of a variance: sqrt(2 / n).
     EXPECT_NEAR(claimed / Films, squared / pixels, 5.0 * std::sqrt(2.0 / pixels) * squared / pixels);
@@ -74,7 +74,7 @@ TEST(KernelBias, NoiseIsTakenOff) {
     for (const float bias : {0.0f, 0.2f, 0.4f}) {
         double estimate = 0.0, noise = 0.0, above = 0.0;
         for (uint32_t f = 0; f < Films; ++f) {
-            Film biases(Side, Side, 1, {}, PassWeight::Repeats);
+            Film biases(BoardSide, BoardSide, 1, {}, PassWeight::Repeats);
             addPasses(biases, 64, bias, 0.5f, 1000 + f);
             const RelativeBias relative = RelativeBias::of(film, biases);
             EXPECT_GE(relative.bound, relative.estimate);
@@ -98,7 +98,7 @@ TEST(KernelBias, IsBeyondItsBoundInOneRenderOfTwenty) {
         const Film film = even(1.0f);
         double beyond = 0.0;
         for (uint32_t f = 0; f < Films; ++f) {
-            Film biases(Side, Side, 1, {}, PassWeight::Repeats);
+            Film biases(BoardSide, BoardSide, 1, {}, PassWeight::Repeats);
             addPasses(biases, 32, bias, 0.5f, 5000 + f);
             beyond += RelativeBias::of(film, biases).bound < double(bias) ? 1.0 / Films : 0.0;
         }
@@ -108,7 +108,7 @@ TEST(KernelBias, IsBeyondItsBoundInOneRenderOfTwenty) {
 
 TEST(KernelBias, IsUnknownWithoutFiveMeasuredPasses) {
     const Film film = even(1.0f);
-    Film biases(Side, Side, 1, {}, PassWeight::Repeats);
+    Film biases(BoardSide, BoardSide, 1, {}, PassWeight::Repeats);
     EXPECT_TRUE(std::isnan(RelativeBias::of(film, biases).estimate));
     addPasses(biases, 4, 0.1f, 0.0f, 1);
     EXPECT_TRUE(std::isnan(RelativeBias::of(film, biases).estimate));

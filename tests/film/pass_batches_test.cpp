@@ -11,15 +11,16 @@
 namespace tungsten {
 namespace {
 
-constexpr int Width = 7, Height = 6, Frames = 3; // blocks of 4: 2 columns, the last of 3 pixels; 2 rows, the last of 2
+constexpr int BatchedWidth = 7, BatchedHeight = 6,
+              BatchedFrames = 3; // blocks of 4: 2 columns, the last of 3 pixels; 2 rows, the last of 2
 constexpr FilmContents Batched{3, true, 5, 4};
 
 /// A pass with light in some rows of frames only; what varies from pass to pass is one number.
 void addPass(Film& film, float value, uint32_t pass) {
     film.beginPass();
-    for (int frame = 0; frame < Frames; ++frame)
-        for (int y = 0; y < Height; ++y)
-            for (int x = 0; x < Width; ++x)
+    for (int frame = 0; frame < BatchedFrames; ++frame)
+        for (int y = 0; y < BatchedHeight; ++y)
+            for (int x = 0; x < BatchedWidth; ++x)
                 if (frame != 2 || pass > 3)
                     film.add(frame, x, y, Rgb(value * float(1 + frame), value * float(x), 1.0f));
 }
@@ -33,7 +34,7 @@ std::vector<float> passValues(uint32_t count) {
 }
 
 Film rendered(const FilmContents& contents, uint32_t passes) {
-    Film film(Width, Height, Frames, contents);
+    Film film(BatchedWidth, BatchedHeight, BatchedFrames, contents);
     const std::vector<float> values = passValues(passes);
     for (uint32_t pass = 0; pass < passes; ++pass) {
         addPass(film, values[pass], pass);
@@ -43,11 +44,11 @@ Film rendered(const FilmContents& contents, uint32_t passes) {
 }
 
 float batchValue(const PassBatches& batches, int batch, int frame, int row, int column, int channel) {
-    const size_t at =
-        (((size_t(batch) * Frames + size_t(frame)) * size_t(batches.rows()) + size_t(row)) * size_t(batches.columns()) +
-         size_t(column)) *
-            3 +
-        size_t(channel);
+    const size_t at = (((size_t(batch) * BatchedFrames + size_t(frame)) * size_t(batches.rows()) + size_t(row)) *
+                           size_t(batches.columns()) +
+                       size_t(column)) *
+                          3 +
+                      size_t(channel);
     return batches.means()[at];
 }
 
@@ -56,7 +57,7 @@ TEST(PassBatches, TheirMeanIsTheFilmsOverTheBlock) {
     const PassBatches& batches = film.batches();
     ASSERT_EQ(batches.columns(), 2);
     ASSERT_EQ(batches.rows(), 2);
-    for (int frame = 0; frame < Frames; ++frame) {
+    for (int frame = 0; frame < BatchedFrames; ++frame) {
         const Image mean = film.mean(frame);
         double inBatches = 0.0, inFilm = 0.0;
         for (int batch = 0; batch < 5; ++batch)
@@ -96,17 +97,18 @@ TEST(FilmRows, FoldedApartAndPutTogetherAreOneFilm) {
     for (const FilmContents& contents : {FilmContents{}, Batched, FilmContents{1, false}}) {
         constexpr uint32_t Passes = 12;
         const std::vector<float> values = passValues(Passes);
-        Film parts[] = {Film(Width, Height, Frames, contents), Film(Width, Height, Frames, contents)};
-        const int bounds[] = {0, 4, Height};
+        Film parts[] = {Film(BatchedWidth, BatchedHeight, BatchedFrames, contents),
+                        Film(BatchedWidth, BatchedHeight, BatchedFrames, contents)};
+        const int bounds[] = {0, 4, BatchedHeight};
         for (uint32_t pass = 0; pass < Passes; ++pass) {
-            Film whole(Width, Height, Frames, contents);
+            Film whole(BatchedWidth, BatchedHeight, BatchedFrames, contents);
             addPass(whole, values[pass], pass);
             FoldedPass folded;
             for (int part = 0; part < 2; ++part) {
                 parts[part].beginPass();
-                for (int frame = 0; frame < Frames; ++frame)
+                for (int frame = 0; frame < BatchedFrames; ++frame)
                     for (int y = bounds[part]; y < bounds[part + 1]; ++y) {
-                        const auto row = size_t(frame * Height + y);
+                        const auto row = size_t(frame * BatchedHeight + y);
                         if (whole.passRowIsLit(row)) parts[part].setPassRow(row, whole.passRow(row));
                     }
                 const FoldedPass some =
@@ -119,8 +121,8 @@ TEST(FilmRows, FoldedApartAndPutTogetherAreOneFilm) {
             parts[0].settle(folded);
         }
         std::stringstream rows;
-        parts[1].writeRows(rows, 4, Height);
-        parts[0].readRows(rows, 4, Height);
+        parts[1].writeRows(rows, 4, BatchedHeight);
+        parts[0].readRows(rows, 4, BatchedHeight);
         EXPECT_EQ(stateOf(parts[0]), stateOf(rendered(contents, Passes)));
     }
 }
@@ -128,7 +130,8 @@ TEST(FilmRows, FoldedApartAndPutTogetherAreOneFilm) {
 TEST(FilmRows, StatesHoldBatches) {
     const Film film = rendered(Batched, 6);
     std::stringstream state(stateOf(film)), again(stateOf(film));
-    Film loaded(Width, Height, Frames, Batched), other(Width, Height, Frames, {3, true, 5, 3});
+    Film loaded(BatchedWidth, BatchedHeight, BatchedFrames, Batched),
+        other(BatchedWidth, BatchedHeight, BatchedFrames, {3, true, 5, 3});
     loaded.read(state, "state");
     EXPECT_EQ(loaded.batches().means(), film.batches().means());
     EXPECT_EQ(loaded.batches().weights(), film.batches().weights());

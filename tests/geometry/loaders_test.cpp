@@ -1,16 +1,15 @@
 #include "mesh_files.h"
 #include "tungsten/core/Errors.h"
 
+#include "support/ExpectNear.h"
+
 #include <gtest/gtest.h>
 
 namespace tungsten {
 namespace {
 
+using test::expectNear;
 using test::FileFolder;
-
-void expectNear(const Vec3f& found, const Vec3f& expected, float tolerance = 1e-5f) {
-    EXPECT_LT((found - expected).length(), tolerance) << "found " << found << ", expected " << expected;
-}
 
 void expectSamePyramid(const TriangleMesh& mesh, bool withMaterials) {
     const TriangleMesh expected = test::samplePyramid();

@@ -1,21 +1,15 @@
 #include "tungsten/geometry/Mesh.h"
 
+#include "support/ExpectNear.h"
+#include "support/Turned.h"
+
 #include <gtest/gtest.h>
 
 namespace tungsten {
 namespace {
 
-void expectNear(const Vec3f& found, const Vec3f& expected, float tolerance = 1e-5f) {
-    EXPECT_LT((found - expected).length(), tolerance) << "found " << found << ", expected " << expected;
-}
-
-Transform turned(const Vec3f& degrees, const Vec3f& scale, const Vec3f& position = Vec3f(0.0f)) {
-    TransformRecipe recipe;
-    recipe.rotationDegrees = degrees;
-    recipe.scale = scale;
-    recipe.position = position;
-    return composeTransform(recipe);
-}
+using test::expectNear;
+using test::turned;
 
 /// Vertex positions as a function of uv must be affine on each face: the uv of a point inside.
 Vec2f uvAt(const TriangleMesh& mesh, const Vec3f& point) {

@@ -1,23 +1,15 @@
 // Rays that leave a surface do not meet it again, rays that end on it are not stopped by it, and the margins that this
 // takes depend on the point alone.
 
-#include "tungsten/geometry/SceneGeometry.h"
-
-#include "tungsten/core/Random.h"
-#include "tungsten/core/Warp.h"
-
-#include <gtest/gtest.h>
+#include "geometry/test_scene.h"
 
 #include <functional>
 
 namespace tungsten {
 namespace {
 
+using test::randomDirection;
 using Draw = std::function<Shape(Sampler&)>;
-
-Vec3f randomDirection(Sampler& random) {
-    return warp::squareToSphere(random.next2D()).normalized();
-}
 
 /// 10^x, x uniform in [low, high].
 float randomScale(Sampler& random, float low, float high) {

@@ -1,6 +1,7 @@
 #pragma once
 // Scenes of a few shapes, and what every hit on them keeps.
 
+#include "support/ExpectNear.h"
 #include "support/Turned.h"
 
 #include "tungsten/core/Random.h"
@@ -24,10 +25,6 @@ struct TestScene {
         return result;
     }
 };
-
-inline void expectNear(const Vec3f& found, const Vec3f& expected, float tolerance) {
-    EXPECT_LT((found - expected).length(), tolerance) << "found " << found << ", expected " << expected;
-}
 
 inline Vec3f randomDirection(Sampler& random) {
     return warp::squareToSphere(random.next2D()).normalized();

@@ -27,12 +27,12 @@ std::string blockScene(double thickness, bool fromBehind, double start, int fram
     return json.str();
 }
 
-constexpr double SigmaA = 0.002, D = 1.0 / (3.0 * (1.0 + SigmaA)), Extrapolated = 2.0 * D;
+constexpr double Absorption = 0.002, Diffusivity = 1.0 / (3.0 * (1.0 + Absorption)), Extrapolated = 2.0 * Diffusivity;
 
 /// Patterson, Chance and Wilson 1989, over all of the surface: uniform light reflected after the length s, per length.
 double reflectance(double s) {
-    const auto source = [&](double z) { return z * std::exp(-z * z / (4.0 * D * s)); };
-    return 0.5 / std::sqrt(4.0 * M_PI * D * s * s * s) * std::exp(-SigmaA * s) *
+    const auto source = [&](double z) { return z * std::exp(-z * z / (4.0 * Diffusivity * s)); };
+    return 0.5 / std::sqrt(4.0 * M_PI * Diffusivity * s * s * s) * std::exp(-Absorption * s) *
            (source(1.0) + source(1.0 + 2.0 * Extrapolated));
 }
 
@@ -55,7 +55,7 @@ TEST(Bodies, AHalfSpacesReflectanceDecaysAsInTheDiffusionLimit) {
 TEST(Bodies, ASlabsTransmittanceDecaysWithItsLowestMode) {
     constexpr double Thickness = 6.0;
     const auto rendered = renderPaths(blockScene(Thickness, true, 40.0, 3), {{}, 1024, 16, 6});
-    const double wide = Thickness + 2.0 * Extrapolated, rate = SigmaA + D * M_PI * M_PI / (wide * wide);
+    const double wide = Thickness + 2.0 * Extrapolated, rate = Absorption + Diffusivity * M_PI * M_PI / (wide * wide);
     for (const int frame : {1, 2}) {
         const double ratio = rendered->mean(frame) / rendered->mean(0), exact = std::exp(-10.0 * frame * rate);
         const double error = ratio * std::hypot(rendered->pixelError(frame) / rendered->mean(frame),

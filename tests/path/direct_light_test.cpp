@@ -69,9 +69,9 @@ TEST(DirectLight, PulsesOfTwoLightsArriveApart) {
 /// than `reach` away: with mu the cosine to its axis at distance t, mu = (t^2 + d^2 - R^2) / 2dt, E = pi L cos (1 -
 /// mu^2).
 double sphereIrradiance(double reach) {
-    constexpr double R = 0.2, D = 1.25, Cosine = 0.8;
-    const double t = std::clamp(reach, D - R, std::sqrt(D * D - R * R));
-    const double mu = (t * t + D * D - R * R) / (2.0 * D * t);
+    constexpr double Radius = 0.2, Distance = 1.25, Cosine = 0.8;
+    const double t = std::clamp(reach, Distance - Radius, std::sqrt(Distance * Distance - Radius * Radius));
+    const double mu = (t * t + Distance * Distance - Radius * Radius) / (2.0 * Distance * t);
     return M_PI * 2.0 * Cosine * (1.0 - mu * mu);
 }
 

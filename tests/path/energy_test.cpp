@@ -154,9 +154,9 @@ TEST(Energy, GuidedPathsFillAClosedWhiteBox) {
                            "transient_time_width": 2, "darts": "best"}})",
         {{}, 50, 40});
     // Of the source seen one mean free path ahead; the next modes are below 1 % by then.
-    const double k = M_PI / 2.0, D = 1.0 / (3.0 * sigmaS), seen = camera - 1.0 / sigmaS;
+    const double k = M_PI / 2.0, diffusivity = 1.0 / (3.0 * sigmaS), seen = camera - 1.0 / sigmaS;
     const double expected =
-        1.0 + 2.0 * std::cos(k * (light + 1.0)) * std::cos(k * (seen + 1.0)) * std::exp(-D * k * k * time);
+        1.0 + 2.0 * std::cos(k * (light + 1.0)) * std::cos(k * (seen + 1.0)) * std::exp(-diffusivity * k * k * time);
     EXPECT_NEAR(rendered->mean(), expected, 4.5 * rendered->pixelError() + 0.03 * expected);
     EXPECT_LT(rendered->pixelError(), 0.08 * expected);
 }

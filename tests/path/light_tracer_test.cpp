@@ -18,12 +18,12 @@ constexpr const char* LeaningFloor = "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nvn
 
 /// Means over independent renders, and their standard errors: by frame and pixel (channel means), and of whole frames,
 /// whose pixels may share light paths.
-struct Estimate {
+struct FilmEstimate {
     std::vector<double> mean, error, frameMean, frameError;
 };
 using RenderFile = std::unique_ptr<Rendered>(const std::filesystem::path&, const RenderOptions&);
-Estimate estimate(RenderFile& render, const std::filesystem::path& scene, RenderOptions options, uint64_t renders) {
-    Estimate e;
+FilmEstimate estimate(RenderFile& render, const std::filesystem::path& scene, RenderOptions options, uint64_t renders) {
+    FilmEstimate e;
     for (uint64_t i = 0; i < renders; ++i) {
         options.seed += 1;
         const auto rendered = render(scene, options);
@@ -72,10 +72,10 @@ void expectAgreement(const std::string& json, const std::vector<std::string>& ov
     options.passes = 1;
     options.samplesPerPass = effort.pathSamples;
     options.seed = 1000;
-    const Estimate path = estimate(renderPathFile, scene, options, effort.renders);
+    const FilmEstimate path = estimate(renderPathFile, scene, options, effort.renders);
     options.samplesPerPass = effort.lightSamples;
     options.seed = 2000;
-    const Estimate light = estimate(renderLightFile, scene, options, effort.renders);
+    const FilmEstimate light = estimate(renderLightFile, scene, options, effort.renders);
     constexpr double Sigmas = 5.0;
     for (size_t frame = 0; frame < path.frameMean.size(); ++frame) {
         const double error = std::hypot(path.frameError[frame], light.frameError[frame]);

@@ -120,9 +120,11 @@ TEST(LightVertices, OnlyOpaqueSmoothSurfacesSeenFromTheLightsSide) {
 
 TEST(ShellChord, SamplesItsDensity) {
     const Vec3f toCentre(0.3f, 0.4f, 2.0f), along(0.0f, 0.0f, 1.0f);
-    const std::vector<std::tuple<double, double, double>> shells{
-        {0.0, 1.0, 100.0}, {0.7, 1.5, 100.0}, {0.2, 1.0, 2.3}, {1.0, 3.0, 100.0}};
-    for (const auto& [low, high, tMax] : shells) {
+    struct Shell {
+        double low, high, tMax;
+    };
+    for (const Shell& shell : {Shell{0.0, 1.0, 100.0}, {0.7, 1.5, 100.0}, {0.2, 1.0, 2.3}, {1.0, 3.0, 100.0}}) {
+        const double low = shell.low, high = shell.high, tMax = shell.tMax; // Clang 14 captures no structured binding
         const ShellChord chord(toCentre, along, low, high, tMax);
         ASSERT_FALSE(chord.empty());
         // The distribution from the density, by the midpoint rule.

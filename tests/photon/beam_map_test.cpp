@@ -20,15 +20,15 @@ using test::renderPhotons;
 using test::setting;
 using test::VerifiedValue;
 
-struct OrderCase {
+struct BeamOrderCase {
     VerifiedValue value;
     uint32_t passes = 30;
 };
 
-class BeamOrders : public testing::TestWithParam<OrderCase> {};
+class BeamOrders : public testing::TestWithParam<BeamOrderCase> {};
 
 TEST_P(BeamOrders, MatchVerifiedValues) {
-    const OrderCase& c = GetParam();
+    const BeamOrderCase& c = GetParam();
     Overrides overrides = test::gateOf(c.value);
     overrides.insert(overrides.end(), {setting("volume_gather_radius", 0.1), setting("photon_count", 25000)});
     const auto rendered = renderBeams(test::sceneOf(c.value), {overrides, c.passes, 1});
@@ -42,14 +42,14 @@ TEST_P(BeamOrders, MatchVerifiedValues) {
 
 INSTANTIATE_TEST_SUITE_P(
     Configurations, BeamOrders,
-    testing::Values(OrderCase{test::verified("A1WarpedBox")}, OrderCase{test::verified("A1UnwarpedBox")},
-                    OrderCase{test::verified("A1WarpedDelta")}, OrderCase{test::verified("A1UnwarpedDelta")},
-                    OrderCase{test::verified("A2WarpedBox")}, OrderCase{test::verified("A2UnwarpedBox")},
-                    OrderCase{test::verified("A2WarpedDelta")}, OrderCase{test::verified("A2UnwarpedDelta")},
-                    OrderCase{test::verified("A3WarpedBox")}, OrderCase{test::verified("A3UnwarpedBox")},
-                    OrderCase{test::verified("A3UnwarpedDelta")}, OrderCase{test::verified("B2WarpedBox"), 60},
-                    OrderCase{test::verified("B2UnwarpedBox")}, OrderCase{test::verified("C2WarpedBox")},
-                    OrderCase{test::verified("C2UnwarpedBox")}, OrderCase{test::verified("C2WarpedDelta")}),
+    testing::Values(BeamOrderCase{test::verified("A1WarpedBox")}, BeamOrderCase{test::verified("A1UnwarpedBox")},
+                    BeamOrderCase{test::verified("A1WarpedDelta")}, BeamOrderCase{test::verified("A1UnwarpedDelta")},
+                    BeamOrderCase{test::verified("A2WarpedBox")}, BeamOrderCase{test::verified("A2UnwarpedBox")},
+                    BeamOrderCase{test::verified("A2WarpedDelta")}, BeamOrderCase{test::verified("A2UnwarpedDelta")},
+                    BeamOrderCase{test::verified("A3WarpedBox")}, BeamOrderCase{test::verified("A3UnwarpedBox")},
+                    BeamOrderCase{test::verified("A3UnwarpedDelta")}, BeamOrderCase{test::verified("B2WarpedBox"), 60},
+                    BeamOrderCase{test::verified("B2UnwarpedBox")}, BeamOrderCase{test::verified("C2WarpedBox")},
+                    BeamOrderCase{test::verified("C2UnwarpedBox")}, BeamOrderCase{test::verified("C2WarpedDelta")}),
     [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(BeamMap, SingleScatteringInAFoggedBox) {

@@ -12,17 +12,17 @@
 namespace tungsten::photon {
 namespace {
 
-constexpr int Side = 24;
+constexpr int ImageSide = 24;
 
 /// The closed form, pixel by pixel: the midpoint rule over 4 x 4 rays.
 std::vector<Vec3d> exactImage(const test::PulsesInFog& c) {
-    constexpr int PerPixel = 4, Fine = Side * PerPixel;
+    constexpr int PerPixel = 4, Fine = ImageSide * PerPixel;
     const double distance = 1.0 / std::tan(0.5 * test::FieldOfView * M_PI / 180.0);
-    std::vector<Vec3d> pixels(size_t(Side * Side), Vec3d(0.0));
+    std::vector<Vec3d> pixels(size_t(ImageSide * ImageSide), Vec3d(0.0));
     for (int y = 0; y < Fine; ++y)
         for (int x = 0; x < Fine; ++x) {
             const Vec3d ray(1.0 - 2.0 * (x + 0.5) / Fine, 1.0 - 2.0 * (y + 0.5) / Fine, distance);
-            pixels[size_t(y / PerPixel * Side + x / PerPixel)] +=
+            pixels[size_t(y / PerPixel * ImageSide + x / PerPixel)] +=
                 test::singleScattering(c, ray / ray.length()) / double(PerPixel * PerPixel);
         }
     return pixels;
@@ -64,11 +64,13 @@ class KernelBiasOf : public testing::TestWithParam<BiasCase> {
   protected:
     [[nodiscard]] static Errors errorsOf(const BiasCase& c, double radius, uint32_t passes) {
         test::PulsesInFog pulses = test::singleScatteringCases()[c.pulses];
-        test::Overrides overrides{
-            "camera.resolution=" + std::to_string(Side),  "integrator.type=progressive_transient_photon_map",
-            "integrator.fixed_volume_radius=true",        "integrator.include_surfaces=false",
-            test::setting("photon_count", 200000),        test::setting("volume_photon_count", 20000),
-            test::setting("volume_gather_radius", radius)};
+        test::Overrides overrides{"camera.resolution=" + std::to_string(ImageSide),
+                                  "integrator.type=progressive_transient_photon_map",
+                                  "integrator.fixed_volume_radius=true",
+                                  "integrator.include_surfaces=false",
+                                  test::setting("photon_count", 200000),
+                                  test::setting("volume_photon_count", 20000),
+                                  test::setting("volume_gather_radius", radius)};
         if (c.delta) overrides.emplace_back("integrator.delta_time_gate=true");
         overrides.insert(overrides.end(), c.overrides.begin(), c.overrides.end());
         const auto rendered =
@@ -109,17 +111,17 @@ test::Overrides with(test::Overrides overrides, const std::vector<std::string>& 
     return overrides;
 }
 
-const std::string Beams = "integrator.volume_photon_type=beams", Best = "integrator.darts=best";
-
 INSTANTIATE_TEST_SUITE_P(
     , KernelBiasOf,
     testing::Values(BiasCase{"Points", 0, Fixed, 0.3}, BiasCase{"ShrinkingPoints", 1, Shrinking, 0.7},
-                    BiasCase{"ColouredPoints", 2, Fixed, 0.5}, BiasCase{"GuidedPoints", 3, with(Fixed, {Best}), 0.3},
-                    BiasCase{"Beams", 3, with(Fixed, {Beams}), 0.3},
-                    BiasCase{"ShrinkingGuidedBeams", 1, with(Shrinking, {Beams, Best, "integrator.alpha=0.9"}), 0.4},
+                    BiasCase{"ColouredPoints", 2, Fixed, 0.5},
+                    BiasCase{"GuidedPoints", 3, with(Fixed, {test::BestPreset}), 0.3},
+                    BiasCase{"Beams", 3, with(Fixed, {test::BeamMap}), 0.3},
+                    BiasCase{"ShrinkingGuidedBeams", 1,
+                             with(Shrinking, {test::BeamMap, test::BestPreset, "integrator.alpha=0.9"}), 0.4},
                     BiasCase{"PointsAtADeltaGate", 3, Fixed, 0.3, true},
-                    BiasCase{"BeamsAtADeltaGate", 3, with(Fixed, {Beams}), 0.3, true},
-                    BiasCase{"GuidedPointsOnADeltaGate", 3, with(Fixed, {Best}), 0.3, true}),
+                    BiasCase{"BeamsAtADeltaGate", 3, with(Fixed, {test::BeamMap}), 0.3, true},
+                    BiasCase{"GuidedPointsOnADeltaGate", 3, with(Fixed, {test::BestPreset}), 0.3, true}),
     [](const testing::TestParamInfo<BiasCase>& tested) { return std::string(tested.param.name); });
 
 } // namespace

@@ -60,7 +60,7 @@ Photons renderBest(const std::string& scene) {
 }
 
 void expectSameMean(const Photons& photons, const test::Rendered& paths) {
-    const double error = std::hypot(photons.error, paths.pixelError() / 4.0); // pixels of paths are independent
+    const double error = std::hypot(photons.error, paths.pixelError() / 4.0);   // pixels of paths are independent
     EXPECT_NEAR(photons.mean, paths.mean(), 4.5 * error + 0.02 * paths.mean()); // and the kernel
     EXPECT_LT(error, 0.05 * paths.mean());
 }

@@ -90,11 +90,11 @@ class Render {
     uint64_t polls_ = 0;
 };
 
-struct Case {
+struct BreakOffCase {
     std::string name, integrator;
     std::set<std::string> stages;
 
-    friend std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.name; }
+    friend std::ostream& operator<<(std::ostream& out, const BreakOffCase& one) { return out << one.name; }
 };
 
 const std::string Gate = R"(, "max_bounces": 8, "start_time": 3, "transient_time_width": 0.5, "frame_num": 4)";
@@ -103,7 +103,7 @@ const std::string Maps =
                             "gather_radius": 0.3)" +
     Gate;
 
-const std::vector<Case> Cases{
+const std::vector<BreakOffCase> BreakOffCases{
     {"plain paths", R"("type": "path_tracer")" + Gate, {"camera paths"}},
     {"guided paths", R"("type": "path_tracer", "darts": "best")" + Gate, {"camera paths"}},
     {"light paths", R"("type": "light_tracer")" + Gate, {"light paths"}},
@@ -113,7 +113,7 @@ const std::vector<Case> Cases{
     {"guided points", Maps + R"(, "darts": "best")", {"photons", "splat", "shared light"}},
 };
 
-class BreakOff : public testing::TestWithParam<Case> {};
+class BreakOff : public testing::TestWithParam<BreakOffCase> {};
 
 TEST_P(BreakOff, EveryStageIsPolled) {
     Render render(foggyBox(GetParam().integrator));
@@ -151,7 +151,7 @@ TEST_P(BreakOff, ThePassEndsSoonAfterTheStop) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, BreakOff, testing::ValuesIn(Cases), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Integrators, BreakOff, testing::ValuesIn(BreakOffCases), [](const auto& test) {
     std::string name = test.param.name;
     std::replace(name.begin(), name.end(), ' ', '_');
     return name;

@@ -75,20 +75,20 @@ std::vector<Delay> delays() {
             {"both", {pulse + gaussianText, response + boxText}, plusBox(gaussian(0.9, 0.3), -0.3, 0.9)}};
 }
 
-struct Case {
+struct DelayCase {
     const char* name;
     Overrides overrides;
     uint32_t passes, samples; ///< photons where samples is 1
     double bias;              ///< of kernels, as a part of the largest frame
 };
-std::string caseName(const testing::TestParamInfo<Case>& info) {
+std::string delayName(const testing::TestParamInfo<DelayCase>& info) {
     return info.param.name;
 }
 
-class Delays : public testing::TestWithParam<Case> {
+class Delays : public testing::TestWithParam<DelayCase> {
   protected:
     static std::unique_ptr<test::Rendered> renderOrder(int order, bool unwarped, Overrides overrides) {
-        const Case& c = GetParam();
+        const DelayCase& c = GetParam();
         const std::string json = test::configurationA(order, unwarped);
         overrides.insert(overrides.end(), c.overrides.begin(), c.overrides.end());
         if (c.samples > 1) return test::renderPaths(json, {overrides, c.passes, c.samples});
@@ -135,16 +135,16 @@ TEST_P(Delays, SingleScatteringIsTheClosedFormByFrame) {
 }
 
 /// Frames of order 2 from a film of fine ones without a delay, spread by it, and their errors.
-struct Spread {
+struct SpreadFrames {
     std::vector<double> frames, errors;
 };
-Spread spreadDoubleScattering(const Distribution& delay) {
+SpreadFrames spreadDoubleScattering(const Distribution& delay) {
     constexpr int Fine = 560;
     constexpr double FineWidth = 0.0125, FineStart = 2.3; // the first light arrives at 2.385
     const auto fine = test::renderPaths(
         test::configurationA(2, false),
         {joined(frames(Fine, FineWidth), {"integrator.darts=best", "integrator.start_time=2.3"}), 16, 2000});
-    Spread spread;
+    SpreadFrames spread;
     for (int i = 0; i < Frames; ++i) {
         double mean = 0.0, squaredError = 0.0;
         for (int k = 0; k < Fine; ++k) {
@@ -161,27 +161,31 @@ Spread spreadDoubleScattering(const Distribution& delay) {
 
 TEST_P(Delays, DoubleScatteringIsTheSequenceConvolved) {
     const Delay delay = delays().back();
-    static const Spread expected = spreadDoubleScattering(delay.distribution);
+    static const SpreadFrames expected = spreadDoubleScattering(delay.distribution);
     const auto rendered = renderOrder(2, false, joined(frames(), delay.overrides));
     expectFrames(*rendered, expected.frames, expected.errors, GetParam().bias + 0.002, "order 2");
 }
 
-const std::string Best = "integrator.darts=best", Published = "integrator.darts=published";
 std::string primitive(const std::string& name) {
     return "integrator.volume_photon_type=" + name;
 }
 INSTANTIATE_TEST_SUITE_P(
     Sampling, Delays,
     testing::Values(
-        Case{"PlainPaths", {"integrator.darts=off"}, 20, 8000, 1e-3},
-        Case{"PublishedPaths", {Published}, 10, 1000, 1e-3}, Case{"BestPaths", {Best}, 10, 1000, 1e-3},
-        Case{"PlainPoints", {"integrator.photon_count=100000"}, 24, 1, 0.02},
-        Case{"PublishedPoints", {Published, "integrator.photon_count=80000"}, 24, 1, 0.02},
-        Case{"BestPoints", {Best, "integrator.photon_count=40000"}, 24, 1, 0.02},
-        Case{"PlainBeams", {primitive("beams"), "integrator.photon_count=20000"}, 24, 1, 0.02},
-        Case{"BestBeams", {primitive("beams"), Best, "integrator.photon_count=10000"}, 24, 1, 0.02},
-        Case{"BestBalls", {primitive("mis_volumes_balls"), Best, "integrator.photon_count=10000"}, 24, 1, 0.02}),
-    caseName);
+        DelayCase{"PlainPaths", {"integrator.darts=off"}, 20, 8000, 1e-3},
+        DelayCase{"PublishedPaths", {test::PublishedPreset}, 10, 1000, 1e-3},
+        DelayCase{"BestPaths", {test::BestPreset}, 10, 1000, 1e-3},
+        DelayCase{"PlainPoints", {"integrator.photon_count=100000"}, 24, 1, 0.02},
+        DelayCase{"PublishedPoints", {test::PublishedPreset, "integrator.photon_count=80000"}, 24, 1, 0.02},
+        DelayCase{"BestPoints", {test::BestPreset, "integrator.photon_count=40000"}, 24, 1, 0.02},
+        DelayCase{"PlainBeams", {primitive("beams"), "integrator.photon_count=20000"}, 24, 1, 0.02},
+        DelayCase{"BestBeams", {primitive("beams"), test::BestPreset, "integrator.photon_count=10000"}, 24, 1, 0.02},
+        DelayCase{"BestBalls",
+                  {primitive("mis_volumes_balls"), test::BestPreset, "integrator.photon_count=10000"},
+                  24,
+                  1,
+                  0.02}),
+    delayName);
 
 TEST(Delays, EachEmitterHasItsOwnPulse) {
     const std::string two = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.1, "sigma_s": 0.5}],

@@ -14,15 +14,15 @@
 namespace tungsten::photon {
 namespace {
 
+using test::BestPreset;
 using test::expectSameBlocks;
 using test::Overrides;
+using test::PublishedPreset;
 using test::renderBeams;
 using test::Rendered;
 using test::renderPaths;
 using test::renderPhotons;
 using test::setting;
-
-const std::string Published = "integrator.darts=published", Best = "integrator.darts=best";
 
 struct MapCase {
     const char* name;
@@ -39,9 +39,10 @@ class GuidedMaps : public testing::TestWithParam<MapCase> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Presets, GuidedMaps,
-                         testing::Values(MapCase{"PublishedPoints", Published, false},
-                                         MapCase{"BestPoints", Best, false}, MapCase{"PublishedBeams", Published, true},
-                                         MapCase{"BestBeams", Best, true}),
+                         testing::Values(MapCase{"PublishedPoints", PublishedPreset, false},
+                                         MapCase{"BestPoints", BestPreset, false},
+                                         MapCase{"PublishedBeams", PublishedPreset, true},
+                                         MapCase{"BestBeams", BestPreset, true}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST_P(GuidedMaps, SingleScatteringInAFoggedBox) {
@@ -56,7 +57,8 @@ TEST_P(GuidedMaps, SingleScatteringInAFoggedBox) {
 /// Two pulses, 2 apart in time; fog, floor, a boundary between them. Frames see one pulse or both.
 TEST_P(GuidedMaps, AgreeWithPathsInEveryFrame) {
     const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
-    const auto photons = guided(json, {{setting("photon_count", GetParam().darts == Best ? 12000 : 24000)}, 40, 1});
+    const auto photons =
+        guided(json, {{setting("photon_count", GetParam().darts == BestPreset ? 12000 : 24000)}, 40, 1});
     const auto paths = renderPaths(json, {{}, 20, 64});
     for (int frame = 0; frame < 3; ++frame) expectSameBlocks(*photons, *paths, frame, 0.05, 0.25);
     EXPECT_EQ(photons->statistics.counter("non-finite samples"), 0u);
@@ -97,7 +99,7 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
 TEST_P(GuidedMaps, AgreeWithPathsAtSeveralSamplesAPass) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 9, "transient_time_width": 2)");
     const auto photons = guided(json, {{setting("photon_count", 12000)}, 40, 3});
-    if (GetParam().darts == Best) {
+    if (GetParam().darts == BestPreset) {
         EXPECT_GT(photons->statistics.counter("surface connections"), 10000u);
     }
     expectSameBlocks(*photons, *renderPaths(json, {{}, 20, 64}), 0, 0.05, 0.25);
@@ -130,7 +132,7 @@ TEST(GuidedPoints, AreNotCulledByARadiusThatIsNotTheirs) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 7, "transient_time_width": 1)");
     const auto mean = [&](const std::string& radius) {
         return renderPhotons(
-                   json, {{Best, "integrator.fixed_volume_radius=false", "integrator.include_surfaces=false",
+                   json, {{BestPreset, "integrator.fixed_volume_radius=false", "integrator.include_surfaces=false",
                            "camera.fov=3", "integrator.volume_gather_radius=" + radius, setting("photon_count", 4000)},
                           4,
                           1})

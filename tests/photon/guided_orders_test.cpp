@@ -41,7 +41,7 @@ struct OrderCase {
     uint32_t passes = 30;
 };
 
-std::string caseName(const testing::TestParamInfo<OrderCase>& info) {
+std::string guidedOrderName(const testing::TestParamInfo<OrderCase>& info) {
     return test::nameOf(info.param.value) + info.param.guiding.name + (info.param.beams ? "Beams" : "");
 }
 
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(
                     OrderCase{A3, Published, true}, OrderCase{C2, Published, true},
                     OrderCase{A1Delta, Published, true, 100}, OrderCase{A1UnwarpedDelta, Published, true, 80},
                     OrderCase{A2UnwarpedDelta, Published, true}),
-    caseName);
+    guidedOrderName);
 INSTANTIATE_TEST_SUITE_P(
     BestPreset, GuidedOrders,
     testing::Values(OrderCase{A1, Best}, OrderCase{A1Unwarped, Best}, OrderCase{A2, Best}, OrderCase{A2Unwarped, Best},
@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(
                     OrderCase{C2, Best, true}, OrderCase{A1Delta, Best, true, 100},
                     OrderCase{A1UnwarpedDelta, Best, true, 60}, OrderCase{A2UnwarpedDelta, Best, true},
                     OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true}),
-    caseName);
+    guidedOrderName);
 INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
                          testing::Values(OrderCase{A2, GuidingOnly, false, 150}, OrderCase{A2, EllipticalOnly},
                                          OrderCase{B2, EllipticalOnly, false, 60}, OrderCase{A2, Phase},
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
                                          OrderCase{B2, Connection, false, 100}, OrderCase{A2, IndirectView},
                                          OrderCase{C2, IndirectView}, OrderCase{A2, PublishedIndirectView},
                                          OrderCase{A2, Eda, true}, OrderCase{A2, Ris, true}),
-                         caseName);
+                         guidedOrderName);
 
 /// Control vertices lie on the gate; the rest (plain photons, those that share with them) are seen through its kernel.
 INSTANTIATE_TEST_SUITE_P(PointsAtDeltaGates, GuidedOrders,
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(PointsAtDeltaGates, GuidedOrders,
                                          OrderCase{A2UnwarpedDelta, Published}, OrderCase{A3Delta, Published},
                                          OrderCase{A2Delta, IndirectView, false, 60},
                                          OrderCase{A1UnwarpedDelta, Plain, false, 400}),
-                         caseName);
+                         guidedOrderName);
 
 /// The kernel's width is for what cannot lie on the gate: control vertices do, whatever it is.
 TEST(PointsAtDeltaGates, HaveNoTemporalBias) {

@@ -9,14 +9,13 @@
 namespace tungsten::photon {
 namespace {
 
+using test::BestPreset;
 using test::expectSameBlocks;
 using test::Overrides;
 using test::Rendered;
 using test::renderPaths;
 using test::renderPhotons;
 using test::setting;
-
-const std::string Published = "integrator.darts=published", Best = "integrator.darts=best";
 
 /// Surfaces alone: in fog too thin to show, a lamp lights a corner of two walls and a block, first hand and from wall
 /// to wall, and one wall through a mirror.
@@ -51,7 +50,7 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     };
     const std::string json = room(RoomGate);
     const auto paths = renderPaths(json, {change, 16, 128});
-    const auto connected = renderPhotons(json, {with(Best), 40, 1});
+    const auto connected = renderPhotons(json, {with(BestPreset), 40, 1});
     EXPECT_GT(connected->statistics.counter("surface connections"), 10000u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);
@@ -77,7 +76,7 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
         return all;
     };
     const auto paths = renderPaths(json, {metal, 16, 256});
-    const auto followed = renderPhotons(json, {with(Best), 128, 1});
+    const auto followed = renderPhotons(json, {with(BestPreset), 128, 1});
     expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
     const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 128, 1});
     expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
@@ -94,7 +93,7 @@ TEST(GlossySurfaces, KnowTheSpeedThatMatters) {
                     "transform": {"position": [0, 1.5, 3], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
          "integrator": {"type": "progressive_transient_photon_map", "photon_count": 100, "max_bounces": 2, "volume_gather_radius": 0.05}})";
         return renderPhotons(
-                   json, {{Best, "media.fog.speed_of_light=" + std::to_string(speed),
+                   json, {{BestPreset, "media.fog.speed_of_light=" + std::to_string(speed),
                            setting("transient_time_center", 5.6 / speed), setting("transient_time_width", 1.0 / speed)},
                           8,
                           1})
@@ -112,7 +111,7 @@ TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     Overrides metal{R"(primitives.floor.bsdf={"type": "mirror", "albedo": 0.9})",
                     R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})"};
     const auto paths = renderPaths(json, {metal, 16, 512});
-    metal.push_back(Best);
+    metal.push_back(BestPreset);
     expectSameBlocks(*renderPhotons(json, {metal, 96, 1}), *paths, 0, 0.05, 0.15);
 }
 
@@ -140,7 +139,7 @@ TEST(GlossySurfaces, ShowFog) {
                           "integrator.max_bounces=3",
                           "integrator.volume_gather_radius=0.1"};
     Overrides best = foggy;
-    best.push_back(Best); // of plain paths the variance is infinite
+    best.push_back(BestPreset); // of plain paths the variance is infinite
     const auto [expected, pathError] = meanOverSeeds([&](uint64_t seed) {
         return renderPaths(json, {best, 4, 64, seed});
     });
@@ -163,7 +162,7 @@ TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
         const Overrides limits{setting("min_bounces", order), setting("max_bounces", order + 1),
                                setting("photon_count", 4000)};
         Overrides guided = limits;
-        guided.push_back(Best);
+        guided.push_back(BestPreset);
         const std::string json = room(RoomGate);
         expectSameBlocks(*renderPhotons(json, {guided, 24, 1}), *renderPaths(json, {limits, 8, 128}), 1, 0.05, 0.3);
     }
@@ -173,7 +172,7 @@ TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
 TEST(SurfaceConnections, LeavePhotonsToMirrorsAlone) {
     const std::string json = room(RoomGate);
     const auto stored = [&](Overrides overrides) {
-        overrides.push_back(Best);
+        overrides.push_back(BestPreset);
         const auto render = renderPhotons(json, {overrides, 2, 1});
         EXPECT_GT(render->statistics.counter("surface connections"), 1000u);
         return render->statistics.counter("stored surface photons");
@@ -186,7 +185,7 @@ TEST(SurfaceConnections, LeavePhotonsToMirrorsAlone) {
 TEST(SurfaceConnections, GatherTheNearestPhotonsBesideAMirror) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     const auto gathered = [&](const Overrides& settings) {
-        Overrides all{Mirror, Best, setting("photon_count", 20000)};
+        Overrides all{Mirror, BestPreset, setting("photon_count", 20000)};
         all.insert(all.end(), settings.begin(), settings.end());
         return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 7, 1, seed}); });
     };
@@ -208,7 +207,7 @@ TEST(SurfaceConnections, KeepTheMediumsLimit) {
                                   "integrator.max_bounces=5",
                                   setting("photon_count", 4000),
                                   "media.fog.max_bounces=" + flights,
-                                  Best};
+                                  BestPreset};
         return renderPhotons(json, {overrides, 4, 1})->mean();
     };
     EXPECT_GT(mean("2"), 0.0);

@@ -26,15 +26,15 @@ TEST(ProgressiveSchedule, FollowsItsProduct) {
     EXPECT_NEAR(radiusScale(1000, 1.0), 1.0, 1e-10);
 }
 
-struct OrderCase {
+struct PointOrderCase {
     test::VerifiedValue value;
     uint32_t passes = 20;
 };
 
-class PointOrders : public testing::TestWithParam<OrderCase> {};
+class PointOrders : public testing::TestWithParam<PointOrderCase> {};
 
 TEST_P(PointOrders, MatchVerifiedValues) {
-    const OrderCase& c = GetParam();
+    const PointOrderCase& c = GetParam();
     const auto rendered = renderPhotons(test::sceneOf(c.value), {test::gateOf(c.value), c.passes, 1});
     const double error = rendered->pixelError(), exact = c.value.radiance;
     constexpr double KernelBias = 0.01;
@@ -44,9 +44,9 @@ TEST_P(PointOrders, MatchVerifiedValues) {
 
 INSTANTIATE_TEST_SUITE_P(
     ConfigurationsAAndB, PointOrders,
-    testing::Values(OrderCase{test::verified("A1WarpedBox")}, OrderCase{test::verified("A1UnwarpedBox")},
-                    OrderCase{test::verified("A2WarpedBox")}, OrderCase{test::verified("A2UnwarpedBox")},
-                    OrderCase{test::verified("A3WarpedBox")}, OrderCase{test::verified("B2WarpedBox"), 40}),
+    testing::Values(PointOrderCase{test::verified("A1WarpedBox")}, PointOrderCase{test::verified("A1UnwarpedBox")},
+                    PointOrderCase{test::verified("A2WarpedBox")}, PointOrderCase{test::verified("A2UnwarpedBox")},
+                    PointOrderCase{test::verified("A3WarpedBox")}, PointOrderCase{test::verified("B2WarpedBox"), 40}),
     [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(PhotonMap, SingleScatteringInAFoggedBox) {

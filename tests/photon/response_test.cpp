@@ -45,15 +45,15 @@ double weighedSingleScattering(double (*response)(double), bool unwarped) {
     return sum / weights;
 }
 
-struct Case {
+struct ResponseCase {
     const char* name;
     Overrides overrides; ///< sampling and primitive
 };
-std::string caseName(const testing::TestParamInfo<Case>& info) {
+std::string responseName(const testing::TestParamInfo<ResponseCase>& info) {
     return info.param.name;
 }
 
-class PhotonResponse : public testing::TestWithParam<Case> {
+class PhotonResponse : public testing::TestWithParam<ResponseCase> {
   protected:
     static std::unique_ptr<Rendered> renderOrder(int order, bool unwarped, const std::string& response,
                                                  uint32_t passes) {
@@ -93,18 +93,18 @@ TEST_P(PhotonResponse, AgreesWithPathsInDoubleScattering) {
     }
 }
 
-const std::string Beams = "integrator.volume_photon_type=beams", Narrow = "integrator.volume_gather_radius=0.06";
+const std::string Narrow = "integrator.volume_gather_radius=0.06";
 INSTANTIATE_TEST_SUITE_P(
     Sampling, PhotonResponse,
-    testing::Values(Case{"PlainPoints", {"integrator.photon_count=300000"}},
-                    Case{"PublishedPoints", {"integrator.darts=published", "integrator.photon_count=30000"}},
-                    Case{"BestPoints", {"integrator.darts=best"}},
-                    Case{"IndirectViewPoints",
-                         {R"(integrator.darts={"direct_view": "off"})", "integrator.photon_count=40000"}},
-                    Case{"PlainBeams", {Beams, Narrow}},
-                    Case{"PublishedBeams", {Beams, Narrow, "integrator.darts=published"}},
-                    Case{"BestBeams", {Beams, Narrow, "integrator.darts=best"}}),
-    caseName);
+    testing::Values(ResponseCase{"PlainPoints", {"integrator.photon_count=300000"}},
+                    ResponseCase{"PublishedPoints", {"integrator.darts=published", "integrator.photon_count=30000"}},
+                    ResponseCase{"BestPoints", {"integrator.darts=best"}},
+                    ResponseCase{"IndirectViewPoints",
+                                 {R"(integrator.darts={"direct_view": "off"})", "integrator.photon_count=40000"}},
+                    ResponseCase{"PlainBeams", {test::BeamMap, Narrow}},
+                    ResponseCase{"PublishedBeams", {test::BeamMap, Narrow, "integrator.darts=published"}},
+                    ResponseCase{"BestBeams", {test::BeamMap, Narrow, "integrator.darts=best"}}),
+    responseName);
 
 /// Fog that light must leave: control vertices by the response's density, which free flights cannot be weighed against,
 /// and vertices by lengths alone, which share with them. (0.89 of the light, when both were mixed.)

@@ -16,6 +16,9 @@
 
 namespace tungsten::test {
 
+/// What the command exits with.
+inline constexpr int BadInput = 1, BadUsage = 2, Interrupted = 130;
+
 struct CommandResult {
     int exitCode = -1; ///< negative: killed by that signal
     std::string out, err;

@@ -11,13 +11,14 @@ namespace tungsten {
 namespace {
 
 namespace fs = std::filesystem;
+using test::BadInput;
+using test::BadUsage;
 using test::Command;
 using test::CommandResult;
 using test::contentOf;
 using test::foggyBox;
+using test::Interrupted;
 using test::SceneFile;
-
-const int BadInput = 1, BadUsage = 2, Interrupted = 130;
 
 TEST(CommandStops, AnInterruptWritesWhatIsThere) {
     const SceneFile scene(foggyBox(test::Paths));

@@ -14,11 +14,10 @@ namespace tungsten {
 namespace {
 
 namespace fs = std::filesystem;
+using test::BadInput;
 using test::CommandResult;
 using test::contentOf;
 using test::TemporaryFolder;
-
-const int BadInput = 1;
 
 using FullDisk = test::RenderedScene;
 

@@ -12,14 +12,15 @@ namespace tungsten {
 namespace {
 
 namespace fs = std::filesystem;
+using test::BadInput;
+using test::BadUsage;
 using test::Command;
 using test::CommandResult;
 using test::contentOf;
 using test::foggyBox;
+using test::Interrupted;
 using test::SceneFile;
 using test::TemporaryFolder;
-
-const int BadInput = 1, BadUsage = 2, Interrupted = 130;
 
 using Robustness = test::RenderedScene;
 

@@ -8,12 +8,12 @@ namespace tungsten {
 namespace {
 
 namespace fs = std::filesystem;
+using test::BadInput;
+using test::BadUsage;
 using test::CommandResult;
 using test::contentOf;
 using test::foggyBox;
 using test::SceneFile;
-
-const int BadInput = 1, BadUsage = 2;
 
 TEST(Command, SequencesAreShown) {
     const SceneFile scene(foggyBox(test::PathFrames)), still(foggyBox(test::Paths));

@@ -15,15 +15,11 @@ std::string scene(const std::string& camera) {
         "camera": {"type": "detectors", )" +
            camera + R"(}, "integrator": {"type": "path_tracer"}})";
 }
-std::string problemsOf(const std::string& camera) {
+std::string detectorProblems(const std::string& camera) {
     return test::problemsOf(scene(camera));
 }
-std::string warningsOf(const std::string& camera) {
-    const SceneFile file(scene(camera));
-    std::string text;
-    const LoadedScene loaded = loadScene(file.path());
-    for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text() + "\n";
-    return text;
+std::string detectorWarnings(const std::string& camera) {
+    return test::warningsOf(scene(camera));
 }
 
 TEST(Detectors, AreARowOfPixels) {
@@ -41,7 +37,7 @@ TEST(Detectors, AreARowOfPixels) {
     EXPECT_NEAR(row[0].etendue(), M_PI * M_PI * 0.01 * 0.0484, 1e-8);
     EXPECT_FLOAT_EQ(row[1].aperture, 1.0f);
     EXPECT_FALSE(camera.hasSinglePosition());
-    EXPECT_EQ(warningsOf(R"("detectors": [{"radius": 0.1}])"), "");
+    EXPECT_EQ(detectorWarnings(R"("detectors": [{"radius": 0.1}])"), "");
 }
 
 TEST(Detectors, RefuseWhatIsNone) {
@@ -59,7 +55,8 @@ TEST(Detectors, RefuseWhatIsNone) {
         {R"("detectors": [{"positon": 0.1}])", "did you mean 'position'?"},
         {R"("detectors": [{}], "resolution": 4)", "camera.resolution: the image has a pixel for each detector"}};
     for (const auto& [camera, expected] : bad)
-        EXPECT_NE(problemsOf(camera).find(expected), std::string::npos) << camera << "\n" << problemsOf(camera);
+        EXPECT_NE(detectorProblems(camera).find(expected), std::string::npos) << camera << "\n"
+                                                                              << detectorProblems(camera);
 }
 
 TEST(Detectors, WarnInsideWalls) {
@@ -67,16 +64,16 @@ TEST(Detectors, WarnInsideWalls) {
         return R"("detectors": [{}, {"radius": 0.01, "position": )" + position + "}]";
     };
     const std::string blind = "camera.detectors[1]: sees nothing but 'block'";
-    EXPECT_NE(warningsOf(at("[0.2, 0, 5]")).find(blind), std::string::npos) << "in its middle";
-    EXPECT_NE(warningsOf(at("[0, 0, 3.999]")).find(blind), std::string::npos) << "right before it";
-    EXPECT_EQ(warningsOf(at("[0, 0, 3.9]")), "");
-    EXPECT_EQ(warningsOf(at("[0, 0, 6.5]")), "") << "behind it, looking away";
+    EXPECT_NE(detectorWarnings(at("[0.2, 0, 5]")).find(blind), std::string::npos) << "in its middle";
+    EXPECT_NE(detectorWarnings(at("[0, 0, 3.999]")).find(blind), std::string::npos) << "right before it";
+    EXPECT_EQ(detectorWarnings(at("[0, 0, 3.9]")), "");
+    EXPECT_EQ(detectorWarnings(at("[0, 0, 6.5]")), "") << "behind it, looking away";
 }
 
 TEST(Detectors, WarnInAndAcrossSurfaces) {
     const auto at = [](const std::string& position, const std::string& direction) {
-        return warningsOf(R"("detectors": [{}, {"name": "tip", "radius": 0.01, "position": )" + position +
-                          R"(, "direction": )" + direction + "}]");
+        return detectorWarnings(R"("detectors": [{}, {"name": "tip", "radius": 0.01, "position": )" + position +
+                                R"(, "direction": )" + direction + "}]");
     };
     const std::string in = "camera.detectors[1]: 'tip' lies in the surface 'block'",
                       across = "camera.detectors[1]: 'tip' reaches through 'block'";

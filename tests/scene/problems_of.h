@@ -21,4 +21,13 @@ inline std::string problemsOf(const std::string& json, const std::vector<std::st
     return "";
 }
 
+/// Its warnings, a line each.
+inline std::string warningsOf(const std::string& json) {
+    const SceneFile file(json);
+    std::string text;
+    const LoadedScene loaded = loadScene(file.path());
+    for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text() + "\n";
+    return text;
+}
+
 } // namespace tungsten::test

@@ -10,7 +10,7 @@ namespace {
 using test::problemsOf;
 using test::SceneFile;
 
-const char* const Fog = R"({
+const char* const LampInFog = R"({
     "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 1}],
     "primitives": [{"name": "lamp", "type": "point", "emission": 1, "ext_medium": "fog"}],
     "camera": {"type": "pinhole", "medium": "fog", "resolution": [8, 4]},
@@ -18,7 +18,7 @@ const char* const Fog = R"({
 })";
 
 TEST(TimeProfiles, AResponseBringsItsOwnGate) {
-    const SceneFile file(Fog);
+    const SceneFile file(LampInFog);
     const auto transport = [&](const std::string& response) {
         return loadScene(file.path(), {{}, {"integrator.temporal_response=" + response}}).scene->transport;
     };
@@ -63,7 +63,7 @@ TEST(TimeProfiles, BadResponsesAreErrors) {
 }
 
 TEST(TimeProfiles, AResponseOfASequenceIsADelay) {
-    const SceneFile file(Fog);
+    const SceneFile file(LampInFog);
     const auto transport = [&](const std::string& frames) {
         return loadScene(file.path(), {{},
                                        {"integrator.temporal_response={\"type\": \"box\", \"start\": 2, \"end\": 3}",

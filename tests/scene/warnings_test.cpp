@@ -1,6 +1,6 @@
 // What loads, but may not be what was meant, is said.
 
-#include "support/SceneFile.h"
+#include "scene/problems_of.h"
 
 #include "tungsten/scene/SceneLoader.h"
 
@@ -10,14 +10,7 @@ namespace tungsten {
 namespace {
 
 using test::SceneFile;
-
-std::string warningsOf(const std::string& json) {
-    const SceneFile file(json);
-    std::string text;
-    const LoadedScene loaded = loadScene(file.path());
-    for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text() + "\n";
-    return text;
-}
+using test::warningsOf;
 
 /// Warnings of a lamp at `height` above a unit cube of fog, seen from outside or from within fog that is everywhere.
 std::string warningsOfLamp(const std::string& lamp, double height, bool everywhere) {

@@ -17,4 +17,9 @@ inline darts::Residual outOf(double depth, double height, double longest, double
     return residual;
 }
 
+/// Where light walks far: an albedo of 0.998.
+inline darts::Medium thickMedium(float g) {
+    return {{0.02f, 0.02f, 0.02f}, {10.0f, 10.0f, 10.0f}, g};
+}
+
 } // namespace tungsten::test

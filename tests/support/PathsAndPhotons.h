@@ -5,6 +5,10 @@
 
 namespace tungsten::test {
 
+/// Overrides: presets of guiding, and photon beams.
+inline const std::string PublishedPreset = "integrator.darts=published", BestPreset = "integrator.darts=best",
+                         BeamMap = "integrator.volume_photon_type=beams";
+
 std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, const RenderOptions& options);
 std::unique_ptr<Rendered> renderPaths(const std::string& json, const RenderOptions& options);
 /// The light tracer.

@@ -94,7 +94,7 @@ TEST(GuidedStep, WhatHasBecomeTooUsefulSplits) {
     EXPECT_GT(step.copies(guide), 8);
 }
 
-/// Where half of 16 transport mean free paths is not left yet, by their worth alone, and by both where it is.
+/// Where half of 16 transport mean free paths is not left yet, by their usefulness alone, and by both where it is.
 TEST(GuidedStep, OutOfBodiesHeavyPhotonsSplit) {
     const auto copiesOf = [](darts::Mode mode, double longest) {
         const darts::Guide guide(darts::best(mode, 0.0f), Fog);

@@ -143,7 +143,7 @@ struct OptionTexts {
     const CLI::Option* description = nullptr; ///< --describe, which may have no value
 };
 
-void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
+void declareInputs(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("scenes", options.scenes, "scene files, rendered in sequence");
     app.set_version_flag("-v,--version", Version);
     app.add_option("-t,--threads", options.threads, "number of threads (default: all)")->check(CLI::Range(1, 1024));
@@ -162,6 +162,13 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
         "--timeout", text.timeout,
         "stop after DURATION of rendering (no unit: minutes), in the midst of a pass too, and write what is there");
     app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
+    app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
+    app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
+        ->allow_extra_args(false);
+    app.add_option("--resolution", text.resolution, "WIDTHxHEIGHT in pixels");
+}
+
+void declareOutputs(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
     app.add_option("-e,--hdr-output-file", text.hdr,
                    "linear image: .exr with standard error, .npz or .h5 with all that is known, .pfm, or .npy");
@@ -170,16 +177,15 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_flag("--no-frames", options.outputs.noFrames, "no 8-bit image of each frame of a sequence");
     app.add_option("--sheet", text.sheet, "frames of a sequence at a glance (.png)");
     app.add_option("--video", text.video, "a sequence as .mp4 or .gif, by ffmpeg");
-    app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
-    app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
-        ->allow_extra_args(false);
-    app.add_option("--resolution", text.resolution, "WIDTHxHEIGHT in pixels");
     app.add_option("--stats", text.statistics, "write times, counters, memory and standard error to this JSON file");
     app.add_option("--html", text.page,
                    "write a page to look at the result with: film, arrival histograms, figures (one file, no network)");
     app.add_option("--trace", options.trace,
                    "write means and standard errors whenever the render's time has doubled, and trace.json, to this "
                    "folder");
+}
+
+void declareBounds(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_option("--target-error", options.targetError,
                    "stop when the relative error, noise and the bias of kernels, is at most this (0.01 is 1 %) with a "
                    "confidence of 95 %")
@@ -191,12 +197,16 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
                    "refuse what needs more than SIZE (512M, 16G), and fail at more (default: what is available)");
     app.add_flag("--allow-outside", options.outputs.allowOutside,
                  "let scenes read and write outside their folder and the output folder");
-    app.add_flag("--explain{text}", text.explain,
-                 "print which effects the scene calls for, and why; render nothing; --explain=json: as JSON, with the "
-                 "elements of the scene behind them");
     app.add_option("--effects", text.effects,
                    "auto: what the scene calls for; all: whatever can run, and nothing left out; the image is the same")
         ->check(CLI::IsMember({"auto", "all"}));
+}
+
+/// What is answered instead of rendering.
+void declareQuestions(CLI::App& app, Options& options, OptionTexts& text) {
+    app.add_flag("--explain{text}", text.explain,
+                 "print which effects the scene calls for, and why; render nothing; --explain=json: as JSON, with the "
+                 "elements of the scene behind them");
     app.add_flag(
         "--plan-cost", options.planCost,
         "print what errors of 10, 3, 1 and 0.3 % cost in seconds by points, beams, sliced primitives and paths, "
@@ -220,6 +230,13 @@ void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
         "--manual", [print] { print(false); }, "print the manual page");
     app.add_flag_callback(
         "--completion", [print] { print(true); }, "print completion for bash");
+}
+
+void declareOptions(CLI::App& app, Options& options, OptionTexts& text) {
+    declareInputs(app, options, text);
+    declareOutputs(app, options, text);
+    declareBounds(app, options, text);
+    declareQuestions(app, options, text);
 }
 
 /// False: --help or --version has been answered.

@@ -42,31 +42,30 @@ Transform cameraTransform(const Transform& sceneTransform) {
 }
 
 Ray Camera::generateRay(const Vec2i& pixel, const Vec2f& uFilter, const Vec2f& uLens) const {
-    if (const auto* detectors = std::get_if<Detectors>(&model))
-        return detectors->row[size_t(pixel.x)].sampleRay(uLens, uFilter);
     const Vec2f offset = filter.sample(uFilter);
     const Vec2f corner(float(pixel.x) + offset.x, float(pixel.y) + offset.y);
     const Vec2f centre(corner.x + 0.5f, corner.y + 0.5f);
     return std::visit(
-        Overloaded{[&](const Pinhole& pinhole) -> Ray {
-                       const Vec3f local = rasterDirection(centre, resolution, pinhole.planeDistance);
-                       return {position(), toWorld.vector(local.normalized()).normalized()};
-                   },
-                   [&](const ThinLens& lens) -> Ray {
-                       // The format's thin lens leaves out the half pixel when it generates rays.
-                       const Vec3f through = rasterDirection(corner, resolution, lens.planeDistance);
-                       const Vec3f focus = through * (lens.focusDistance / through.z);
-                       const Vec2f disk = warp::squareToDisk(uLens);
-                       const Vec3f start(disk.x * lens.apertureRadius, disk.y * lens.apertureRadius, 0.0f);
-                       return {toWorld.point(start), toWorld.vector((focus - start).normalized()).normalized()};
-                   },
-                   [&](const Orthographic& orthographic) -> Ray {
-                       const float step = 2.0f * orthographic.size / float(resolution.y);
-                       const float halfWidth = 0.5f * step * float(resolution.x);
-                       const Vec3f local(-halfWidth + centre.x * step, orthographic.size - centre.y * step, 0.0f);
-                       return {toWorld.point(local), forward()};
-                   },
-                   [](const Detectors&) { return Ray(); }},
+        Overloaded{
+            [&](const Pinhole& pinhole) -> Ray {
+                const Vec3f local = rasterDirection(centre, resolution, pinhole.planeDistance);
+                return {position(), toWorld.vector(local.normalized()).normalized()};
+            },
+            [&](const ThinLens& lens) -> Ray {
+                // The format's thin lens leaves out the half pixel when it generates rays.
+                const Vec3f through = rasterDirection(corner, resolution, lens.planeDistance);
+                const Vec3f focus = through * (lens.focusDistance / through.z);
+                const Vec2f disk = warp::squareToDisk(uLens);
+                const Vec3f start(disk.x * lens.apertureRadius, disk.y * lens.apertureRadius, 0.0f);
+                return {toWorld.point(start), toWorld.vector((focus - start).normalized()).normalized()};
+            },
+            [&](const Orthographic& orthographic) -> Ray {
+                const float step = 2.0f * orthographic.size / float(resolution.y);
+                const float halfWidth = 0.5f * step * float(resolution.x);
+                const Vec3f local(-halfWidth + centre.x * step, orthographic.size - centre.y * step, 0.0f);
+                return {toWorld.point(local), forward()};
+            },
+            [&](const Detectors& detectors) { return detectors.row[size_t(pixel.x)].sampleRay(uLens, uFilter); }},
         model);
 }
 

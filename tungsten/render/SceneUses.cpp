@@ -29,9 +29,12 @@ bool varies(const Bsdf& bsdf) {
 }
 
 bool isTransparent(const Bsdf& bsdf) {
-    if (std::holds_alternative<Transparency>(bsdf.model)) return true;
-    const auto* mixed = std::get_if<Mixed>(&bsdf.model);
-    return mixed && (isTransparent(*mixed->bsdf0) || isTransparent(*mixed->bsdf1));
+    return std::visit(
+        Overloaded{[](const Transparency&) { return true; },
+                   [](const Mixed& mixed) { return isTransparent(*mixed.bsdf0) || isTransparent(*mixed.bsdf1); },
+                   [](const OneOf<Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric,
+                                  Plastic, RoughPlastic, PbrtPlastic, Null, Forward> auto&) { return false; }},
+        bsdf.model);
 }
 
 } // namespace

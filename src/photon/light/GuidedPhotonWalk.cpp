@@ -227,7 +227,7 @@ void GuidedPhotonWalk::split(const darts::Guide& guide, const Medium& medium, co
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points) {
     const auto& [medium, guide, h, surface] = flight;
     if (!guide.settings().elliptical || !path_.orderCounts(1)) return;
-    const auto draw = [&](const darts::Residual& residual) { return drawConnection(guide, residual); };
+    const auto draw = [&](const darts::Residual& residual) { return drawConnection(flight.guide, residual); };
     const bool shares = guidance_.storesPhotons();
     const auto met = step_.meetControlVertex({guide, h, path_.time, shares}, surface, draw);
     if (!met) return;

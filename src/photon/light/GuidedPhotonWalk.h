@@ -65,7 +65,8 @@ class GuidedPhotonWalk {
     /// Slices: what is seen of a light in this medium, in whatever direction the path goes on.
     void leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start);
     [[nodiscard]] bool storesVertices() const {
-        return path_.context.storeVolume && std::holds_alternative<DepositList<Photon>>(path_.deposits.volume);
+        return path_.context.storeVolume &&
+               std::visit([](const auto& p) { return p.AtVertices; }, path_.context.settings.primitive);
     }
     void store(DepositList<Photon>& points, const ArrivalCulling& culling, const Vec3f& position, const Rgb& power);
 

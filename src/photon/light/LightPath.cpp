@@ -87,7 +87,7 @@ bool LightPath::leaveSurface() {
 }
 
 FlightChain::Rules LightPath::chainRules() const {
-    return {context.scene, *culling, std::get<Slices>(context.settings.primitive).classes, context.sliceWorth};
+    return {context.scene, *culling, std::get<Slices>(context.settings.primitive).classes, context.recordCounts};
 }
 
 void LightPath::leaveBall(FlightChain& chain, const Vec3f& position) {

@@ -5,7 +5,7 @@
 #include "photon/light/Deposits.h"
 #include "photon/light/FirstUsefulness.h"
 #include "photon/primitives/sliced/FlightChain.h"
-#include "photon/primitives/sliced/SliceWorth.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/store/ArrivalCulling.h"
 #include "transport/StepCounters.h"
 
@@ -35,10 +35,10 @@ struct WalkContext {
     /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
     /// photons are, not from how dense those few are that bring what connections cannot.
     bool densityPhotons = false;
-    bool glossySensorPaths = false;         ///< SensorPathRules::glossy
-    const SliceWorth* sliceWorth = nullptr; ///< of guided paths
-    const FirstUsefulness* first = nullptr; ///< likewise: in bodies that light must leave
-    FirstUsefulness* measured = nullptr;    ///< of pilot paths, which end at their first vertex there
+    bool glossySensorPaths = false;             ///< SensorPathRules::glossy
+    const RecordCounts* recordCounts = nullptr; ///< of guided paths
+    const FirstUsefulness* first = nullptr;     ///< likewise: in bodies that light must leave
+    FirstUsefulness* measured = nullptr;        ///< of pilot paths, which end at their first vertex there
 };
 
 struct LightPath {

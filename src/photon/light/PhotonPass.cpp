@@ -166,15 +166,15 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
     connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
 }
 
-std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, const FirstUsefulness* first,
-                                                   Statistics& statistics) const {
+std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const FirstUsefulness* first,
+                                                       Statistics& statistics) const {
     const auto* slices = std::get_if<Slices>(&settings_.primitive);
     if (!slices || !guidance_ || !storeVolume_) return nullptr;
-    auto worth = std::make_unique<SliceWorth>(scene_, culling_.gate());
+    auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
     // Paths of their own: the numbers must not depend on the paths that they are for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings_, culling_, {},    0.0f,        emitters_, false,
-                              true,   false,     false,    false, worth.get(), first};
+    const WalkContext context{scene_, settings_, culling_, {},    0.0f,         emitters_, false,
+                              true,   false,     false,    false, counts.get(), first};
     Batch pilot(settings_.primitive);
     for (uint64_t path = 0; path < paths; ++path) {
         pass.watch.poll(0);
@@ -182,8 +182,8 @@ std::unique_ptr<SliceWorth> PhotonPass::sliceWorth(const PassInfo& pass, const F
         GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
     }
     statistics.add("rays", pilot.counters.rays);
-    worth->measure(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes);
-    return worth;
+    counts->measure(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes);
+    return counts;
 }
 
 PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
@@ -195,11 +195,25 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     return settings;
 }
 
+void PhotonPass::tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
+                            const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const {
+    for (uint64_t path = first; path < last; ++path) {
+        pass.watch.pollWithin(1, path);
+        const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
+        if (guidance_)
+            GuidedPhotonWalk(context, *guidance_, connections, sampler, path, deposits, counters).run();
+        else
+            PhotonWalk(context, sampler, deposits, counters).run();
+        deposits.endPath();
+    }
+    pass.watch.poll(last - first);
+}
+
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
     const PhotonSettings settings = settingsOf(pass);
     const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
     if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
-    const auto worth = sliceWorth(pass, usefulAtFirst.get(), statistics);
+    const auto counts = recordCounts(pass, usefulAtFirst.get(), statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);
@@ -229,23 +243,12 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                   connections != nullptr,
                                   densityPhotons_,
                                   glossySensorPaths_,
-                                  worth.get(),
+                                  counts.get(),
                                   usefulAtFirst.get()};
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * tuning::PathsPerBatch,
                            last = std::min(first + tuning::PathsPerBatch, traced + wave);
-            Batch& batch = batches[b];
-            for (uint64_t path = first; path < last; ++path) {
-                pass.watch.pollWithin(1, path);
-                const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
-                if (guidance_)
-                    GuidedPhotonWalk(context, *guidance_, connections, sampler, path, batch.deposits, batch.counters)
-                        .run();
-                else
-                    PhotonWalk(context, sampler, batch.deposits, batch.counters).run();
-                batch.deposits.endPath();
-            }
-            pass.watch.poll(last - first);
+            tracePaths(first, last, context, pass, connections, batches[b].deposits, batches[b].counters);
         });
         if (traced == 0) reserveStores(maps, batches, settings);
         for (const Batch& batch : batches) {

@@ -5,13 +5,17 @@
 #include "photon/light/FirstUsefulness.h"
 #include "photon/light/PhotonGuidance.h"
 #include "photon/primitives/VolumePrimitive.h"
-#include "photon/primitives/sliced/SliceWorth.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
 
 #include "tungsten/render/Integrator.h"
 
 namespace tungsten::photon {
+
+struct Deposits;
+struct WalkContext;
+struct WalkCounters;
 
 /// The stores of one pass.
 struct PhotonMaps {
@@ -47,9 +51,11 @@ class PhotonPass {
     void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, const FirstUsefulness* first,
                                SurfaceConnections& connections, Statistics& statistics) const;
 
+    void tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
+                    const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const;
     /// Guided slices: how many records a base leaves, from what a few paths find.
-    [[nodiscard]] std::unique_ptr<SliceWorth> sliceWorth(const PassInfo& pass, const FirstUsefulness* first,
-                                                         Statistics& statistics) const;
+    [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const FirstUsefulness* first,
+                                                             Statistics& statistics) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;

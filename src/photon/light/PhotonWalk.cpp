@@ -4,7 +4,7 @@ namespace tungsten::photon {
 
 void PhotonWalk::run() {
     if (emit()) goOn();
-    endChain();
+    leaveRegion();
 }
 
 void PhotonWalk::goOn() {
@@ -32,8 +32,7 @@ bool PhotonWalk::emit() {
     const auto chosen = path_.context.emitters.sample(path_.sampler.next1D());
     const Emitter& emitter = scene_.emitters[chosen.index];
     const Vec2f uPosition = path_.sampler.next2D();
-    if (std::holds_alternative<DepositList<CollapsedFlights>>(path_.deposits.volume))
-        chain_.beginAt(scene_, emitter, chosen.probability, uPosition);
+    std::visit([&](auto& list) { beginChain(list, emitter, chosen.probability, uPosition); }, path_.deposits.volume);
     return path_.emitFrom(emitter, chosen.probability, uPosition);
 }
 
@@ -62,13 +61,21 @@ void PhotonWalk::depositVertex(DepositList<CollapsedFlights>& flights, const Vec
                    path_.sampler, flights);
 }
 
-void PhotonWalk::endChain() {
-    if (auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume))
-        chain_.end(path_.chainRules(), path_.sampler, *flights);
+void PhotonWalk::beginChain(DepositList<CollapsedFlights>&, const Emitter& emitter, float probability,
+                            const Vec2f& uPosition) {
+    chain_.beginAt(scene_, emitter, probability, uPosition);
+}
+
+void PhotonWalk::endChain(DepositList<CollapsedFlights>& flights) {
+    chain_.end(path_.chainRules(), path_.sampler, flights);
+}
+
+void PhotonWalk::leaveRegion() {
+    std::visit([&](auto& list) { endChain(list); }, path_.deposits.volume);
 }
 
 bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
-    endChain();
+    leaveRegion();
     if (!path_.arriveOnSurface(hit)) return false;
     path_.leaveBall(chain_, hit.position);
     return path_.leaveSurface();

@@ -25,8 +25,14 @@ class PhotonWalk {
     void depositVertex(DepositList<Photon>& points, const Vec3f& position);
     void depositVertex(DepositList<PhotonBeam>& beams, const Vec3f& position);
     void depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position);
-    /// The path leaves the medium, or ends.
-    void endChain();
+    /// Slices are made of flights since the last light or surface.
+    void beginChain(OneOf<DepositList<Photon>, DepositList<PhotonBeam>> auto&, const Emitter&, float, const Vec2f&) {}
+    void beginChain(DepositList<CollapsedFlights>& flights, const Emitter& emitter, float probability,
+                    const Vec2f& uPosition);
+    void endChain(OneOf<DepositList<Photon>, DepositList<PhotonBeam>> auto&) {}
+    void endChain(DepositList<CollapsedFlights>& flights);
+    /// The path meets a surface, or ends.
+    void leaveRegion();
 
     LightPath path_;
     const Scene& scene_;

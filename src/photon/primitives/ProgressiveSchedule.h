@@ -1,6 +1,8 @@
 #pragma once
 // How gather radii shrink from pass to pass.
 
+#include "photon/primitives/KernelSettings.h"
+
 #include <cmath>
 #include <cstdint>
 
@@ -29,6 +31,10 @@ inline float beamRadiusFactor(uint32_t pass, float alpha) {
 /// At a delta gate the radius and the half-width of the temporal kernel share gamma(volume_alpha): a square root each.
 inline double deltaGateFactor(uint32_t pass, float volumeAlpha) {
     return std::sqrt(radiusScale(pass, double(volumeAlpha)));
+}
+/// Radius of beams, as that of the first pass is 1: at delta gates it narrows with the temporal kernel.
+inline double flightRadiusFactor(const KernelSettings& settings, bool deltaGate, uint32_t pass) {
+    return deltaGate ? deltaGateFactor(pass, settings.volumeAlpha) : double(beamRadiusFactor(pass, settings.alpha));
 }
 
 } // namespace tungsten::photon

@@ -11,7 +11,7 @@
 namespace tungsten::photon {
 namespace {
 
-struct GateCase {
+struct AgreementCase {
     const char* name;
     bool unwarped;
     const char *gate, *beamGate;
@@ -19,10 +19,10 @@ struct GateCase {
     uint32_t passes;
 };
 
-class SliceAgreement : public testing::TestWithParam<GateCase> {};
+class SliceAgreement : public testing::TestWithParam<AgreementCase> {};
 
 TEST_P(SliceAgreement, WithBeams) {
-    const GateCase& c = GetParam();
+    const AgreementCase& c = GetParam();
     const Mean beams = meanOf(boxOfFog(c.unwarped, c.beamGate), "beams", "20000", 120, c.frame);
     for (const SliceName& name : SliceNames) {
         const Mean slices = meanOf(boxOfFog(c.unwarped, c.gate), name.type, "5000", c.passes, c.frame);
@@ -41,14 +41,15 @@ constexpr const char* UnwarpedSequence = R"("start_time": 0.4, "transient_time_w
 
 INSTANTIATE_TEST_SUITE_P(
     Gates, SliceAgreement,
-    testing::Values(GateCase{"WarpedFrame", false, Sequence, Sequence, 4, 30},
-                    GateCase{"UnwarpedFrame", true, UnwarpedSequence, UnwarpedSequence, 4, 30},
-                    GateCase{"WarpedDelta", false,
-                             R"("transient_time_center": 5.6, "transient_time_width": 0.05, "delta_time_gate": true)",
-                             R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 160},
-                    GateCase{"UnwarpedDelta", true,
-                             R"("transient_time_center": 2, "transient_time_width": 0.05, "delta_time_gate": true)",
-                             R"("transient_time_center": 2, "transient_time_width": 0.05)", 0, 160}),
+    testing::Values(
+        AgreementCase{"WarpedFrame", false, Sequence, Sequence, 4, 30},
+        AgreementCase{"UnwarpedFrame", true, UnwarpedSequence, UnwarpedSequence, 4, 30},
+        AgreementCase{"WarpedDelta", false,
+                      R"("transient_time_center": 5.6, "transient_time_width": 0.05, "delta_time_gate": true)",
+                      R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 160},
+        AgreementCase{"UnwarpedDelta", true,
+                      R"("transient_time_center": 2, "transient_time_width": 0.05, "delta_time_gate": true)",
+                      R"("transient_time_center": 2, "transient_time_width": 0.05)", 0, 160}),
     [](const auto& test) { return test.param.name; });
 
 /// Planes and volumes, which have one.

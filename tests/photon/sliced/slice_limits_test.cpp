@@ -6,8 +6,8 @@
 #include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/primitives/sliced/SliceKind.h"
-#include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/sliced/box_of_fog.h"
 
 #include "tungsten/emitter/Emitter.h"
@@ -157,18 +157,18 @@ TEST_P(SkippedLight, FallsWithTheLeastDeterminant) {
     }
 }
 
-constexpr Coefficients<double> Fog{0.5, 0.6};
+constexpr Coefficients<double> LimitsFog{0.5, 0.6};
 double planeWeight(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least) {
     const auto met = crossPlane<double>(Vec3d(0.0), {w[0], w[1]}, sight, least);
-    return met ? met->weight(Fog) : 0.0;
+    return met ? met->weight(LimitsFog) : 0.0;
 }
 double volumeWeight(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least) {
     const auto met = sliceVolume<double>(Vec3d(0.0), {w[0], w[1], w[2]}, sight, 3.0, least);
-    return met ? met->weight(Fog) : 0.0;
+    return met ? met->weight(LimitsFog) : 0.0;
 }
 double hypervolumeWeight(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least) {
     const auto chord = sliceHypervolume<double>(Vec3d(0.0), w, sight, 3.0, least);
-    return chord ? chordWeight(*chord, Fog) : 0.0;
+    return chord ? chordWeight(*chord, LimitsFog) : 0.0;
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SkippedLight,
@@ -197,7 +197,7 @@ TEST(ClosedBox, KeepsItsLightOverThousandsOfBounces) {
 }
 
 /// A ball on a light brings what a ball does that the light's whole power collides in.
-TEST(SliceWorth, CountsTheLightOfLights) {
+TEST(RecordCounts, CountsTheLightOfLights) {
     const test::SceneFile file(test::configurationA(3, false));
     const auto loaded = loadScene(file.path(), {});
     const Scene& scene = *loaded.scene;
@@ -205,10 +205,10 @@ TEST(SliceWorth, CountsTheLightOfLights) {
     scattered.emitter = -1;
     scattered.power = emitterPower(scene.emitters[0]);
     light.power = Rgb(1.0f);
-    SliceWorth worth(scene, scene.transport.gate);
-    worth.measure(std::array{scattered, light}, {});
-    EXPECT_NEAR(worth.expected(light), worth.expected(scattered), 1e-5);
-    EXPECT_NEAR(worth.expected(scattered), 1.0, 1e-5);
+    RecordCounts counts(scene, scene.transport.gate);
+    counts.measure(std::array{scattered, light}, {});
+    EXPECT_NEAR(counts.expected(light), counts.expected(scattered), 1e-5);
+    EXPECT_NEAR(counts.expected(scattered), 1.0, 1e-5);
 }
 
 } // namespace

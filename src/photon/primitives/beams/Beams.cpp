@@ -9,10 +9,13 @@ float Beams::reach(const KernelSettings& settings) {
     return settings.volumeRadius;
 }
 
+double Beams::kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step) {
+    return flightRadiusFactor(settings, deltaGate, step);
+}
+
 Radii Beams::radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step,
                    const PassWatch&) {
-    return settings.volumeRadius *
-           (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
+    return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
 Selection<PhotonBeam> Beams::straight(const Scene& scene, const ArrivalCulling& culling,

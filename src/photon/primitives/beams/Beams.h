@@ -21,12 +21,15 @@ struct Beams {
     using Gather = BeamGather;
     static constexpr const char* Type = "beams";
     static constexpr bool AtVertices = false;
+    static constexpr bool ManyFrames = false;
     static constexpr const char* Effect = "photon beams";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
     static constexpr const char* Stored = "photon beams";
     static constexpr const char* Gathered = "gathered beams";
 
     static float reach(const KernelSettings& settings);
+    static bool hasRadius(const KernelSettings&) { return true; }
+    static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
                        uint32_t step, const PassWatch& watch);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,

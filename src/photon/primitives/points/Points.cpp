@@ -10,6 +10,11 @@ float Points::reach(const KernelSettings& settings) {
     return settings.fixedVolumeRadius ? settings.volumeRadius : Infinity;
 }
 
+double Points::kernelWidth(const KernelSettings& settings, bool, uint32_t step) {
+    const auto factor = double(pointRadiusFactor(step, settings.volumeAlpha));
+    return settings.fixedVolumeRadius ? factor : std::sqrt(factor);
+}
+
 Radii Points::radii(const KernelSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step,
                     const PassWatch& watch) {
     const float factor = pointRadiusFactor(step, settings.volumeAlpha);

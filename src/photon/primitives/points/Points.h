@@ -21,6 +21,7 @@ struct Points {
     using Gather = PointGather;
     static constexpr const char* Type = "points"; ///< volume_photon_type
     static constexpr bool AtVertices = true;      ///< records are vertices, so that control vertices can be
+    static constexpr bool ManyFrames = false;     ///< a record shows in one frame, or a few
     static constexpr const char* Effect = "volume photon points";
     static constexpr const char* Reason = "a medium scatters";
     static constexpr const char* Stored = "stored volume photons"; ///< counters
@@ -29,6 +30,10 @@ struct Points {
     /// From sensor rays that a record can show on. Any, where radii follow the density: they are known when the store
     /// is full, and what is stored makes the density.
     static float reach(const KernelSettings& settings);
+    /// Whether the scene's volume_gather_radius, or one that suits it, is the kernel's.
+    static bool hasRadius(const KernelSettings& settings) { return settings.fixedVolumeRadius; }
+    /// Of a pass, where that of the first is 1.
+    static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
                        uint32_t step, const PassWatch& watch);
     /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().

@@ -23,7 +23,7 @@ void FlightChain::fly(const Rules& rules, const ChainVertex& vertex, int medium,
     ++flights_;
     if (flights_ == 1) {
         if (emitter_ >= 0 && rules.classes.lights) {
-            if (!rules.worth) depositLight(rules, vertex, sampler, list);
+            if (!rules.counts) depositLight(rules, vertex, sampler, list);
         } else if (rules.classes.beams && counts(rules, vertex, medium_, 0, 1)) {
             const bool ball = vertex.direction.dot(ballSide_) > 0.0f;
             depositBeam(rules, vertex, ball ? rules.classes.shortBeams : Infinity, sampler, list);
@@ -32,7 +32,7 @@ void FlightChain::fly(const Rules& rules, const ChainVertex& vertex, int medium,
                counts(rules, vertex, medium_, flights_ - 1, 1)) {
         depositBeam(rules, vertex, rules.classes.shortBeams, sampler, list);
     }
-    if (rules.worth)
+    if (rules.counts)
         branch(rules, sampler, list);
     else
         complete(rules, flights_ - 1, sampler, list);
@@ -140,7 +140,7 @@ void FlightChain::branch(const Rules& rules, Sampler& sampler, DepositList<Colla
         if (!counts(rules, at(base), medium_, base, k)) continue;
         CollapsedFlights flights = record(rules, at(base), FlightShape(k), sampler);
         flights.shared = k == 3 && rules.classes.shared;
-        const float expected = rules.worth->expected(flights);
+        const float expected = rules.counts->expected(flights);
         flights.power = flights.power / expected;
         const int count = int(expected + sampler.next1D());
         for (int i = 0; i < count; ++i) {
@@ -171,7 +171,7 @@ void FlightChain::end(const Rules& rules, Sampler& sampler, DepositList<Collapse
 
 void FlightChain::thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
                        DepositList<CollapsedFlights>& list) {
-    const float share = rules.worth ? rules.worth->expected(flights) : rules.classes.shareOf(flights);
+    const float share = rules.counts ? rules.counts->expected(flights) : rules.classes.shareOf(flights);
     if (share < 1.0f) {
         if (sampler.next1D() >= share) return;
         flights.power = flights.power / share;

@@ -1,8 +1,8 @@
 #pragma once
 // The flights of a light path since its last surface or light, as they come, and what they leave.
 
+#include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/primitives/sliced/SliceKind.h"
-#include "photon/primitives/sliced/SliceWorth.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include "tungsten/scene/Interaction.h"
@@ -24,9 +24,9 @@ class FlightChain {
         const Scene& scene;
         const ArrivalCulling& arrival;
         SliceClasses classes;
-        /// Of guided paths: every base draws directions for as many records as they are worth. Null: those of the path,
-        /// and ghosts.
-        const SliceWorth* worth = nullptr;
+        /// Of guided paths: every base draws directions for as many records as their light calls for. Null: those of
+        /// the path, and ghosts.
+        const RecordCounts* counts = nullptr;
     };
 
     /// The path begins at an emitter; `probability` is that of its choice.
@@ -66,7 +66,7 @@ class FlightChain {
     void depositLight(const Rules& rules, ChainVertex start, Sampler& sampler,
                       DepositList<CollapsedFlights>& list) const;
     [[nodiscard]] static bool counts(const Rules& rules, const ChainVertex& base, int medium, int chain, int flights);
-    /// Leaves a share of them, or as many as they are worth: none or one.
+    /// Leaves a share of them, or as many as their light calls for: none or one.
     static void thin(const Rules& rules, CollapsedFlights flights, Sampler& sampler,
                      DepositList<CollapsedFlights>& list);
     [[nodiscard]] CollapsedFlights record(const Rules& rules, const ChainVertex& base, FlightShape shape,

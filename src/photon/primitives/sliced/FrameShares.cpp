@@ -1,7 +1,7 @@
 #include "photon/primitives/sliced/FrameShares.h"
 
 #include "photon/Tuning.h"
-#include "photon/primitives/sliced/SliceWorth.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 
 #include <tbb/parallel_for.h>
 
@@ -16,7 +16,7 @@ FrameShares::FrameShares(const Scene& scene, const TimeGate& gate, const std::ve
         watch.pollWithin(64, i);
         for (size_t f = 0; f < frames_; ++f) {
             const bool open = gate.frameStart(int(f) + 1) > records[i].time;
-            factors_[i * frames_ + f] = open ? sliceWorth(scene, records[i], gate.frameStart(int(f))) : 0.0f;
+            factors_[i * frames_ + f] = open ? sliceLight(scene, records[i], gate.frameStart(int(f))) : 0.0f;
         }
     });
     for (const FlightShape shape :
@@ -24,15 +24,15 @@ FrameShares::FrameShares(const Scene& scene, const TimeGate& gate, const std::ve
         chooseAmong(shape, records);
 }
 
-/// Turns worths into factors.
+/// Turns light into factors.
 void FrameShares::chooseAmong(FlightShape shape, const std::vector<CollapsedFlights>& records) {
     // Means over what is seen, in the records' order.
     std::vector<double> sums(frames_), counts(frames_);
     for (size_t i = 0; i < records.size(); ++i)
         for (size_t f = 0; f < frames_ && records[i].shape == shape; ++f) {
-            const float worth = factors_[i * frames_ + f];
-            sums[f] += double(worth);
-            counts[f] += worth > 0.0f ? 1.0 : 0.0;
+            const float light = factors_[i * frames_ + f];
+            sums[f] += double(light);
+            counts[f] += light > 0.0f ? 1.0 : 0.0;
         }
     tbb::parallel_for(size_t(0), records.size(), [&](size_t i) {
         for (size_t f = 0; f < frames_ && records[i].shape == shape; ++f) {

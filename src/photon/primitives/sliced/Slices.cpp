@@ -5,11 +5,14 @@
 
 namespace tungsten::photon {
 
+double Slices::kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step) {
+    return flightRadiusFactor(settings, deltaGate, step);
+}
+
 Radii Slices::radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&, uint32_t step,
                     const PassWatch&) {
     // Of the beams among them.
-    return settings.volumeRadius *
-           (deltaGate ? float(deltaGateFactor(step, settings.volumeAlpha)) : beamRadiusFactor(step, settings.alpha));
+    return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
 uint64_t Slices::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,

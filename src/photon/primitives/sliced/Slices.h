@@ -23,6 +23,7 @@ struct Slices {
     using Record = CollapsedFlights;
     using Gather = SliceGather;
     static constexpr bool AtVertices = false;
+    static constexpr bool ManyFrames = true;
     static constexpr const char* Effect = "sliced primitives";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
     static constexpr const char* Stored = "sliced primitives"; ///< counters
@@ -32,6 +33,9 @@ struct Slices {
     SliceClasses classes{};
 
     static float reach(const KernelSettings&) { return Infinity; }
+    /// Only beams among them have one, which is asked for where there are any.
+    static bool hasRadius(const KernelSettings&) { return false; }
+    static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
                        uint32_t step, const PassWatch& watch);
     /// All.

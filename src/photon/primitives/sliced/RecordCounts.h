@@ -11,14 +11,14 @@ namespace tungsten::photon {
 
 /// Radiance at a time that a record adds to a ray, about, without what all of its shape share: the power that gets
 /// there, a ball's spread over its sphere. 0 where it cannot be seen yet.
-float sliceWorth(const Scene& scene, const CollapsedFlights& record, double time);
+float sliceLight(const Scene& scene, const CollapsedFlights& record, double time);
 
 /// By the base alone, never by lengths that a record integrates over: their expectation is the same for any number
 /// above 0. Where a record is brighter there are more of them, so that all are about equally bright in the image.
-class SliceWorth {
+class RecordCounts {
   public:
     /// `gate`: the pass's. Every base that counts leaves one record, until measure() has been called.
-    SliceWorth(const Scene& scene, const TimeGate& gate);
+    RecordCounts(const Scene& scene, const TimeGate& gate);
 
     /// From records of a few paths, one for every base that counts; `classes`: how many there are to be for each of
     /// these.
@@ -27,7 +27,7 @@ class SliceWorth {
     [[nodiscard]] float expected(const CollapsedFlights& record) const;
 
   private:
-    [[nodiscard]] float worth(const CollapsedFlights& record) const;
+    [[nodiscard]] float lightOf(const CollapsedFlights& record) const;
 
     const Scene& scene_;
     TimeGate gate_;
@@ -37,7 +37,7 @@ class SliceWorth {
         return record.shape == FlightShape::Ball && record.shared ? Groups - 1 : size_t(record.shape);
     }
 
-    std::array<double, Groups> worthOfOne_{}; ///< worth of what leaves one record, by group
+    std::array<double, Groups> lightOfOne_{}; ///< of what leaves one record, by group
 };
 
 } // namespace tungsten::photon

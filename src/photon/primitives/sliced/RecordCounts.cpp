@@ -1,11 +1,11 @@
-#include "photon/primitives/sliced/SliceWorth.h"
+#include "photon/primitives/sliced/RecordCounts.h"
 
 #include "photon/Tuning.h"
 
 namespace tungsten::photon {
 
 /// Balls that share their paths with volumes fade below a mean free path (docs/photon-primitives.md, eq. 16).
-float sliceWorth(const Scene& scene, const CollapsedFlights& record, double time) {
+float sliceLight(const Scene& scene, const CollapsedFlights& record, double time) {
     const Medium& medium = scene.media[size_t(record.medium)];
     // A ball on a light holds no light yet.
     const Rgb held =
@@ -20,28 +20,28 @@ float sliceWorth(const Scene& scene, const CollapsedFlights& record, double time
     return bright / (1.0f + sqr(sigmaT * legs));
 }
 
-SliceWorth::SliceWorth(const Scene& scene, const TimeGate& gate) : scene_(scene), gate_(gate) {}
+RecordCounts::RecordCounts(const Scene& scene, const TimeGate& gate) : scene_(scene), gate_(gate) {}
 
-void SliceWorth::measure(std::span<const CollapsedFlights> records, const SliceClasses& classes) {
+void RecordCounts::measure(std::span<const CollapsedFlights> records, const SliceClasses& classes) {
     std::array<double, Groups> sums{}, counts{};
     for (const CollapsedFlights& record : records) {
-        sums[group(record)] += double(worth(record));
+        sums[group(record)] += double(lightOf(record));
         counts[group(record)] += double(classes.shareOf(record));
     }
     for (size_t i = 0; i < Groups; ++i)
-        if (counts[i] > 0.0) worthOfOne_[i] = sums[i] / counts[i];
+        if (counts[i] > 0.0) lightOfOne_[i] = sums[i] / counts[i];
 }
 
-float SliceWorth::expected(const CollapsedFlights& record) const {
-    const double one = worthOfOne_[group(record)];
+float RecordCounts::expected(const CollapsedFlights& record) const {
+    const double one = lightOfOne_[group(record)];
     if (!(one > 0.0)) return 1.0f;
-    return std::clamp(float(double(worth(record)) / one), tuning::LeastPerBase, tuning::MostPerBase);
+    return std::clamp(float(double(lightOf(record)) / one), tuning::LeastPerBase, tuning::MostPerBase);
 }
 
-float SliceWorth::worth(const CollapsedFlights& record) const {
+float RecordCounts::lightOf(const CollapsedFlights& record) const {
     const double soonest =
         scene_.transport.gate.delta && !record.blurredInTime() ? scene_.transport.gate.start : gate_.start;
-    return sliceWorth(scene_, record, soonest);
+    return sliceLight(scene_, record, soonest);
 }
 
 } // namespace tungsten::photon
