@@ -5,6 +5,8 @@
 #include "tungsten/film/Film.h"
 
 #include <gtest/gtest.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
@@ -64,7 +66,7 @@ TEST(FilmContents, TheFilmsErrorIsTheRootOfThePixelsSquares) {
     EXPECT_NEAR(film.relativeStandardError(), std::sqrt(square / Values) / (mean / Values), 1e-5);
 }
 
-TEST(FilmContents, RowsWithoutLightCostNothing) {
+TEST(FilmContents, RowsAndTilesWithoutLightCostNothing) {
     const Film none(Width, Height, Frames), some = litBetween({}, 4);
     constexpr size_t LitRows = size_t(Frames / 2) * (Height - 2);
     EXPECT_GE(some.memoryBytes(), none.memoryBytes() + LitRows * Width * 9 * sizeof(float));
@@ -79,6 +81,48 @@ TEST(FilmContents, RowsWithoutLightCostNothing) {
     EXPECT_FLOAT_EQ(large.mean(7).at(3, 500).x, 1.0f);
     EXPECT_EQ(large.mean(8).at(3, 500).x, 0.0f);
     EXPECT_LT(large.memoryBytes(), size_t(64) << 20);
+}
+
+TEST(FilmContents, TilesAreOfSixteenPixels) {
+    constexpr int Wide = 40; // the third tile has 8 pixels
+    const size_t tile = 16 * 9 * sizeof(float);
+    Film film(Wide, 2, 2);
+    const size_t none = film.memoryBytes();
+    for (const int x : {3, 15, 16, 39}) {
+        film.beginPass();
+        film.add(1, x, 1, Rgb(1.0f + float(x), 2.0f, 0.5f));
+        film.endPass(1.0);
+        EXPECT_NEAR(double(film.memoryBytes() - none), double(tile * (x < 16 ? 1 : x < 32 ? 2 : 3)), 64.0) << x;
+    }
+    std::stringstream state;
+    film.write(state);
+    Film loaded(Wide, 2, 2);
+    loaded.read(state, "state");
+    const Film copy = loaded;
+    for (int x = 0; x < Wide; ++x) {
+        const bool lit = x == 3 || x == 15 || x == 16 || x == 39;
+        EXPECT_EQ(copy.mean(1).at(x, 1), film.mean(1).at(x, 1)) << x;
+        EXPECT_FLOAT_EQ(copy.mean(1).at(x, 1).x, lit ? (1.0f + float(x)) / 4.0f : 0.0f) << x;
+        EXPECT_EQ(copy.standardError(1).at(x, 1), film.standardError(1).at(x, 1)) << x;
+        EXPECT_EQ(copy.mean(0).at(x, 1), Rgb(0.0f)) << x;
+    }
+}
+
+TEST(FilmContents, ThreadsMakeTilesTogether) {
+    // Neighbours by different threads: each tile is asked for by many at once.
+    constexpr int Wide = 64, Deep = 400;
+    Film film(Wide, 1, Deep);
+    for (int pass = 0; pass < 3; ++pass) {
+        film.beginPass();
+        tbb::parallel_for(tbb::blocked_range<int>(0, Wide, 1), [&](const tbb::blocked_range<int>& columns) {
+            for (int frame = 0; frame < Deep; ++frame)
+                for (int x = columns.begin(); x < columns.end(); ++x) film.add(frame, x, 0, Rgb(float(x + frame)));
+        });
+        film.endPass(1.0);
+    }
+    EXPECT_EQ(film.memoryBytes(), Film(film).memoryBytes());
+    for (int frame = 0; frame < Deep; ++frame)
+        for (int x = 0; x < Wide; ++x) ASSERT_EQ(film.mean(frame).at(x, 0), Rgb(float(x + frame))) << frame << ' ' << x;
 }
 
 TEST(FilmContents, AddingNothingAndSettingAgain) {
@@ -99,12 +143,15 @@ TEST(FilmContents, AddingNothingAndSettingAgain) {
     EXPECT_EQ(film.meanValue(), 0.0);
 }
 
-TEST(FilmContents, PassesMoveAsArrays) {
+TEST(FilmContents, PassesMoveAsRows) {
     Film film(Width, Height, Frames), copy(Width, Height, Frames);
     for (Film* f : {&film, &copy}) f->beginPass();
     film.add(2, 1, 3, Rgb(1.0f, 2.0f, 3.0f));
-    const LazyArray& pass = film.passValues();
-    copy.setPassValues({pass.begin(), pass.end()});
+    std::vector<float> values(film.rowValues());
+    for (size_t row = 0; row < film.passRows(); ++row) {
+        film.readPassRow(row, values.data());
+        if (film.passRowIsLit(row)) copy.setPassRow(row, values.data());
+    }
     film.endPass(2.0);
     copy.endPass(2.0);
     EXPECT_EQ(copy.mean(2).pixels, film.mean(2).pixels);

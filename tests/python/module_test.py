@@ -93,7 +93,7 @@ class Render(unittest.TestCase):
         reached = darts_tungsten.render(SCENE, passes=10 ** 6, target_error=0.5, set=steady)
         self.assertEqual(reached.reason, "target error reached")
         self.assertLessEqual(reached.error_bound, 0.5)
-        for bad in ({"passes": 0}, {"samples": 0}, {"seconds": 0}, {"seconds": float("nan")}, {"target_error": -1},
+        for bad in ({"passes": 0}, {"samples": 0}, {"seconds": 0}, {"seconds": float("nan")}, {"target_error": -1}, {"target_error": 0},
                     {"threads": 0}, {"passes": 1, "samples": 1}):
             with self.assertRaises(darts_tungsten.UsageError, msg=bad) as raised:
                 darts_tungsten.render(SCENE, **bad)

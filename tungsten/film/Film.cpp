@@ -16,13 +16,6 @@ namespace {
 
 constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
 constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
-/// Of a function of the values.
-template <typename Function>
-double meanOf(const LazyArray& values, const Function& function) {
-    double sum = 0.0;
-    for (const float value : values) sum += function(double(value));
-    return values.empty() ? 0.0 : sum / double(values.size());
-}
 
 } // namespace
 
@@ -36,10 +29,9 @@ Film::Film(int width, int height, int frames, FilmContents contents, PassWeight 
                                      " GiB; the limit is 16 GiB: use fewer frames, film.channels luminance, no " +
                                      "film.moments or a smaller --resolution");
     const size_t values = size_t(width) * size_t(height) * size_t(contents.channels);
-    mean_ = LazyArray(values * size_t(frames));
-    pass_ = LazyArray(values * size_t(frames));
+    tilesInRow_ = (size_t(width) + TilePixels - 1) >> TileShift;
+    tiles_ = LazyTiles(tilesInRow_ * size_t(height) * size_t(frames), tileValues() * size_t(contents.parts()));
     if (contents.batches > 0) batches_ = PassBatches(width, height, frames, contents);
-    if (contents.moments) moment2_ = LazyArray(values * size_t(frames));
     touched_.assign(size_t(height) * size_t(frames), 0);
     lit_ = touched_;
     if (frames > 1) {
@@ -49,51 +41,78 @@ Film::Film(int width, int height, int frames, FilmContents contents, PassWeight 
 }
 
 double Film::memoryFor(int width, int height, int frames, FilmContents contents) {
-    return double(width) * double(height) * (double(frames) * contents.floats() + 2.0 * contents.channels) *
-               double(sizeof(float)) +
+    const int tiles = (width + int(TilePixels) - 1) >> TileShift;
+    const double floats = double(std::min(int(TilePixels), width)) * contents.channels * contents.parts();
+    return double(height) * double(frames) * tiles * (floats * sizeof(float) + sizeof(uint32_t)) +
+           2.0 * double(width) * double(height) * contents.channels * sizeof(float) +
            PassBatches::memoryFor(width, height, frames, contents);
 }
 
+template <typename Use>
+void Film::forTiles(const Use& use) const {
+    for (size_t tile = 0; tile < tilesInRow_; ++tile) {
+        const size_t first = (tile << TileShift) * size_t(contents_.channels);
+        use(tile, first, std::min(tileValues(), rowValues() - first));
+    }
+}
+
+void Film::readRow(size_t row, Part part, float* values) const {
+    forTiles([&](size_t tile, size_t first, size_t count) {
+        if (const float* found = tiles_.find(row * tilesInRow_ + tile))
+            std::copy_n(found + size_t(part) * tileValues(), count, values + first);
+        else
+            std::fill_n(values + first, count, 0.0f);
+    });
+}
+
+void Film::writeRow(size_t row, Part part, const float* values) {
+    forTiles([&](size_t tile, size_t first, size_t count) {
+        const size_t place = row * tilesInRow_ + tile;
+        const auto isZero = [](float value) { return value == 0.0f; };
+        if (!tiles_.find(place) && std::all_of(values + first, values + first + count, isZero)) return;
+        std::copy_n(values + first, count, tiles_.make(place) + size_t(part) * tileValues());
+    });
+}
+
 void Film::beginPass() {
-    const size_t values = size_t(width_) * size_t(contents_.channels);
     tbb::parallel_for(size_t(0), touched_.size(), [&](size_t row) {
-        if (touched_[row] != 0) std::fill_n(pass_.begin() + ptrdiff_t(row * values), values, 0.0f);
+        if (touched_[row] == 0) return;
+        forTiles([&](size_t tile, size_t, size_t count) {
+            if (float* found = tiles_.find(row * tilesInRow_ + tile)) std::fill_n(found, count, 0.0f);
+        });
         touched_[row] = 0;
     });
 }
 
 void Film::setPassRow(size_t row, const float* values) {
-    std::copy_n(values, rowValues(), pass_.begin() + ptrdiff_t(row * rowValues()));
+    writeRow(row, Pass, values);
     touched_[row] = 1;
 }
 
-void Film::setPassValues(const std::vector<float>& values) {
-    for (size_t row = 0; row < touched_.size(); ++row) {
-        const float* begin = values.data() + row * rowValues();
-        if (!std::all_of(begin, begin + rowValues(), [](float value) { return value == 0.0f; })) setPassRow(row, begin);
+void Film::foldTile(float* tile, size_t place, size_t count, double weight, float* sums, double& deviation) {
+    float *means = tile + size_t(Mean) * tileValues(), *moments = tile + size_t(Moment) * tileValues();
+    for (size_t i = 0; i < count; ++i) {
+        const uint64_t bits = evenBits(passes_, place + i);
+        deviation += contents_.moments ? foldInto(tile[i], weight, weight_, bits, means[i], moments[i])
+                                       : foldInto(tile[i], weight, weight_, bits, means[i]);
+        sums[i] += tile[i];
     }
 }
 
 double Film::foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite) {
-    const size_t values = rowValues(), first = row * values;
-    float *pass = pass_.data() + first, *means = mean_.data() + first;
-    if (touched_[row] != 0) {
-        lit_[row] = 1;
-        for (size_t x = 0; x < values; x += size_t(contents_.channels))
-            if (!isFinite(rgb(pass + x))) {
-                ++nonFinite;
-                std::fill_n(pass + x, contents_.channels, 0.0f);
-            }
-    } else if (lit_[row] == 0) {
-        return 0.0;
-    }
+    if (touched_[row] != 0) lit_[row] = 1;
+    if (lit_[row] == 0) return 0.0;
     double deviation = 0.0;
-    for (size_t i = 0; i < values; ++i) {
-        const uint64_t bits = evenBits(passes_, first + i);
-        deviation += contents_.moments ? foldInto(pass[i], weight, weight_, bits, means[i], moment2_[first + i])
-                                       : foldInto(pass[i], weight, weight_, bits, means[i]);
-        sums[i] += pass[i];
-    }
+    forTiles([&](size_t tile, size_t first, size_t count) {
+        float* found = tiles_.find(row * tilesInRow_ + tile);
+        if (!found) return;
+        for (size_t x = 0; x < count; x += size_t(contents_.channels))
+            if (!isFinite(rgb(found + x))) {
+                ++nonFinite;
+                std::fill_n(found + x, contents_.channels, 0.0f);
+            }
+        foldTile(found, row * rowValues() + first, count, weight, sums + first, deviation);
+    });
     return deviation;
 }
 
@@ -112,7 +131,8 @@ FoldedPass Film::foldRows(double weight, int from, int end) {
                      totalMean_[y * values + i], totalMoment2_[y * values + i]);
     });
     for (const uint64_t count : rowNonFinite) nonFinite_ += count;
-    batches_.fold(passes_, weight, pass_, lit_, from, end);
+    const auto readPass = [&](size_t row, float* row_values) { readPassRow(row, row_values); };
+    batches_.fold(passes_, weight, readPass, lit_, from, end);
     batches_.nextPass(passes_, weight);
     weight_ += weight;
     squaredWeights_ += weight * weight;
@@ -146,20 +166,31 @@ Image Film::imageOf(const float* values) const {
     return image;
 }
 
-Image Film::errorImage(const float* moments) const {
-    Image image = imageOf(moments);
-    const double scale = errorScale();
-    for (Rgb& pixel : image.pixels)
-        for (int c = 0; c < 3; ++c) pixel[c] = float(std::sqrt(std::max(double(pixel[c]), 0.0) * scale));
+Image Film::imageOf(int frame, Part part) const {
+    Image image(width_, height_);
+    for (int y = 0; y < height_; ++y)
+        for (size_t tile = 0; tile < tilesInRow_; ++tile) {
+            const float* found = tiles_.find(row(frame, y) * tilesInRow_ + tile);
+            const int first = int(tile << TileShift), end = std::min(first + int(TilePixels), width_);
+            for (int x = first; found && x < end; ++x)
+                image.at(x, y) = rgb(found + size_t(part) * tileValues() + inTile(x));
+        }
     return image;
 }
 
+Image Film::errorImage(Image moments) const {
+    const double scale = errorScale();
+    for (Rgb& pixel : moments.pixels)
+        for (int c = 0; c < 3; ++c) pixel[c] = float(std::sqrt(std::max(double(pixel[c]), 0.0) * scale));
+    return moments;
+}
+
 Image Film::mean(int frame) const {
-    return imageOf(mean_.data() + offset(frame, 0, 0));
+    return imageOf(frame, Mean);
 }
 
 Image Film::standardError(int frame) const {
-    if (contents_.moments) return errorImage(moment2_.data() + offset(frame, 0, 0));
+    if (contents_.moments) return errorImage(imageOf(frame, Moment));
     Image unknown(width_, height_);
     std::fill(unknown.pixels.begin(), unknown.pixels.end(), Rgb(float(Unknown)));
     return unknown;
@@ -170,19 +201,32 @@ Image Film::meanOverFrames() const {
 }
 
 Image Film::standardErrorOverFrames() const {
-    return frames_ > 1 ? errorImage(totalMoment2_.data()) : standardError(0);
+    return frames_ > 1 ? errorImage(imageOf(totalMoment2_.data())) : standardError(0);
+}
+
+template <typename Function>
+double Film::meanOf(const Function& function) const {
+    double sum = 0.0;
+    for (size_t row = 0; row < lit_.size(); ++row)
+        forTiles([&](size_t tile, size_t, size_t count) {
+            const float* found = lit_[row] != 0 ? tiles_.find(row * tilesInRow_ + tile) : nullptr;
+            for (size_t i = 0; found && i < count; ++i) sum += function(double(found[size_t(Mean) * tileValues() + i]));
+        });
+    const double values = double(lit_.size()) * double(rowValues());
+    return values > 0.0 ? sum / values : 0.0;
 }
 
 double Film::meanValue() const {
-    return meanOf(mean_, [](double value) { return value; });
+    return meanOf([](double value) { return value; });
 }
 
 double Film::meanSquare() const {
-    return meanOf(mean_, [](double value) { return value * value; });
+    return meanOf([](double value) { return value * value; });
 }
 
 double Film::meanSquaredError() const {
-    return mean_.empty() ? 0.0 : errorScale() * moment2Sum_ / double(mean_.size());
+    const double values = double(lit_.size()) * double(rowValues());
+    return values > 0.0 ? errorScale() * moment2Sum_ / values : 0.0;
 }
 
 double Film::relativeStandardError() const {
@@ -191,10 +235,8 @@ double Film::relativeStandardError() const {
 }
 
 size_t Film::memoryBytes() const {
-    const auto lit = size_t(std::count(lit_.begin(), lit_.end(), uint8_t(1)));
-    const size_t floats = lit * size_t(width_) * size_t(contents_.floats()) + totalMean_.size() + totalMoment2_.size() +
-                          batches_.means().size();
-    return floats * sizeof(float) + touched_.size() + lit_.size() + scatter_.memoryBytes();
+    const size_t floats = totalMean_.size() + totalMoment2_.size() + batches_.means().size();
+    return tiles_.bytes() + floats * sizeof(float) + touched_.size() + lit_.size() + scatter_.memoryBytes();
 }
 
 } // namespace tungsten

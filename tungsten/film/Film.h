@@ -4,10 +4,11 @@
 
 #include "tungsten/core/Types.h"
 #include "tungsten/film/FilmContents.h"
-#include "tungsten/film/LazyArray.h"
+#include "tungsten/film/LazyTiles.h"
 #include "tungsten/film/PassBatches.h"
 #include "tungsten/film/PassScatter.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <iosfwd>
@@ -46,7 +47,7 @@ struct FoldedPass {
 
 /// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
 /// (by samples per pixel). Mean and second moment follow West (1979), so adding in the same order gives the same bits.
-/// Rows of frames that no pass adds to take neither time nor memory.
+/// Rows of frames that no pass adds to take no time, and runs of 16 pixels in them no memory.
 class Film {
   public:
     Film() = default;
@@ -74,20 +75,21 @@ class Film {
     }
     /// Instead of what the pass in progress has there.
     void set(int frame, int x, int y, const Rgb& value) {
-        if (touched_[row(frame, y)] != 0) std::fill_n(passPixelToChange(frame, x, y), contents_.channels, 0.0f);
+        float* tile = tiles_.find(tileOf(row(frame, y), x));
+        if (tile) std::fill_n(tile + inTile(x), contents_.channels, 0.0f);
         add(frame, x, y, value);
     }
     /// Of the pass in progress, or the last one.
-    [[nodiscard]] Rgb passPixel(int frame, int x, int y) const { return rgb(pass_.data() + offset(frame, x, y)); }
-    /// The whole pass, frame by frame, row by row, channels innermost.
-    [[nodiscard]] const LazyArray& passValues() const { return pass_; }
-    void setPassValues(const std::vector<float>& values);
-    /// Rows of frames, frame by frame: whether the pass in progress has light there, and its values.
+    [[nodiscard]] Rgb passPixel(int frame, int x, int y) const {
+        const float* tile = tiles_.find(tileOf(row(frame, y), x));
+        return tile ? rgb(tile + inTile(x)) : Rgb(0.0f);
+    }
+    /// Rows of frames, frame by frame: whether the pass in progress has light there, and its values by pixel.
     [[nodiscard]] size_t passRows() const { return touched_.size(); }
     [[nodiscard]] bool passRowIsLit(size_t row) const { return touched_[row] != 0; }
     [[nodiscard]] size_t rowValues() const { return size_t(width_) * size_t(contents_.channels); }
-    [[nodiscard]] const float* passRow(size_t row) const { return pass_.data() + row * rowValues(); }
-    /// Of a row that is lit.
+    void readPassRow(size_t row, float* values) const { readRow(row, Pass, values); }
+    /// Instead of what the pass in progress has there; such a row counts as lit.
     void setPassRow(size_t row, const float* values);
     /// Folds the pass image in with the given weight (> 0). Non-finite pixels are counted, and replaced by 0.
     void endPass(double weight) { settle(foldRows(weight, 0, height_)); }
@@ -128,23 +130,45 @@ class Film {
     void readRows(std::istream& in, int from, int end);
 
   private:
+    static constexpr int TileShift = 4;
+    static constexpr size_t TilePixels = size_t(1) << TileShift;
+    /// What a tile holds, one after the other.
+    enum Part { Pass, Mean, Moment };
+
     [[nodiscard]] size_t row(int frame, int y) const { return size_t(frame) * size_t(height_) + size_t(y); }
-    [[nodiscard]] size_t offset(int frame, int x, int y) const {
-        return (row(frame, y) * size_t(width_) + size_t(x)) * size_t(contents_.channels);
+    /// Of a row's tiles, the one that has pixel x, and where in it.
+    [[nodiscard]] size_t tileOf(size_t row, int x) const { return row * tilesInRow_ + (size_t(x) >> TileShift); }
+    [[nodiscard]] size_t inTile(int x) const { return (size_t(x) & (TilePixels - 1)) * size_t(contents_.channels); }
+    /// Of one part; narrow films have narrow tiles.
+    [[nodiscard]] size_t tileValues() const {
+        return std::min(TilePixels, size_t(width_)) * size_t(contents_.channels);
     }
+    /// Values of a row: those of a part of its tiles, zeros where there are none.
+    void readRow(size_t row, Part part, float* values) const;
+    /// Makes tiles where values are not zero.
+    void writeRow(size_t row, Part part, const float* values);
+    /// Calls use(number, first value in the row, how many) for every tile of a row.
+    template <typename Use>
+    void forTiles(const Use& use) const;
     [[nodiscard]] float* passPixelToChange(int frame, int x, int y) {
         const std::atomic_ref<uint8_t> touched(touched_[row(frame, y)]);
         if (!touched.load(std::memory_order_relaxed)) touched.store(1, std::memory_order_relaxed);
-        return pass_.data() + offset(frame, x, y);
+        return tiles_.make(tileOf(row(frame, y), x)) + inTile(x);
     }
     [[nodiscard]] Rgb rgb(const float* values) const {
         return contents_.channels == 1 ? Rgb(*values) : Rgb(values[0], values[1], values[2]);
     }
     /// One row of the pass into the means: returns what it adds to the second moments, and adds the row to `sums`.
     double foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite);
+    /// The same of a tile, whose first value has this place in the film.
+    void foldTile(float* tile, size_t place, size_t count, double weight, float* sums, double& deviation);
+    /// Of a function of the values of all pixels of all frames.
+    template <typename Function>
+    [[nodiscard]] double meanOf(const Function& function) const;
     [[nodiscard]] Image imageOf(const float* values) const;
+    [[nodiscard]] Image imageOf(int frame, Part part) const;
     /// The root of the second moments times errorScale().
-    [[nodiscard]] Image errorImage(const float* moments) const;
+    [[nodiscard]] Image errorImage(Image moments) const;
     /// From a second moment to the squared standard error; NaN while it is unknown.
     [[nodiscard]] double errorScale() const;
     /// An estimate of the variance of one pass from what it adds to the second moment.
@@ -159,7 +183,8 @@ class Film {
     uint64_t nonFinite_ = 0;
     PassScatter scatter_;
     PassBatches batches_;
-    LazyArray mean_, moment2_, pass_;
+    size_t tilesInRow_ = 0;
+    LazyTiles tiles_;
     std::vector<uint8_t> touched_, lit_;          ///< rows of frames to which this pass, any pass added
     std::vector<float> totalMean_, totalMoment2_; ///< of the mean over frames (frames > 1)
 };

@@ -10,8 +10,8 @@ struct FilmContents {
     int batchBlock = 4;  ///< those are means over blocks of so many pixels' side
 
     bool operator==(const FilmContents&) const = default;
-    /// Floats per pixel and frame: the mean, its moment, and the pass in progress.
-    [[nodiscard]] int floats() const { return channels * (moments ? 3 : 2); }
+    /// Numbers per channel, pixel and frame: the pass in progress, the mean, its moment.
+    [[nodiscard]] int parts() const { return moments ? 3 : 2; }
     /// Image rows that go together where a film is taken apart by rows.
     [[nodiscard]] int rowsTogether() const { return batches > 0 ? batchBlock : 1; }
 };

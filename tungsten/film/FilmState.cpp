@@ -84,13 +84,14 @@ void Film::writeRows(std::ostream& out, int from, int end) const {
     const auto rows = size_t(end - from);
     out.write(reinterpret_cast<const char*>(&passes_), sizeof passes_);
     for (const double* sum : {&weight_, &squaredWeights_}) out.write(reinterpret_cast<const char*>(sum), sizeof *sum);
+    std::vector<float> rowOf(values);
     for (int frame = 0; frame < frames_; ++frame) {
         writeArray(out, lit_, row(frame, from), rows);
-        for (size_t at = row(frame, from); at < row(frame, from) + rows; ++at) {
-            if (lit_[at] == 0) continue;
-            writeArray(out, mean_, at * values, values);
-            if (contents_.moments) writeArray(out, moment2_, at * values, values);
-        }
+        for (size_t at = row(frame, from); at < row(frame, from) + rows; ++at)
+            for (int part = Mean; lit_[at] != 0 && part < contents_.parts(); ++part) {
+                readRow(at, Part(part), rowOf.data());
+                writeArray(out, rowOf, 0, values);
+            }
     }
     if (frames_ > 1)
         for (const auto* total : {&totalMean_, &totalMoment2_})
@@ -103,13 +104,14 @@ void Film::readRows(std::istream& in, int from, int end) {
     const auto rows = size_t(end - from);
     in.read(reinterpret_cast<char*>(&passes_), sizeof passes_);
     for (double* sum : {&weight_, &squaredWeights_}) in.read(reinterpret_cast<char*>(sum), sizeof *sum);
+    std::vector<float> rowOf(values);
     for (int frame = 0; frame < frames_; ++frame) {
         readArray(in, lit_, row(frame, from), rows);
-        for (size_t at = row(frame, from); at < row(frame, from) + rows; ++at) {
-            if (lit_[at] == 0) continue;
-            readArray(in, mean_, at * values, values);
-            if (contents_.moments) readArray(in, moment2_, at * values, values);
-        }
+        for (size_t at = row(frame, from); at < row(frame, from) + rows; ++at)
+            for (int part = Mean; lit_[at] != 0 && part < contents_.parts(); ++part) {
+                readArray(in, rowOf, 0, values);
+                writeRow(at, Part(part), rowOf.data());
+            }
     }
     if (frames_ > 1)
         for (auto* total : {&totalMean_, &totalMoment2_}) readArray(in, *total, size_t(from) * values, rows * values);

@@ -28,15 +28,17 @@ double PassBatches::memoryFor(int width, int height, int frames, const FilmConte
            double(frames) * double(contents.channels) * double(contents.batches) * double(sizeof(float));
 }
 
-void PassBatches::foldRow(uint32_t batch, int frame, int blockRow, double weight, const float* image) {
+void PassBatches::foldRow(uint32_t batch, int frame, int blockRow, double weight, const ReadRow& readRow) {
     const auto channels = size_t(channels_);
     const int top = blockRow * side_, bottom = std::min(top + side_, height_);
     std::vector<double> sums(size_t(columns_) * channels, 0.0);
-    for (int y = top; y < bottom; ++y)
+    std::vector<float> row(size_t(width_) * channels);
+    for (int y = top; y < bottom; ++y) {
+        readRow(size_t(frame) * size_t(height_) + size_t(y), row.data());
         for (int x = 0; x < width_; ++x)
             for (size_t c = 0; c < channels; ++c)
-                sums[size_t(x / side_) * channels + c] +=
-                    double(image[(size_t(y) * size_t(width_) + size_t(x)) * channels + c]);
+                sums[size_t(x / side_) * channels + c] += double(row[size_t(x) * channels + c]);
+    }
     const size_t first = rowAt(batch, frame, blockRow);
     for (size_t i = 0; i < sums.size(); ++i) {
         const int left = int(i / channels) * side_, pixels = (std::min(left + side_, width_) - left) * (bottom - top);
@@ -45,17 +47,16 @@ void PassBatches::foldRow(uint32_t batch, int frame, int blockRow, double weight
     }
 }
 
-void PassBatches::fold(uint32_t pass, double weight, const LazyArray& image, const std::vector<uint8_t>& lit, int from,
+void PassBatches::fold(uint32_t pass, double weight, const ReadRow& readRow, const std::vector<uint8_t>& lit, int from,
                        int end) {
     if (weights_.empty()) return;
     const auto batch = uint32_t(pass % weights_.size());
-    const size_t frameValues = size_t(width_) * size_t(height_) * size_t(channels_);
     tbb::parallel_for(from / side_, blocksOf(end, side_), [&](int blockRow) {
         const int top = blockRow * side_, bottom = std::min(top + side_, height_);
         for (int frame = 0; frame < frames_; ++frame) {
             const auto rows = lit.begin() + ptrdiff_t(frame) * height_;
             if (std::any_of(rows + top, rows + bottom, [](uint8_t row) { return row != 0; }))
-                foldRow(batch, frame, blockRow, weight, image.data() + size_t(frame) * frameValues);
+                foldRow(batch, frame, blockRow, weight, readRow);
         }
     });
 }

@@ -5,6 +5,7 @@
 #include "tungsten/film/LazyArray.h"
 
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <vector>
 
@@ -27,9 +28,11 @@ class PassBatches {
     /// (batch, frame, row of blocks, column of blocks, channel).
     [[nodiscard]] const LazyArray& means() const { return means_; }
 
-    /// Folds image rows from..end of a pass, whole blocks' (or up to the last row): `image` is the film's, `lit` tells
-    /// by row of frames where any pass has had light. Once per pass: nextPass() goes after it.
-    void fold(uint32_t pass, double weight, const LazyArray& image, const std::vector<uint8_t>& lit, int from, int end);
+    /// Reads the pass's values of a row of frames.
+    using ReadRow = std::function<void(size_t row, float* values)>;
+    /// Folds image rows from..end of a pass, whole blocks' (or up to the last row); `lit` tells by row of frames where
+    /// any pass has had light. Once per pass: nextPass() goes after it.
+    void fold(uint32_t pass, double weight, const ReadRow& readRow, const std::vector<uint8_t>& lit, int from, int end);
     void nextPass(uint32_t pass, double weight);
 
     /// Exact binary state of image rows from..end. read() leaves a stream that failed to its caller.
@@ -37,7 +40,7 @@ class PassBatches {
     void read(std::istream& in, int from, int end);
 
   private:
-    void foldRow(uint32_t batch, int frame, int blockRow, double weight, const float* image);
+    void foldRow(uint32_t batch, int frame, int blockRow, double weight, const ReadRow& readRow);
     [[nodiscard]] size_t rowAt(size_t batch, int frame, int blockRow) const {
         return ((batch * size_t(frames_) + size_t(frame)) * size_t(rows_) + size_t(blockRow)) * size_t(columns_) *
                size_t(channels_);

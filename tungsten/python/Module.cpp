@@ -68,7 +68,7 @@ Job jobOf(const py::object& scene, const py::dict& set, const Folder& folder, bo
 struct Limits {
     std::optional<double> seconds;
     std::optional<int64_t> passes, samples;
-    double targetError = 0.0;
+    std::optional<double> targetError;
 };
 
 SessionOptions sessionOptions(const RendererSettings& renderer, const Limits& limits) {
@@ -78,13 +78,13 @@ SessionOptions sessionOptions(const RendererSettings& renderer, const Limits& li
     require(limits.seconds.value_or(1.0) > 0.0, "seconds");
     require(limits.passes.value_or(1) > 0, "passes");
     require(limits.samples.value_or(1) > 0, "samples");
-    if (!(limits.targetError >= 0.0)) throw UsageError("target_error: expected a number above 0, such as 0.01");
+    require(limits.targetError.value_or(1.0) > 0.0, "target_error");
     if (limits.passes && limits.samples) throw UsageError("passes, samples: say one of them");
     SessionOptions options;
     options.sppStep = renderer.sppStep;
     options.spp = limits.passes ? *limits.passes * renderer.sppStep : limits.samples.value_or(renderer.spp);
     options.timeoutSeconds = limits.seconds.value_or(renderer.timeoutSeconds);
-    options.targetError = limits.targetError;
+    options.targetError = limits.targetError.value_or(0.0);
     options.quiet = true;
     return options;
 }
@@ -236,16 +236,16 @@ void declare(py::module_& module) {
     declareResult(module);
     using namespace py::literals;
     const auto renderWith = [](const py::object& scene, const py::dict& set, std::optional<double> seconds,
-                               std::optional<int64_t> passes, std::optional<int64_t> samples, double targetError,
-                               uint64_t seed, std::optional<int> threads, const py::object& progress,
-                               const Folder& folder, bool allowOutside) {
+                               std::optional<int64_t> passes, std::optional<int64_t> samples,
+                               std::optional<double> targetError, uint64_t seed, std::optional<int> threads,
+                               const py::object& progress, const Folder& folder, bool allowOutside) {
         return render(scene, set, {seconds, passes, samples, targetError}, seed, threads, progress, folder,
                       allowOutside);
     };
     module.def("render", renderWith, RenderText, "scene"_a, py::kw_only(), "set"_a = py::dict(),
-               "seconds"_a = py::none(), "passes"_a = py::none(), "samples"_a = py::none(), "target_error"_a = 0.0,
-               "seed"_a = SessionOptions().seed, "threads"_a = py::none(), "progress"_a = py::none(),
-               "folder"_a = py::none(), "allow_outside"_a = false);
+               "seconds"_a = py::none(), "passes"_a = py::none(), "samples"_a = py::none(),
+               "target_error"_a = py::none(), "seed"_a = SessionOptions().seed, "threads"_a = py::none(),
+               "progress"_a = py::none(), "folder"_a = py::none(), "allow_outside"_a = false);
     module.def("plan", planOf, "Which effects a scene calls for, and why (--explain).", "scene"_a, py::kw_only(),
                "set"_a = py::dict(), "folder"_a = py::none(), "allow_outside"_a = false);
     module.def("describe", describe, "The fields of a type, kind or block, or of all (--describe).", "type"_a = "");

@@ -4,9 +4,8 @@
 #include "tungsten/core/FileBytes.h"
 #include "tungsten/film/Checksum.h"
 #include "tungsten/render/PartialStateHeader.h"
+#include "tungsten/render/PassCode.h"
 #include "tungsten/scene/JsonWriter.h"
-
-#include <zlib.h>
 
 #include <cstring>
 
@@ -27,10 +26,6 @@ struct PassHeader {
     uint64_t bytes = 0; ///< deflated
     double cpuSeconds = 0.0;
 };
-
-size_t passBytes(const Film& film) {
-    return film.passValues().size() * sizeof(float);
-}
 
 template <typename Value>
 void writeValue(std::ostream& out, const Value& value) {
@@ -127,7 +122,6 @@ struct PartialStateWriter::Implementation {
     std::string file;
     ChecksumBuffer buffer;
     std::ostream out;
-    std::vector<Bytef> deflated;
 
     Implementation(std::ostream& stream, std::string name)
         : target(stream), file(std::move(name)), buffer(*stream.rdbuf()), out(&buffer) {}
@@ -149,15 +143,9 @@ PartialStateWriter::PartialStateWriter(std::ostream& out, std::string file, cons
 PartialStateWriter::~PartialStateWriter() = default;
 
 void PartialStateWriter::add(Film& film, uint32_t samples) {
-    std::vector<Bytef>& deflated = implementation_->deflated;
-    const auto bytes = uLong(passBytes(film));
-    deflated.resize(compressBound(bytes));
-    auto size = uLongf(deflated.size());
-    const auto* values = reinterpret_cast<const Bytef*>(film.passValues().data());
-    if (compress2(deflated.data(), &size, values, bytes, Z_BEST_SPEED) != Z_OK)
-        throw InputError(implementation_->file, "cannot be written: out of memory");
-    writeValue(implementation_->out, PassHeader{samples, 0, size, 0.0});
-    implementation_->out.write(reinterpret_cast<const char*>(deflated.data()), std::streamsize(size));
+    const std::vector<unsigned char> deflated = deflatePass(film);
+    writeValue(implementation_->out, PassHeader{samples, 0, deflated.size(), 0.0});
+    implementation_->out.write(reinterpret_cast<const char*>(deflated.data()), std::streamsize(deflated.size()));
     implementation_->requireGood();
 }
 
@@ -208,18 +196,13 @@ std::string PartialStateReader::differenceTo(const PartialStateReader& other) co
 void PartialStateReader::fold(Film& film) const {
     std::ifstream in(file_, std::ios::binary);
     in.seekg(passesAt_);
-    std::vector<Bytef> deflated;
+    std::vector<unsigned char> deflated;
     for (const uint32_t samples : samples_) {
         deflated.resize(readValue<PassHeader>(in).bytes);
         in.read(reinterpret_cast<char*>(deflated.data()), std::streamsize(deflated.size()));
         film.beginPass();
-        auto bytes = uLongf(passBytes(film));
-        std::vector<float> values(film.passValues().size());
-        const int code =
-            uncompress(reinterpret_cast<Bytef*>(values.data()), &bytes, deflated.data(), uLong(deflated.size()));
-        if (!in || code != Z_OK || bytes != passBytes(film))
+        if (!in || !inflatePass(deflated, film))
             throw InputError(file_.string(), "the partial state has changed while it was read");
-        film.setPassValues(values);
         film.endPass(double(samples));
     }
 }

@@ -31,13 +31,15 @@ int TeamFilm::firstRowOf(int rank) const {
 /// For each rank the rows of this rank's pass image that it owns: their places, each with its values.
 std::vector<Bytes> TeamFilm::rowsFor() const {
     std::vector<Bytes> parts(size_t(team_->size()));
+    std::vector<float> values(film_.rowValues());
     for (int rank = 0; rank < team_->size(); ++rank)
         for (int frame = 0; frame < film_.frames(); ++frame)
             for (int y = firstRowOf(rank); y < firstRowOf(rank + 1); ++y) {
                 const uint64_t row = uint64_t(frame) * uint64_t(film_.height()) + uint64_t(y);
                 if (!film_.passRowIsLit(row)) continue;
                 append(parts[size_t(rank)], &row, 1);
-                append(parts[size_t(rank)], film_.passRow(row), film_.rowValues());
+                film_.readPassRow(row, values.data());
+                append(parts[size_t(rank)], values.data(), values.size());
             }
     return parts;
 }

@@ -98,10 +98,10 @@ TimeProfile readShape(const ObjectReader& block, const std::string& type) {
 TimeProfile readTimeProfile(const ObjectReader& reader, const std::string& field, const Meaning& meaning) {
     const auto block = reader.block(field, meaning);
     if (!block) return {};
-    const std::string type = block->choice("type", "tabulated", {"box", "exponential", "gaussian", "tabulated"},
-                                           {"none", "shape of the density over time, whose integral counts as 1"});
     const auto problems = [&] { return reader.diagnostics()->problems.size() + reader.diagnostics()->moreProblems; };
     const size_t before = problems();
+    const std::string type = block->choice("type", "tabulated", {"box", "exponential", "gaussian", "tabulated"},
+                                           {"none", "shape of the density over time, whose integral counts as 1"});
     TimeProfile profile = readShape(*block, type);
     const bool read = problems() == before; // else its numbers are not those of the scene
     const std::string problem = read ? profileProblem(profile) : "";
