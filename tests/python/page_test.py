@@ -31,11 +31,13 @@ def run(name, code):
 
 FOLDER.mkdir(parents=True, exist_ok=True)
 outputs = {name: run(name, code) for name, code in SNIPPET.findall((PROJECT / "docs/python.md").read_text())}
-assert sorted(outputs) == ["dict.py", "distances.py", "histogram.py", "instruments.py"], sorted(outputs)
+assert sorted(outputs) == ["dict.py", "distances.py", "histogram.py", "instruments.py", "sweep.py"], sorted(outputs)
 
-for file in ("histogram.png", "instruments.png", "film.npz"):
+for file in ("histogram.png", "instruments.png", "sweep.png", "film.npz"):
     assert (FOLDER / file).stat().st_size > 1000, file
     os.remove(FOLDER / file)
+swept = [[float(x) for x in line] for line in re.findall(r"sigma_s (\S+): (\S+) \+- (\S+)", outputs["sweep.py"])]
+assert len(swept) == 5 and all(light > 4 * error > 0 for _, light, error in swept), swept
 share = float(re.search(r"absorption leaves (\S+)", outputs["dict.py"])[1])
 assert 0.05 < share < 0.5, share  # paths of 4 to 7: exp(-0.29 * 4) = 0.31 to exp(-0.29 * 7) = 0.13
 assert "media[0].sigma_s - " in outputs["dict.py"] and "integrator.frame_num - " in outputs["dict.py"]
