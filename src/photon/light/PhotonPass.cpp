@@ -77,6 +77,20 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
     std::visit([&](auto& store) { store.records.reserve(room); }, maps.volume);
 }
 
+/// A few paths of their own, one after the other, from which a pass learns: it must not depend on the paths that it is
+/// for.
+Deposits tracePilots(const WalkContext& context, const PhotonGuidance& guidance, const PassInfo& pass, uint64_t paths,
+                     Statistics& statistics) {
+    Batch pilot(context.settings.primitive);
+    for (uint64_t path = 0; path < paths; ++path) {
+        pass.watch.poll(0);
+        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
+        GuidedPhotonWalk(context, guidance, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
+    }
+    statistics.add("rays", pilot.counters.rays);
+    return std::move(pilot.deposits);
+}
+
 void report(const WalkCounters& counters, Statistics& statistics) {
     transport::reportSteps(counters, statistics);
     statistics.add("rays", counters.rays);
@@ -120,17 +134,10 @@ std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pas
                                                              Statistics& statistics) const {
     if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
     auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
-    // Paths of their own: the mean must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
     WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, false};
     context.measured = first.get();
-    Batch pilot(settings_.primitive);
-    for (uint64_t path = 0; path < paths; ++path) {
-        pass.watch.poll(0);
-        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
-        GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
-    }
-    statistics.add("rays", pilot.counters.rays);
+    tracePilots(context, *guidance_, pass, paths, statistics);
     return first;
 }
 
@@ -171,18 +178,11 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
     const auto* slices = std::get_if<Slices>(&settings_.primitive);
     if (!slices || !guidance_ || !storeVolume_) return nullptr;
     auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
-    // Paths of their own: the numbers must not depend on the paths that they are for.
     const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
     const WalkContext context{scene_, settings_, culling_, {},    0.0f,         emitters_, false,
                               true,   false,     false,    false, counts.get(), first};
-    Batch pilot(settings_.primitive);
-    for (uint64_t path = 0; path < paths; ++path) {
-        pass.watch.poll(0);
-        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
-        GuidedPhotonWalk(context, *guidance_, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
-    }
-    statistics.add("rays", pilot.counters.rays);
-    counts->measure(std::get<DepositList<CollapsedFlights>>(pilot.deposits.volume).records, slices->classes);
+    const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
+    counts->measure(std::get<DepositList<CollapsedFlights>>(deposits.volume).records, slices->classes);
     return counts;
 }
 
