@@ -54,9 +54,9 @@ inline constexpr float SphereShare = 0.1f;
 inline constexpr float TowardsBodies = 0.2f;
 
 /// Light paths of a pass that tell what the others are measured by at first in bodies that they must leave
-/// (FirstUsefulness). Variance x CPU without and with it, points and beams: milk behind glass 0.38 and 0.24, 1.0 and
-/// 0.44; cloud in haze 0.44 and 0.31, 2.4 and 1.9; layered tissue 15.7 and 12.8, 250 and 130; lamp in fog, dense cube
-/// 60 and several lights 1.03 to 1.09 times. Bench: study bodies
+/// (FirstUsefulness). Variance x CPU without and with it, points and beams: milk behind glass 0.31 and 0.23, 0.48 and
+/// 0.33; cloud in haze 0.90 and 0.62, 0.82 and 0.62; amber half-space 0.43 and 0.29, 0.39 and 0.24; a lit slab 0.036
+/// and 0.043, 0.083 and 0.088, which is noise. Bench: study bodies
 inline constexpr uint64_t FirstPaths = 1024;
 
 /// Slices at delta gates, as `auto` chooses them, up to this |g| of phase functions, with and without the camera's leg,
