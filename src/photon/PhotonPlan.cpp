@@ -115,8 +115,9 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
     meetsDeltaGate = exact && gate.delta && policy.sampling.elliptical;
     boundsAlone.on = guidance.on && policy.followsBodies() && !facts.surfaceScattering && !gate.delta &&
                      !scene.transport.cameraUnwarped && transport::gateInBodies(scene).collisions > tuning::WidestGate;
-    boundsAlone.reason = boundsAlone.on ? "a gate so wide that most light which leaves the bodies is in time"
-                                        : "the gate is short, or not all is seen and lit from outside";
+    boundsAlone.reason = boundsAlone.on
+                             ? "a gate so wide that most light which leaves the bodies is in time"
+                             : "only for long gates over bodies that are seen and lit from outside, without surfaces";
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     ordinaryPhotons.on = atVertices && (boundsAlone.on || !directView ||
                                         (policy.directView == transport::DirectView::Auto &&

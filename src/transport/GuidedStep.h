@@ -60,10 +60,10 @@ class GuidedStep {
     /// The flight ahead leaves the body at its end with these odds (WaysOut::leaveOdds).
     void leaveWithOdds(float odds) { reachable_.exit.leaveOdds = odds; }
 
-    static constexpr float NoOthers = -std::numeric_limits<float>::infinity();
     // Roulette. Models of what is still to come do not compare: where another one holds, in another medium or by
     // another way out, usefulness is measured anew.
     void startRoulette(const darts::Guide& guide, int medium, float throughput);
+    static constexpr float NoOthers = -std::numeric_limits<float>::infinity();
     /// Probability of going on. Where the roulette starts it is 1, unless the walk is less useful than others are at
     /// first (`others`, a logarithm).
     [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput, float others = NoOthers);
