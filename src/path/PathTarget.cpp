@@ -29,12 +29,8 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
     const Emitter& emitter = scene_.emitters[chosen.index];
     const float probability = chosen.probability;
     const Vec2f uPosition = sampler.next2D();
-    PathTarget target{&emitter,
-                      int(chosen.index),
-                      {scene_, emitter, sampleEmissionPoint(emitter, uPosition)},
-                      Rgb(1.0f / probability),
-                      probability,
-                      emitter.emissionTime};
+    const transport::Vertex point(scene_, emitter, sampleEmissionPoint(emitter, uPosition));
+    PathTarget target{{point, Rgb(1.0f / probability)}, &emitter, int(chosen.index), probability, emitter.emissionTime};
     if (emitter.isDelta())
         return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, counters);
     target.reach = radii_[chosen.index];

@@ -11,24 +11,15 @@ namespace tungsten::path {
 
 /// The last vertex of light's own path: a point of an emitter; for light that starts in a single direction, the first
 /// vertex that scatters it: a virtual point source.
-struct PathTarget {
+struct PathTarget : transport::PathEnd {
     const Emitter* emitter;
-    int index; ///< of the emitter; -1 for virtual sources, which cannot be hit
-    transport::Vertex vertex;
-    Rgb power;              ///< of light's path up to the vertex, over the probability of the emitter's choice
-    float probability;      ///< of that choice
+    int index;              ///< of the emitter; -1 for virtual sources, which cannot be hit
+    float probability;      ///< of the emitter's choice
     double start;           ///< when light leaves the vertex
     float reach = 0.0f;     ///< distance from the vertex to the emitter's farthest point
     int interactions = 0;   ///< of the light's own path so far, the virtual source included
     int mediumScatters = 0; ///< of these, in media
 
-    /// Power per steradian that leaves the vertex along the unit `direction` (intensity; radiance times cosine over the
-    /// area density for surfaces), over the probability of the emitter's choice.
-    [[nodiscard]] Rgb intensity(const Vec3f& direction) const { return power * vertex.scattering(direction); }
-    /// To connect a vertex to it.
-    [[nodiscard]] transport::ConnectionEnd seenAlong(const transport::Straight& way) const {
-        return transport::connectionEnd(way, vertex, power);
-    }
     /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;

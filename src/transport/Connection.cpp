@@ -2,9 +2,8 @@
 
 namespace tungsten::transport {
 
-ConnectionEnd connectionEnd(const Straight& way, const Vertex& vertex, const Rgb& power) {
-    return {way.direction, way.distance, power * vertex.scattering(-way.direction) / sqr(way.distance),
-            vertex.margin()};
+ConnectionEnd connectionEnd(const Straight& way, const PathEnd& end) {
+    return {way.direction, way.distance, end.intensity(-way.direction) / sqr(way.distance), end.vertex.margin()};
 }
 
 std::optional<Connection> Connector::connect(const Vertex& vertex, const Rgb& throughput, const ConnectionEnd& end,

@@ -35,8 +35,8 @@ inline ConnectionEnd connectionEnd(const DirectSample& light) {
 inline ConnectionEnd connectionEnd(const SensorSample& sensor) {
     return {sensor.direction, sensor.distance, Rgb(sensor.weight), {}};
 }
-/// The vertex at the end of the way; `power` is what its path has brought there.
-ConnectionEnd connectionEnd(const Straight& way, const Vertex& vertex, const Rgb& power);
+/// A vertex at the end of the way.
+ConnectionEnd connectionEnd(const Straight& way, const PathEnd& end);
 
 struct Connection {
     Rgb throughput;       ///< of the path up to the vertex, times scattering there, the end's weight and transmittance

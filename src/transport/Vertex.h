@@ -74,6 +74,16 @@ class Vertex {
     Region region_;
 };
 
+/// The last vertex of light's path so far: what techniques draw, keep and connect to. Each adds what its own densities
+/// need.
+struct PathEnd {
+    Vertex vertex;
+    Rgb power; ///< of the path up to the vertex, over the densities with which it was drawn
+
+    /// Power per steradian that leaves along the unit `direction`.
+    [[nodiscard]] Rgb intensity(const Vec3f& direction) const { return power * vertex.scattering(direction); }
+};
+
 // Here, since techniques ask for these of every candidate.
 
 inline Vec3f Vertex::position() const {

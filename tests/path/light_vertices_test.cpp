@@ -53,7 +53,8 @@ TEST(LightVertices, FindTheLightOfASurfaceInsideALengthRange) {
                 const Vec3f offset = choice.vertex->vertex.position() - x, direction = offset.normalized();
                 const double length = double(offset.length() + choice.vertex->distance);
                 if (length < low || length >= high) continue;
-                mean += double(choice.vertex->intensity(-direction).y * choice.weight / offset.length2()) / Draws;
+                mean +=
+                    double(choice.vertex->weighedIntensity(-direction).y * choice.weight / offset.length2()) / Draws;
             }
             sum += mean / Caches;
             squares += mean * mean / Caches;
@@ -114,8 +115,8 @@ TEST(LightVertices, OnlyOpaqueSmoothSurfacesSeenFromTheLightsSide) {
     Sampler sampler(5, RandomStream::Test, 0, 0);
     std::optional<LightVertex> vertex;
     while (!vertex) vertex = traceLightVertex(*scene, scene->emitters[0], 1.0f, sampler);
-    EXPECT_GT(vertex->intensity({0.6f, 0.8f, 0.0f}).y, 0.0f);
-    EXPECT_EQ(vertex->intensity({0.6f, -0.8f, 0.0f}).y, 0.0f);
+    EXPECT_GT(vertex->weighedIntensity({0.6f, 0.8f, 0.0f}).y, 0.0f);
+    EXPECT_EQ(vertex->weighedIntensity({0.6f, -0.8f, 0.0f}).y, 0.0f);
 }
 
 TEST(ShellChord, SamplesItsDensity) {

@@ -95,7 +95,7 @@ TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
         const Vertex &from = fromLight ? light : floor, &to = fromLight ? floor : light;
         const auto way = straightWay(from.position(), to.position());
         ASSERT_TRUE(way);
-        const auto connection = connector_.connect(from, Rgb(0.5f), connectionEnd(*way, to, Rgb(4.0f)), rays_);
+        const auto connection = connector_.connect(from, Rgb(0.5f), connectionEnd(*way, {to, Rgb(4.0f)}), rays_);
         ASSERT_TRUE(connection);
         EXPECT_NEAR(connection->throughput.x, 2.0f * 0.5f * InvPi * 12.0f / 16.0f * std::exp(-0.5f), 1e-5f);
         EXPECT_NEAR(connection->time, 5.0, 1e-5); // 3 at speed 1, 1 at 0.5
@@ -106,7 +106,7 @@ TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
     const Vertex behind(scene_->media[0], Vec3f(0, 5, 0), Vec3f(0, 1, 0), Region{-1, 1.0f});
     const auto down = straightWay(behind.position(), floor.position());
     ASSERT_TRUE(down);
-    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), connectionEnd(*down, floor, Rgb(1.0f)), rays_));
+    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), connectionEnd(*down, {floor, Rgb(1.0f)}), rays_));
     EXPECT_FALSE(straightWay(above, above));
 }
 

@@ -187,8 +187,8 @@ void PathWalk<TimeResolved, Media>::connectToSource(const Vertex& vertex) {
     ++path_.counters.connections;
     if constexpr (TimeResolved)
         if (!bound_.mayConnect(path_.time, way->distance, source_->start)) return;
-    const auto connection =
-        connector_.connect(vertex, path_.throughput, source_->seenAlong(*way), path_.counters.shadowRays);
+    const auto connection = connector_.connect(vertex, path_.throughput, transport::connectionEnd(*way, *source_),
+                                               path_.counters.shadowRays);
     if (!connection || !rendered(path_.interactions + connection->crossings + source_->interactions)) return;
     path_.sink.add(connection->throughput, path_.time + connection->time + source_->start, *source_->emitter);
 }

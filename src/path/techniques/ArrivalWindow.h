@@ -1,60 +1,80 @@
 #pragma once
-// Points that light has reached, a few of which at once are candidates for arrival at a place within a range of
+// Ends of light paths of one emitter, a few of which at once are candidates for arrival at a place within a range of
 // lengths.
 
 #include "path/Tuning.h"
 
 #include "transport/GateBounds.h"
 
+#include "tungsten/render/Integrator.h"
+
+#include <tbb/parallel_for.h>
+
 #include <array>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace tungsten::path {
 
+/// An `End` has a position() and light's length() so far.
+template <typename End>
 class ArrivalWindow {
   public:
     /// Candidates of a vertex: neighbours in the list from a random place on.
     static constexpr size_t Size = tuning::Candidates;
 
     struct Choice {
-        size_t index = 0;
-        float inverseProbability = 0.0f; ///< of its choice among the candidates
+        const End* vertex = nullptr;
+        float weight = 0.0f; ///< 1 / (probability x number of light paths)
     };
 
-    /// `point(i)` is the pair of the i-th of `count` points and light's length so far.
-    template <typename Point>
-    void fill(size_t count, const Point& point);
+    /// What `trace(index of the path, ends)` appends for each of so many light paths, in their order.
+    template <typename Trace>
+    void fill(size_t paths, const char* stage, const PassWatch& watch, const Trace& trace);
     /// A candidate whose light, going on straight to `position`, arrives there after a length in [low, high), in
-    /// proportion to `importance(index, unit direction from there, distance)`; none if all of these are 0.
+    /// proportion to `importance(end, unit direction from there, distance)`; none if all of these are 0.
     template <typename Importance>
-    [[nodiscard]] std::optional<Choice> choose(const Vec3f& position, float low, float high, const Vec2f& u,
-                                               const Importance& importance) const;
+    [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u,
+                                const Importance& importance) const;
+    [[nodiscard]] const std::vector<End>& ends() const { return ends_; }
 
   private:
-    size_t count_ = 0;
+    size_t paths_ = 0;
+    std::vector<End> ends_;
     std::vector<float> x_, y_, z_, length_; ///< the first Size - 1 follow again at the end
 };
 
-template <typename Point>
-void ArrivalWindow::fill(size_t count, const Point& point) {
-    count_ = count;
+template <typename End>
+template <typename Trace>
+void ArrivalWindow<End>::fill(size_t paths, const char* stage, const PassWatch& watch, const Trace& trace) {
+    constexpr size_t Block = 1024;
+    std::vector<std::vector<End>> found((paths + Block - 1) / Block);
+    watch.stage(stage, found.size());
+    tbb::parallel_for(size_t(0), found.size(), [&](size_t block) {
+        watch.poll();
+        for (size_t i = block * Block; i < std::min(paths, (block + 1) * Block); ++i) trace(i, found[block]);
+    });
+    paths_ = paths;
+    ends_.clear();
+    for (const auto& block : found) ends_.insert(ends_.end(), block.begin(), block.end());
     for (auto* list : {&x_, &y_, &z_, &length_}) list->clear();
-    for (size_t i = 0; count > 0 && i + 1 < count + Size; ++i) {
-        const auto [position, length] = point(i % count);
+    for (size_t i = 0; !ends_.empty() && i + 1 < ends_.size() + Size; ++i) {
+        const End& end = ends_[i % ends_.size()];
+        const Vec3f position = end.position();
         x_.push_back(position.x);
         y_.push_back(position.y);
         z_.push_back(position.z);
-        length_.push_back(length);
+        length_.push_back(end.length());
     }
 }
 
+template <typename End>
 template <typename Importance>
-auto ArrivalWindow::choose(const Vec3f& position, float low, float high, const Vec2f& u,
-                           const Importance& importance) const -> std::optional<Choice> {
-    if (count_ == 0) return std::nullopt;
-    const size_t first = std::min(size_t(u.x * float(count_)), count_ - 1);
+auto ArrivalWindow<End>::choose(const Vec3f& position, float low, float high, const Vec2f& u,
+                                const Importance& importance) const -> Choice {
+    const size_t count = ends_.size();
+    if (count == 0) return {};
+    const size_t first = std::min(size_t(u.x * float(count)), count - 1);
     const float *x = &x_[first], *y = &y_[first], *z = &z_[first], *length = &length_[first];
     constexpr auto Slack = float(transport::FlightSlack);
     const float from = low - Slack * std::abs(low), to = high + Slack * std::abs(high);
@@ -72,20 +92,21 @@ auto ArrivalWindow::choose(const Vec3f& position, float low, float high, const V
         const float distance = std::sqrt(squared[i]);
         if (!(distance > 0.0f)) continue; // no direction leads there
         const Vec3f offset(position.x - x[i], position.y - y[i], position.z - z[i]);
-        const float value = importance((first + i) % count_, offset / distance, distance);
+        const float value = importance(ends_[(first + i) % count], offset / distance, distance);
         if (!(value > 0.0f)) continue;
         candidates[number] = i;
         importances[number++] = value;
         sum += value;
     }
-    if (!(sum > 0.0f) || !std::isfinite(sum)) return std::nullopt;
+    if (!(sum > 0.0f) || !std::isfinite(sum)) return {};
     float rest = u.y * sum;
     size_t chosen = 0;
     for (; chosen + 1 < number; ++chosen) {
         rest -= importances[chosen];
         if (rest < 0.0f) break;
     }
-    return Choice{(first + candidates[chosen]) % count_, sum / importances[chosen]};
+    const float each = float(count) / (float(paths_) * float(Size));
+    return {&ends_[(first + candidates[chosen]) % count], each * (sum / importances[chosen])};
 }
 
 } // namespace tungsten::path

@@ -35,8 +35,8 @@ void ConnectionsFromMedia::connect(GuidedPath& path, const Medium& medium, float
     const auto way = path.wayInTime(state.ray.origin, state.time);
     if (!way) return;
     const transport::Vertex vertex(medium, state.ray.origin, state.ray.direction, state.region);
-    const auto connection =
-        path.connector().connect(vertex, state.throughput, path.target->seenAlong(*way), state.counters.shadowRays);
+    const auto connection = path.connector().connect(
+        vertex, state.throughput, transport::connectionEnd(*way, *path.target), state.counters.shadowRays);
     if (!connection || !path.counts(connection->crossings, 0)) return;
     const float share = connection->oneSpeed ? 1.0f - controlShare : 1.0f;
     if (share > 0.0f)
@@ -53,7 +53,7 @@ void ConnectionsFromSurfaces::connect(GuidedPath& path, const SurfaceHit& hit, c
     if (!way) return;
     const transport::Vertex vertex = path.vertexOn(makeInteraction(path.scene(), hit, state.ray.direction));
     const auto connection =
-        path.connector().connect(vertex, throughput, target.seenAlong(*way), state.counters.shadowRays);
+        path.connector().connect(vertex, throughput, transport::connectionEnd(*way, target), state.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
     const float lightPdf = target.pdfFrom(hit.position, target.vertex.position(), target.vertex.margin().normal);

@@ -55,7 +55,7 @@ void LightPaths::trace(const Scene& scene, const TargetChoice& targets, const Pa
         const float probability = targets.probability(i);
         if (!(probability > 0.0f) || scene.emitters[i].isDelta()) continue;
         const Emitter& emitter = scene.emitters[i];
-        const auto share = [&](float number) { return size_t(number * probability) + ArrivalWindow::Size; };
+        const auto share = [&](float number) { return size_t(number * probability) + tuning::Candidates; };
         vertices_[i].trace(scene, emitter, probability, share(all), pass);
         paths += share(all);
         if (reflected_[i].empty()) continue;

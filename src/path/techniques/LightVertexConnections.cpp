@@ -16,7 +16,7 @@ void LightVertexConnections::connect(GuidedPath& path, const transport::Vertex& 
     const auto way = transport::straightWay(here.position(), light.vertex.position());
     if (!way) return;
     const auto& [direction, distance] = *way;
-    const transport::ConnectionEnd end{direction, distance, light.intensity(-direction) / sqr(distance),
+    const transport::ConnectionEnd end{direction, distance, light.weighedIntensity(-direction) / sqr(distance),
                                        light.vertex.margin()};
     ++state.counters.lightVertices;
     const auto connection = path.connectInRegion(here, end);

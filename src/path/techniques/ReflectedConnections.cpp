@@ -37,11 +37,12 @@ void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& he
     const ReflectedVertex& light = *choice.vertex;
     const bool inMedium = !light.surface;
     if (!path.counts(2, inMedium ? 1 : 0)) return;
-    const transport::Vertex end = light.vertexIn(path.scene(), state.region);
+    const transport::PathEnd target = light.endIn(path.scene(), state.region);
+    const transport::Vertex& end = target.vertex;
     const auto way = transport::straightWay(here.position(), end.position());
     if (!way || !walkGoesOn(path, end, way->direction)) return;
     ++state.counters.reflectedLight;
-    const auto connection = path.connectInRegion(here, transport::connectionEnd(*way, end, light.power));
+    const auto connection = path.connectInRegion(here, transport::connectionEnd(*way, target));
     if (!connection) return;
     // Of the walk and of light vertices one vertex on, together.
     const float arrives = end.areaDensity(here.pdf(way->direction), way->direction, way->distance) *

@@ -4,8 +4,6 @@
 
 #include "path/Tuning.h"
 
-#include <tbb/parallel_for.h>
-
 namespace tungsten::path {
 
 namespace {
@@ -23,7 +21,7 @@ void traceReflection(const Scene& scene, const Emitter& emitter, float probabili
     if (!sample || (sample->lobe & lobe::Smooth) == 0) return;
     const Vec3f direction = from.frame.toWorld(sample->wo).normalized();
     const float pdf = glossy->vertex.pdf(direction);
-    const Rgb reflected = glossy->intensity(direction);
+    const Rgb reflected = glossy->weighedIntensity(direction);
     if (!(pdf > 0.0f) || isBlack(reflected)) return;
     const auto end = [&](float flight, float density) {
         return ReflectedVertex{*glossy,
@@ -59,32 +57,21 @@ void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, co
                                   const PassWatch& watch) {
     trace(scene, emitter, 1.0f, tuning::PilotPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
     candidates_ =
-        vertices_.empty() ? 0.0f : float(ArrivalWindow::Size) * float(tuning::PilotPaths) / float(vertices_.size());
+        vertices().empty() ? 0.0f : float(tuning::Candidates) * float(tuning::PilotPaths) / float(vertices().size());
 }
 
 void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths,
                                 const PassInfo& pass, const Flights& flights) {
-    constexpr size_t Block = 1024;
-    std::vector<std::vector<ReflectedVertex>> found((paths + Block - 1) / Block);
     const auto stream = uint64_t(&emitter - scene.emitters.data()) << 32;
-    pass.watch.stage("reflected light", found.size());
-    tbb::parallel_for(size_t(0), found.size(), [&](size_t block) {
-        pass.watch.poll();
-        for (size_t i = block * Block; i < std::min(paths, (block + 1) * Block); ++i)
-            traceReflection(scene, emitter, probability, flights,
-                            Sampler(pass.seed, RandomStream::ReflectedLight, pass.index, stream | i), found[block]);
+    window_.fill(paths, "reflected light", pass.watch, [&](size_t i, std::vector<ReflectedVertex>& vertices) {
+        const Sampler sampler(pass.seed, RandomStream::ReflectedLight, pass.index, stream | i);
+        traceReflection(scene, emitter, probability, flights, sampler, vertices);
     });
-    paths_ = paths;
-    vertices_.clear();
-    for (const auto& block : found) vertices_.insert(vertices_.end(), block.begin(), block.end());
-    window_.fill(vertices_.size(),
-                 [this](size_t i) { return std::pair(vertices_[i].position(), vertices_[i].length()); });
 }
 
 auto ReflectedLightCache::choose(const Vec3f& position, float low, float high, const Vec2f& u) const -> Choice {
     // Rough contributions, beside walks with even directions.
-    const auto importance = [&](size_t i, const Vec3f& direction, float distance) {
-        const ReflectedVertex& vertex = vertices_[i];
+    const auto importance = [this](const ReflectedVertex& vertex, const Vec3f& direction, float distance) {
         const float even = 0.25f * InvPi;
         const float walkPdf =
             vertex.surface ? vertex.surface->areaDensity(even, direction, distance) : even / sqr(distance);
@@ -92,10 +79,7 @@ auto ReflectedLightCache::choose(const Vec3f& position, float low, float high, c
         const float candidates = candidates_ * vertex.density;
         return maxComponent(vertex.power) / vertex.incidence * walkPdf * candidates / (candidates + found);
     };
-    const auto choice = window_.choose(position, low, high, u, importance);
-    if (!choice) return {};
-    const float each = float(vertices_.size()) / (float(paths_) * float(ArrivalWindow::Size));
-    return {&vertices_[choice->index], each * choice->inverseProbability};
+    return window_.choose(position, low, high, u, importance);
 }
 
 } // namespace tungsten::path

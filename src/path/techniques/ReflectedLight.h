@@ -24,8 +24,9 @@ struct ReflectedVertex {
     /// Of light's whole way.
     [[nodiscard]] float length() const { return glossy.distance + flight.distance; }
     /// For a path from the camera that comes to here through `region`.
-    [[nodiscard]] transport::Vertex vertexIn(const Scene& scene, const Region& region) const {
-        return surface ? *surface : transport::Vertex(*scene.medium(region), position(), flight.direction, region);
+    [[nodiscard]] transport::PathEnd endIn(const Scene& scene, const Region& region) const {
+        if (surface) return {*surface, power};
+        return {{*scene.medium(region), position(), flight.direction, region}, power};
     }
 };
 
@@ -42,10 +43,7 @@ bool reflectsSharply(LobeMask lobes);
 /// Reflected light of one emitter.
 class ReflectedLightCache {
   public:
-    struct Choice {
-        const ReflectedVertex* vertex = nullptr;
-        float weight = 0.0f; ///< 1 / (probability x number of light paths)
-    };
+    using Choice = ArrivalWindow<ReflectedVertex>::Choice;
 
     /// Learns from light paths of its own how many of them reflect.
     void prepare(const Scene& scene, const Emitter& emitter, const Flights& flights, const PassWatch& watch);
@@ -58,12 +56,10 @@ class ReflectedLightCache {
                const Flights& flights);
     /// A candidate whose light, going on straight to `position`, arrives after a length in [low, high).
     [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
-    [[nodiscard]] const std::vector<ReflectedVertex>& vertices() const { return vertices_; }
+    [[nodiscard]] const std::vector<ReflectedVertex>& vertices() const { return window_.ends(); }
 
   private:
-    std::vector<ReflectedVertex> vertices_;
-    ArrivalWindow window_;
-    size_t paths_ = 0;
+    ArrivalWindow<ReflectedVertex> window_;
     float candidates_ = 0.0f;
 };
 

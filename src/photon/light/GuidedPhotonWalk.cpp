@@ -110,7 +110,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, float probability, 
 
 void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float meanScattering) {
     if (!connections_ || !path_.bears(path_.power)) return;
-    const SendingVertex from{vertex, path_.time, path_.bounce, path_.power, meanScattering};
+    const SendingVertex from{{vertex, path_.power}, path_.time, path_.bounce, meanScattering};
     if (connections_->knowsLightPerConnection())
         connections_->connect(from, gate_, path_.sampler, draws_, path_.deposits.received, path_.counters.rays);
     else

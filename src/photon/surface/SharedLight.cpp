@@ -89,15 +89,12 @@ class Sharing {
     }
 
     void reflect(const SensorPoint& point, const std::vector<uint32_t>& neighbours, std::vector<Vec3d>& sums) const {
-        const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
-        const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
+        const transport::Vertex vertex = point.vertex(scene_);
         for (const uint32_t q : neighbours)
             for (uint32_t i = first_[q]; i < first_[q + 1]; ++i) {
                 const ReceivedLight& one = *sorted_[i];
                 if (std::abs(one.offCentre) > kernel_.time) continue;
-                if (!surface.consistent(one.from, scene_.transport.consistencyChecks)) continue;
-                const Rgb radiance = surface.bsdf->eval(query, surface.wi, surface.frame.toLocal(one.from)) *
-                                     one.light * point.throughput;
+                const Rgb radiance = vertex.scattering(one.from) * one.light * point.throughput;
                 sums[size_t(one.frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
             }
     }

@@ -98,7 +98,8 @@ void SurfaceConnections::connect(const SendingVertex& from, const darts::TimeGat
 void SurfaceConnections::receive(const SendingVertex& from, const darts::TimeGate& gate, const PointDraw& draw,
                                  ReceivedLight light, std::vector<ReceivedLight>& received, uint64_t& rays) const {
     const SensorPoint& point = points_[draw.point];
-    const SurfaceInteraction surface = makeInteraction(scene_, point.hit, point.direction);
+    const transport::Vertex at = point.vertex(scene_);
+    const SurfaceInteraction& surface = *at.surface();
     const SurfaceMargin margin = from.vertex.margin();
     const Vec3f toVertex = -draw.direction;
     // The other side of a thin wall: rounding tells neither side from the other, and spreading would lift light

@@ -17,11 +17,9 @@
 namespace tungsten::photon {
 
 /// A vertex of a light path that is connected to sensor points.
-struct SendingVertex {
-    transport::Vertex vertex;
+struct SendingVertex : transport::PathEnd {
     double time;
-    int bounce; ///< interactions up to and including the vertex
-    Rgb power;
+    int bounce;           ///< interactions up to and including the vertex
     float meanScattering; ///< above 0: over the directions into which it scatters, or of the intensity
 };
 
