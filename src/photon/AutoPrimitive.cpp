@@ -6,19 +6,6 @@
 
 namespace tungsten::photon {
 
-bool slicesNeedBeams(const Scene& scene, const SliceClasses& classes) {
-    const auto fromBeams = [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); };
-    return classes.beams && (!classes.lights || !scene.primitives.empty() ||
-                             std::any_of(scene.emitters.begin(), scene.emitters.end(), fromBeams));
-}
-
-float largestPeak(const Scene& scene) {
-    float peak = 0.0f;
-    for (const Medium& medium : scene.media)
-        if (medium.scatters()) peak = std::max(peak, std::abs(medium.phase.g()));
-    return peak;
-}
-
 AutoPrimitive AutoPrimitive::of(const Scene& scene, bool hasRadius) {
     const EffectPlan facts = analyseScene(scene);
     if (!facts.heterogeneousMedia.empty()) return {Points{}, "points: " + facts.heterogeneity()};

@@ -18,10 +18,4 @@ struct AutoPrimitive {
     static AutoPrimitive of(const Scene& scene, bool hasRadius);
 };
 
-/// Light that is seen scattering once after a surface or a light of a single direction: slices leave it to beams.
-bool slicesNeedBeams(const Scene& scene, const SliceClasses& classes);
-
-/// |g| of the media that scatter.
-float largestPeak(const Scene& scene);
-
 } // namespace tungsten::photon

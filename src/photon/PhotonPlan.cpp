@@ -1,6 +1,5 @@
 #include "photon/PhotonPlan.h"
 
-#include "photon/AutoPrimitive.h"
 #include "photon/Tuning.h"
 #include "photon/view/SensorPath.h"
 
@@ -39,19 +38,19 @@ bool anyGlossyOnly(const Scene& scene) {
 }
 
 std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
-    const bool slices = std::holds_alternative<Slices>(settings.primitive);
     if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!facts.mediumScattering) return facts.noScattering();
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
-    if (slices && facts.speedsDiffer && !scene.transport.cameraUnwarped)
-        return "with several speeds of light guided slices take longer than they gain";
-    if (slices && !scene.transport.cameraUnwarped && largestPeak(scene) > tuning::MostGuidedPeak)
-        return "the phase function's forward peak: guided slices are noisier than plain ones";
-    // Slices without camera time are aimed at nothing: only bounded in time.
-    if (scene.camera.hasParallelRays() && !(slices && scene.transport.cameraUnwarped))
-        return "parallel rays, or detectors, have no one position to aim at";
-    return {};
+    const auto own = [&](const auto& primitive) -> std::string {
+        const std::string obstacle = primitive.guidanceObstacle(scene, facts.speedsDiffer);
+        if (!obstacle.empty()) return obstacle;
+        const bool needsPlace = primitive.NeedsPlace || !scene.transport.cameraUnwarped;
+        return needsPlace && scene.camera.hasParallelRays()
+                   ? "parallel rays, or detectors, have no one position to aim at"
+                   : "";
+    };
+    return std::visit(own, settings.primitive);
 }
 
 std::string connectionObstacle(const PhotonPlan& plan, const PhotonSettings& settings, const EffectPlan& facts) {
@@ -137,10 +136,8 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
 }
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
-    const bool slices = std::holds_alternative<Slices>(settings.primitive);
-    const auto* sliced = std::get_if<Slices>(&settings.primitive);
-    slicesSplat = slices && !sliced->classes.shortFlights && (oneSpeed || scene.transport.cameraUnwarped);
-    slicesGather = slices && !slicesSplat;
+    const bool oneTime = oneSpeed || scene.transport.cameraUnwarped;
+    primitiveSplats = std::visit([&](const auto& p) { return p.splats(straightRays, oneTime); }, settings.primitive);
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
     volume.reason = !facts.mediumScattering ? facts.noScattering() + ": no volume photon is stored or gathered"

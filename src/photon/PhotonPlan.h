@@ -43,13 +43,10 @@ struct PhotonPlan {
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
-    bool slicesSplat = false;  ///< slices, one speed: along straight rays of any camera
-    bool slicesGather = false; ///< slices at several speeds: they have no splat there
-    bool looksAgain = false;   ///< at what sensor paths meet, when the photons are there: splats are not all
+    bool primitiveSplats = false; ///< along the rays that this camera has
+    bool looksAgain = false;      ///< at what sensor paths meet, when the photons are there: splats are not all
 
-    [[nodiscard]] bool splats() const {
-        return volume.on && homogeneous && !slicesGather && (straightRays || slicesSplat);
-    }
+    [[nodiscard]] bool splats() const { return volume.on && homogeneous && primitiveSplats; }
     /// Sensor paths are traced before the photons; else after them.
     [[nodiscard]] bool records() const { return splats() || connections.on; }
 

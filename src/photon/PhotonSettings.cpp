@@ -2,7 +2,6 @@
 
 #include "photon/AutoPrimitive.h"
 #include "photon/DefaultRadius.h"
-#include "photon/Tuning.h"
 
 namespace tungsten::photon {
 
@@ -42,35 +41,6 @@ bool readShortFlights(const ObjectReader& block) {
     return length == "short";
 }
 
-/// Radii that the scene leaves open are made to suit it.
-void requireRadius(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
-    if (settings.volumeRadius < Unbounded || block.describes()) return;
-    if (block.has("volume_gather_radius"))
-        return block.problem("volume_gather_radius", "beams and fixed radii must be below 1e30");
-    const DefaultRadius chosen = DefaultRadius::of(scene);
-    settings.volumeRadius = chosen.radius;
-    settings.radiusReason = chosen.reason;
-}
-
-/// What slices cannot do, and which classes they make.
-void readSlices(const ObjectReader& block, const Scene& scene, PhotonSettings& settings, Slices& slices) {
-    const std::string type = sliceName(slices.kind).type;
-    const bool steadyState = scene.transport.gate.steadyState;
-    if (steadyState && !sliceName(slices.kind).steadyState)
-        block.problem("volume_photon_type", "'" + type +
-                                                "' needs a time gate; in steady state there are points, beams, planes "
-                                                "and volumes");
-    slices.classes = SliceClasses::of(slices.kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
-    slices.classes.shortFlights = settings.shortFlights;
-    const bool beams = slicesNeedBeams(scene, slices.classes);
-    if (!beams) return;
-    slices.classes.share = tuning::ShareBesideBeams;
-    slices.classes.sharedShare = tuning::SharedBesideBeams;
-    requireRadius(block, scene, settings);
-    if (scene.transport.gate.delta && slices.classes.lights)
-        slices.classes.shortBeams = tuning::ShortBeamsInRadii * settings.volumeRadius;
-}
-
 /// The primitive, radius and temporal kernel of the volume store.
 void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
     const auto primitive = readPrimitive(block);
@@ -90,8 +60,6 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
     }
     settings.fixedVolumeRadius = block.flag(
         "fixed_volume_radius", false, {"none", "points: one radius, instead of one that follows the photons' density"});
-    if (std::visit([&](const auto& p) { return p.hasRadius(settings); }, settings.primitive))
-        requireRadius(block, scene, settings);
     if (!scene.transport.gate.delta) return;
     settings.temporalRadius =
         0.5 * block.number("transient_time_width", 0.1, {"time", "width of the temporal kernel in the first pass"},
@@ -102,6 +70,15 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
 }
 
 } // namespace
+
+void PhotonSettings::requireRadius(const ObjectReader& block, const Scene& scene) {
+    if (volumeRadius < Unbounded || block.describes()) return;
+    if (block.has("volume_gather_radius"))
+        return block.problem("volume_gather_radius", "beams and fixed radii must be below 1e30");
+    const DefaultRadius chosen = DefaultRadius::of(scene);
+    volumeRadius = chosen.radius;
+    radiusReason = chosen.reason;
+}
 
 PhotonSettings PhotonSettings::ofShare(double share) const {
     PhotonSettings part = *this;
@@ -142,7 +119,7 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
         block.flag("exclude_non_mis", false,
                    {"none", "volumes and balls: without what scatters once or twice after a light or surface"});
     settings.shortFlights = readShortFlights(block);
-    if (auto* slices = std::get_if<Slices>(&settings.primitive)) readSlices(block, scene, settings, *slices);
+    std::visit([&](auto& primitive) { primitive.read(block, scene, settings); }, settings.primitive);
     return settings;
 }
 

@@ -11,6 +11,8 @@
 namespace tungsten::photon {
 
 struct PhotonSettings : KernelSettings {
+    /// Of a primitive that needs a volumeRadius: where the scene leaves it open, one that suits it.
+    void requireRadius(const ObjectReader& block, const Scene& scene);
     /// With counts for a part of a pass (PassInfo::share).
     [[nodiscard]] PhotonSettings ofShare(double share) const;
 

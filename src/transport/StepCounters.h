@@ -28,7 +28,7 @@ struct StepCounters {
     }
     void scatter(const Medium& medium) {
         ++mediumEvents;
-        if (!std::holds_alternative<Isotropic>(medium.phase.model)) ++anisotropicEvents;
+        if (!medium.phase.isIsotropic()) ++anisotropicEvents;
         if (!medium.isGrey()) ++colouredEvents;
     }
     void fly(const Medium& medium) {

@@ -5,8 +5,10 @@
 namespace tungsten::transport {
 
 const SurfaceInteraction* Vertex::surface() const {
-    const auto* at = std::get_if<SurfacePoint>(&point_);
-    return at ? &at->surface : nullptr;
+    return std::visit(
+        Overloaded{[](const SurfacePoint& at) { return &at.surface; },
+                   [](const OneOf<LightPoint, MediumPoint> auto&) -> const SurfaceInteraction* { return nullptr; }},
+        point_);
 }
 
 bool Vertex::isConnectible() const {

@@ -44,6 +44,14 @@ TEST(PhaseFunction, SamplesFollowTheDensity) {
 }
 
 /// Of the directions as they are, down to angles far below the width of the narrowest peak.
+TEST(PhaseFunction, IsIsotropicWhereNoDirectionIsPreferred) {
+    for (const PhaseFunction& phase : {PhaseFunction{Isotropic{}}, PhaseFunction{HenyeyGreenstein{0.0f}},
+                                       PhaseFunction{HenyeyGreenstein{-0.2f}}, PhaseFunction{Rayleigh{}}}) {
+        const float along = phase.eval({0, 0, 1}, {0, 0, 1}), across = phase.eval({0, 0, 1}, {1, 0, 0});
+        EXPECT_EQ(phase.isIsotropic(), std::abs(along - across) < 1e-6f) << along << " " << across;
+    }
+}
+
 TEST(PhaseFunction, AgreesWithExtendedPrecision) {
     using Real = long double;
     const Vec3f before = Vec3f(0.3f, -0.5f, 0.8f).normalized();

@@ -110,19 +110,27 @@ std::optional<SensorSample> Camera::sampleSensor(const Vec3f& point, const Vec2f
 std::optional<Vec2f> Camera::project(const Vec3f& point) const {
     const Frame frame = toWorld.rotation();
     const Vec3f local = frame.toLocal(point - position());
-    if (local.z <= 0.0f || std::holds_alternative<Detectors>(model)) return std::nullopt;
+    if (local.z <= 0.0f) return std::nullopt;
     const float w = float(resolution.x), h = float(resolution.y);
-    return std::visit(Overloaded{[&](const OneOf<Pinhole, ThinLens> auto& fov) {
+    using Answer = std::optional<Vec2f>;
+    return std::visit(Overloaded{[&](const OneOf<Pinhole, ThinLens> auto& fov) -> Answer {
                                      const float scale = fov.planeDistance / local.z;
                                      return Vec2f(0.5f * w * (1.0f + local.x * scale),
                                                   0.5f * h - 0.5f * w * local.y * scale);
                                  },
-                                 [&](const Orthographic& orthographic) {
+                                 [&](const Orthographic& orthographic) -> Answer {
                                      const float step = 2.0f * orthographic.size / h;
                                      return Vec2f(local.x / step + 0.5f * w, 0.5f * h - local.y / step);
                                  },
-                                 [](const Detectors&) { return Vec2f(0.0f); }},
+                                 [](const Detectors&) -> Answer { return std::nullopt; }},
                       model);
+}
+
+const Detectors* Camera::detectors() const {
+    return std::visit(
+        Overloaded{[](const Detectors& detectors) { return &detectors; },
+                   [](const OneOf<Pinhole, ThinLens, Orthographic> auto&) -> const Detectors* { return nullptr; }},
+        model);
 }
 
 std::optional<FieldOfView> Camera::fieldOfView() const {

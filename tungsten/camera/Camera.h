@@ -68,6 +68,8 @@ class Camera {
     [[nodiscard]] std::optional<FieldOfView> fieldOfView() const;
     /// Every sensor ray leaves the same point.
     [[nodiscard]] bool hasSinglePosition() const;
+    /// None of other cameras.
+    [[nodiscard]] const Detectors* detectors() const;
     /// position() says nothing about where a sensor ray starts: all have the same direction, or there are detectors.
     [[nodiscard]] bool hasParallelRays() const;
 };

@@ -125,6 +125,14 @@ float pdfDirect(const Emitter& emitter, const Vec3f& receiver, const Vec3f& posi
                       emitter.model);
 }
 
+std::optional<Rgb> evenIntensity(const Emitter& emitter) {
+    using Answer = std::optional<Rgb>;
+    return std::visit(Overloaded{[](const PointEmitter& point) { return Answer(point.intensity); },
+                                 [](const OneOf<DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter,
+                                                InfiniteSphereEmitter> auto&) { return Answer(); }},
+                      emitter.model);
+}
+
 Rgb emittedRadiance(const Emitter& emitter, const Vec2f& uv, const Vec3f& ng, const Vec3f& towards) {
     return std::visit(Overloaded{[&](const AreaEmitter& area) {
                                      return area.shinesAt(ng.dot(towards)) ? area.radiance.rgb(uv) : Rgb(0.0f);

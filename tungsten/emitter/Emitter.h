@@ -125,6 +125,9 @@ EmissionCone emissionCone(const Emitter& emitter, const SurfaceSample& start);
 /// Density of sampleEmission's directions per solid angle; 0 for a single direction.
 float pdfEmissionDirection(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction);
 
+/// Of a point that shines alike in every direction; none of others.
+std::optional<Rgb> evenIntensity(const Emitter& emitter);
+
 /// Of the surface that emits; 0 for emitters that are none.
 float emittingArea(const Emitter& emitter);
 /// About all points from which it emits; of radius Infinity for the environment.

@@ -15,19 +15,22 @@ struct Isotropic {
     [[nodiscard]] float eval(float h) const;
     [[nodiscard]] float sample(float u) const;
     [[nodiscard]] float meanCosine() const { return 0.0f; }
-    static constexpr bool OfHenyeyGreenstein = true; ///< at a mean cosine of 0
+    [[nodiscard]] bool evenly() const { return true; } ///< no direction is preferred
+    static constexpr bool OfHenyeyGreenstein = true;   ///< at a mean cosine of 0
 };
 struct HenyeyGreenstein {
     float g = 0.0f;
     [[nodiscard]] float eval(float h) const;
     [[nodiscard]] float sample(float u) const;
     [[nodiscard]] float meanCosine() const { return g; }
+    [[nodiscard]] bool evenly() const { return g == 0.0f; }
     static constexpr bool OfHenyeyGreenstein = true;
 };
 struct Rayleigh {
     [[nodiscard]] float eval(float h) const;
     [[nodiscard]] float sample(float u) const;
     [[nodiscard]] float meanCosine() const { return 0.0f; }
+    [[nodiscard]] bool evenly() const { return false; }
     static constexpr bool OfHenyeyGreenstein = false;
 };
 
@@ -42,6 +45,9 @@ class PhaseFunction {
     /// Mean cosine.
     [[nodiscard]] float g() const {
         return std::visit([](const auto& phase) { return phase.meanCosine(); }, model);
+    }
+    [[nodiscard]] bool isIsotropic() const {
+        return std::visit([](const auto& phase) { return phase.evenly(); }, model);
     }
     /// Its values are those of Henyey and Greenstein's at g().
     [[nodiscard]] bool isHenyeyGreenstein() const {

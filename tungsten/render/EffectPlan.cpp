@@ -87,8 +87,7 @@ void planMedia(const Scene& scene, EffectPlan& plan) {
         if (!medium.scatters() && !medium.isVacuum()) absorbing.add(name, medium.path);
         if (!medium.isHomogeneous()) varying.add(name, medium.path);
         if (!medium.isGrey()) coloured.add(name, medium.path);
-        const bool isotropic = std::holds_alternative<Isotropic>(medium.phase.model);
-        if (medium.scatters() && !isotropic) anisotropic.add(name, medium.path + ".phase_function");
+        if (medium.scatters() && !medium.phase.isIsotropic()) anisotropic.add(name, medium.path + ".phase_function");
     }
     plan.mediumScattering = scattering.any();
     plan.greyMedia = !coloured.any();

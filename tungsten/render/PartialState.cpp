@@ -65,7 +65,7 @@ std::string readText(std::istream& in, uint64_t fileSize, const fs::path& file) 
 
 /// What a camera of detectors is made of, as far as results tell it.
 void writeDetectors(std::ostream& out, const Scene& scene) {
-    const auto* detectors = std::get_if<Detectors>(&scene.camera.model);
+    const auto* detectors = scene.camera.detectors();
     writeValue(out, uint64_t(detectors ? detectors->row.size() : 0));
     for (size_t i = 0; detectors && i < detectors->row.size(); ++i) {
         writeText(out, detectors->row[i].name);

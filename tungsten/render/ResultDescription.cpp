@@ -43,7 +43,7 @@ void describeTime(JsonWriter& json, const Scene& scene) {
 
 /// By column of the image.
 void describeDetectors(JsonWriter& json, const Scene& scene) {
-    const auto* detectors = std::get_if<Detectors>(&scene.camera.model);
+    const auto* detectors = scene.camera.detectors();
     if (!detectors) return;
     std::vector<std::string> names;
     std::vector<double> etendues;

@@ -28,6 +28,14 @@ bool varies(const Bsdf& bsdf) {
     return !bsdf.albedo.isConstant() || bsdf.bump || varies(bsdf.model);
 }
 
+/// Over a surface.
+bool varies(const Emitter& emitter) {
+    return std::visit(Overloaded{[](const AreaEmitter& area) { return !area.radiance.isConstant(); },
+                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                InfiniteSphereEmitter> auto&) { return false; }},
+                      emitter.model);
+}
+
 bool isTransparent(const Bsdf& bsdf) {
     return std::visit(
         Overloaded{[](const Transparency&) { return true; },
@@ -89,10 +97,8 @@ Uses lobeUses(const Scene& scene, LobeMask mask) {
 
 Uses textureUses(const Scene& scene) {
     Uses uses = bsdfUses(scene, [](const Bsdf& bsdf) { return varies(bsdf); });
-    for (size_t i = 0; i < scene.emitters.size(); ++i) {
-        const auto* area = std::get_if<AreaEmitter>(&scene.emitters[i].model);
-        if (area && !area->radiance.isConstant()) uses.add("'" + scene.emitters[i].name + "'", scene.emitters[i].path);
-    }
+    for (const Emitter& emitter : scene.emitters)
+        if (varies(emitter)) uses.add("'" + emitter.name + "'", emitter.path);
     return uses;
 }
 

@@ -105,7 +105,7 @@ void warnAboutLightsOnSurfaces(const LoadContext& context) {
 
 void warnAboutBlindDetectors(const LoadContext& context, const ObjectReader& camera) {
     const Scene& scene = context.scene;
-    const auto* detectors = std::get_if<Detectors>(&scene.camera.model);
+    const auto* detectors = scene.camera.detectors();
     for (size_t i = 0; detectors && i < detectors->row.size(); ++i) {
         const Detector& detector = detectors->row[i];
         const auto tell = [&](const std::string& what) {

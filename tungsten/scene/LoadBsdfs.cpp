@@ -160,11 +160,14 @@ size_t parts(const Bsdf& bsdf, size_t most) {
     const auto add = [&](const BsdfPtr& part) {
         if (count <= most) count += parts(*part, most - count);
     };
-    if (const auto* mixed = std::get_if<Mixed>(&bsdf.model)) {
-        add(mixed->bsdf0);
-        add(mixed->bsdf1);
-    }
-    if (const auto* transparency = std::get_if<Transparency>(&bsdf.model)) add(transparency->base);
+    std::visit(Overloaded{[&](const Mixed& mixed) {
+                              add(mixed.bsdf0);
+                              add(mixed.bsdf1);
+                          },
+                          [&](const Transparency& transparency) { add(transparency.base); },
+                          [](const OneOf<Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Dielectric,
+                                         RoughDielectric, Plastic, RoughPlastic, PbrtPlastic, Null, Forward> auto&) {}},
+               bsdf.model);
     return count;
 }
 

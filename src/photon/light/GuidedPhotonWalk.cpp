@@ -90,7 +90,8 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, float probability, 
     path_.connectable = true;
     if (!path_.culling->mayContinue(path_.ray.origin, path_.time)) return false;
     connectToSurfaces({scene_, emitter, start}, InSphere * meanComponent(emitterPower(emitter)));
-    leaveLight(emitter, probability, start);
+    if (path_.context.storeVolume && guidance_.guide(path_.region) && path_.mayBounce())
+        std::visit([&](auto& list) { leaveLight(list, emitter, probability, start); }, path_.deposits.volume);
     // What is guided aims at the camera itself.
     const EmissionDirections own(emitter, start, guide ? std::span<const transport::BodySphere>() : guidance_.bodies());
     float inversePdf = 0.0f;
@@ -120,7 +121,7 @@ void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
     chain_.end();
     if (!path_.arriveOnSurface(hit)) return false;
-    path_.leaveBall(chain_, hit.position);
+    path_.leaveOnSurface(chain_, hit.position);
     if (connections_ && (path_.surface.bsdf->lobes() & lobe::Smooth) != 0)
         connectToSurfaces({scene_, path_.surface, path_.ray.direction, TransportMode::Photons, path_.region},
                           2.0f * InSphere);
@@ -263,12 +264,11 @@ void GuidedPhotonWalk::leaveAt(float distance, const Flight& flight, DepositList
 
 void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {}
 
-void GuidedPhotonWalk::leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start) {
-    auto* flights = std::get_if<DepositList<CollapsedFlights>>(&path_.deposits.volume);
-    if (!flights || !path_.context.storeVolume || !guidance_.guide(path_.region) || !path_.mayBounce()) return;
+void GuidedPhotonWalk::leaveLight(DepositList<CollapsedFlights>& flights, const Emitter& emitter, float probability,
+                                  const SurfaceSample& start) {
     chain_.leaveLight(path_.chainRules(), emitter, probability, start,
                       {start.position, Vec3f(0.0f), path_.power, path_.time, Infinity, path_.bounce},
-                      path_.region.medium, path_.sampler, *flights);
+                      path_.region.medium, path_.sampler, flights);
 }
 
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<CollapsedFlights>& flights) {

@@ -63,7 +63,10 @@ class GuidedPhotonWalk {
     void leaveAt(float distance, const Flight& flight, DepositList<PhotonBeam>& beams);
     void leaveAt(float distance, const Flight& flight, DepositList<CollapsedFlights>& flights);
     /// Slices: what is seen of a light in this medium, in whatever direction the path goes on.
-    void leaveLight(const Emitter& emitter, float probability, const SurfaceSample& start);
+    void leaveLight(DepositList<CollapsedFlights>& flights, const Emitter& emitter, float probability,
+                    const SurfaceSample& start);
+    void leaveLight(OneOf<DepositList<Photon>, DepositList<PhotonBeam>> auto&, const Emitter&, float,
+                    const SurfaceSample&) {}
     [[nodiscard]] bool storesVertices() const {
         return path_.context.storeVolume &&
                std::visit([](const auto& p) { return p.AtVertices; }, path_.context.settings.primitive);

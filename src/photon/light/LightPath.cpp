@@ -90,11 +90,9 @@ FlightChain::Rules LightPath::chainRules() const {
     return {context.scene, *culling, std::get<Slices>(context.settings.primitive).classes, context.recordCounts};
 }
 
-void LightPath::leaveBall(FlightChain& chain, const Vec3f& position) {
-    auto* list = std::get_if<DepositList<CollapsedFlights>>(&deposits.volume);
-    if (list && context.storeVolume)
-        chain.leaveSurface(chainRules(), surface, {position, ray.direction, power, time, Infinity, bounce}, region,
-                           sampler, *list);
+void LightPath::leaveBall(DepositList<CollapsedFlights>& list, FlightChain& chain, const Vec3f& position) {
+    chain.leaveSurface(chainRules(), surface, {position, ray.direction, power, time, Infinity, bounce}, region, sampler,
+                       list);
 }
 
 } // namespace tungsten::photon

@@ -70,8 +70,10 @@ struct LightPath {
     void depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
     /// What the chain's records obey.
     [[nodiscard]] FlightChain::Rules chainRules() const;
-    /// Of slices: the ball that the light leaves which has arrived at `position` on `surface`.
-    void leaveBall(FlightChain& chain, const Vec3f& position);
+    /// What the light leaves for a primitive that has arrived at `position` on `surface`: of slices, a ball.
+    void leaveOnSurface(FlightChain& chain, const Vec3f& position) {
+        if (context.storeVolume) std::visit([&](auto& list) { leaveBall(list, chain, position); }, deposits.volume);
+    }
     /// Whether what has been scattered so often in this medium is to be stored, counting `further` scatterings.
     [[nodiscard]] bool orderCounts(int further = 0) const {
         return context.settings.lowOrderScattering || consecutiveMedium + further > 1;
@@ -97,6 +99,8 @@ struct LightPath {
   private:
     /// Whether sensor paths along its glossy lobes find the light that arrives on `surface`.
     [[nodiscard]] bool foundBySensorPaths() const;
+    void leaveBall(OneOf<DepositList<Photon>, DepositList<PhotonBeam>> auto&, FlightChain&, const Vec3f&) {}
+    void leaveBall(DepositList<CollapsedFlights>& list, FlightChain& chain, const Vec3f& position);
 };
 
 } // namespace tungsten::photon

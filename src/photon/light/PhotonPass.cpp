@@ -175,23 +175,29 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
 
 std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const FirstUsefulness* first,
                                                        Statistics& statistics) const {
-    const auto* slices = std::get_if<Slices>(&settings_.primitive);
-    if (!slices || !guidance_ || !storeVolume_) return nullptr;
-    auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
-    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings_, culling_, {},    0.0f,         emitters_, false,
-                              true,   false,     false,    false, counts.get(), first};
-    const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
-    counts->measure(std::get<DepositList<CollapsedFlights>>(deposits.volume).records, slices->classes);
-    return counts;
+    if (!guidance_ || !storeVolume_) return nullptr;
+    const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordCounts> {
+        if constexpr (!Primitive::CountsRecords)
+            return nullptr;
+        else {
+            auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
+            const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
+            const WalkContext context{scene_, settings_, culling_, {},    0.0f,         emitters_, false,
+                                      true,   false,     false,    false, counts.get(), first};
+            const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
+            const auto& list = std::get<DepositList<typename Primitive::Record>>(deposits.volume);
+            counts->measure(list.records, primitive.classes);
+            return counts;
+        }
+    };
+    return std::visit(countsOf, settings_.primitive);
 }
 
 PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     PhotonSettings settings = settings_.ofShare(pass.share);
-    auto* slices = std::get_if<Slices>(&settings.primitive);
-    // As the temporal kernel and the beams' radius do.
-    if (slices && scene_.transport.gate.delta)
-        slices->classes.shortBeams *= float(culling_.gate().frameWidth / (2.0 * settings.temporalRadius));
+    if (!scene_.transport.gate.delta) return settings;
+    const auto narrowed = float(culling_.gate().frameWidth / (2.0 * settings.temporalRadius));
+    std::visit([&](auto& primitive) { primitive.narrow(narrowed); }, settings.primitive);
     return settings;
 }
 

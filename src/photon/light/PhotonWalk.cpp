@@ -77,7 +77,7 @@ void PhotonWalk::leaveRegion() {
 bool PhotonWalk::scatterOnSurface(const SurfaceHit& hit) {
     leaveRegion();
     if (!path_.arriveOnSurface(hit)) return false;
-    path_.leaveBall(chain_, hit.position);
+    path_.leaveOnSurface(chain_, hit.position);
     return path_.leaveSurface();
 }
 

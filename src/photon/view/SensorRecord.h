@@ -11,8 +11,8 @@
 
 namespace tungsten::photon {
 
-/// A point on a surface that receivesConnections() and that a pixel sees, directly or in mirrors. Not a vertex, but what
-/// makes it again where light has come: a pass keeps up to millions of them, of 136 bytes instead of 224.
+/// A point on a surface that receivesConnections() and that a pixel sees, directly or in mirrors. Not a vertex, but
+/// what makes it again where light has come: a pass keeps up to millions of them, of 136 bytes instead of 224.
 struct SensorPoint {
     SurfaceHit hit;
     Vec3f direction; ///< of the camera ray that found it

@@ -1,5 +1,6 @@
 #include "photon/primitives/beams/Beams.h"
 
+#include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/beams/BeamSplat.h"
 
@@ -7,6 +8,10 @@ namespace tungsten::photon {
 
 float Beams::reach(const KernelSettings& settings) {
     return settings.volumeRadius;
+}
+
+void Beams::read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
+    settings.requireRadius(block, scene);
 }
 
 double Beams::kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step) {

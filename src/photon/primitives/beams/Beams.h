@@ -5,13 +5,17 @@
 #include "photon/primitives/Radii.h"
 #include "photon/primitives/beams/PhotonBeam.h"
 
+#include <string>
+
 namespace tungsten {
 class Film;
+class ObjectReader;
 class PassWatch;
 } // namespace tungsten
 
 namespace tungsten::photon {
 
+struct PhotonSettings;
 struct SensorRecord;
 class BeamGather;
 
@@ -22,13 +26,18 @@ struct Beams {
     static constexpr const char* Type = "beams";
     static constexpr bool AtVertices = false;
     static constexpr bool ManyFrames = false;
+    static constexpr bool NeedsPlace = true;
+    static constexpr bool CountsRecords = false;
     static constexpr const char* Effect = "photon beams";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
     static constexpr const char* Stored = "photon beams";
     static constexpr const char* Gathered = "gathered beams";
 
     static float reach(const KernelSettings& settings);
-    static bool hasRadius(const KernelSettings&) { return true; }
+    static void read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings);
+    static std::string guidanceObstacle(const Scene&, bool /*speedsDiffer*/) { return {}; }
+    static bool splats(bool straightRays, bool /*oneTime*/) { return straightRays; }
+    static void narrow(float /*factor*/) {}
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
                        uint32_t step, const PassWatch& watch);

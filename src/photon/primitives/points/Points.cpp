@@ -1,5 +1,6 @@
 #include "photon/primitives/points/Points.h"
 
+#include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/points/PointGather.h"
 #include "photon/primitives/points/PointSplat.h"
@@ -8,6 +9,10 @@ namespace tungsten::photon {
 
 float Points::reach(const KernelSettings& settings) {
     return settings.fixedVolumeRadius ? settings.volumeRadius : Infinity;
+}
+
+void Points::read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
+    if (settings.fixedVolumeRadius) settings.requireRadius(block, scene);
 }
 
 double Points::kernelWidth(const KernelSettings& settings, bool, uint32_t step) {

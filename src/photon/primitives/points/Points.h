@@ -6,13 +6,17 @@
 #include "photon/store/ArrivalCulling.h"
 #include "photon/store/Store.h"
 
+#include <string>
+
 namespace tungsten {
 class Film;
+class ObjectReader;
 class PassWatch;
 } // namespace tungsten
 
 namespace tungsten::photon {
 
+struct PhotonSettings;
 struct SensorRecord;
 class PointGather;
 
@@ -22,6 +26,8 @@ struct Points {
     static constexpr const char* Type = "points"; ///< volume_photon_type
     static constexpr bool AtVertices = true;      ///< records are vertices, so that control vertices can be
     static constexpr bool ManyFrames = false;     ///< a record shows in one frame, or a few
+    static constexpr bool NeedsPlace = true;      ///< to aim guided paths at, also where the camera's time is left out
+    static constexpr bool CountsRecords = false;  ///< guided paths thin them by how many they expect (RecordCounts)
     static constexpr const char* Effect = "volume photon points";
     static constexpr const char* Reason = "a medium scatters";
     static constexpr const char* Stored = "stored volume photons"; ///< counters
@@ -30,8 +36,15 @@ struct Points {
     /// From sensor rays that a record can show on. Any, where radii follow the density: they are known when the store
     /// is full, and what is stored makes the density.
     static float reach(const KernelSettings& settings);
-    /// Whether the scene's volume_gather_radius, or one that suits it, is the kernel's.
-    static bool hasRadius(const KernelSettings& settings) { return settings.fixedVolumeRadius; }
+    /// Fields that it alone has a use for, when all others are read.
+    static void read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings);
+    /// Why guided light paths are no use to it in this scene; empty where they are.
+    static std::string guidanceObstacle(const Scene&, bool /*speedsDiffer*/) { return {}; }
+    /// Along sensor rays that are straight, at one speed and from one point, or at one speed or where speeds do not
+    /// matter.
+    static bool splats(bool straightRays, bool /*oneTime*/) { return straightRays; }
+    /// In a pass whose delta gate's kernel is so much narrower than the first one's.
+    static void narrow(float /*factor*/) {}
     /// Of a pass, where that of the first is 1.
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,

@@ -77,6 +77,7 @@ void FlightChain::depositLight(const Rules& rules, ChainVertex start, Sampler& s
 
 void FlightChain::leaveSurface(const Rules& rules, const SurfaceInteraction& surface, const ChainVertex& at,
                                const Region& region, Sampler& sampler, DepositList<CollapsedFlights>& list) {
+    // Others are left to the chain's other records: only where f is one value do balls know it for every direction.
     if (rules.classes.shortBeams == 0.0f || !std::holds_alternative<Lambert>(surface.bsdf->model)) return;
     const Vec3f &ng = surface.hit.ng, &ns = surface.frame.n;
     const Vec3f side = ng.dot(ns) < 0.0f ? -ng : ng;

@@ -23,8 +23,8 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
     if (!area) return std::nullopt;
     const bool ball = flights.shape == FlightShape::Ball, occluders = !scene_.primitives.empty();
     const auto& w = flights.directions;
-    const PointEmitter* light =
-        flights.emitter >= 0 ? std::get_if<PointEmitter>(&scene_.emitters[size_t(flights.emitter)].model) : nullptr;
+    const auto light =
+        flights.emitter >= 0 ? evenIntensity(scene_.emitters[size_t(flights.emitter)]) : std::optional<Rgb>();
     LaneRecord record{&flights,
                       times,
                       medium.sigmaT(),
@@ -35,14 +35,14 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
                       occluders || flights.shared,
                       ball ? 0.0f : medium.phase.pdf(w[1], w[2]),
                       1.0f,
-                      light != nullptr};
+                      light.has_value()};
     if (ball) record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
     ImageSlice s{record, kernelOf(flights), *area, flights.power, false};
     s.inLanes = !weighed_ && medium.phase.isHenyeyGreenstein() && (flights.emitter < 0 || light);
     const double perLength = atLengths(flights) ? speed * gate_.frameWidth : 1.0;
     for (int k = 0; k < 3; ++k)
         s.power[k] *= float(scale_ * perLength * collisions(double(medium.sigmaS()[k]), flights.flights()));
-    if (light) s.power = s.power * light->intensity;
+    if (light) s.power = s.power * *light;
     return s;
 }
 

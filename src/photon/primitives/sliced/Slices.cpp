@@ -1,9 +1,49 @@
 #include "photon/primitives/sliced/Slices.h"
 
+#include "photon/PhotonSettings.h"
+#include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/sliced/SliceSplat.h"
 
 namespace tungsten::photon {
+
+bool slicesNeedBeams(const Scene& scene, const SliceClasses& classes) {
+    const auto fromBeams = [](const Emitter& emitter) { return emitter.isDelta() || emitter.isInfinite(); };
+    return classes.beams && (!classes.lights || !scene.primitives.empty() ||
+                             std::any_of(scene.emitters.begin(), scene.emitters.end(), fromBeams));
+}
+
+float largestPeak(const Scene& scene) {
+    float peak = 0.0f;
+    for (const Medium& medium : scene.media)
+        if (medium.scatters()) peak = std::max(peak, std::abs(medium.phase.g()));
+    return peak;
+}
+
+void Slices::read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
+    const std::string type = sliceName(kind).type;
+    const bool steadyState = scene.transport.gate.steadyState;
+    if (steadyState && !sliceName(kind).steadyState)
+        block.problem("volume_photon_type", "'" + type +
+                                                "' needs a time gate; in steady state there are points, beams, planes "
+                                                "and volumes");
+    classes = SliceClasses::of(kind, steadyState, settings.lowOrderScattering, settings.excludeNonMis);
+    classes.shortFlights = settings.shortFlights;
+    if (!slicesNeedBeams(scene, classes)) return;
+    classes.share = tuning::ShareBesideBeams;
+    classes.sharedShare = tuning::SharedBesideBeams;
+    settings.requireRadius(block, scene);
+    if (scene.transport.gate.delta && classes.lights)
+        classes.shortBeams = tuning::ShortBeamsInRadii * settings.volumeRadius;
+}
+
+std::string Slices::guidanceObstacle(const Scene& scene, bool speedsDiffer) {
+    if (scene.transport.cameraUnwarped) return {}; // aimed at nothing, only bounded in time
+    if (speedsDiffer) return "with several speeds of light guided slices take longer than they gain";
+    if (largestPeak(scene) > tuning::MostGuidedPeak)
+        return "the phase function's forward peak: guided slices are noisier than plain ones";
+    return {};
+}
 
 double Slices::kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step) {
     return flightRadiusFactor(settings, deltaGate, step);

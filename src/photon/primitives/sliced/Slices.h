@@ -8,14 +8,17 @@
 #include "photon/store/ArrivalCulling.h"
 
 #include <optional>
+#include <string>
 
 namespace tungsten {
 class Film;
+class ObjectReader;
 class PassWatch;
 } // namespace tungsten
 
 namespace tungsten::photon {
 
+struct PhotonSettings;
 struct SensorRecord;
 class SliceGather;
 
@@ -24,6 +27,8 @@ struct Slices {
     using Gather = SliceGather;
     static constexpr bool AtVertices = false;
     static constexpr bool ManyFrames = true;
+    static constexpr bool NeedsPlace = false;
+    static constexpr bool CountsRecords = true;
     static constexpr const char* Effect = "sliced primitives";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
     static constexpr const char* Stored = "sliced primitives"; ///< counters
@@ -33,8 +38,12 @@ struct Slices {
     SliceClasses classes{};
 
     static float reach(const KernelSettings&) { return Infinity; }
-    /// Only beams among them have one, which is asked for where there are any.
-    static bool hasRadius(const KernelSettings&) { return false; }
+    /// Which classes they make, and the radius of beams where there are any among them.
+    void read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings);
+    static std::string guidanceObstacle(const Scene& scene, bool speedsDiffer);
+    /// Any camera.
+    [[nodiscard]] bool splats(bool /*straightRays*/, bool oneTime) const { return !classes.shortFlights && oneTime; }
+    void narrow(float factor) { classes.shortBeams *= factor; }
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
                        uint32_t step, const PassWatch& watch);
@@ -44,9 +53,14 @@ struct Slices {
         return std::nullopt;
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
-    /// Any camera.
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                           const Selection<CollapsedFlights>& slices, double scale, Film& film, const PassWatch& watch);
 };
+
+/// Light that is seen scattering once after a surface or a light of a single direction: slices leave it to beams.
+bool slicesNeedBeams(const Scene& scene, const SliceClasses& classes);
+
+/// |g| of the media that scatter.
+float largestPeak(const Scene& scene);
 
 } // namespace tungsten::photon
