@@ -28,9 +28,9 @@ struct WalkContext {
     const PhotonSettings& settings;
     const ArrivalCulling& culling;
     std::span<const ArrivalCulling> frameCullings; ///< for paths that aim at single frames
-    float frameShift; ///< of the order of frames: over passes, each is aimed at equally often
     const Distribution1D& emitters;
-    bool storeSurface, storeVolume;
+    float frameShift = 0.0f; ///< of the order of frames: over passes, each is aimed at equally often
+    bool storeSurface = false, storeVolume = false;
     bool connects = false; ///< to surfaces: SurfaceConnections
     /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
     /// photons are, not from how dense those few are that bring what connections cannot.

@@ -135,7 +135,7 @@ std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pas
     if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
     auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
-    WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, false};
+    WalkContext context = contextOf(settings, nullptr);
     context.measured = first.get();
     tracePilots(context, *guidance_, pass, paths, statistics);
     return first;
@@ -146,8 +146,8 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
                                        Statistics& statistics) const {
     // Paths of their own: it must not depend on the paths that it is for.
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-    WalkContext context{scene_, settings, culling_, frameCullings_, 0.0f, emitters_, false, storeVolume_};
-    context.first = first;
+    WalkContext context = contextOf(settings, first);
+    context.storeVolume = storeVolume_;
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<Batch> pilots(paths, Batch(settings_.primitive));
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
@@ -182,8 +182,9 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
         else {
             auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
             const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-            const WalkContext context{scene_, settings_, culling_, {},    0.0f,         emitters_, false,
-                                      true,   false,     false,    false, counts.get(), first};
+            WalkContext context = contextOf(settings_, first);
+            context.storeVolume = true;
+            context.recordCounts = counts.get();
             const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
             const auto& list = std::get<DepositList<typename Primitive::Record>>(deposits.volume);
             counts->measure(list.records, primitive.classes);
@@ -199,6 +200,15 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     const auto narrowed = float(culling_.gate().frameWidth / (2.0 * settings.temporalRadius));
     std::visit([&](auto& primitive) { primitive.narrow(narrowed); }, settings.primitive);
     return settings;
+}
+
+WalkContext PhotonPass::contextOf(const PhotonSettings& settings, const FirstUsefulness* first) const {
+    return {.scene = scene_,
+            .settings = settings,
+            .culling = culling_,
+            .frameCullings = frameCullings_,
+            .emitters = emitters_,
+            .first = first};
 }
 
 void PhotonPass::tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
@@ -231,26 +241,20 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
                                      uint64_t(tuning::MostPerPath)
                                : 0;
     Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
-    const float frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
+    WalkContext context = contextOf(settings, usefulAtFirst.get());
+    context.frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
+    context.connects = connections != nullptr;
+    context.densityPhotons = densityPhotons_;
+    context.glossySensorPaths = glossySensorPaths_;
+    context.recordCounts = counts.get();
     const auto finished = [&] { return volumeFull() && (connections ? traced >= least : maps.surface.full); };
     pass.watch.stage("photons", settings.photonCount);
     while (traced < settings.photonCount && !finished()) {
         const uint64_t wave = std::min(settings.photonCount - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
         std::vector<Batch> batches((wave + tuning::PathsPerBatch - 1) / tuning::PathsPerBatch,
                                    Batch(settings_.primitive));
-        const WalkContext context{scene_,
-                                  settings,
-                                  culling_,
-                                  frameCullings_,
-                                  frameShift,
-                                  emitters_,
-                                  !maps.surface.full,
-                                  !volumeFull(),
-                                  connections != nullptr,
-                                  densityPhotons_,
-                                  glossySensorPaths_,
-                                  counts.get(),
-                                  usefulAtFirst.get()};
+        context.storeSurface = !maps.surface.full;
+        context.storeVolume = !volumeFull();
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * tuning::PathsPerBatch,
                            last = std::min(first + tuning::PathsPerBatch, traced + wave);

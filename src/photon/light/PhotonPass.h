@@ -44,6 +44,8 @@ class PhotonPass {
   private:
     /// Of its part of a whole pass, and with its kernels.
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
+    /// What every walk is told; nothing is stored and nothing connected to.
+    [[nodiscard]] WalkContext contextOf(const PhotonSettings& settings, const FirstUsefulness* first) const;
     /// What light paths are useful for at first in bodies that they must leave, from what a few find; null without any.
     [[nodiscard]] std::unique_ptr<FirstUsefulness> firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
                                                                    Statistics& statistics) const;

@@ -1,22 +1,11 @@
 #pragma once
 // Photon beams: every flight through a medium, gathered with a one-dimensional kernel about camera rays.
 
-#include "photon/primitives/KernelSettings.h"
-#include "photon/primitives/Radii.h"
+#include "photon/primitives/Primitive.h"
 #include "photon/primitives/beams/PhotonBeam.h"
-
-#include <string>
-
-namespace tungsten {
-class Film;
-class ObjectReader;
-class PassWatch;
-} // namespace tungsten
 
 namespace tungsten::photon {
 
-struct PhotonSettings;
-struct SensorRecord;
 class BeamGather;
 
 /// As Points; one radius for all.

@@ -1,23 +1,12 @@
 #pragma once
 // Photon points: a deposit where a light path scatters, gathered with a two-dimensional kernel about camera rays.
 
-#include "photon/primitives/KernelSettings.h"
-#include "photon/primitives/Radii.h"
+#include "photon/primitives/Primitive.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/store/Store.h"
 
-#include <string>
-
-namespace tungsten {
-class Film;
-class ObjectReader;
-class PassWatch;
-} // namespace tungsten
-
 namespace tungsten::photon {
 
-struct PhotonSettings;
-struct SensorRecord;
 class PointGather;
 
 struct Points {

@@ -2,24 +2,14 @@
 // Planes, volumes, balls and hypervolumes: flights that are integrated over instead of blurred by a kernel. One type of
 // the set for all of them, since each brings others for the paths that it cannot make.
 
-#include "photon/primitives/KernelSettings.h"
-#include "photon/primitives/Radii.h"
+#include "photon/primitives/Primitive.h"
 #include "photon/primitives/sliced/SliceKind.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include <optional>
-#include <string>
-
-namespace tungsten {
-class Film;
-class ObjectReader;
-class PassWatch;
-} // namespace tungsten
 
 namespace tungsten::photon {
 
-struct PhotonSettings;
-struct SensorRecord;
 class SliceGather;
 
 struct Slices {

@@ -1,0 +1,20 @@
+#pragma once
+// What the operations of every primitive speak of.
+
+#include "photon/primitives/KernelSettings.h"
+#include "photon/primitives/Radii.h"
+
+#include <string>
+
+namespace tungsten {
+class Film;
+class ObjectReader;
+class PassWatch;
+} // namespace tungsten
+
+namespace tungsten::photon {
+
+struct PhotonSettings;
+struct SensorRecord;
+
+} // namespace tungsten::photon

@@ -1,0 +1,22 @@
+#pragma once
+// Values of options as texts. Each throws UsageError, with what was expected, for what it cannot read.
+
+#include "tungsten/render/PartialState.h"
+
+#include <cstdint>
+#include <string>
+
+namespace tungsten {
+
+/// Seconds, of "90s", "5m", "1h 30m" or minutes.
+double durationOption(const std::string& option, const std::string& text);
+/// "WxH" as a scene override.
+std::string resolutionOverride(const std::string& text);
+/// "512M", "16G": bytes, in steps of 1024.
+double sizeOption(const std::string& text);
+/// Decimal, or hexadecimal after 0x.
+uint64_t seedOption(const std::string& text);
+/// "A:B": passes A to B - 1.
+PassRange passesOption(const std::string& text);
+
+} // namespace tungsten
