@@ -184,7 +184,7 @@ class DirectionSampler {
         const float u = random(), v = random();
         const Vec3 direction = scatterer.sample(u, v);
         const float pdf = scatterer.pdf(direction);
-        return {direction, oneMinusCosine(direction, residual.axis), pdf > 0 ? 1.0f / pdf : 0.0f};
+        return {{direction, oneMinusCosine(direction, residual.axis)}, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
     template <typename Scatterer, typename Guided, typename Random>
     static DirectionSample mix(const Residual& residual, float share, const Scatterer& scatterer, const Guided& guided,
@@ -194,7 +194,7 @@ class DirectionSampler {
             choice < share ? guided.sample(std::min(choice / share, BelowOne), u, v) : scatterer.sample(u, v);
         const float h = oneMinusCosine(direction, residual.axis);
         const float pdf = share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
-        return {direction, h, pdf > 0 ? 1.0f / pdf : 0.0f};
+        return {{direction, h}, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
     /// Weighed by scatterer's density x usefulness.
     template <typename Scatterer, typename Guided, typename Random>
@@ -221,7 +221,7 @@ class DirectionSampler {
             c.inversePdf = wanted > 0 ? 1.0f / wanted : 0.0f;
             sum += weights[size_t(i)];
         }
-        if (!(sum > 0)) return {residual.axis, 0, 0};
+        if (!(sum > 0)) return {{residual.axis, 0}, 0};
         float rest = random() * sum;
         int chosen = 0;
         for (; chosen < count - 1; ++chosen) {

@@ -14,6 +14,9 @@ namespace tungsten::path {
 namespace {
 
 constexpr uint64_t PathsPerPoll = 16;
+/// Light paths traced by one task, which takes milliseconds, and tasks whose splats wait to be added in order: room for
+/// those of 65 536 paths.
+constexpr uint64_t PathsPerBatch = 1024, BatchesPerWave = 64;
 
 /// Of the first surface that mirrors or refracts; none if there is no such.
 const Primitive* firstSpecular(const Scene& scene) {
@@ -108,12 +111,11 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
                                    russianRoulette_};
     pass.watch.stage("light paths", paths);
     const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
-    for (uint64_t traced = 0; traced < paths; traced += tuning::PathsPerBatch * tuning::BatchesPerWave) {
-        const uint64_t wave = std::min(paths - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
-        std::vector<std::vector<Splat>> batches((wave + tuning::PathsPerBatch - 1) / tuning::PathsPerBatch);
+    for (uint64_t traced = 0; traced < paths; traced += PathsPerBatch * BatchesPerWave) {
+        const uint64_t wave = std::min(paths - traced, PathsPerBatch * BatchesPerWave);
+        std::vector<std::vector<Splat>> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
-            const uint64_t first = traced + b * tuning::PathsPerBatch,
-                           last = std::min(first + tuning::PathsPerBatch, traced + wave);
+            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             LightWalkCounters counters;
             for (uint64_t path = first; path < last; ++path) {
                 // As many paths as pixels make a sample: but for rounding the image does not depend on

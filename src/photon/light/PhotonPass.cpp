@@ -11,6 +11,10 @@ namespace tungsten::photon {
 
 namespace {
 
+/// Light paths traced by one task, which takes milliseconds, and tasks whose deposits wait to be appended in order: few
+/// beside the stores.
+constexpr uint64_t PathsPerBatch = 256, BatchesPerWave = 16;
+
 struct Batch {
     explicit Batch(const VolumePrimitive& primitive) : deposits(primitive) {}
     Deposits deposits;
@@ -250,14 +254,12 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     const auto finished = [&] { return volumeFull() && (connections ? traced >= least : maps.surface.full); };
     pass.watch.stage("photons", settings.photonCount);
     while (traced < settings.photonCount && !finished()) {
-        const uint64_t wave = std::min(settings.photonCount - traced, tuning::PathsPerBatch * tuning::BatchesPerWave);
-        std::vector<Batch> batches((wave + tuning::PathsPerBatch - 1) / tuning::PathsPerBatch,
-                                   Batch(settings_.primitive));
+        const uint64_t wave = std::min(settings.photonCount - traced, PathsPerBatch * BatchesPerWave);
+        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch, Batch(settings_.primitive));
         context.storeSurface = !maps.surface.full;
         context.storeVolume = !volumeFull();
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
-            const uint64_t first = traced + b * tuning::PathsPerBatch,
-                           last = std::min(first + tuning::PathsPerBatch, traced + wave);
+            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
             tracePaths(first, last, context, pass, connections, batches[b].deposits, batches[b].counters);
         });
         if (traced == 0) reserveStores(maps, batches, settings);
