@@ -6,6 +6,9 @@
 
 #include "tungsten/film/Film.h"
 
+#include <array>
+#include <bit>
+
 namespace tungsten::path {
 
 /// What happened, counted by one worker.
@@ -15,12 +18,18 @@ struct PathCounters : transport::StepCounters {
     uint64_t arrivals = 0, timed = 0, laterFrames = 0, weighed = 0; ///< timed: at a sensor that is not always open
 };
 
-/// Adds contributions to one pixel of the pass image.
+/// Adds contributions to one pixel of the pass image. They are summed in double, the last few frames' here: paths of
+/// 10 000 bounces make so many equal ones that sums of floats would drift.
 class PixelSink {
   public:
     PixelSink(Film& film, const transport::Sensor& sensor, int x, int y, uint32_t samples, PathCounters& counters)
         : film_(film), sensor_(sensor), x_(x), y_(y), scale_(float(1.0 / (double(samples) * sensor.evenWidth()))),
           counters_(counters) {}
+    PixelSink(const PixelSink&) = delete;
+    PixelSink& operator=(const PixelSink&) = delete;
+    ~PixelSink() {
+        for (; used_ != 0; used_ &= used_ - 1) addToFilm(sums_[size_t(std::countr_zero(used_))]);
+    }
 
     /// Light of an emitter; `time` is the total time of flight, emission time included; ignored in steady state.
     void add(const Rgb& radiance, double time, const Emitter& emitter) {
@@ -48,7 +57,23 @@ class PixelSink {
         }
         const float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
         if (weight > 0.0f) count(frame);
-        film_.add(frame, x_, y_, radiance * weight);
+        const size_t place = size_t(frame) % MostFrames;
+        FrameSum& sum = sums_[place];
+        const bool inUse = (used_ >> place & 1u) != 0;
+        if (!inUse || sum.frame != frame) {
+            if (inUse) addToFilm(sum);
+            used_ |= 1u << place;
+            sum = {frame, Vec3d(0.0)};
+        }
+        sum.value += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z)) * double(weight);
+    }
+
+    struct FrameSum {
+        int frame;
+        Vec3d value;
+    };
+    void addToFilm(const FrameSum& sum) {
+        film_.add(sum.frame, x_, y_, Rgb(float(sum.value.x), float(sum.value.y), float(sum.value.z)));
     }
 
     Film& film_;
@@ -56,6 +81,9 @@ class PixelSink {
     int x_, y_;
     float scale_;
     PathCounters& counters_;
+    static constexpr size_t MostFrames = 8;
+    uint32_t used_ = 0; ///< bits of the sums below that hold something
+    std::array<FrameSum, MostFrames> sums_;
 };
 
 } // namespace tungsten::path

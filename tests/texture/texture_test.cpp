@@ -157,6 +157,22 @@ TEST(Bitmap, AverageIsTheMeanOfTheTexels) {
     expectRgb(bitmap->average(), {2, 2, 2});
 }
 
+/// Runs hold 64 texels a byte: what claims more is refused before it is decoded.
+TEST(Bitmap, SizesAreThoseThatRunsCanHold) {
+    const FileFolder folder;
+    std::string full = test::tgaRle(128, std::vector<test::Texel>(200, test::Texel{9, 9, 9, 255}));
+    EXPECT_EQ(loadBitmap(folder.write("full.tga", full))->width, 128);
+    full[12] = full[14] = 0;
+    full[13] = full[15] = 4; // 1024 x 1024 texels of 818 bytes
+    try {
+        loadBitmap(folder.write("claims.tga", full));
+        ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_TRUE(error.problems().front().message.starts_with("claims to be 1024x1024"))
+            << error.problems().front().message;
+    }
+}
+
 TEST(Bitmap, BadFilesAreInputErrorsThatNameThem) {
     const FileFolder folder;
     std::string absurd = test::tga(2, 2, Corners, false);

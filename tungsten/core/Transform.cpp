@@ -23,15 +23,24 @@ void orthogonalise(Vec3f& first, Vec3f& second, Vec3f& third) {
     third.normalize();
 }
 
+/// Exact at multiples of a right angle, so that walls turned by them meet without gaps.
+Vec2f cosineAndSine(float degrees) {
+    constexpr float Quarter = 90.0f;
+    if (std::remainder(degrees, Quarter) != 0.0f || !std::isfinite(degrees)) {
+        const float angle = degrees * (Pi / 180.0f);
+        return {std::cos(angle), std::sin(angle)};
+    }
+    constexpr float Cosines[] = {1.0f, 0.0f, -1.0f, 0.0f};
+    const int turns = int(std::fmod(degrees / Quarter, 4.0f)) & 3;
+    return {Cosines[turns], Cosines[(turns + 3) & 3]};
+}
+
 /// Rotation matrix columns applied to v: R = Ry(-ry) Rx(rx) Rz(rz).
 Vec3f rotate(const Vec3f& v, const Vec3f& degrees) {
-    const float radians = Pi / 180.0f;
-    const float cx = std::cos(degrees.x * radians), sx = std::sin(degrees.x * radians);
-    const float cy = std::cos(-degrees.y * radians), sy = std::sin(-degrees.y * radians);
-    const float cz = std::cos(degrees.z * radians), sz = std::sin(degrees.z * radians);
-    const Vec3f aboutZ(cz * v.x - sz * v.y, sz * v.x + cz * v.y, v.z);
-    const Vec3f aboutX(aboutZ.x, cx * aboutZ.y - sx * aboutZ.z, sx * aboutZ.y + cx * aboutZ.z);
-    return {cy * aboutX.x + sy * aboutX.z, aboutX.y, -sy * aboutX.x + cy * aboutX.z};
+    const Vec2f x = cosineAndSine(degrees.x), y = cosineAndSine(-degrees.y), z = cosineAndSine(degrees.z);
+    const Vec3f aboutZ(z.x * v.x - z.y * v.y, z.y * v.x + z.x * v.y, v.z);
+    const Vec3f aboutX(aboutZ.x, x.x * aboutZ.y - x.y * aboutZ.z, x.y * aboutZ.y + x.x * aboutZ.z);
+    return {y.x * aboutX.x + y.y * aboutX.z, aboutX.y, -y.y * aboutX.x + y.x * aboutX.z};
 }
 
 } // namespace

@@ -22,7 +22,11 @@ Vec3f squareToSphere(const Vec2f& u) {
 
 Vec3f squareToCosineHemisphere(const Vec2f& u) {
     const Vec2f p = squareToDisk(u);
-    return {p.x, p.y, std::sqrt(std::max(1.0f - p.x * p.x - p.y * p.y, 0.0f))};
+    // From the distance to the square's border, free of cancellation: directions are never in the surface, where a ray
+    // slips through what touches it. Of random numbers of 24 bits 0 is an interval, whose middle stands for it.
+    constexpr float Least = 0x1p-25f;
+    const float fromRim = 2.0f * std::max(std::min({u.x, 1.0f - u.x, u.y, 1.0f - u.y}), Least);
+    return {p.x, p.y, std::sqrt(fromRim * (2.0f - fromRim))};
 }
 
 Vec3f squareToCosineCone(const Vec2f& u, float cosHalfAngle) {

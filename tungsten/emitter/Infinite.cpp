@@ -44,17 +44,21 @@ InfiniteSphereEmitter makeInfiniteSphere(const Texture& radiance, const Frame& f
     if (radiance.isConstant()) return sky;
     constexpr int Columns = 512, Rows = 256, Strata = 2;
     std::vector<float> weights;
-    for (int row = 0; row < Rows; ++row)
+    weights.reserve(size_t(Columns) * Rows);
+    const auto vOf = [](int row, int down) { return (float(row) + (float(down) + 0.5f) / Strata) / Rows; };
+    for (int row = 0; row < Rows; ++row) {
+        float sines[Strata];
+        for (int down = 0; down < Strata; ++down) sines[down] = std::sin(vOf(row, down) * Pi);
         for (int column = 0; column < Columns; ++column) {
             float sum = 0.0f;
             for (int i = 0; i < Strata * Strata; ++i) {
                 const int across = i % Strata, down = i / Strata;
-                const Vec2f uv((float(column) + (float(across) + 0.5f) / Strata) / Columns,
-                               (float(row) + (float(down) + 0.5f) / Strata) / Rows);
-                sum += meanComponent(radiance.rgb(uv)) * std::sin(uv.y * Pi);
+                const Vec2f uv((float(column) + (float(across) + 0.5f) / Strata) / Columns, vOf(row, down));
+                sum += meanComponent(radiance.rgb(uv)) * sines[down];
             }
             weights.push_back(sum);
         }
+    }
     // A floor keeps cells that the strata missed within reach.
     const float mean = std::max(float(Distribution1D(weights).total()) / float(weights.size()), 1e-30f);
     for (float& weight : weights) weight += 0.01f * mean;

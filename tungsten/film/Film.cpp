@@ -89,17 +89,17 @@ void Film::setPassRow(size_t row, const float* values) {
     touched_[row] = 1;
 }
 
-void Film::foldTile(float* tile, size_t place, size_t count, double weight, float* sums, double& deviation) {
+void Film::foldTile(float* tile, size_t place, size_t count, double weight, double* sums, double& deviation) {
     float *means = tile + size_t(Mean) * tileValues(), *moments = tile + size_t(Moment) * tileValues();
     for (size_t i = 0; i < count; ++i) {
         const uint64_t bits = evenBits(passes_, place + i);
         deviation += contents_.moments ? foldInto(tile[i], weight, weight_, bits, means[i], moments[i])
                                        : foldInto(tile[i], weight, weight_, bits, means[i]);
-        sums[i] += tile[i];
+        sums[i] += double(tile[i]);
     }
 }
 
-double Film::foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite) {
+double Film::foldRow(size_t row, double weight, double* sums, uint64_t& nonFinite) {
     if (touched_[row] != 0) lit_[row] = 1;
     if (lit_[row] == 0) return 0.0;
     double deviation = 0.0;
@@ -121,13 +121,13 @@ FoldedPass Film::foldRows(double weight, int from, int end) {
     FoldedPass folded{weight, weight_, squaredWeights_, std::vector<double>(size_t(end - from), 0.0)};
     std::vector<uint64_t> rowNonFinite(folded.deviations.size(), 0);
     tbb::parallel_for(size_t(from), size_t(end), [&](size_t y) {
-        std::vector<float> sums(values, 0.0f);
+        std::vector<double> sums(values, 0.0);
         const size_t at = y - size_t(from);
         for (int frame = 0; frame < frames_; ++frame)
             folded.deviations[at] += foldRow(row(frame, int(y)), weight, sums.data(), rowNonFinite[at]);
         if (frames_ == 1) return;
         for (size_t i = 0; i < values; ++i)
-            foldInto(sums[i] / float(frames_), weight, weight_, evenBits(passes_, ~uint64_t(y * values + i)),
+            foldInto(float(sums[i] / frames_), weight, weight_, evenBits(passes_, ~uint64_t(y * values + i)),
                      totalMean_[y * values + i], totalMoment2_[y * values + i]);
     });
     for (const uint64_t count : rowNonFinite) nonFinite_ += count;

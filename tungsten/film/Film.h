@@ -159,9 +159,9 @@ class Film {
         return contents_.channels == 1 ? Rgb(*values) : Rgb(values[0], values[1], values[2]);
     }
     /// One row of the pass into the means: returns what it adds to the second moments, and adds the row to `sums`.
-    double foldRow(size_t row, double weight, float* sums, uint64_t& nonFinite);
+    double foldRow(size_t row, double weight, double* sums, uint64_t& nonFinite);
     /// The same of a tile, whose first value has this place in the film.
-    void foldTile(float* tile, size_t place, size_t count, double weight, float* sums, double& deviation);
+    void foldTile(float* tile, size_t place, size_t count, double weight, double* sums, double& deviation);
     /// Of a function of the values of all pixels of all frames.
     template <typename Function>
     [[nodiscard]] double meanOf(const Function& function) const;

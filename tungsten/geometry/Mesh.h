@@ -28,10 +28,15 @@ struct TriangleMesh {
 
     /// Normalised (p1 - p0) x (p2 - p0); (0, 1, 0) for a degenerate triangle.
     [[nodiscard]] Vec3f faceNormal(uint32_t triangle) const;
+    /// (p1 - p0) x (p2 - p0) in double: no overflow or underflow for any float positions.
+    [[nodiscard]] Vec3d scaledNormal(uint32_t triangle) const;
     [[nodiscard]] float faceArea(uint32_t triangle) const;
     /// At the barycentric weights `b1`, `b2` of the second and third corner.
     [[nodiscard]] Vec3f pointOn(uint32_t triangle, float b1, float b2) const;
 };
+
+/// Of length 1; (0, 1, 0) for what is zero or not finite.
+Vec3f unitOrUp(const Vec3d& n);
 
 /// Reads .wo3, .obj, .ply, .gltf, .glb (by extension, case-insensitive; glTF node transforms applied, all nodes
 /// merged). Throws InputError naming the file for anything missing, truncated, corrupt or out of range (indices, counts

@@ -7,20 +7,13 @@
 
 namespace tungsten {
 
-namespace {
-
-/// (p1 - p0) x (p2 - p0) in double: no overflow or underflow for any float positions.
-Vec3d scaledNormal(const TriangleMesh& mesh, const Triangle& triangle) {
-    const Vec3d p0(mesh.positions[triangle.v[0]]);
-    return (Vec3d(mesh.positions[triangle.v[1]]) - p0).cross(Vec3d(mesh.positions[triangle.v[2]]) - p0);
-}
-
-/// `n` normalised, (0, 1, 0) if it is zero or not finite.
 Vec3f unitOrUp(const Vec3d& n) {
     const double length = std::sqrt(n.dot(n));
     if (!(length > 0.0) || !std::isfinite(length)) return {0.0f, 1.0f, 0.0f};
     return Vec3f(n / length);
 }
+
+namespace {
 
 struct PositionHash {
     size_t operator()(const Vec3f& p) const {
@@ -57,12 +50,18 @@ std::vector<Vec3f> splitCreases(TriangleMesh& mesh, float cosCrease) {
 
 } // namespace
 
+Vec3d TriangleMesh::scaledNormal(uint32_t triangle) const {
+    const auto& v = triangles[triangle].v;
+    const Vec3d p0(positions[v[0]]);
+    return (Vec3d(positions[v[1]]) - p0).cross(Vec3d(positions[v[2]]) - p0);
+}
+
 Vec3f TriangleMesh::faceNormal(uint32_t triangle) const {
-    return unitOrUp(scaledNormal(*this, triangles[triangle]));
+    return unitOrUp(scaledNormal(triangle));
 }
 
 float TriangleMesh::faceArea(uint32_t triangle) const {
-    const Vec3d n = scaledNormal(*this, triangles[triangle]);
+    const Vec3d n = scaledNormal(triangle);
     return float(0.5 * std::sqrt(n.dot(n)));
 }
 
@@ -85,10 +84,10 @@ void recomputeNormals(TriangleMesh& mesh, const LoadWatch& watch) {
     }
 
     std::vector<Vec3d> sums(originals, Vec3d(0.0));
-    size_t done = 0;
-    for (const Triangle& triangle : mesh.triangles) {
-        watch.pollEvery(done++);
-        const Vec3d weighted = scaledNormal(mesh, triangle);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        watch.pollEvery(i);
+        const Triangle& triangle = mesh.triangles[i];
+        const Vec3d weighted = mesh.scaledNormal(uint32_t(i));
         if (weighted == Vec3d(0.0)) continue;
         const Vec3f normal = unitOrUp(weighted);
         for (const uint32_t v : triangle.v)

@@ -59,12 +59,34 @@ void setTangents(const TriangleMesh& mesh, const Triangle& triangle, SurfaceHit&
     hit.dpdv = frame.t;
 }
 
-/// The point where the ray meets the triangle's plane. On a vast triangle it is far better known from the ray than from
-/// the corners.
-Vec3f pointOnPlane(const TriangleMesh& mesh, const Triangle& triangle, const Ray& ray, float t) {
-    const Vec3d p0(mesh.positions[triangle.v[0]]), point = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
-    const Vec3d n = (Vec3d(mesh.positions[triangle.v[1]]) - p0).cross(Vec3d(mesh.positions[triangle.v[2]]) - p0);
+/// The point where the ray meets the plane of a triangle, from a corner and the plane's normal of any length. On a vast
+/// triangle it is far better known from the ray than from the corners.
+Vec3f pointOnPlane(const Vec3f& corner, const Vec3d& n, const Ray& ray, float t) {
+    const Vec3d p0(corner), point = Vec3d(ray.origin) + Vec3d(ray.direction) * double(t);
     return Vec3f(point - n * ((point - p0).dot(n) / n.dot(n)));
+}
+
+/// A point beside an edge, moved toward the triangle's middle until rounding no longer decides on which side it is of
+/// a wall that stands on the edge: a path that goes on from there would miss the wall. A few steps of coordinates.
+/// `area2`: twice the triangle's area.
+Vec3f clearOfEdges(const TriangleMesh& mesh, const Triangle& triangle, float area2, float b1, float b2,
+                   const Vec3f& point) {
+    constexpr float Steps = 8.0f * std::numeric_limits<float>::epsilon(), Third = 1.0f / 3.0f;
+    const Vec3f corner = mesh.positions[triangle.v[0]];
+    const Vec3f e1 = mesh.positions[triangle.v[1]] - corner, e2 = mesh.positions[triangle.v[2]] - corner;
+    const float clear = Steps * std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+    // Distances to edges are weights times heights, and heights are twice the area over the edge's length.
+    const float b0 = 1.0f - b1 - b2, opposite0 = (e2 - e1).length2(), opposite1 = e2.length2(),
+                opposite2 = e1.length2();
+    const float nearest = std::max(std::min({b0, b1, b2}), 0.0f) * area2;
+    if (sqr(nearest) > sqr(clear) * std::max({opposite0, opposite1, opposite2})) return point;
+    const auto share = [&](float weight, float opposite) {
+        const float least = std::min(clear * std::sqrt(opposite) / area2, Third);
+        return least > weight ? (least - weight) / (Third - weight) : 0.0f;
+    };
+    const float toMiddle = std::max({share(b0, opposite0), share(b1, opposite1), share(b2, opposite2)});
+    const Vec3f middle = (e1 + e2) * Third, at = e1 * b1 + e2 * b2;
+    return toMiddle > 0.0f ? point + (middle - at) * std::min(toMiddle, 1.0f) : point;
 }
 
 /// `b1`, `b2` are the barycentric weights of the second and third corner.
@@ -75,16 +97,18 @@ void completeHit(const TriangleMesh& mesh, const Ray& ray, float b1, float b2, S
         return values[triangle.v[0]] * b0 + values[triangle.v[1]] * b1 + values[triangle.v[2]] * b2;
     };
     hit.material = mesh.materials.empty() ? 0 : mesh.materials[hit.face];
-    hit.position = pointOnPlane(mesh, triangle, ray, hit.t);
-    hit.ng = mesh.faceNormal(hit.face);
+    const Vec3d normal = mesh.scaledNormal(hit.face);
+    const Vec3f onPlane = pointOnPlane(mesh.positions[triangle.v[0]], normal, ray, hit.t);
+    hit.position = clearOfEdges(mesh, triangle, float(std::sqrt(normal.dot(normal))), b1, b2, onPlane);
+    hit.ng = unitOrUp(normal);
     hit.error = roundingError(mesh, hit.face, b1, b2, hit.position, hit.ng);
     hit.ns = hit.ng;
     hit.uv = mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs);
     setTangents(mesh, triangle, hit);
     if (!mesh.smooth || mesh.normals.empty()) return;
-    const Vec3f normal = blend(mesh.normals);
-    const float length = normal.length();
-    if (length > 0.0f && std::isfinite(length)) hit.ns = normal / length;
+    const Vec3f shading = blend(mesh.normals);
+    const float length = shading.length();
+    if (length > 0.0f && std::isfinite(length)) hit.ns = shading / length;
 }
 
 // --- spheres and disks: Embree calls back for each candidate

@@ -25,8 +25,8 @@ struct SurfaceHit {
     float error = 0.0f; ///< of the margin
 
     [[nodiscard]] SurfaceMargin margin() const { return {ng, error}; }
-    /// A ray from here that does not meet the surface here.
-    [[nodiscard]] Ray leave(const Vec3f& direction) const { return {position, direction, margin().beyond(direction)}; }
+    /// A ray on from here that does not meet the surface here, and does meet others that touch it here.
+    [[nodiscard]] Ray leave(const Vec3f& direction) const { return {margin().off(position, direction), direction}; }
 };
 
 /// Owns the Embree scene over shapes that outlive it. Immutable; safe to query from many threads.

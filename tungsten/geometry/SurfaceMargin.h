@@ -22,6 +22,12 @@ struct SurfaceMargin {
     [[nodiscard]] float before(const Vec3f& direction, float distance) const {
         return onSurface() ? distance - along(direction, distance) : distance;
     }
+    /// `position`, a point of the surface, moved off it to the side of `direction`. A ray from there needs no margin
+    /// along itself: on grazing directions that is long, and skips the walls that meet the surface nearby.
+    [[nodiscard]] Vec3f off(const Vec3f& position, const Vec3f& direction) const {
+        constexpr float Errors = 2.0f; // the sum's rounding takes up to half of one
+        return position + normal * std::copysign(Errors * error, direction.dot(normal));
+    }
 
   private:
     [[nodiscard]] float along(const Vec3f& direction, float distance) const {

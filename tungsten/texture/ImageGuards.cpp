@@ -12,6 +12,7 @@ namespace tungsten {
 namespace {
 
 constexpr int64_t MostTexels = int64_t(1) << 27;
+constexpr std::string_view ExrStart = "\x76\x2f\x31\x01";
 
 uint8_t byteAt(std::string_view bytes, size_t position) {
     return static_cast<uint8_t>(bytes[position]);
@@ -73,14 +74,30 @@ std::optional<uint32_t> sizeOfType(std::string_view type) {
     return std::nullopt;
 }
 
+/// Deflate reaches 1032 : 1, and a texel has from 1 to 64 bits by the header.
+int64_t pngTexelsPerByte(std::string_view bytes) {
+    constexpr size_t DepthAt = 24, ColourTypeAt = 25;
+    constexpr int64_t MostDeflated = 1032;
+    if (bytes.size() <= ColourTypeAt) return MostDeflated;
+    const int channels[] = {1, 1, 3, 1, 2, 1, 4, 1}; // by colour type
+    const int bits = std::clamp(int(bytes[DepthAt]), 1, 16) * channels[bytes[ColourTypeAt] & 7];
+    return std::max(MostDeflated * 8 / bits, int64_t(1));
+}
+
+/// At most. Those without a case of their own know runs, of 128 texels in two bytes.
+int64_t texelsPerByte(std::string_view bytes) {
+    constexpr int64_t Packed = 1 << 12, Runs = 64;
+    if (isPng(bytes)) return pngTexelsPerByte(bytes);
+    return isJpeg(bytes) || bytes.starts_with("GIF8") || bytes.starts_with(ExrStart) ? Packed : Runs;
+}
+
 } // namespace
 
-void requirePlausibleSize(int64_t width, int64_t height, size_t fileBytes, const std::filesystem::path& file,
-                          int64_t texelsPerByte) {
-    const int64_t largest = std::min(MostTexels, int64_t(fileBytes) * texelsPerByte);
+void requirePlausibleSize(int64_t width, int64_t height, std::string_view bytes, const std::filesystem::path& file) {
+    const int64_t largest = std::min(MostTexels, int64_t(bytes.size()) * texelsPerByte(bytes));
     if (width <= 0 || height <= 0 || width > largest / height)
         throw InputError(file.string(), "claims to be " + std::to_string(width) + "x" + std::to_string(height) +
-                                            " texels, more than a file of " + std::to_string(fileBytes) +
+                                            " texels, more than a file of " + std::to_string(bytes.size()) +
                                             " bytes can hold, or than the " + std::to_string(MostTexels) + " accepted");
 }
 
@@ -99,15 +116,6 @@ void requireSanePngChunks(std::string_view bytes, const std::filesystem::path& f
         if (bytes.substr(position + 4, 4) == "IEND") return;
         position += Overhead + length;
     }
-}
-
-int64_t pngTexelsPerByte(std::string_view bytes) {
-    constexpr size_t DepthAt = 24, ColourTypeAt = 25;
-    constexpr int64_t MostDeflated = 1032;
-    if (bytes.size() <= ColourTypeAt) return MostDeflated;
-    const int channels[] = {1, 1, 3, 1, 2, 1, 4, 1}; // by colour type
-    const int bits = std::clamp(int(bytes[DepthAt]), 1, 16) * channels[bytes[ColourTypeAt] & 7];
-    return std::max(MostDeflated * 8 / bits, int64_t(1));
 }
 
 bool isJpeg(std::string_view bytes) {

@@ -7,16 +7,10 @@
 
 namespace tungsten {
 
-/// No format but PNG packs more texels into a byte (GIF comes closest).
-inline constexpr int64_t MostTexelsPerByte = 1 << 12;
-
-/// Rejects sizes above 2^27 texels, and above what a file of so many bytes can hold.
-void requirePlausibleSize(int64_t width, int64_t height, size_t fileBytes, const std::filesystem::path& file,
-                          int64_t texelsPerByte = MostTexelsPerByte);
+/// Rejects sizes above 2^27 texels, and above what a file of these bytes can hold by its format.
+void requirePlausibleSize(int64_t width, int64_t height, std::string_view bytes, const std::filesystem::path& file);
 
 bool isPng(std::string_view bytes);
-/// Texels a byte of a PNG can hold: deflate reaches 1032 : 1, and a texel has from 1 to 64 bits by its header.
-int64_t pngTexelsPerByte(std::string_view bytes);
 /// Chunks that end beyond the file: stb allocates what their lengths claim before it reads them.
 void requireSanePngChunks(std::string_view bytes, const std::filesystem::path& file);
 

@@ -83,8 +83,7 @@ void loadThroughStb(std::string_view bytes, const std::filesystem::path& file, B
     ByteStream header{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &header, &bitmap.width, &bitmap.height, &bitmap.channels))
         throw fail(reason() + "; accepted: png, jpg, tga, bmp, gif, psd, hdr, pfm and exr");
-    requirePlausibleSize(bitmap.width, bitmap.height, bytes.size(), file,
-                         isPng(bytes) ? pngTexelsPerByte(bytes) : MostTexelsPerByte);
+    requirePlausibleSize(bitmap.width, bitmap.height, bytes, file);
     const size_t texels = size_t(bitmap.width) * size_t(bitmap.height);
     ByteStream probe{bytes}, stream{bytes};
     int width = 0, height = 0, channels = 0;
@@ -109,8 +108,8 @@ void requirePlausibleExr(std::string_view bytes, const std::filesystem::path& fi
     requireSaneExrAttributes(bytes, file);
     try {
         const auto window = Imf::MultiPartInputFile(file.c_str()).header(0).dataWindow();
-        requirePlausibleSize(int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1,
-                             bytes.size(), file);
+        requirePlausibleSize(int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1, bytes,
+                             file);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {
