@@ -123,6 +123,17 @@ double SliceEstimate::ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w
     return SharedPath<double>{w, lengths[2], phasePdf, pdfs}.ratio(m.sight.direction, warped_);
 }
 
+double SliceEstimate::ratioInGate(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+                                  const std::array<double, 3>& lengths, double alongRay, int frame) const {
+    // A ball's base is where its last flight begins.
+    const double before = m.flights.shape == FlightShape::Ball ? lengths[0] + lengths[1] : 0.0;
+    const Vec3d base = before > 0.0 ? m.base - w[0] * lengths[0] - w[1] * lengths[1] : m.base;
+    const ResidualGate<double> gate{m.residual(sensor_.gate.frameStart(frame)) + before,
+                                    m.residual(sensor_.gate.frameStart(frame + 1)) + before};
+    return ratio(m, w, lengths) *
+           placementRatio(base, w, lengths, alongRay, m.sight, gate, double(meanComponent(m.medium.sigmaT())));
+}
+
 template <size_t K>
 bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
                              const ArrivalLine* arrival, FrameSums& sums) const {
@@ -143,7 +154,7 @@ bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chor
         for (size_t i = 0; i < K; ++i) lengths[i] = std::max(chord.length(i, t), 0.0);
         if (!unoccluded(m.flights, lengths.data(), int(K))) return false;
         if constexpr (K == 3) {
-            if (m.flights.shared) factor *= volumeShare(ratio(m, m.directions<3>(), lengths));
+            if (m.flights.shared) factor *= volumeShare(ratioInGate(m, m.directions<3>(), lengths, t, frame));
         }
         if (arrival) factor *= double(sensor_.weight(arrival->offset + arrival->slope * t));
         if (!m.medium.isGrey()) {

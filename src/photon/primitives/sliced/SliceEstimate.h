@@ -43,11 +43,15 @@ class SliceEstimate {
     template <size_t K>
     bool addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
                   const ArrivalLine* arrival, FrameSums& sums) const;
-    /// (16) of a path that balls and volumes share, for one length and for a gate alike.
+    /// (16) of a path that balls and volumes share, of a given length.
     [[nodiscard]] double ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
                                const std::array<double, 3>& lengths) const;
-    /// As what a ball that shares its paths counts; 1 for others.
-    [[nodiscard]] double ballShareOf(const SliceMeeting& m, const Vec3d& last, double length) const;
+    /// The same inside a frame, where both draw a point of the ray.
+    [[nodiscard]] double ratioInGate(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+                                     const std::array<double, 3>& lengths, double alongRay, int frame) const;
+    /// Of a ball that shares its paths: ratio(directions, lengths) of the path that ends with this flight.
+    template <typename Ratio>
+    [[nodiscard]] double ballShareOf(const SliceMeeting& m, const Vec3d& last, double length, const Ratio& ratio) const;
     /// Power that leaves a ball's centre along `last`, per steradian; 0 where something is in the way.
     [[nodiscard]] Rgb leavingBall(const SliceMeeting& m, const BallReach<double>& reach, const Vec3f& last) const;
     /// At the delta gate, or at a random time of every frame: slice(frame, time, width).
