@@ -25,9 +25,10 @@ inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const Lan
 }
 /// The same inside a gate.
 inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const BallGateView& lit,
-                       const SharedPathLanes& path, const Batch& scattered, int frame) {
+                       const SharedPathLanes& path, const Batch& scattered) {
+    if (!record.weighsPlaces()) return ballShare(record, rays, path.last, path.t3, scattered);
     const float before = record.flights->lengths[0] + record.flights->lengths[1];
-    const Batch soon(record.times.start(frame) + before), late(record.times.start(frame + 1) + before);
+    const Batch soon(record.times.start(0) + before), late(record.times.start(1) + before);
     return ballShareInGate(lit, Batch(record.pdfs), scattered * placedByVolume(record, rays, path, soon, late));
 }
 
@@ -107,7 +108,7 @@ class BallGateLanes {
         if (record.flights->shared) {
             const auto& before = record.flights->lengths;
             const SharedPathLanes path{last, Batch(before[0]), Batch(before[1]), length, along};
-            factor *= ballShare(record, rays, lit, path, scattered, frame);
+            factor *= ballShare(record, rays, lit, path, scattered);
         }
         emit(frame, LaneReach{met && length >= record.flights->reach, along, length + along, factor});
     }

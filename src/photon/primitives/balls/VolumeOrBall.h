@@ -22,26 +22,26 @@ struct SharedPath {
         const Real ball = lastLength * lastLength * perLength;
         return phasePdf * volumeJacobian(directions, ray, warped) / (flightPdfs * ball);
     }
+    /// The same inside a gate, where the volume draws a point of its chord by the integrand of a medium of this
+    /// coefficient, the ball one of what it lights by the angle. 0 where volumes leave the path out. `first`, `second`:
+    /// lengths; `gate`: at the base.
+    [[nodiscard]] Real ratioInGate(const Vector<Real>& base, Real first, Real second, Real alongRay,
+                                   const SightLine<Real>& sight, const ResidualGate<Real>& gate, Real sigmaT) const {
+        auto chord = volumeChord(base, directions, sight);
+        if (!chord) return 0;
+        chord->keepGate(gate, sight.warp());
+        const Real before = first + second;
+        const Vector<Real> centre = base + directions[0] * first + directions[1] * second;
+        const BallGate<Real> lit = gateBall<Real>(centre, sight, {gate.least - before, gate.most - before});
+        // Over the integrand here. The squared last length of both densities cancels.
+        const Real integral = exponentialIntegral(sigmaT, Real(0), chord->slopeSum() + 1, chord->start - alongRay,
+                                                  chord->end - alongRay);
+        const Real volume = phasePdf * chord->jacobian * lit.angles();
+        const Real ball = flightPdfs * lit.view.distanceFromRay * integral;
+        // Of a point that rounding has put outside of either the volume takes all.
+        return ball > 0 && volume > 0 ? volume / ball : std::numeric_limits<Real>::infinity();
+    }
 };
-
-/// Where each draws its point inside a gate: density along the ray of the volume's, by the integrand of a medium of this
-/// coefficient, over that of the ball's. A path inside a gate has the ratio of (16) times this. 0 where volumes leave
-/// the path out. `gate`: at the base.
-template <typename Real>
-Real placementRatio(const Vector<Real>& base, const std::array<Vector<Real>, 3>& w, const std::array<Real, 3>& lengths,
-                    Real alongRay, const SightLine<Real>& sight, const ResidualGate<Real>& gate, Real sigmaT) {
-    auto chord = volumeChord(base, w, sight);
-    if (!chord) return 0;
-    chord->keepGate(gate, sight.warp());
-    const Real before = lengths[0] + lengths[1];
-    const Vector<Real> centre = base + w[0] * lengths[0] + w[1] * lengths[1];
-    const BallGate<Real> lit = gateBall<Real>(centre, sight, {gate.least - before, gate.most - before});
-    const Real rise = chord->slopeSum() + 1;
-    const Real integral = exponentialIntegral(sigmaT, Real(0), rise, chord->start - alongRay, chord->end - alongRay);
-    // Of a point that rounding has put outside of either the volume takes all.
-    const Real ball = lit.view.distanceFromRay * integral, volume = lengths[2] * lengths[2] * lit.angles();
-    return ball > 0 && volume > 0 ? volume / ball : std::numeric_limits<Real>::infinity();
-}
 
 /// Balance heuristic.
 template <typename Real>

@@ -1,6 +1,5 @@
 // Balls: at one time, and over a gate.
 
-#include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/sliced/ShortFlights.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
 
@@ -73,7 +72,7 @@ bool SliceEstimate::addBallGate(const SliceMeeting& m, int frame, FrameSums& sum
     const Vec3f last = inFloat(towards);
     const double arrival = m.arrival(reach.length + m.sight.warp() * reach.alongRay);
     const double share = ballShareOf(m, towards, reach.length, [&](const auto& w, const auto& lengths) {
-        return ratioInGate(m, w, lengths, reach.alongRay, frame);
+        return ratioInGate(m, w, lengths, reach.alongRay);
     });
     const double factor = m.phase(last) * double(sensor_.weight(arrival)) *
                           unended(m.flights, m.medium, &reach.length, 1) * share;

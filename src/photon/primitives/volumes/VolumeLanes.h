@@ -12,11 +12,11 @@ inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const B
     return shareOf(record.phasePdf * jacobian, flightPdfs(record, t1, t2) * t3 * t3 *
                                                    lengthPerLength(last, rays.direction, record.warped));
 }
-/// The same inside a frame.
-inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const LaneReach& reach, int frame) {
+/// The same inside a gate.
+inline Batch volumeShareInGate(const LaneRecord& record, const LaneRays& rays, const LaneReach& reach) {
     const auto& [t1, t2, t3, none] = reach.lengths;
     const auto& w = record.flights->directions;
-    const Batch soon(record.times.start(frame)), late(record.times.start(frame + 1)), before = t1 + t2;
+    const Batch soon(record.times.start(0)), late(record.times.start(1)), before = t1 + t2;
     LaneRays fromCentre = rays;
     fromCentre.toOrigin = rays.toOrigin - (Lanes3(w[0]) * t1 + Lanes3(w[1]) * t2);
     const BallGateView lit(fromCentre, soon - before, late - before, record.warped);
@@ -142,6 +142,8 @@ class VolumeChordLanes {
         const Batch p = chord.offsetSum(), q = chord.slopeSum() + record.warp();
         const Batch a = p + q * chord.start, b = p + q * chord.end;
         const Batch factor = record.towardsCamera(Lanes3(record.flights->directions[2]), rays) * (1.0f / jacobian_);
+        const auto& w = record.flights->directions;
+        const Batch slices = volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), Lanes3(w[2]), rays.direction, record.warped);
         const FrameRange range = framesOf(record.times, met, xsimd::min(a, b), xsimd::max(a, b));
         for (int frame = range.first; frame <= range.last; ++frame) {
             if (record.times.factor(frame) == 0.0f) continue;
@@ -150,7 +152,11 @@ class VolumeChordLanes {
             const LaneMask here = met && part.holds();
             if (!xsimd::any(here)) continue;
             LaneReach reach = part.reach(record, here, factor, record.random(0, rays, frame));
-            if (record.flights->shared) reach.factor *= volumeShare(record, rays, reach, frame);
+            if (record.flights->shared) {
+                const auto& [t1, t2, t3, none] = reach.lengths;
+                reach.factor *= record.weighsPlaces() ? volumeShareInGate(record, rays, reach)
+                                                      : volumeShare(record, rays, slices, t1, t2, t3);
+            }
             emit(frame, reach);
         }
     }
