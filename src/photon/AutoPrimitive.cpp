@@ -2,6 +2,8 @@
 
 #include "photon/Tuning.h"
 
+#include "transport/Body.h"
+
 #include "tungsten/render/EffectPlan.h"
 
 namespace tungsten::photon {
@@ -19,25 +21,72 @@ float largestPeak(const Scene& scene) {
     return peak;
 }
 
+namespace {
+
+/// Mean of the scatterings on the way to the gate, in the medium that scatters most, and only in what the camera is in.
+struct Scatterings {
+    double densest = 0.0, aroundCamera = 0.0;
+};
+Scatterings scatteringsOf(const Scene& scene) {
+    double first = Infinity;
+    for (const Emitter& emitter : scene.emitters) first = std::min(first, emitter.emissionTime);
+    const auto of = [&](const Medium& medium) {
+        const double length = (scene.transport.gate.start - first) * double(medium.speedOfLight);
+        return medium.scatters() ? std::max(length, 0.0) * double(meanComponent(medium.sigmaS())) : 0.0;
+    };
+    Scatterings found;
+    for (const Medium& medium : scene.media) found.densest = std::max(found.densest, of(medium));
+    if (const Medium* medium = scene.medium(scene.cameraRegion)) found.aroundCamera = of(*medium);
+    return found;
+}
+
+/// Pixels of the largest image for which slices beat beams. Their time is in proportion to it, as every record shows in
+/// all of it; that of beams grows slowly.
+struct LargestImage {
+    double pixels;
+    const char* fog; ///< the kind of scene
+};
+LargestImage largestImage(const Scene& scene) {
+    const bool unwarped = scene.transport.cameraUnwarped;
+    if (scene.primitives.empty())
+        return {unwarped ? double(Infinity) : tuning::MostSlicedInOpenFog, "fog without surfaces"};
+    const auto passes = [](const BsdfPtr& bsdf) { return transport::passesStraight(*bsdf); };
+    const bool open = std::all_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+        return std::all_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), passes);
+    });
+    if (!open) return {tuning::MostSlicedAmongSurfaces, "surfaces in the way"};
+    return {unwarped ? tuning::MostSlicedUnwarped : tuning::MostSlicedBehindBoundaries, "fog that ends"};
+}
+
+AutoPrimitive kernels(bool beams, const std::string& reason) {
+    return beams ? AutoPrimitive{Beams{}, "beams: " + reason} : AutoPrimitive{Points{}, "points: " + reason};
+}
+
+} // namespace
+
 AutoPrimitive AutoPrimitive::of(const Scene& scene, bool hasRadius) {
     const EffectPlan facts = analyseScene(scene);
-    if (!facts.heterogeneousMedia.empty()) return {Points{}, "points: " + facts.heterogeneity()};
     const TransportSettings& transport = scene.transport;
-    const float mostPeak = transport.cameraUnwarped ? tuning::MostUnwarpedPeak : tuning::MostSlicedPeak;
-    if (transport.gate.delta && largestPeak(scene) > mostPeak)
-        return {Points{}, "points: the phase function's forward peak makes slices noisy"};
-    if (transport.gate.delta) {
-        constexpr SliceKind Kind = SliceKind::MisVolumesBalls;
-        const SliceClasses classes = SliceClasses::of(Kind, false, true, false);
-        const bool oneTime = !facts.speedsDiffer || transport.cameraUnwarped;
-        if (oneTime && (hasRadius || !slicesNeedBeams(scene, classes)))
-            return {Slices{Kind, {}}, "mis_volumes_balls: a delta gate, to which volumes and balls need no kernel"};
-        const std::string reason =
-            oneTime ? "slices need a volume_gather_radius here" : "a delta gate, but several speeds of light";
-        return hasRadius ? AutoPrimitive{Beams{}, "beams: " + reason} : AutoPrimitive{Points{}, "points: " + reason};
-    }
-    if (hasRadius) return {Beams{}, "beams: in gates that last, slices take far longer for the same noise"};
-    return {Points{}, "points: beams need a volume_gather_radius"};
+    if (!facts.heterogeneousMedia.empty()) return kernels(false, facts.heterogeneity());
+    if (!facts.timeResolved) return kernels(hasRadius, "no time gate");
+    const Scatterings scatterings = scatteringsOf(scene);
+    if (scatterings.densest > tuning::MostSlicedScatterings)
+        return kernels(false, "light that scatters dozens of times before the gate");
+    if (facts.speedsDiffer && !transport.cameraUnwarped)
+        return kernels(hasRadius, "several speeds of light keep slices from being drawn");
+    if (largestPeak(scene) > (transport.cameraUnwarped ? tuning::MostUnwarpedPeak : tuning::MostSlicedPeak))
+        return kernels(hasRadius && !transport.cameraUnwarped, "the phase function's forward peak makes slices noisy");
+    const bool many = scatterings.aroundCamera > tuning::MostSharedScatterings || !facts.greyMedia;
+    const SliceKind kind = many ? SliceKind::Hypervolumes : SliceKind::MisVolumesBalls;
+    const bool needsBeams = slicesNeedBeams(scene, SliceClasses::of(kind, false, true, false));
+    if (needsBeams && !hasRadius) return kernels(false, "slices and beams need a volume_gather_radius here");
+    const LargestImage largest = largestImage(scene);
+    const Vec2i& image = scene.camera.resolution;
+    const std::string size = std::to_string(image.x) + " x " + std::to_string(image.y) + " pixels";
+    if (hasRadius && double(image.x) * double(image.y) > largest.pixels)
+        return kernels(true, std::string(largest.fog) + ", and slices are drawn to all of " + size);
+    return {Slices{kind, {}}, std::string(sliceName(kind).type) + ": " + largest.fog + ", " + size +
+                                  (many ? ", and light of many scatterings or in colours" : "")};
 }
 
 } // namespace tungsten::photon

@@ -34,8 +34,8 @@ struct SharedPath {
         const Vector<Real> centre = base + directions[0] * first + directions[1] * second;
         const BallGate<Real> lit = gateBall<Real>(centre, sight, {gate.least - before, gate.most - before});
         // Over the integrand here. The squared last length of both densities cancels.
-        const Real integral = exponentialIntegral(sigmaT, Real(0), chord->slopeSum() + 1, chord->start - alongRay,
-                                                  chord->end - alongRay);
+        const Real integral =
+            exponentialIntegral(sigmaT, Real(0), chord->slopeSum() + 1, chord->start - alongRay, chord->end - alongRay);
         const Real volume = phasePdf * chord->jacobian * lit.angles();
         const Real ball = flightPdfs * lit.view.distanceFromRay * integral;
         // Of a point that rounding has put outside of either the volume takes all.

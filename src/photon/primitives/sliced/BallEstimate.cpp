@@ -41,8 +41,8 @@ double SliceEstimate::ballShareOf(const SliceMeeting& m, const Vec3d& last, doub
     if (!m.flights.shared) return 1.0;
     const auto w = m.directions<2>();
     const auto& t = m.flights.lengths;
-    return ballShare(ratio(std::array<Vec3d, 3>{w[0], w[1], last},
-                           std::array<double, 3>{double(t[0]), double(t[1]), length}));
+    return ballShare(
+        ratio(std::array<Vec3d, 3>{w[0], w[1], last}, std::array<double, 3>{double(t[0]), double(t[1]), length}));
 }
 
 bool SliceEstimate::addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
@@ -74,8 +74,8 @@ bool SliceEstimate::addBallGate(const SliceMeeting& m, int frame, FrameSums& sum
     const double share = ballShareOf(m, towards, reach.length, [&](const auto& w, const auto& lengths) {
         return ratioInGate(m, w, lengths, reach.alongRay);
     });
-    const double factor = m.phase(last) * double(sensor_.weight(arrival)) *
-                          unended(m.flights, m.medium, &reach.length, 1) * share;
+    const double factor =
+        m.phase(last) * double(sensor_.weight(arrival)) * unended(m.flights, m.medium, &reach.length, 1) * share;
     if (!(factor > 0.0)) return false;
     const Vec3d value = m.perChannel([&](const auto& medium) { return lit.weight(reach, medium); });
     return deposit(value, leavingBall(m, reach, last), factor, frame, sums);

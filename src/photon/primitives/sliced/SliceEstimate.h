@@ -48,8 +48,8 @@ class SliceEstimate {
     /// (16) of a path that balls and volumes share, of a given length.
     [[nodiscard]] double ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
                                const std::array<double, 3>& lengths) const;
-    /// The same inside a gate, where both draw a point of the ray. Frames of a sequence are narrow: (16), for which both
-    /// draw alike, takes a little more than half the time there.
+    /// The same inside a gate, where both draw a point of the ray. Frames of a sequence are narrow: (16), for which
+    /// both draw alike, takes a little more than half the time there.
     [[nodiscard]] double ratioInGate(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
                                      const std::array<double, 3>& lengths, double alongRay) const;
     /// Of a ball that shares its paths: ratio(directions, lengths) of the path that ends with this flight.

@@ -9,8 +9,8 @@ namespace tungsten::photon {
 inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian, const Batch& t1,
                          const Batch& t2, const Batch& t3) {
     const Lanes3 last(record.flights->directions[2]);
-    return shareOf(record.phasePdf * jacobian, flightPdfs(record, t1, t2) * t3 * t3 *
-                                                   lengthPerLength(last, rays.direction, record.warped));
+    return shareOf(record.phasePdf * jacobian,
+                   flightPdfs(record, t1, t2) * t3 * t3 * lengthPerLength(last, rays.direction, record.warped));
 }
 /// The same inside a gate.
 inline Batch volumeShareInGate(const LaneRecord& record, const LaneRays& rays, const LaneReach& reach) {
