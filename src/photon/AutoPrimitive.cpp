@@ -54,7 +54,7 @@ LargestImage largestImage(const Scene& scene) {
     const bool open = std::all_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
         return std::all_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), passes);
     });
-    if (!open) return {tuning::MostSlicedAmongSurfaces, "surfaces in the way"};
+    if (!open) return {tuning::MostSlicedAmongSurfaces, "surfaces are in the way"};
     return {unwarped ? tuning::MostSlicedUnwarped : tuning::MostSlicedBehindBoundaries, "fog that ends"};
 }
 

@@ -72,7 +72,7 @@ std::string with(const char* primitive, const std::string& json) {
     return scene;
 }
 
-TEST(AutoPrimitive, BeamsAmongSurfacesSoonerThanBehindBoundaries) {
+TEST(AutoPrimitive, BeamsAmongSurfacesAndInLargeImagesBehindBoundaries) {
     const auto sliced = [](const char* bsdf, const char* resolution, const Overrides& further) {
         const std::string cube =
             std::string(R"({"type": "cube", "int_medium": "fog", "bsdf": {"type": ")") + bsdf + R"("}})";
@@ -80,8 +80,7 @@ TEST(AutoPrimitive, BeamsAmongSurfacesSoonerThanBehindBoundaries) {
         overrides.insert(overrides.end(), further.begin(), further.end());
         return planOf(with(cube.c_str(), fog(DeltaGate)), overrides).slices() != nullptr;
     };
-    EXPECT_TRUE(sliced("lambert", "[60, 60]", {}));
-    EXPECT_FALSE(sliced("lambert", "[80, 80]", {}));
+    EXPECT_FALSE(sliced("lambert", "[16, 16]", {}));
     EXPECT_TRUE(sliced("forward", "[80, 80]", {}));
     EXPECT_FALSE(sliced("forward", "[100, 100]", {}));
     EXPECT_TRUE(sliced("forward", "[100, 100]", {Unwarped}));
@@ -126,9 +125,10 @@ TEST(AutoPrimitive, SeveralSpeedsOfLight) {
     const std::string json = inCube(fog(DeltaGate, SlowGlass));
     const Planned warped = planOf(json, {Small, Radius});
     EXPECT_TRUE(std::holds_alternative<Beams>(warped.settings.primitive)) << warped.plan.volume.reason;
-    const Planned unwarped = planOf(json, {Small, Radius, Unwarped});
-    EXPECT_TRUE(unwarped.slices()) << unwarped.plan.volume.reason;
-    EXPECT_TRUE(unwarped.plan.guidance.on) << unwarped.plan.guidance.reason;
+    EXPECT_NE(warped.plan.volume.reason.find("several speeds"), std::string::npos) << warped.plan.volume.reason;
+    const Planned unwarped = planOf(json, {Radius, Unwarped});
+    EXPECT_TRUE(std::holds_alternative<Beams>(unwarped.settings.primitive)) << unwarped.plan.volume.reason;
+    EXPECT_NE(unwarped.plan.volume.reason.find("in the way"), std::string::npos) << unwarped.plan.volume.reason;
 }
 
 TEST(GuidedSlicesPlan, PlainWhereGuidingLoses) {
