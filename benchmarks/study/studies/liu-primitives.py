@@ -114,9 +114,9 @@ def run(bench: Bench):
     for scene in bench.short(SCENES, SCENES[1:2]):
         for unwarped, delta in ((True, True), (True, False), (False, True), (False, False)):
             case = Case(scene, unwarped, delta)
-            truth = Truth(*bench.reference(case.place, bench.short(45, 2), case.reference()))
+            truth = Truth(*bench.reference(case.place, bench.short(16, 2), case.reference()))
             cells = {name: (case.place, settings) for name, settings in case.methods().items()}
-            found = bench.interleaved(cells, seeds, cpu=bench.short(0.7, 0.2))
+            found = bench.interleaved(cells, seeds, cpu=bench.short(0.4, 0.2))
             costs = {name: parts(renders, truth).cost for name, renders in found.items()}
             least = min(costs, key=costs.get)
             for preset, lines in rows.items():
