@@ -40,22 +40,20 @@ Scatterings scatteringsOf(const Scene& scene) {
     return found;
 }
 
-/// Pixels of the largest image for which slices beat beams. Their time is in proportion to it, as every record shows in
-/// all of it; that of beams grows slowly.
-struct LargestImage {
-    double pixels;
-    const char* fog; ///< the kind of scene
-};
-LargestImage largestImage(const Scene& scene) {
-    const bool unwarped = scene.transport.cameraUnwarped;
-    if (scene.primitives.empty())
-        return {unwarped ? double(Infinity) : tuning::MostSlicedInOpenFog, "fog without surfaces"};
+/// All surfaces let light through straight on.
+bool passesLight(const Scene& scene) {
     const auto passes = [](const BsdfPtr& bsdf) { return transport::passesStraight(*bsdf); };
-    const bool open = std::all_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
+    return std::all_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
         return std::all_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), passes);
     });
-    if (!open) return {tuning::MostSlicedAmongSurfaces, "surfaces are in the way"};
-    return {unwarped ? tuning::MostSlicedUnwarped : tuning::MostSlicedBehindBoundaries, "fog that ends"};
+}
+
+/// Pixels of the largest image for which slices beat beams. Their time is in proportion to it, as every record shows in
+/// all of it; that of beams grows slowly.
+double largestImage(const Scene& scene) {
+    const bool unwarped = scene.transport.cameraUnwarped;
+    if (scene.primitives.empty()) return unwarped ? double(Infinity) : tuning::MostSlicedInOpenFog;
+    return unwarped ? tuning::MostSlicedUnwarped : tuning::MostSlicedBehindBoundaries;
 }
 
 AutoPrimitive kernels(bool beams, const std::string& reason) {
@@ -80,13 +78,14 @@ AutoPrimitive AutoPrimitive::of(const Scene& scene, bool hasRadius) {
     const SliceKind kind = many ? SliceKind::Hypervolumes : SliceKind::MisVolumesBalls;
     const bool needsBeams = slicesNeedBeams(scene, SliceClasses::of(kind, false, true, false));
     if (needsBeams && !hasRadius) return kernels(false, "slices and beams need a volume_gather_radius here");
-    const LargestImage largest = largestImage(scene);
+    if (hasRadius && !passesLight(scene))
+        return kernels(true, "surfaces are in the way, for which slices need shadow rays all over the image");
     const Vec2i& image = scene.camera.resolution;
     const std::string size = std::to_string(image.x) + " x " + std::to_string(image.y) + " pixels";
-    if (hasRadius && double(image.x) * double(image.y) > largest.pixels)
-        return kernels(true, std::string(largest.fog) + ", and slices are drawn to all of " + size);
-    return {Slices{kind, {}}, std::string(sliceName(kind).type) + ": " + largest.fog + ", " + size +
-                                  (many ? ", and light of many scatterings or in colours" : "")};
+    if (hasRadius && double(image.x) * double(image.y) > largestImage(scene))
+        return kernels(true, "slices are drawn to all of " + size);
+    const std::string what = many ? "light of many scatterings or in colours, " : "a time gate in fog, ";
+    return {Slices{kind, {}}, std::string(sliceName(kind).type) + ": " + what + size};
 }
 
 } // namespace tungsten::photon

@@ -173,14 +173,14 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
     connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
 }
 
-std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const FirstUsefulness* first,
-                                                       Statistics& statistics) const {
-    const auto* slices = std::get_if<Slices>(&settings_.primitive);
+std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
+                                                       const FirstUsefulness* first, Statistics& statistics) const {
+    const auto* slices = std::get_if<Slices>(&settings.primitive);
     if (!slices || !guidance_ || !storeVolume_) return nullptr;
     auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
-    const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-    const WalkContext context{scene_, settings_, culling_, {},    0.0f,         emitters_, false,
-                              true,   false,     false,    false, counts.get(), first};
+    const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
+    const WalkContext context{scene_, settings, culling_, {},    0.0f,         emitters_, false,
+                              true,   false,    false,    false, counts.get(), first};
     const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
     counts->measure(std::get<DepositList<CollapsedFlights>>(deposits.volume).records, slices->classes);
     return counts;
@@ -189,9 +189,15 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
 PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     PhotonSettings settings = settings_.ofShare(pass.share);
     auto* slices = std::get_if<Slices>(&settings.primitive);
-    // As the temporal kernel and the beams' radius do.
-    if (slices && scene_.transport.gate.delta)
-        slices->classes.shortBeams *= float(culling_.gate().frameWidth / (2.0 * settings.temporalRadius));
+    if (!slices || !scene_.transport.gate.delta) return settings;
+    // As the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both: time is best
+    // spent in proportion to the square roots of the variances.
+    const auto narrowed = float(culling_.gate().frameWidth / (2.0 * settings.temporalRadius));
+    slices->classes.shortBeams *= narrowed;
+    if (slices->classes.beams && slices->classes.share < 1.0f) {
+        slices->classes.share *= narrowed;
+        slices->classes.sharedShare *= narrowed;
+    }
     return settings;
 }
 
@@ -213,7 +219,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     const PhotonSettings settings = settingsOf(pass);
     const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
     if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
-    const auto counts = recordCounts(pass, usefulAtFirst.get(), statistics);
+    const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);
