@@ -59,18 +59,34 @@ inline constexpr float TowardsBodies = 0.2f;
 /// and 0.043, 0.083 and 0.088, which is noise. Bench: study bodies
 inline constexpr uint64_t FirstPaths = 1024;
 
-/// Slices at delta gates, as `auto` chooses them, up to this |g| of phase functions, with and without the camera's leg,
-/// and their guided paths with it. Variance x CPU of mis_volumes_balls against guided points, fog seen from 1.5 away:
-/// 0.26 at g = 0, 0.36 at 0.3, 2.7 at 0.5; without the leg 0.07 at 0, 0.52 at 0.7, 1.6 at 0.9. Guided against plain:
-/// 0.5 at 0, 0.8 at 0.5, 1.3 at 0.7, 7 at 0.9; without the leg 0.5 at 0 and 0.7, 1.1 at 0.9. Bench: study
-/// liu-primitives
+/// Slices, as `auto` chooses them, up to this |g| of phase functions, with and without the camera's leg, and their
+/// guided paths with it. Variance x CPU of mis_volumes_balls against beams, fog seen from 1.5 away: 0.17 at g = 0, 0.9
+/// at 0.3, 5.5 at 0.5; without the leg 0.07 at 0.7 and, against points, 1.6 at 0.9. Guided against plain: 0.5 at 0, 0.8
+/// at 0.5, 1.3 at 0.7, 7 at 0.9; without the leg 0.5 at 0 and 0.7, 1.1 at 0.9. Bench: study liu-primitives
 inline constexpr float MostSlicedPeak = 0.4f, MostUnwarpedPeak = 0.8f, MostGuidedPeak = 0.6f;
+
+/// Pixels of the largest image for which `auto` chooses slices: variance x CPU of the best of them against beams, in
+/// small and in large images. Fog without surfaces: fog seen from 1.5 away, delta 0.17 at 80 x 60, 0.36 at 240 x 180;
+/// box 0.32, 1.2; laser-in-fog, delta 0.3 at 96 x 72, 0.7 at 288 x 216; without the leg 0.04 to 0.1 and 0.13 to 0.4.
+/// Index-matched boundaries: box of fog, delta 0.27 at 32 x 32, 3.0 at 240 x 180, amber 1.4 and 4.4; without the leg
+/// 0.3 and 0.5. Surfaces in the way are left to beams: without the leg fogged-box 0.7 at 32 x 32, 3.1 at 96 x 96, 5.6
+/// at 160 x 160; a card and a ball in fog, delta 0.28, 1.3, 3.5, box 0.55, 2.3, 4.5; the published volumetric-caustic
+/// 0.35 at 80 x 44, 0.8 at 160 x 88; two rooms 2.8 and 3.6 at 32 x 32 and 48 x 48. Bench: study liu-primitives
+inline constexpr double MostSlicedInOpenFog = 6e4, MostSlicedUnwarped = 5e4, MostSlicedBehindBoundaries = 7e3;
+
+/// Scatterings before the gate, on the average, above which `auto` chooses hypervolumes about a camera in fog, and
+/// points anywhere. Variance x CPU of hypervolumes against mis_volumes_balls in fog seen from within, delta gates: 1.5
+/// at 2.8 scatterings, 0.45 at 4.5 and 6, 0.25 at 9, 0.36 at 24; against points 0.46 at 24 and 3.0 at 70; dense bodies
+/// seen from outside 43 (dense cube 10) and 2.8 (60). Bench: study liu-primitives
+inline constexpr double MostSharedScatterings = 4.0, MostSlicedScatterings = 40.0;
 
 /// Where beams make the first order, the part of the other slices that is kept: beams want many light paths, and are
 /// cheap; of what volumes and balls share, which is far less noisy, half as many. Variance / mean^2 x CPU seconds of 8
 /// passes, plain and best, at 0.1 and 0.1, 0.1 and 0.03, 0.05 and 0.02: the published volumetric-caustic at 160 x 88
 /// 0.086, 0.088, 0.079 and 0.076, 0.072, 0.057; simple-volumetric, at 0.1 and 0.1, 0.1 and 0.05, 0.05 and 0.02: 0.0034,
-/// 0.0044, 0.0056 and 0.0032, 0.0031, 0.0041. Bench: study liu-primitives
+/// 0.0044, 0.0056 and 0.0032, 0.0031, 0.0041. Of the first pass of a delta gate: they shrink with the beams' radius,
+/// which took the published volumetric-caustic from 0.100 and 0.091 to 0.077 and 0.068 in 20 s. Bench: study
+/// liu-primitives
 inline constexpr float ShareBesideBeams = 0.1f, SharedBesideBeams = 0.05f;
 
 /// Single balls at delta gates vary as the inverse of their flight's length: up to so many radii of beams there are

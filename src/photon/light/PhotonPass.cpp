@@ -177,16 +177,16 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
     connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
 }
 
-std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const FirstUsefulness* first,
-                                                       Statistics& statistics) const {
+std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
+                                                       const FirstUsefulness* first, Statistics& statistics) const {
     if (!guidance_ || !storeVolume_) return nullptr;
     const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordCounts> {
         if constexpr (!Primitive::CountsRecords)
             return nullptr;
         else {
             auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
-            const uint64_t paths = std::clamp<uint64_t>(settings_.photonCount / 64, 16, tuning::PilotPaths);
-            WalkContext context = contextOf(settings_, first);
+            const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
+            WalkContext context = contextOf(settings, first);
             context.storeVolume = true;
             context.recordCounts = counts.get();
             const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
@@ -195,7 +195,7 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
             return counts;
         }
     };
-    return std::visit(countsOf, settings_.primitive);
+    return std::visit(countsOf, settings.primitive);
 }
 
 PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
@@ -233,7 +233,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     const PhotonSettings settings = settingsOf(pass);
     const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
     if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
-    const auto counts = recordCounts(pass, usefulAtFirst.get(), statistics);
+    const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);

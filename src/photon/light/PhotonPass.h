@@ -56,7 +56,8 @@ class PhotonPass {
     void tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
                     const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const;
     /// Guided slices: how many records a base leaves, from what a few paths find.
-    [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const FirstUsefulness* first,
+    [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const PhotonSettings& settings,
+                                                             const FirstUsefulness* first,
                                                              Statistics& statistics) const;
 
     const Scene& scene_;

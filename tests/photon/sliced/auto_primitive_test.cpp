@@ -39,46 +39,96 @@ Planned planOf(const std::string& json, const std::vector<std::string>& further)
     return {settings, PhotonPlan::of(*loaded.scene, settings, analyseScene(*loaded.scene))};
 }
 
-TEST(AutoPrimitive, SharedVolumesAndBallsAtDeltaGates) {
-    const Planned planned = planOf(fog(DeltaGate), {});
-    ASSERT_TRUE(planned.slices());
-    EXPECT_EQ(planned.slices()->kind, SliceKind::MisVolumesBalls);
-    EXPECT_TRUE(planned.slices()->classes.shared);
-    EXPECT_NE(planned.plan.volume.reason.find("delta gate"), std::string::npos) << planned.plan.volume.reason;
-    EXPECT_TRUE(planned.plan.guidance.on) << planned.plan.guidance.reason;
+using Overrides = std::vector<std::string>;
+constexpr const char* Radius = "integrator.volume_gather_radius=0.1";
+constexpr const char* Small = "camera.resolution=[64, 48]";
+constexpr const char* Large = "camera.resolution=[640, 480]";
+constexpr const char* Unwarped = "integrator.camera_unwarped=true";
+
+TEST(AutoPrimitive, SharedVolumesAndBallsInOpenFog) {
+    for (const char* gate : {DeltaGate, BoxGate}) {
+        const Planned planned = planOf(fog(gate), {Small, Radius});
+        ASSERT_TRUE(planned.slices()) << planned.plan.volume.reason;
+        EXPECT_EQ(planned.slices()->kind, SliceKind::MisVolumesBalls);
+        EXPECT_TRUE(planned.slices()->classes.shared);
+        EXPECT_NE(planned.plan.volume.reason.find("64 x 48"), std::string::npos) << planned.plan.volume.reason;
+        EXPECT_TRUE(planned.plan.guidance.on) << planned.plan.guidance.reason;
+    }
 }
 
-TEST(AutoPrimitive, BeamsInGatesThatLast) {
-    const Planned beams = planOf(fog(BoxGate), {"integrator.volume_gather_radius=0.1"});
+/// Every slice is drawn to all pixels.
+TEST(AutoPrimitive, BeamsInLargeImages) {
+    const Planned beams = planOf(fog(DeltaGate), {Large, Radius});
     EXPECT_TRUE(std::holds_alternative<Beams>(beams.settings.primitive)) << beams.plan.volume.reason;
-    const Planned points = planOf(fog(BoxGate), {});
-    EXPECT_TRUE(std::holds_alternative<Points>(points.settings.primitive)) << points.plan.volume.reason;
-    EXPECT_NE(points.plan.volume.reason.find("volume_gather_radius"), std::string::npos) << points.plan.volume.reason;
+    EXPECT_NE(beams.plan.volume.reason.find("640 x 480"), std::string::npos) << beams.plan.volume.reason;
+    EXPECT_TRUE(planOf(fog(DeltaGate), {Large, Radius, Unwarped}).slices());
+    EXPECT_TRUE(planOf(fog(DeltaGate), {Large}).slices()) << "no kernel, where no radius is given";
+}
+
+std::string with(const char* primitive, const std::string& json) {
+    std::string scene = json;
+    const std::string first = R"("primitives": [)";
+    scene.insert(scene.find(first) + first.size(), std::string(primitive) + ", ");
+    return scene;
+}
+
+TEST(AutoPrimitive, BeamsAmongSurfacesAndInLargeImagesBehindBoundaries) {
+    const auto sliced = [](const char* bsdf, const char* resolution, const Overrides& further) {
+        const std::string cube =
+            std::string(R"({"type": "cube", "int_medium": "fog", "bsdf": {"type": ")") + bsdf + R"("}})";
+        Overrides overrides{std::string("camera.resolution=") + resolution, Radius};
+        overrides.insert(overrides.end(), further.begin(), further.end());
+        return planOf(with(cube.c_str(), fog(DeltaGate)), overrides).slices() != nullptr;
+    };
+    EXPECT_FALSE(sliced("lambert", "[16, 16]", {}));
+    EXPECT_TRUE(sliced("forward", "[80, 80]", {}));
+    EXPECT_FALSE(sliced("forward", "[100, 100]", {}));
+    EXPECT_TRUE(sliced("forward", "[100, 100]", {Unwarped}));
+}
+
+TEST(AutoPrimitive, HypervolumesForManyScatteringsAndColours) {
+    const auto kindOf = [](const Overrides& overrides) {
+        Overrides all{Small, Radius};
+        all.insert(all.end(), overrides.begin(), overrides.end());
+        const Planned planned = planOf(fog(DeltaGate), all);
+        return planned.slices() ? std::optional(planned.slices()->kind) : std::nullopt;
+    };
+    EXPECT_EQ(kindOf({"integrator.transient_time_center=3.5"}), SliceKind::MisVolumesBalls);
+    EXPECT_EQ(kindOf({"integrator.transient_time_center=6"}), SliceKind::Hypervolumes);
+    EXPECT_EQ(kindOf({"media.fog.sigma_s=[1, 1.2, 1.4]"}), SliceKind::Hypervolumes);
+    EXPECT_EQ(kindOf({"integrator.transient_time_center=50"}), std::nullopt);
+}
+
+TEST(AutoPrimitive, PointsInDenseFog) {
+    const Planned planned = planOf(fog(DeltaGate), {Small, Radius, "media.fog.sigma_s=20"});
+    EXPECT_TRUE(std::holds_alternative<Points>(planned.settings.primitive)) << planned.plan.volume.reason;
+    EXPECT_NE(planned.plan.volume.reason.find("dozens"), std::string::npos) << planned.plan.volume.reason;
 }
 
 /// But without the camera's leg light need not turn to the camera in time.
-TEST(AutoPrimitive, ForwardPeaksHavePoints) {
-    EXPECT_TRUE(planOf(fog(DeltaGate, {}, "0.7"), {"integrator.camera_unwarped=true"}).slices());
-    const Planned planned = planOf(fog(DeltaGate, {}, "0.7"), {});
+TEST(AutoPrimitive, ForwardPeaksHaveKernels) {
+    EXPECT_TRUE(planOf(fog(DeltaGate, {}, "0.7"), {Small, Unwarped}).slices());
+    const Planned planned = planOf(fog(DeltaGate, {}, "0.7"), {Small});
     EXPECT_TRUE(std::holds_alternative<Points>(planned.settings.primitive)) << planned.plan.volume.reason;
     EXPECT_NE(planned.plan.volume.reason.find("forward"), std::string::npos) << planned.plan.volume.reason;
+    const Planned beams = planOf(fog(DeltaGate, {}, "0.7"), {Small, Radius});
+    EXPECT_TRUE(std::holds_alternative<Beams>(beams.settings.primitive)) << beams.plan.volume.reason;
 }
 
 std::string inCube(const std::string& json) {
-    std::string scene = json;
-    const std::string first = R"("primitives": [)";
-    scene.insert(scene.find(first) + first.size(), R"({"type": "cube", "bsdf": {"type": "dielectric", "ior": 1.5},
-        "int_medium": "glass", "ext_medium": "fog", "transform": {"position": [0, 0, 3]}}, )");
-    return scene;
+    return with(R"({"type": "cube", "bsdf": {"type": "dielectric", "ior": 1.5}, "int_medium": "glass",
+        "ext_medium": "fog", "transform": {"position": [0, 0, 3]}})",
+                json);
 }
 
 TEST(AutoPrimitive, SeveralSpeedsOfLight) {
     const std::string json = inCube(fog(DeltaGate, SlowGlass));
-    const Planned warped = planOf(json, {"integrator.volume_gather_radius=0.1"});
+    const Planned warped = planOf(json, {Small, Radius});
     EXPECT_TRUE(std::holds_alternative<Beams>(warped.settings.primitive)) << warped.plan.volume.reason;
-    const Planned unwarped = planOf(json, {"integrator.volume_gather_radius=0.1", "integrator.camera_unwarped=true"});
-    EXPECT_TRUE(unwarped.slices()) << unwarped.plan.volume.reason;
-    EXPECT_TRUE(unwarped.plan.guidance.on) << unwarped.plan.guidance.reason;
+    EXPECT_NE(warped.plan.volume.reason.find("several speeds"), std::string::npos) << warped.plan.volume.reason;
+    const Planned unwarped = planOf(json, {Radius, Unwarped});
+    EXPECT_TRUE(std::holds_alternative<Beams>(unwarped.settings.primitive)) << unwarped.plan.volume.reason;
+    EXPECT_NE(unwarped.plan.volume.reason.find("in the way"), std::string::npos) << unwarped.plan.volume.reason;
 }
 
 TEST(GuidedSlicesPlan, PlainWhereGuidingLoses) {

@@ -1,28 +1,9 @@
 #pragma once
 // BallSlice.h for a register of rays: at one length of each frame, and a point drawn inside each frame.
 
-#include "photon/primitives/volumes/VolumeLanes.h"
+#include "photon/primitives/balls/SharedLanes.h"
 
 namespace tungsten::photon {
-
-/// A ball's centre as a register of rays sees it.
-struct BallViewLanes {
-    Batch foot, distanceFromRay, distanceFromOrigin;
-
-    explicit BallViewLanes(const LaneRays& rays)
-        : foot(-rays.toOrigin.dot(rays.direction)), distanceFromRay(rays.distance()),
-          distanceFromOrigin(rays.originDistance()) {}
-    [[nodiscard]] Batch turn(const Batch& s) const {
-        return xsimd::select(s > distanceFromOrigin,
-                             (s - distanceFromOrigin) * (s + distanceFromOrigin) / (2.0f * (s - foot)), Batch(0.0f));
-    }
-    [[nodiscard]] Batch halfChord(const Batch& radius) const {
-        return xsimd::sqrt(xsimd::max((radius - distanceFromRay) * (radius + distanceFromRay), Batch(0.0f)));
-    }
-    [[nodiscard]] FrameRange frames(const LaneRecord& record, const LaneRays& rays) const {
-        return framesOf(record.times, rays.seen, record.warped ? distanceFromOrigin : distanceFromRay, Batch(Infinity));
-    }
-};
 
 /// Scattering at the centre, or a light's own.
 inline Batch leavingBall(const LaneRecord& record, const Lanes3& last) {
@@ -41,6 +22,14 @@ inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const Lan
     const Batch volume = scattered * volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), last, rays.direction, record.warped);
     const Batch ball = record.pdfs * length * length * lengthPerLength(last, rays.direction, record.warped);
     return shareOf(ball, volume);
+}
+/// The same inside a gate.
+inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const BallGateView& lit,
+                       const SharedPathLanes& path, const Batch& scattered) {
+    if (!record.weighsPlaces()) return ballShare(record, rays, path.last, path.t3, scattered);
+    const float before = record.flights->lengths[0] + record.flights->lengths[1];
+    const Batch soon(record.times.start(0) + before), late(record.times.start(1) + before);
+    return ballShareInGate(lit, Batch(record.pdfs), scattered * placedByVolume(record, rays, path, soon, late));
 }
 
 /// At one path length, or a random one of each frame.
@@ -95,38 +84,16 @@ class BallGateLanes {
             if (record.times.factor(frame) == 0.0f) continue;
             const Batch soon(record.times.start(frame)), late(record.times.start(frame + 1));
             if (!(record.times.start(frame + 1) > 0.0f)) continue;
-            Interval one = record.warped ? clipped(view, rays, view.turn(soon) - view.foot, view.turn(late) - view.foot)
-                                         : Interval{};
-            Interval other{};
-            if (!record.warped) {
-                const Batch inner = view.halfChord(xsimd::max(soon, Batch(0.0f)));
-                const Batch outer = xsimd::select(late > view.distanceFromRay, view.halfChord(late), Batch(0.0f));
-                one = clipped(view, rays, -outer, -inner);
-                other = clipped(view, rays, inner, outer);
-            }
-            draw(record, rays, view, one, other, frame, emit);
+            draw(record, rays, BallGateView(rays, soon, late, record.warped), frame, emit);
         }
     }
 
   private:
-    /// Along the ray from the foot, and seen from the centre.
-    struct Interval {
-        Batch from = Batch(0.0f), to = Batch(0.0f), angle = Batch(0.0f);
-    };
-    [[nodiscard]] static Interval clipped(const BallViewLanes& view, const LaneRays& rays, const Batch& from,
-                                          const Batch& to) {
-        Interval i{xsimd::max(from, rays.start - view.foot), xsimd::min(to, rays.end - view.foot), Batch(0.0f)};
-        const LaneMask holds = i.from < i.to;
-        if (!xsimd::any(holds)) return i;
-        const Batch& h = view.distanceFromRay;
-        i.angle = xsimd::select(holds, xsimd::atan2(h * (i.to - i.from), h * h + i.from * i.to), Batch(0.0f));
-        return i;
-    }
     template <typename Emit>
-    static void draw(const LaneRecord& record, const LaneRays& rays, const BallViewLanes& view, const Interval& one,
-                     const Interval& other, int frame, Emit&& emit) {
+    static void draw(const LaneRecord& record, const LaneRays& rays, const BallGateView& lit, int frame, Emit&& emit) {
+        const auto& [view, one, other] = lit;
         const Batch& h = view.distanceFromRay;
-        const Batch angles = one.angle + other.angle;
+        const Batch angles = lit.angles();
         const LaneMask met = rays.seen && angles > 0.0f && h > 0.0f;
         if (!xsimd::any(met)) return;
         const Batch turned = record.random(0, rays, frame) * angles;
@@ -138,7 +105,11 @@ class BallGateLanes {
         const Lanes3 last = (rays.toOrigin + rays.direction * along) * (1.0f / length);
         const Batch scattered = leavingBall(record, last);
         Batch factor = scattered * record.towardsCamera(last, rays) * angles / h;
-        if (record.flights->shared) factor *= ballShare(record, rays, last, length, scattered);
+        if (record.flights->shared) {
+            const auto& before = record.flights->lengths;
+            const SharedPathLanes path{last, Batch(before[0]), Batch(before[1]), length, along};
+            factor *= ballShare(record, rays, lit, path, scattered);
+        }
         emit(frame, LaneReach{met && length >= record.flights->reach, along, length + along, factor});
     }
 };

@@ -1,6 +1,5 @@
 // Balls: at one time, and over a gate.
 
-#include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/sliced/ShortFlights.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
 
@@ -37,11 +36,13 @@ bool SliceEstimate::unoccluded(const CollapsedFlights& ball, const Vec3f& end) c
     return !scene_.geometry->occluded(ray);
 }
 
-double SliceEstimate::ballShareOf(const SliceMeeting& m, const Vec3d& last, double length) const {
+template <typename Ratio>
+double SliceEstimate::ballShareOf(const SliceMeeting& m, const Vec3d& last, double length, const Ratio& ratio) const {
     if (!m.flights.shared) return 1.0;
     const auto w = m.directions<2>();
     const auto& t = m.flights.lengths;
-    return ballShare(ratio(m, {w[0], w[1], last}, {double(t[0]), double(t[1]), length}));
+    return ballShare(
+        ratio(std::array<Vec3d, 3>{w[0], w[1], last}, std::array<double, 3>{double(t[0]), double(t[1]), length}));
 }
 
 bool SliceEstimate::addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
@@ -52,7 +53,8 @@ bool SliceEstimate::addBallSlice(const SliceMeeting& m, int frame, double time, 
         const Vec3d last = (m.sight.at(reach.alongRay) - m.base) / reach.length;
         double factor = m.speed * width * m.phase(inFloat(last)) * unended(m.flights, m.medium, &reach.length, 1);
         if (!(factor > 0.0)) continue;
-        factor *= ballShareOf(m, last, reach.length);
+        factor *= ballShareOf(m, last, reach.length,
+                              [&](const auto& w, const auto& lengths) { return ratio(m, w, lengths); });
         const Vec3d value = m.perChannel([&](const auto& medium) { return reach.weight(medium); });
         any = deposit(value, leavingBall(m, reach, inFloat(last)), factor, frame, sums) || any;
     }
@@ -69,8 +71,11 @@ bool SliceEstimate::addBallGate(const SliceMeeting& m, int frame, FrameSums& sum
     const Vec3d towards = (m.sight.at(reach.alongRay) - m.base) / reach.length;
     const Vec3f last = inFloat(towards);
     const double arrival = m.arrival(reach.length + m.sight.warp() * reach.alongRay);
-    const double factor = m.phase(last) * double(sensor_.weight(arrival)) *
-                          unended(m.flights, m.medium, &reach.length, 1) * ballShareOf(m, towards, reach.length);
+    const double share = ballShareOf(m, towards, reach.length, [&](const auto& w, const auto& lengths) {
+        return ratioInGate(m, w, lengths, reach.alongRay);
+    });
+    const double factor =
+        m.phase(last) * double(sensor_.weight(arrival)) * unended(m.flights, m.medium, &reach.length, 1) * share;
     if (!(factor > 0.0)) return false;
     const Vec3d value = m.perChannel([&](const auto& medium) { return lit.weight(reach, medium); });
     return deposit(value, leavingBall(m, reach, last), factor, frame, sums);

@@ -1,6 +1,5 @@
 #include "photon/primitives/sliced/SliceEstimate.h"
 
-#include "photon/primitives/balls/VolumeOrBall.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
 #include "photon/primitives/sliced/ShortFlights.h"
@@ -116,11 +115,27 @@ bool SliceEstimate::addVolumeChord(const SliceMeeting& m, FrameSums& sums) const
     return any;
 }
 
+SharedPath<double> SliceEstimate::sharedPath(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+                                             const std::array<double, 3>& lengths) const {
+    const double pdfs = double(pdfFlight(m.medium, float(lengths[0]))) * double(pdfFlight(m.medium, float(lengths[1])));
+    return {w, lengths[2], double(m.medium.phase.pdf(inFloat(w[1]), inFloat(w[2]))), pdfs};
+}
+
 double SliceEstimate::ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
                             const std::array<double, 3>& lengths) const {
-    const double pdfs = double(pdfFlight(m.medium, float(lengths[0]))) * double(pdfFlight(m.medium, float(lengths[1])));
-    const double phasePdf = double(m.medium.phase.pdf(inFloat(w[1]), inFloat(w[2])));
-    return SharedPath<double>{w, lengths[2], phasePdf, pdfs}.ratio(m.sight.direction, warped_);
+    return sharedPath(m, w, lengths).ratio(m.sight.direction, warped_);
+}
+
+double SliceEstimate::ratioInGate(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+                                  const std::array<double, 3>& lengths, double alongRay) const {
+    if (sensor_.gate.frames > 1) return ratio(m, w, lengths);
+    // A ball's base is where its last flight begins.
+    const bool ball = m.flights.shape == FlightShape::Ball;
+    const double before = ball ? lengths[0] + lengths[1] : 0.0;
+    const Vec3d base = ball ? m.base - w[0] * lengths[0] - w[1] * lengths[1] : m.base;
+    const ResidualGate<double> gate{m.residual(sensor_.gate.start) + before, m.residual(sensor_.gate.end()) + before};
+    return sharedPath(m, w, lengths)
+        .ratioInGate(base, lengths[0], lengths[1], alongRay, m.sight, gate, double(meanComponent(m.medium.sigmaT())));
 }
 
 template <size_t K>
@@ -143,7 +158,7 @@ bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chor
         for (size_t i = 0; i < K; ++i) lengths[i] = std::max(chord.length(i, t), 0.0);
         if (!unoccluded(m.flights, lengths.data(), int(K))) return false;
         if constexpr (K == 3) {
-            if (m.flights.shared) factor *= volumeShare(ratio(m, m.directions<3>(), lengths));
+            if (m.flights.shared) factor *= volumeShare(ratioInGate(m, m.directions<3>(), lengths, t));
         }
         if (arrival) factor *= double(sensor_.weight(arrival->offset + arrival->slope * t));
         if (!m.medium.isGrey()) {

@@ -91,6 +91,7 @@ struct LaneRecord {
     bool isotropic;   ///< a ball on a light that shines alike everywhere
 
     [[nodiscard]] float warp() const { return warped ? 1.0f : 0.0f; }
+    [[nodiscard]] bool weighsPlaces() const { return times.frames == 1 && times.width > 0.0f; }
     /// In [0, 1): SliceMeeting::random.
     [[nodiscard]] Batch random(size_t which, const LaneRays& rays, int frame) const {
         const Batch u = rays.rotation + float(flights->randomNumber(which) + frameRotation(frame));

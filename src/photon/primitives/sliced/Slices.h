@@ -33,7 +33,14 @@ struct Slices {
     static std::string guidanceObstacle(const Scene& scene, bool speedsDiffer);
     /// Any camera.
     [[nodiscard]] bool splats(bool /*straightRays*/, bool oneTime) const { return !classes.shortFlights && oneTime; }
-    void narrow(float factor) { classes.shortBeams *= factor; }
+    /// As the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both: time is best
+    /// spent in proportion to the square roots of the variances.
+    void narrow(float factor) {
+        classes.shortBeams *= factor;
+        if (!classes.beams || classes.share >= 1.0f) return;
+        classes.share *= factor;
+        classes.sharedShare *= factor;
+    }
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
                        uint32_t step, const PassWatch& watch);

@@ -1,33 +1,28 @@
 #pragma once
 // VolumeSlice.h for a register of rays: slices at one length of each frame, and chords inside frames.
 
-#include "photon/primitives/sliced/ChordLanes.h"
+#include "photon/primitives/balls/SharedLanes.h"
 
 namespace tungsten::photon {
 
-/// Change of path length along the ray.
-inline Batch lengthPerLength(const Lanes3& last, const Lanes3& ray, bool warped) {
-    const Lanes3 sum = last + ray;
-    return warped ? 0.5f * sum.dot(sum) : xsimd::abs(last.dot(ray));
-}
-/// a / (a + b)
-inline Batch shareOf(const Batch& a, const Batch& b) {
-    return a / xsimd::max(a + b, Batch(1e-37f));
-}
-
-/// Of volumes, at flights along these directions that end on the ray: VolumeSlice.h.
-inline Batch volumeJacobian(const Lanes3& first, const Lanes3& second, const Lanes3& last, const Lanes3& ray,
-                            bool warped) {
-    return xsimd::abs(warped ? (first + ray).dot((second + ray).cross(last + ray))
-                             : (first - last).dot((second - last).cross(ray)));
-}
 /// What a volume counts of a path that balls make too, (16): of this Jacobian, at flights of these lengths.
 inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian, const Batch& t1,
                          const Batch& t2, const Batch& t3) {
     const Lanes3 last(record.flights->directions[2]);
-    const Batch pdfs = record.grey ? record.sigmaT.x * record.sigmaT.x * xsimd::exp(-record.sigmaT.x * (t1 + t2))
-                                   : record.flightPdf(t1) * record.flightPdf(t2);
-    return shareOf(record.phasePdf * jacobian, pdfs * t3 * t3 * lengthPerLength(last, rays.direction, record.warped));
+    return shareOf(record.phasePdf * jacobian,
+                   flightPdfs(record, t1, t2) * t3 * t3 * lengthPerLength(last, rays.direction, record.warped));
+}
+/// The same inside a gate.
+inline Batch volumeShareInGate(const LaneRecord& record, const LaneRays& rays, const LaneReach& reach) {
+    const auto& [t1, t2, t3, none] = reach.lengths;
+    const auto& w = record.flights->directions;
+    const Batch soon(record.times.start(0)), late(record.times.start(1)), before = t1 + t2;
+    LaneRays fromCentre = rays;
+    fromCentre.toOrigin = rays.toOrigin - (Lanes3(w[0]) * t1 + Lanes3(w[1]) * t2);
+    const BallGateView lit(fromCentre, soon - before, late - before, record.warped);
+    const Batch volume =
+        record.phasePdf * placedByVolume(record, rays, {Lanes3(w[2]), t1, t2, t3, reach.alongRay}, soon, late);
+    return 1.0f - ballShareInGate(lit, flightPdfs(record, t1, t2), volume);
 }
 
 /// At one path length, or a random one of each frame. For one ray all four lengths are linear in the path length.
@@ -148,8 +143,7 @@ class VolumeChordLanes {
         const Batch a = p + q * chord.start, b = p + q * chord.end;
         const Batch factor = record.towardsCamera(Lanes3(record.flights->directions[2]), rays) * (1.0f / jacobian_);
         const auto& w = record.flights->directions;
-        const Batch shared = volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), Lanes3(w[2]), rays.direction,
-                                            record.warped); // (16) is of slices
+        const Batch slices = volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), Lanes3(w[2]), rays.direction, record.warped);
         const FrameRange range = framesOf(record.times, met, xsimd::min(a, b), xsimd::max(a, b));
         for (int frame = range.first; frame <= range.last; ++frame) {
             if (record.times.factor(frame) == 0.0f) continue;
@@ -159,8 +153,9 @@ class VolumeChordLanes {
             if (!xsimd::any(here)) continue;
             LaneReach reach = part.reach(record, here, factor, record.random(0, rays, frame));
             if (record.flights->shared) {
-                const auto& t = reach.lengths;
-                reach.factor *= volumeShare(record, rays, shared, t[0], t[1], t[2]);
+                const auto& [t1, t2, t3, none] = reach.lengths;
+                reach.factor *= record.weighsPlaces() ? volumeShareInGate(record, rays, reach)
+                                                      : volumeShare(record, rays, slices, t1, t2, t3);
             }
             emit(frame, reach);
         }
