@@ -37,10 +37,12 @@ struct AboutTarget {
 
     [[nodiscard]] Vec3 sample(float, float u, float v) const { return directionAbout(axis, lobe.sample(u), v); }
     [[nodiscard]] float pdf(const Vec3&, float h) const { return lobe.pdf(h); }
-    /// What a direction of density `guide` is good for, about 1 on the average over the sphere.
-    [[nodiscard]] static float usefulness(const Heading&, float guide, float last) {
+    /// What a direction of this density is good for, about 1 on the average over the sphere; last() is the density of
+    /// its connection's last turn per solid angle.
+    template <typename Last>
+    [[nodiscard]] static float usefulness(float pdf, const Last& last) {
         constexpr float Uniform = 1.0f / (4.0f * Pi), Floor = 0.2f * Uniform;
-        return guide * last * (1.0f / Uniform) + Floor;
+        return pdf * last() * (1.0f / Uniform) + Floor;
     }
 };
 template <typename Lobe>
@@ -64,10 +66,10 @@ class GuidedDirections {
         const float base = base_.pdf(direction, h);
         return focus_ > 0 ? (1.0f - focus_) * base + focus_ * viewPdf(direction, h) : base;
     }
-    /// What a direction of this density is good for, whose connection's last turn has the density `last` per solid
-    /// angle.
-    [[nodiscard]] float usefulness(const Heading& ray, float pdf, float last) const {
-        return base_.usefulness(ray, pdf, last);
+    /// Of a direction of this density: see the base's.
+    template <typename Last>
+    [[nodiscard]] float usefulness(float pdf, const Last& last) const {
+        return base_.usefulness(pdf, last);
     }
 
   private:
@@ -111,9 +113,12 @@ class DirectionSampler {
     template <typename Scatterer, typename View, typename Random>
     [[nodiscard]] DirectionSample sample(const Residual& residual, float excess, const Scatterer& scatterer,
                                          const View& view, Random&& random) const {
-        if (settings_.direction == Direction::Phase || leavesToScatterer(residual))
+        if (settings_.direction == Direction::Phase || isBehindRefraction(residual))
             return fromScatterer(residual, scatterer, random);
         if (residual.way == Way::Out) {
+            if (const auto turns = LastTurns::of(residual, medium_))
+                return resample(residual, excess, scatterer, *turns, random);
+            if (settings_.scattererOut) return fromScatterer(residual, scatterer, random);
             const DirectionsOut out(residual, least(residual, excess), medium_);
             return mix(residual, out.share(), scatterer, out, random);
         }
@@ -123,16 +128,18 @@ class DirectionSampler {
         });
     }
 
-    /// Density per solid angle of the mixture; for Direction::Ris, of its candidates.
+    /// Density per solid angle of the mixture; for Direction::Ris and LastTurns, of their candidates.
     template <typename Scatterer, typename View>
     [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction, const Scatterer& scatterer,
                             const View& view) const {
-        if (settings_.direction == Direction::Phase || leavesToScatterer(residual)) return scatterer.pdf(direction);
+        if (settings_.direction == Direction::Phase || isBehindRefraction(residual)) return scatterer.pdf(direction);
         const float h = oneMinusCosine(direction, residual.axis);
         const auto mixture = [&](float share, const auto& guided) {
             return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         };
         if (residual.way == Way::Out) {
+            if (const auto turns = LastTurns::of(residual, medium_)) return mixture(0.5f, *turns);
+            if (settings_.scattererOut) return scatterer.pdf(direction);
             const DirectionsOut out(residual, least(residual, excess), medium_);
             return mixture(out.share(), out);
         }
@@ -154,8 +161,8 @@ class DirectionSampler {
     static constexpr float LeastAlphaOutside = 0.5f;
     /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
     /// study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
-    [[nodiscard]] bool leavesToScatterer(const Residual& residual) const {
-        return residual.way == Way::Out && (!residual.exit.connects || settings_.scattererOut);
+    [[nodiscard]] static bool isBehindRefraction(const Residual& residual) {
+        return residual.way == Way::Out && !residual.exit.connects;
     }
     /// Excess lengths of 0 have no lobe.
     [[nodiscard]] static float least(const Residual& residual, float excess) {
@@ -211,11 +218,12 @@ class DirectionSampler {
             c.direction = i < owns ? scatterer.sample(u, v) : guided.sample(choice, u, v);
             c.h = oneMinusCosine(c.direction, residual.axis);
             const float own = scatterer.pdf(c.direction), guide = guided.pdf(c.direction, c.h);
-            const Ellipse<float> e{residual.C, excess, c.h};
-            const Vec3 onward = residual.axis * residual.C - c.direction * e.firstLeg();
-            const HenyeyGreenstein phase{c.direction, g_};
-            const float last = phase.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
-            const float wanted = own * guided.usefulness(c, guide, last);
+            const auto last = [&] {
+                const Ellipse<float> e{residual.C, excess, c.h};
+                const Vec3 onward = residual.axis * residual.C - c.direction * e.firstLeg();
+                return HenyeyGreenstein{c.direction, g_}.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
+            };
+            const float wanted = own * guided.usefulness(guide, last);
             const float mixture = ownShare * own + (1.0f - ownShare) * guide;
             weights[size_t(i)] = mixture > 0 ? wanted / mixture : 0.0f;
             c.inversePdf = wanted > 0 ? 1.0f / wanted : 0.0f;

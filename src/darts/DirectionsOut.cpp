@@ -48,4 +48,12 @@ float DirectionsOut::pdf(const Vec3& direction, float h) const {
     return connectionShare_ * connectionLobe_.pdf(h) + (1.0f - connectionShare_) * drift;
 }
 
+std::optional<LastTurns> LastTurns::of(const Residual& residual, const Medium& medium) {
+    if (!(medium.g >= LeastPeak)) return std::nullopt;
+    const float shortest = std::max(residual.excess - residual.width, 0.0f) + residual.exit.inside;
+    const float turns = std::max(shortest * mean(medium.sigmaS), 1.0f), kept = std::pow(medium.g, turns);
+    if (!(kept > Forgotten)) return std::nullopt;
+    return LastTurns({residual.axis, kept});
+}
+
 } // namespace darts

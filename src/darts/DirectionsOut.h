@@ -3,7 +3,10 @@
 
 #include "darts/ConnectionLobe.h"
 #include "darts/FirstPassage.h"
+#include "darts/PhaseFunction.h"
 #include "darts/ResidualRange.h"
+
+#include <optional>
 
 namespace darts {
 
@@ -26,6 +29,31 @@ class DirectionsOut {
     float share_, connectionShare_ = 1.0f; ///< of these directions, that of connectionLobe_
     ConnectionLobe<float> connectionLobe_, driftLobe_;
     Vec3 drift_; ///< unit axis of driftLobe_
+};
+
+/// Directions of the last few scatterings before light leaves a body of forward scattering medium for good: in so few
+/// turns it must come round to the target's. Henyey-Greenstein functions of mean cosine g, convolved n times, are one
+/// of g^n; n is the number of mean free paths that the earliest arrival has left inside.
+class LastTurns {
+  public:
+    /// None where directions are forgotten before, or were never kept.
+    static std::optional<LastTurns> of(const Residual& residual, const Medium& medium);
+
+    [[nodiscard]] Vec3 sample(float, float u, float v) const { return peak_.sample(u, v); }
+    /// Density per solid angle.
+    [[nodiscard]] float pdf(const Vec3& direction, float) const { return peak_.pdf(direction); }
+    /// What a direction of this density is good for, about 1 on the average over the sphere.
+    template <typename Last>
+    [[nodiscard]] static float usefulness(float pdf, const Last&) {
+        return 4.0f * Pi * pdf + Floor;
+    }
+
+  private:
+    static constexpr float LeastPeak = 0.5f, Forgotten = 0.1f, Floor = 0.2f;
+
+    explicit LastTurns(const HenyeyGreenstein& peak) : peak_(peak) {}
+
+    HenyeyGreenstein peak_;
 };
 
 } // namespace darts

@@ -44,10 +44,59 @@ void expectDirectionsOf(Mode mode, const Place& p, float g, bool connects) {
 
 TEST(DirectionsOut, SampleTheirDensity) {
     for (const Place& p : Places)
-        for (const float g : {0.0f, 0.5f, -0.3f})
+        for (const float g : {0.0f, 0.4f, -0.3f})
             for (const bool connects : {true, false}) expectDirectionsOf(Mode::Path, p, g, connects);
     for (const Place& p : Places)
-        expectDirectionsOf(Mode::Photon, p, 0.5f, true); // camera paths take the phase function
+        expectDirectionsOf(Mode::Photon, p, 0.4f, true); // camera paths take the phase function
+}
+
+/// Resampled: E[F(w) inverse pdf] = the integral of F = phase (1 + w.a) over the sphere, 1 + g (before . a).
+TEST(LastTurns, MeansMatchTheIntegral) {
+    const Vec3 before{0.6f, 0.0f, 0.8f}, a{0.2f, -0.9f, 0.3f};
+    for (const double depth : {0.0, 0.03, 0.15})
+        for (const float g : {0.5f, 0.8f, 0.99f}) {
+            const DirectionSampler sampler(best(Mode::Path, g), thickMedium(g));
+            const Residual residual = outOf(depth, 3.0, 3.0 + depth + 0.06, 0.05);
+            EXPECT_TRUE(LastTurns::of(residual, thickMedium(g))) << depth << " " << g;
+            const HenyeyGreenstein phase{before, g};
+            double sum = 0.0, squares = 0.0;
+            constexpr int Count = 100000;
+            for (uint64_t i = 0; i < Count; ++i) {
+                Sampler s(36, RandomStream::Test, 0, i);
+                const auto sample = sampler.sample(residual, 0.02f, phase, NoView{}, [&s] { return s.next1D(); });
+                const double weight = double(phase.pdf(sample.direction)) * double(sample.inversePdf);
+                const double x = weight * (1.0 + double(dot(sample.direction, a)));
+                sum += x, squares += x * x;
+            }
+            const double mean = sum / Count, error = std::sqrt((squares / Count - mean * mean) / Count);
+            EXPECT_NEAR(mean, 1.0 + double(g * dot(before, a)), 4.5 * error + 1e-5) << depth << " " << g;
+        }
+}
+
+TEST(LastTurns, AreForgottenDeepInside) {
+    const Residual deep = outOf(1.0, 3.0, 5.0, 0.05), near = outOf(0.05, 3.0, 3.1, 0.05);
+    EXPECT_FALSE(LastTurns::of(deep, thickMedium(0.8f)));
+    EXPECT_TRUE(LastTurns::of(near, thickMedium(0.8f)));
+    EXPECT_FALSE(LastTurns::of(near, thickMedium(0.4f)));
+}
+
+/// What comes round to the target is drawn more often than by the phase function, and weighs less.
+TEST(LastTurns, AreTowardsTheTarget) {
+    const Residual residual = outOf(0.03, 3.0, 3.06, 0.05);
+    const Vec3 before = directionAbout(residual.axis, 1.0f, 0.0f); // across
+    double share[2] = {0.0, 0.0};
+    for (const Direction direction : {Direction::Phase, Direction::Ris}) {
+        Settings settings = best(Mode::Path, 0.8f);
+        settings.direction = direction;
+        const DirectionSampler sampler(settings, thickMedium(0.8f));
+        for (uint64_t i = 0; i < 20000; ++i) {
+            Sampler s(37, RandomStream::Test, 0, i);
+            const auto sample =
+                sampler.sample(residual, 0.02f, HenyeyGreenstein{before, 0.8f}, NoView{}, [&s] { return s.next1D(); });
+            share[direction == Direction::Ris] += sample.h < 0.3f ? 1.0 / 20000.0 : 0.0;
+        }
+    }
+    EXPECT_GT(share[1], 2.0 * share[0]);
 }
 
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time.
