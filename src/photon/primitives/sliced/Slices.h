@@ -33,8 +33,8 @@ struct Slices {
     static std::string guidanceObstacle(const Scene& scene, bool speedsDiffer);
     /// Any camera.
     [[nodiscard]] bool splats(bool /*straightRays*/, bool oneTime) const { return !classes.shortFlights && oneTime; }
-    /// As the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both: time is best
-    /// spent in proportion to the square roots of the variances.
+    /// As the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both: time is
+    /// best spent in proportion to the square roots of the variances.
     void narrow(float factor) {
         classes.shortBeams *= factor;
         if (!classes.beams || classes.share >= 1.0f) return;
