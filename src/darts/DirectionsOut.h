@@ -49,6 +49,8 @@ class LastTurns {
     }
 
   private:
+    /// Lower means are not followed; a floor of 0.05 does the same. (Layered tissue, variance x CPU of paths: 18.9
+    /// without, 7.5 with 0.2, 7.8 with 0.05.) Bench: study bodies.
     static constexpr float LeastPeak = 0.5f, Forgotten = 0.1f, Floor = 0.2f;
 
     explicit LastTurns(const HenyeyGreenstein& peak) : peak_(peak) {}
