@@ -5,7 +5,7 @@ import json
 import numpy as np
 
 from bench import PRIMITIVES, Bench, Scene, panels, plain_log, table
-from errors import Truth, mse
+from errors import Truth, mse, parts
 
 TITLE = "Ablation: the parts of the sampling, with the same photons and radii"
 DARTS = "integrator.darts="
@@ -57,19 +57,19 @@ def groups(bench):
 
 
 def measured(renders, truth):
-    """MSE x CPU s by seed, relative standard error, mean over the reference's."""
+    """MSE x CPU s by seed, relative standard error, mean over the reference's, and all that errors.Parts has."""
     costs = [max(mse(render.image(), truth), 1e-12) * render.cpu[-1] for render in renders]
     noise = np.sqrt(np.nanmean([render.standard_errors[-1] ** 2 for render in renders]))
-    return costs, noise, np.mean([render.image().mean() for render in renders]) / truth.image.mean()
+    return costs, noise, np.mean([render.image().mean() for render in renders]) / truth.image.mean(), parts(renders, truth)
 
 
 def rows_of(found, truth):
     figures = {key: measured(renders, truth) for key, renders in found.items()}
     vanilla, best = (np.mean(figures[key][0]) for key in ("vanilla", "best"))
     rows, losses = [], {}
-    for key, (costs, noise, ratio) in figures.items():
+    for key, (costs, noise, ratio, p) in figures.items():
         mean = np.mean(costs)
-        rows.append([key, f"{noise:.3f}", f"{ratio:.3f}", f"{mean:.3g} ({min(costs):.3g} to {max(costs):.3g})",
+        rows.append([key, f"{noise:.3f}", f"{p.median:.3f}", f"{p.flip:.3f}", f"{ratio:.3f}", f"{mean:.3g} ({min(costs):.3g} to {max(costs):.3g})",
                      f"{vanilla / mean:.3g}", f"{mean / best:.3g}"])
         losses[key] = ([cost / best for cost in costs])
     return rows, losses
@@ -101,11 +101,12 @@ def run(bench: Bench):
             found = bench.interleaved(cells, 2, cpu=bench.short(1.0, 0.3))
             rows, losses = rows_of(found, truth)
             text += [f"## {scene.words()}: {primitive}", table(
-                ["variant", "standard error", "mean / reference", "MSE × CPU s (of the seeds)", "gain over vanilla", "times best's"], rows)]
+                ["variant", "standard error", "error, median", "FLIP", "mean / reference", "MSE × CPU s (of the seeds)", "gain over vanilla",
+                 "times best's"], rows)]
             pictures.append((f"{scene.name}, {primitive}", losses))
     picture(bench, pictures)
     bench.write(TITLE, "Above the line `best` the paper's parts, from none to all; below it `best` with one part off. Above 1 in the "
-                "last column: the part is worth its time. Dots: two seeds, bars: one and the other. MSE over (reference "
+                "last column: the part is worth its time. FLIP: of the pictures, the reference's own noise in it. Dots: two seeds, bars: one and the other. MSE over (reference "
                 "mean)²; a heavy tail that two seeds have not seen is in no figure, and where the mean is far from the reference's (points of "
                 "lamp-in-fog) a render that shows nothing has a low MSE: there the figures rank nothing.", "![cost over that of best](ablation.svg)",
                 *text)
