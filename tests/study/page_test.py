@@ -140,7 +140,7 @@ class InTheBrowser(unittest.TestCase):
         subprocess.run([TUNGSTEN, "--quiet", "-t", "2", "--resolution", f"{WIDTH}x{HEIGHT}", "-d", cls.folder, "-o", "a.png", "-e",
                         "a.npy", "--html", cls.folder / "film.html", "--trace", cls.folder / "trace", "--spp", "64",
                         "-s", str(2**64 - 1), "--set", "renderer.spp_step=4", "--set", "integrator.type=path_tracer", "--set",
-                        f"integrator.frame_num={FRAMES}",
+                        f"integrator.frame_num={FRAMES}", "--set", "integrator.start_time=4.4",  # dark at first
                         PROJECT / "data/scenes/two-pulses/scene.json"], check=True)
         cls.film, cls.frames = cls.folder / "film.html", np.load(cls.folder / "a.npy")
         cls.two = write_two_methods(cls.folder)
@@ -151,7 +151,7 @@ class InTheBrowser(unittest.TestCase):
 
     def test_a_film_loads_slides_plays_and_is_picked(self):
         told = drive(self.film, """
-          const told = { shown: ["loading", "time-row", "histogram", "curves"].map(visible), title: document.title };
+          const told = { shown: ["loading", "time-row", "histogram", "curves"].map(visible), title: document.title, first: state.frame };
           told.values = Array.from(film(0).codes, (code) => film(0).table[code]);
           set("frame", 2, "input");
           told.frame = text("frame-text");
@@ -173,6 +173,8 @@ class InTheBrowser(unittest.TestCase):
         self.assertNotIn("failure", told)
         self.assertEqual(told["shown"], [False, True, True, True])
         values, grey = np.reshape(told["values"], (FRAMES, HEIGHT, WIDTH)), self.frames.mean(axis=-1)
+        self.assertEqual(told["first"], np.argmax(values.sum(axis=(1, 2))), "opens at the brightest frame")
+        self.assertGreater(told["first"], 0)
         self.assertLess(np.abs(values - grey).max(), 4e-4 * grey.max())
         np.testing.assert_allclose(values[grey > 0], grey[grey > 0], rtol=4e-4)
         self.assertIn(f"frame 2 of 0–{FRAMES - 1}, time", told["frame"])

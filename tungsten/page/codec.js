@@ -92,6 +92,13 @@ class Film {
     return 0;
   }
 
+  /** The frame of most light. */
+  brightestFrame() {
+    const sums = new Float64Array(this.frames), size = this.codes.length / this.frames;
+    this.codes.forEach((code, i) => (sums[Math.floor(i / size)] += this.table[code]));
+    return sums.indexOf(Math.max(...sums));
+  }
+
   /** Mean over all pixels and frames. */
   mean() {
     let sum = 0;

@@ -7,7 +7,7 @@ const SHOWS = { picture: "picture", difference: "difference from reference", "a-
 const LAYOUTS = { one: "A alone", flip: "flip A and B", split: "split A | B", side: "side by side" };
 const FRAMES_PER_SECOND = 12, FLIP_MILLISECONDS = 700, STRIP_MILLISECONDS = 100, ADDRESS_MILLISECONDS = 300;
 
-const state = { scene: 0, frame: 0, show: "picture", layout: "one", split: 0.5, ev: 0, tone: "gamma", limit: 0, flipped: false };
+const state = { scene: 0, frame: null, show: "picture", layout: "one", split: 0.5, ev: 0, tone: "gamma", limit: 0, flipped: false };
 for (const scene of page.scenes) scene.films = scene.films.map((film) => new Film(film));
 const view = new View($("stage"), {
   onPick: (patch) => update({ patch }),
@@ -42,7 +42,7 @@ async function openScene(index, wanted = {}) {
   next.unit ??= guide.mean() || 1;
   state.ev = bright > 0 ? -Math.round(4 * Math.log2(bright)) / 4 : 0;
   state.limit = -1;
-  state.frame = Math.min(state.frame, frames() - 1);
+  state.frame = Math.min(state.frame ?? guide.brightestFrame(), frames() - 1);
   const { width, height } = guide;
   state.patch = { x0: width >> 1, y0: height >> 1, x1: width >> 1, y1: height >> 1 };
   Object.assign(state, wanted);
