@@ -116,10 +116,11 @@ TEST(FilmRows, FoldedApartAndPutTogetherAreOneFilm) {
                     }
                 const FoldedPass some =
                     parts[part].foldRows(pass + 1 == Passes ? 1.0 : 2.0, bounds[part], bounds[part + 1]);
+                folded.pass = some.pass;
                 folded.weight = some.weight;
                 folded.weightBefore = some.weightBefore;
                 folded.squaresBefore = some.squaresBefore;
-                folded.deviations.insert(folded.deviations.end(), some.deviations.begin(), some.deviations.end());
+                folded.rows.insert(folded.rows.end(), some.rows.begin(), some.rows.end());
             }
             parts[0].settle(folded);
         }

@@ -26,7 +26,7 @@ struct Promise {
     double factor = 0.0;                         ///< mean of bound / standard error
 };
 
-/// `alike`: so many pixels of a row share their noise.
+/// `alike`: so many pixels in a row, or rows, share their noise.
 Promise promiseOf(const Noise& noise, int alike) {
     Promise promise;
     for (uint32_t seed = 0; seed < Seeds; ++seed) {
@@ -35,7 +35,7 @@ Promise promiseOf(const Noise& noise, int alike) {
             film.beginPass();
             for (int y = 0; y < Side; ++y)
                 for (int x = 0; x < Side; ++x) {
-                    Sampler sampler(seed, RandomStream::Test, pass, uint64_t(y * Side + x / alike));
+                    Sampler sampler(seed, RandomStream::Test, pass, uint64_t((y * Side + x) / alike));
                     const double u = double(sampler.next1D());
                     film.set(0, x, y, Rgb(float(noise(u, double(sampler.next1D())))));
                 }
@@ -60,6 +60,7 @@ TEST(PassScatter, TheErrorStaysBelowItsBound) {
     const Noise even = [](double u, double v) { return 1.0 + normal(u, v); };
     const Noise lognormal = [](double u, double v) { return std::exp(1.5 * normal(u, v) - 1.125); };
     const Noise pareto = [](double u, double) { return std::pow(1.0 - u, -1.0 / 2.2) * 1.2 / 2.2; };
+    const Noise sparse = [](double u, double) { return u < 0.02 ? 50.0 : 0.0; };
     const Noise rare = [](double u, double) { return u < 1e-3 ? 100.9 : 0.9; };
     struct Case {
         const char* name;
@@ -67,9 +68,11 @@ TEST(PassScatter, TheErrorStaysBelowItsBound) {
         int alike;
         double mostFactor;
     };
-    for (const Case& c : {Case{"even", even, 1, 1.1}, Case{"even, in rows of 16", even, 16, 1.6},
-                          Case{"log-normal", lognormal, 1, 2.0}, Case{"log-normal, in rows of 16", lognormal, 16, 2.5},
-                          Case{"tail of power 3.2", pareto, 1, 1.6}, Case{"rare samples", rare, 1, 2.2}}) {
+    for (const Case& c :
+         {Case{"even", even, 1, 1.1}, Case{"even, in rows of 16", even, 16, 1.6}, Case{"log-normal", lognormal, 1, 2.0},
+          Case{"log-normal, in rows of 16", lognormal, 16, 2.5}, Case{"tail of power 3.2", pareto, 1, 1.6},
+          Case{"rare samples", rare, 1, 2.2}, Case{"few photons", sparse, 1, 1.35},
+          Case{"few photons, in rows of 16", sparse, 16, 2.0}, Case{"even, all alike", even, Side * Side, 2.4}}) {
         const Promise promise = promiseOf(c.noise, c.alike);
         EXPECT_LT(promise.beyondBound, most) << c.name;
         EXPECT_GT(promise.beyondError, 0.2) << c.name << ": the standard error alone would do";
@@ -77,13 +80,40 @@ TEST(PassScatter, TheErrorStaysBelowItsBound) {
     }
 }
 
+/// Each pass is uneven, the mean of many is not: what passes have in common is left.
+TEST(PassScatter, ManyUnevenPassesMakeAnEvenMean) {
+    const auto factorOf = [](int alike) {
+        Film film(Side, Side, 1);
+        for (uint32_t pass = 0; pass < 1024; ++pass) {
+            film.beginPass();
+            for (int i = 0; i < Side * Side; ++i) {
+                Sampler sampler(77, RandomStream::Test, pass, uint64_t(i / alike));
+                film.set(0, i % Side, i / Side, Rgb(sampler.next1D() < 0.01f ? 100.0f : 0.0f));
+            }
+            film.endPass(1.0);
+        }
+        return film.boundFactor();
+    };
+    const auto exact = [](double independent) {
+        return std::sqrt(1.0 + PassScatter::Deviations * std::sqrt(2.0 / independent));
+    };
+    EXPECT_LT(factorOf(1), exact(Side * Side) * 1.1);
+    EXPECT_GT(factorOf(1), exact(Side * Side));
+    // The bound has two standard errors of this number in it, and what rare passes bring.
+    for (const int alike : {16, 64, 256}) {
+        const double independent = double(Side * Side / alike);
+        EXPECT_GT(factorOf(alike), exact(independent)) << alike;
+        EXPECT_LT(factorOf(alike), 1.3 * exact(independent)) << alike;
+    }
+}
+
 TEST(PassScatter, IsUnknownAtFirstAndOneWherePassesAreAlike) {
     PassScatter scatter;
     for (int i = 0; i < 3; ++i) {
         EXPECT_TRUE(std::isnan(scatter.boundFactor())) << i;
-        scatter.add(0.0);
+        scatter.add(uint32_t(1 + i), {});
     }
-    scatter.add(0.0);
+    scatter.add(4, {});
     EXPECT_EQ(scatter.boundFactor(), 1.0);
 }
 
@@ -93,8 +123,8 @@ TEST(PassScatter, ManyPassesTakeLittleMemory) {
     for (uint64_t i = 0; i < 40 * PassScatter::MostGroups; ++i) {
         Sampler sampler(5, RandomStream::Test, 0, i);
         const double value = 1.0 + 0.2 * normal(double(sampler.next1D()), double(sampler.next1D()));
-        if (i + 1 < PassScatter::MostGroups) few.add(value);
-        many.add(value);
+        if (i + 1 < PassScatter::MostGroups) few.add(uint32_t(1 + i), {value, 0.0, 0.0});
+        many.add(uint32_t(1 + i), {value, 0.0, 0.0});
     }
     EXPECT_LE(many.memoryBytes(), 2 * PassScatter::MostGroups * sizeof(double));
     EXPECT_NEAR(many.boundFactor(), few.boundFactor(), 0.01);

@@ -6,9 +6,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace tungsten {
 
@@ -16,6 +16,13 @@ namespace {
 
 constexpr double LargestFilmBytes = 16.0 * 1024 * 1024 * 1024;
 constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Of a row, whose deviations are summed to one number: every pixel of small films, some 4096 blocks of larger ones, of
+/// no more than `most` pixels (a power of two, as this is).
+size_t blockPixelsOf(int width, int height, size_t most) {
+    constexpr size_t Blocks = 4096;
+    return std::min(std::bit_ceil(std::max(size_t(width) * size_t(height) / Blocks, size_t(1))), most);
+}
 
 } // namespace
 
@@ -32,6 +39,9 @@ Film::Film(int width, int height, int frames, FilmContents contents, PassWeight 
     tilesInRow_ = (size_t(width) + TilePixels - 1) >> TileShift;
     tiles_ = LazyTiles(tilesInRow_ * size_t(height) * size_t(frames), tileValues() * size_t(contents.parts()));
     if (contents.batches > 0) batches_ = PassBatches(width, height, frames, contents);
+    const size_t ofBlock = blockPixelsOf(width, height, TilePixels);
+    blocks_.assign((size_t(width) + ofBlock - 1) / ofBlock * size_t(height), 0.0f);
+    lastBlocks_ = blocks_;
     touched_.assign(size_t(height) * size_t(frames), 0);
     lit_ = touched_;
     if (frames > 1) {
@@ -44,7 +54,8 @@ double Film::memoryFor(int width, int height, int frames, FilmContents contents)
     const int tiles = (width + int(TilePixels) - 1) >> TileShift;
     const double floats = double(std::min(int(TilePixels), width)) * contents.channels * contents.parts();
     return double(height) * double(frames) * tiles * (floats * sizeof(float) + sizeof(uint32_t)) +
-           2.0 * double(width) * double(height) * contents.channels * sizeof(float) +
+           2.0 * double(height) * double(width) *
+               (1.0 / double(blockPixelsOf(width, height, TilePixels)) + double(contents.channels)) * sizeof(float) +
            PassBatches::memoryFor(width, height, frames, contents);
 }
 
@@ -89,45 +100,65 @@ void Film::setPassRow(size_t row, const float* values) {
     touched_[row] = 1;
 }
 
-void Film::foldTile(float* tile, size_t place, size_t count, double weight, double* sums, double& deviation) {
+void Film::foldTile(float* tile, size_t place, size_t first, size_t count, double weight, RowSums& sums) {
     float *means = tile + size_t(Mean) * tileValues(), *moments = tile + size_t(Moment) * tileValues();
-    for (size_t i = 0; i < count; ++i) {
-        const uint64_t bits = evenBits(passes_, place + i);
-        deviation += contents_.moments ? foldInto(tile[i], weight, weight_, bits, means[i], moments[i])
-                                       : foldInto(tile[i], weight, weight_, bits, means[i]);
-        sums[i] += double(tile[i]);
+    const size_t ofBlock = blockPixelsOf(width_, height_, TilePixels) * size_t(contents_.channels);
+    for (size_t i = 0, block = first / ofBlock; i < count; ++block) {
+        double deviation = 0.0;
+        for (const size_t end = std::min(i + ofBlock, count); i < end; ++i) {
+            const uint64_t bits = evenBits(passes_, place + first + i);
+            deviation += double(tile[i]) - double(means[i]);
+            sums.squares += contents_.moments ? foldInto(tile[i], weight, weight_, bits, means[i], moments[i])
+                                              : foldInto(tile[i], weight, weight_, bits, means[i]);
+            sums.values[first + i] += double(tile[i]);
+        }
+        sums.blocks[block] += deviation;
     }
 }
 
-double Film::foldRow(size_t row, double weight, double* sums, uint64_t& nonFinite) {
+void Film::foldRow(size_t row, double weight, RowSums& sums) {
     if (touched_[row] != 0) lit_[row] = 1;
-    if (lit_[row] == 0) return 0.0;
-    double deviation = 0.0;
+    if (lit_[row] == 0) return;
     forTiles([&](size_t tile, size_t first, size_t count) {
         float* found = tiles_.find(row * tilesInRow_ + tile);
         if (!found) return;
         for (size_t x = 0; x < count; x += size_t(contents_.channels))
             if (!isFinite(rgb(found + x))) {
-                ++nonFinite;
+                ++sums.nonFinite;
                 std::fill_n(found + x, contents_.channels, 0.0f);
             }
-        foldTile(found, row * rowValues() + first, count, weight, sums + first, deviation);
+        foldTile(found, row * rowValues(), first, count, weight, sums);
     });
+}
+
+PassDeviation Film::deviationOf(size_t y, double squares, const std::vector<double>& blocks, double scale) {
+    PassDeviation deviation{squares, 0.0, 0.0};
+    const bool endsGroup = PassScatter::groupEndingWith(passes_) > 0;
+    for (size_t i = 0; i < blocks.size(); ++i) {
+        float &last = lastBlocks_[y * blocks.size() + i], &group = blocks_[y * blocks.size() + i];
+        group += float(blocks[i] * scale);
+        if (!endsGroup) continue;
+        deviation.blocks += double(group) * double(group);
+        deviation.product += double(group) * double(last);
+        last = group;
+        group = 0.0f;
+    }
     return deviation;
 }
 
 FoldedPass Film::foldRows(double weight, int from, int end) {
     const size_t values = rowValues();
-    FoldedPass folded{weight, weight_, squaredWeights_, std::vector<double>(size_t(end - from), 0.0)};
-    std::vector<uint64_t> rowNonFinite(folded.deviations.size(), 0);
+    FoldedPass folded{passes_, weight, weight_, squaredWeights_, std::vector<PassDeviation>(size_t(end - from))};
+    const double scale = std::sqrt(deviationScale(folded));
+    std::vector<uint64_t> rowNonFinite(folded.rows.size(), 0);
     tbb::parallel_for(size_t(from), size_t(end), [&](size_t y) {
-        std::vector<double> sums(values, 0.0);
-        const size_t at = y - size_t(from);
-        for (int frame = 0; frame < frames_; ++frame)
-            folded.deviations[at] += foldRow(row(frame, int(y)), weight, sums.data(), rowNonFinite[at]);
+        RowSums sums{std::vector<double>(values, 0.0), std::vector<double>(blocks_.size() / size_t(height_), 0.0)};
+        for (int frame = 0; frame < frames_; ++frame) foldRow(row(frame, int(y)), weight, sums);
+        folded.rows[y - size_t(from)] = deviationOf(y, sums.squares, sums.blocks, scale);
+        rowNonFinite[y - size_t(from)] = sums.nonFinite;
         if (frames_ == 1) return;
         for (size_t i = 0; i < values; ++i)
-            foldInto(float(sums[i] / frames_), weight, weight_, evenBits(passes_, ~uint64_t(y * values + i)),
+            foldInto(float(sums.values[i] / frames_), weight, weight_, evenBits(passes_, ~uint64_t(y * values + i)),
                      totalMean_[y * values + i], totalMoment2_[y * values + i]);
     });
     for (const uint64_t count : rowNonFinite) nonFinite_ += count;
@@ -141,17 +172,30 @@ FoldedPass Film::foldRows(double weight, int from, int end) {
 }
 
 void Film::settle(const FoldedPass& pass) {
-    const double deviation = std::accumulate(pass.deviations.begin(), pass.deviations.end(), 0.0);
-    if (pass.weightBefore > 0.0) scatter_.add(variance(deviation, pass));
-    moment2Sum_ += deviation;
+    PassDeviation sum;
+    for (const PassDeviation& row : pass.rows) {
+        sum.squares += row.squares;
+        sum.blocks += row.blocks;
+        sum.product += row.product;
+    }
+    moment2Sum_ += sum.squares;
+    if (!(pass.weightBefore > 0.0)) return;
+    sum.squares *= momentScale(pass);
+    scatter_.add(pass.pass, sum);
 }
 
-double Film::variance(double deviation, const FoldedPass& pass) const {
-    // The squared distance of the pass from the mean before it, over what is expected of it with a variance of 1.
-    if (meaning_ == PassWeight::Samples) return deviation;
+double Film::momentScale(const FoldedPass& pass) const {
+    // Second moments get the squared distance of the pass from the mean before it, times this.
+    const double ofDistance = pass.weight * pass.weightBefore / (pass.weight + pass.weightBefore);
+    return deviationScale(pass) / ofDistance;
+}
+
+double Film::deviationScale(const FoldedPass& pass) const {
+    // The squared distance from the mean before over what is expected of it with a variance of 1, or of 1 / weight.
     const double before = pass.weightBefore;
-    const double fromMean = deviation * (before + pass.weight) / (before * pass.weight);
-    return fromMean / (1.0 + pass.squaresBefore / (before * before));
+    if (!(before > 0.0)) return 0.0;
+    if (meaning_ == PassWeight::Samples) return pass.weight * before / (pass.weight + before);
+    return 1.0 / (1.0 + pass.squaresBefore / (before * before));
 }
 
 double Film::errorScale() const {
@@ -235,7 +279,7 @@ double Film::relativeStandardError() const {
 }
 
 size_t Film::memoryBytes() const {
-    const size_t floats = totalMean_.size() + totalMoment2_.size() + batches_.means().size();
+    const size_t floats = 2 * blocks_.size() + totalMean_.size() + totalMoment2_.size() + batches_.means().size();
     return tiles_.bytes() + floats * sizeof(float) + touched_.size() + lit_.size() + scatter_.memoryBytes();
 }
 

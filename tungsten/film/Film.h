@@ -41,8 +41,9 @@ inline float luminanceOf(const Rgb& value) {
 
 /// A pass that has been folded in, on its way to the film's figures.
 struct FoldedPass {
+    uint32_t pass = 0;                                            ///< its index
     double weight = 1.0, weightBefore = 0.0, squaresBefore = 0.0; ///< of the pass; sums over those before it
-    std::vector<double> deviations{};                             ///< what it adds to second moments, by image row
+    std::vector<PassDeviation> rows{}; ///< by image row; squares: what it adds to second moments
 };
 
 /// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
@@ -94,7 +95,7 @@ class Film {
     /// Folds the pass image in with the given weight (> 0). Non-finite pixels are counted, and replaced by 0.
     void endPass(double weight) { settle(foldRows(weight, 0, height_)); }
     /// The same in two steps, for a film that is kept apart by image rows: rows from..end are folded; what all rows
-    /// deviate, pass by pass, goes into the film's figures (in which FoldedPass::deviations are those of every row).
+    /// deviate, pass by pass, goes into the film's figures (in which FoldedPass::rows are all rows).
     [[nodiscard]] FoldedPass foldRows(double weight, int from, int end);
     void settle(const FoldedPass& pass);
     [[nodiscard]] const PassBatches& batches() const { return batches_; }
@@ -158,10 +159,18 @@ class Film {
     [[nodiscard]] Rgb rgb(const float* values) const {
         return contents_.channels == 1 ? Rgb(*values) : Rgb(values[0], values[1], values[2]);
     }
-    /// One row of the pass into the means: returns what it adds to the second moments, and adds the row to `sums`.
-    double foldRow(size_t row, double weight, double* sums, uint64_t& nonFinite);
-    /// The same of a tile, whose first value has this place in the film.
-    void foldTile(float* tile, size_t place, size_t count, double weight, double* sums, double& deviation);
+    /// What the folding of an image row adds up over its frames.
+    struct RowSums {
+        std::vector<double> values, blocks; ///< of the pass; of its deviations, by block
+        double squares = 0.0;               ///< what the row adds to second moments
+        uint64_t nonFinite = 0;
+    };
+    /// One row of a frame of the pass into the means.
+    void foldRow(size_t row, double weight, RowSums& sums);
+    /// The same of a tile, whose first value has this place in the film and the row.
+    void foldTile(float* tile, size_t place, size_t first, size_t count, double weight, RowSums& sums);
+    /// Of an image row whose blocks deviate by `blocks` times `scale`, which go into its group of passes.
+    PassDeviation deviationOf(size_t y, double squares, const std::vector<double>& blocks, double scale);
     /// Of a function of the values of all pixels of all frames.
     template <typename Function>
     [[nodiscard]] double meanOf(const Function& function) const;
@@ -171,8 +180,9 @@ class Film {
     [[nodiscard]] Image errorImage(Image moments) const;
     /// From a second moment to the squared standard error; NaN while it is unknown.
     [[nodiscard]] double errorScale() const;
-    /// An estimate of the variance of one pass from what it adds to the second moment.
-    [[nodiscard]] double variance(double deviation, const FoldedPass& pass) const;
+    /// From what a pass adds to second moments to an estimate of its variance; from its squared deviation to that.
+    [[nodiscard]] double momentScale(const FoldedPass& pass) const;
+    [[nodiscard]] double deviationScale(const FoldedPass& pass) const;
 
     int width_ = 0, height_ = 0, frames_ = 0;
     FilmContents contents_;
@@ -182,6 +192,9 @@ class Film {
     double moment2Sum_ = 0.0;                    ///< of all pixels and channels
     uint64_t nonFinite_ = 0;
     PassScatter scatter_;
+    /// Deviations of the last group of passes and of the one under way, summed over frames and the pixels of a block,
+    /// by image row.
+    std::vector<float> lastBlocks_, blocks_;
     PassBatches batches_;
     size_t tilesInRow_ = 0;
     LazyTiles tiles_;

@@ -11,7 +11,7 @@ namespace tungsten {
 
 namespace {
 
-constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '5'};
+constexpr char Magic[8] = {'T', 'F', 'I', 'L', 'M', '0', '0', '6'};
 
 struct StateHeader {
     char magic[8];
@@ -80,7 +80,7 @@ void Film::read(std::istream& in, const std::string& fileName) {
 }
 
 void Film::writeRows(std::ostream& out, int from, int end) const {
-    const size_t values = rowValues();
+    const size_t values = rowValues(), ofRow = blocks_.size() / size_t(height_);
     const auto rows = size_t(end - from);
     out.write(reinterpret_cast<const char*>(&passes_), sizeof passes_);
     for (const double* sum : {&weight_, &squaredWeights_}) out.write(reinterpret_cast<const char*>(sum), sizeof *sum);
@@ -96,11 +96,12 @@ void Film::writeRows(std::ostream& out, int from, int end) const {
     if (frames_ > 1)
         for (const auto* total : {&totalMean_, &totalMoment2_})
             writeArray(out, *total, size_t(from) * values, rows * values);
+    for (const auto* blocks : {&lastBlocks_, &blocks_}) writeArray(out, *blocks, size_t(from) * ofRow, rows * ofRow);
     batches_.write(out, from, end);
 }
 
 void Film::readRows(std::istream& in, int from, int end) {
-    const size_t values = rowValues();
+    const size_t values = rowValues(), ofRow = blocks_.size() / size_t(height_);
     const auto rows = size_t(end - from);
     in.read(reinterpret_cast<char*>(&passes_), sizeof passes_);
     for (double* sum : {&weight_, &squaredWeights_}) in.read(reinterpret_cast<char*>(sum), sizeof *sum);
@@ -115,6 +116,7 @@ void Film::readRows(std::istream& in, int from, int end) {
     }
     if (frames_ > 1)
         for (auto* total : {&totalMean_, &totalMoment2_}) readArray(in, *total, size_t(from) * values, rows * values);
+    for (auto* blocks : {&lastBlocks_, &blocks_}) readArray(in, *blocks, size_t(from) * ofRow, rows * ofRow);
     batches_.read(in, from, end);
 }
 

@@ -1,6 +1,7 @@
 #include "tungsten/film/PassScatter.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <istream>
@@ -21,8 +22,20 @@ double quantile(const std::vector<double>& sorted, double fraction) {
 
 } // namespace
 
-void PassScatter::add(double squaredDeviation) {
-    sum_ += squaredDeviation;
+uint32_t PassScatter::groupEndingWith(uint32_t pass) {
+    constexpr uint32_t GroupsPerOctave = 32;
+    const uint32_t passes = std::max(std::bit_floor(pass) / GroupsPerOctave, 1u);
+    return (pass + 1) % passes == 0 ? passes : 0;
+}
+
+void PassScatter::add(uint32_t pass, const PassDeviation& deviation) {
+    if (const double w = double(groupEndingWith(pass)); w > 0.0) {
+        const double q = deviation.product * deviation.product / (w * w), d = deviation.blocks * lastBlocks_ / (w * w);
+        const std::array<double, 7> terms{w, w * w, w * q, w * d, w * w * q * q, w * w * q * d, w * w * d * d};
+        for (size_t i = 0; d > 0.0 && i < terms.size(); ++i) products_[i] += terms[i];
+        lastBlocks_ = deviation.blocks;
+    }
+    sum_ += deviation.squares;
     if (++inGroup_ < span_) return;
     groups_.push_back(sum_ / double(span_));
     sum_ = 0.0;
@@ -41,25 +54,37 @@ double PassScatter::boundFactor() const {
     for (const double value : groups_) squares += (value - mean) * (value - mean);
     if (!(mean > 0.0)) return 1.0; // all passes are alike
     const double relative = squares / (double(groups_.size() - 1) * mean * mean);
+    const double rare = relative / double(groups_.size()), all = relative * double(span_), shared = sharedVariance();
+    if (std::isfinite(shared)) return std::sqrt(1.0 + Deviations * std::sqrt(rare + std::min(all, shared + rare)));
     std::vector<double> sorted = groups_;
     std::sort(sorted.begin(), sorted.end());
     const double median = quantile(sorted, 0.5);
     const double quartiles = (quantile(sorted, 0.75) - quantile(sorted, 0.25)) / (QuartileDistance * median);
-    const double usual = median > 0.0 ? std::min(quartiles * quartiles, relative) : relative;
-    return std::sqrt(1.0 + Deviations * std::sqrt(relative / double(groups_.size()) + usual * double(span_)));
+    const double usual = median > 0.0 ? std::min(quartiles * quartiles * double(span_), all) : all;
+    return std::sqrt(1.0 + Deviations * std::sqrt(rare + usual));
+}
+
+double PassScatter::sharedVariance() const {
+    constexpr double Fewest = 8.0;
+    const auto& [w, w2, wq, wd, w2q2, w2qd, w2d2] = products_;
+    if (!(wd > 0.0) || w * w < Fewest * w2) return std::numeric_limits<double>::infinity();
+    const double ratio = wq / wd, residual = w2q2 - 2.0 * ratio * w2qd + ratio * ratio * w2d2;
+    return 2.0 * (ratio + Deviations * std::sqrt(std::max(residual, 0.0)) / wd);
 }
 
 void PassScatter::write(std::ostream& out) const {
     const uint64_t counts[3] = {groups_.size(), span_, inGroup_};
     out.write(reinterpret_cast<const char*>(counts), sizeof counts);
-    out.write(reinterpret_cast<const char*>(&sum_), sizeof sum_);
+    for (const double* sum : {&sum_, &lastBlocks_}) out.write(reinterpret_cast<const char*>(sum), sizeof *sum);
+    out.write(reinterpret_cast<const char*>(products_.data()), sizeof products_);
     out.write(reinterpret_cast<const char*>(groups_.data()), std::streamsize(groups_.size() * sizeof(double)));
 }
 
 void PassScatter::read(std::istream& in) {
     uint64_t counts[3] = {};
     in.read(reinterpret_cast<char*>(counts), sizeof counts);
-    in.read(reinterpret_cast<char*>(&sum_), sizeof sum_);
+    for (double* sum : {&sum_, &lastBlocks_}) in.read(reinterpret_cast<char*>(sum), sizeof *sum);
+    in.read(reinterpret_cast<char*>(products_.data()), sizeof products_);
     if (!in || counts[0] >= MostGroups) return in.setstate(std::ios::failbit);
     groups_.resize(size_t(counts[0]));
     in.read(reinterpret_cast<char*>(groups_.data()), std::streamsize(groups_.size() * sizeof(double)));

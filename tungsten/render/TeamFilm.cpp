@@ -71,16 +71,17 @@ void TeamFilm::fold(size_t rank, double weight) {
 
 void TeamFilm::settle() {
     std::vector<Bytes> parts(size_t(team_->size()));
-    for (const FoldedPass& pass : folded_) append(parts[0], pass.deviations.data(), pass.deviations.size());
+    for (const FoldedPass& pass : folded_) append(parts[0], pass.rows.data(), pass.rows.size());
     const std::vector<Bytes> received = team_->exchange(parts);
     if (team_->rank() == 0)
         for (size_t pass = 0; pass < folded_.size(); ++pass) {
             FoldedPass& folded = folded_[pass];
-            folded.deviations.assign(size_t(film_.height()), 0.0);
+            folded.rows.assign(size_t(film_.height()), {});
             for (int rank = 0; rank < team_->size(); ++rank) {
                 const auto rows = size_t(firstRowOf(rank + 1) - firstRowOf(rank));
-                std::memcpy(folded.deviations.data() + firstRowOf(rank),
-                            received[size_t(rank)].data() + pass * rows * sizeof(double), rows * sizeof(double));
+                std::memcpy(folded.rows.data() + firstRowOf(rank),
+                            received[size_t(rank)].data() + pass * rows * sizeof(PassDeviation),
+                            rows * sizeof(PassDeviation));
             }
             film_.settle(folded);
         }
