@@ -208,8 +208,8 @@ TEST_F(Robustness, WhatDoesNotFitIntoMemoryIsRefusedWithTheFigure) {
     GTEST_SKIP() << "the sanitizer's own memory exceeds any limit";
 #endif
     refuses({"--memory-limit", "1M", "--resolution", "400x300"}, BadInput,
-            {"needs about 13.8 MiB", "400x300", "1 MiB"});
-    refuses({"--resolution", "65536x65536"}, BadInput, {"needs about 482 GiB", "65536x65536"});
+            {"needs about 13.9 MiB", "400x300", "1 MiB"});
+    refuses({"--resolution", "65536x65536"}, BadInput, {"needs about 486 GiB", "65536x65536"});
     refuses({"--set", R"(integrator={"type": "photon_map", "photon_count": 1000000000})", "--memory-limit", "1G"},
             BadInput, {"needs about", "44.7 GiB for the integrator"});
     EXPECT_EQ(render({"--memory-limit", "2GiB"}).exitCode, 0);
