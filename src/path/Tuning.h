@@ -47,4 +47,20 @@ inline constexpr size_t Candidates = 64;
 /// Light paths that tell how many of an emitter's reflect. Bench: study dragon-160
 inline constexpr size_t PilotPaths = 32768;
 
+// --- Light through walls that refract -----------------------------------------------------------------------------
+
+/// Vertices of sealed bodies aim at lights through a face with so many times the transmittance of the way to it, at
+/// most with probability 1; never from deeper than so many mean free paths.
+inline constexpr float RefractedOdds = 2.0f, DeepestRefracted = 10.0f;
+/// Weight of a draw's density beside that of meeting the light by chance: candidates in time make it denser.
+inline constexpr float RefractedGain = 4.0f;
+/// Between a way to the boundary and its normal.
+inline constexpr float LeastRefractedCosine = 0.2f;
+/// Points of a light in a pass; triangles of one at most: each is asked whether a direction meets it.
+inline constexpr size_t LampPoints = 1024, MostLampTriangles = 64;
+/// Ways from under the boundary of a body that tell how late its light arrives through what else is in between, of
+/// which so many quantiles are kept; boundaries on one of them.
+inline constexpr size_t DelayPilots = 2048, DelayQuantiles = 32;
+inline constexpr int MostBoundaries = 16;
+
 } // namespace tungsten::path::tuning
