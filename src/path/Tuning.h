@@ -59,8 +59,8 @@ inline constexpr float LeastRefractedCosine = 0.2f;
 /// Points of a light in a pass; triangles of one at most: each is asked whether a direction meets it.
 inline constexpr size_t LampPoints = 1024, MostLampTriangles = 64;
 /// Ways from under the boundary of a body that tell how late its light arrives through what else is in between, of
-/// which so many quantiles are kept; boundaries on one of them.
-inline constexpr size_t DelayPilots = 2048, DelayQuantiles = 32;
+/// which so many quantiles are kept, and so many that hold them all, for rare ways; boundaries on one of them.
+inline constexpr size_t DelayPilots = 2048, DelayQuantiles = 32, WholeDelays = 4;
 inline constexpr int MostBoundaries = 16;
 
 } // namespace tungsten::path::tuning

@@ -111,11 +111,10 @@ auto RefractedLight::draw(const SealedVertex& vertex, Sampler& sampler) const ->
     const RefractedView seen = view(vertex.position, vertex.region, chosen, lamp);
     const Delays& delays = pair(vertex.region.medium, lamp).delays[chosen];
     const auto [low, high] = window(vertex, lamps_[lamp]);
-    const size_t count = delays.values.size();
-    const float delay = count > 1 ? delays.values[std::min(size_t(sampler.next1D() * float(count)), count - 1)]
-                                  : delays.values.front();
+    size_t which = 0;
+    if (delays.size() > 1) which = std::min(size_t(sampler.next1D() * float(delays.size())), delays.size() - 1);
     const Vec2f uPoint = sampler.next2D();
-    auto drawn = choose(seen, vertex, low - delay - delays.spacing, high - delay + delays.spacing, uPoint);
+    auto drawn = choose(seen, vertex, low - delays[which].most, high - delays[which].least, uPoint);
     if (drawn) drawn->face = chosen;
     return drawn;
 }
@@ -151,10 +150,9 @@ float RefractedLight::density(const SealedVertex& vertex, const Vec3f& direction
     const auto [low, high] = window(vertex, lamps_[lamp]);
     float sum = 0.0f;
     view(vertex.position, vertex.region, faceIndex, lamp).eachAlong(direction, [&](const RefractedView::Aim& aim) {
-        size_t inTime = 0;
-        for (const float delay : delays.values)
-            if (aim.time >= low - delay - delays.spacing && aim.time < high - delay + delays.spacing) ++inTime;
-        sum += aim.density * float(inTime) / float(delays.values.size());
+        const auto inTime = std::count_if(delays.begin(), delays.end(),
+                                          [&](const Delay& delay) { return delay.covers(aim.time, low, high); });
+        sum += aim.density * float(inTime) / float(delays.size());
     });
     return sum * odds.faces[faceIndex] * choice_.probability(size_t(emitter));
 }

@@ -46,12 +46,17 @@ class RefractedLight {
 
   private:
     static constexpr size_t MostFaces = 12;
-    /// How long after the view's time light of an emitter really arrives: other boundaries on the way. Evenly spaced
-    /// quantiles, ascending.
-    struct Delays {
-        std::vector<float> values{0.0f};
-        float spacing = 0.0f;
+    /// How long after the view's time light of an emitter really arrives, from the least to the most: other boundaries
+    /// on the way.
+    struct Delay {
+        float least = 0.0f, most = 0.0f;
+        /// Of a way that takes the view a time from `low` to `high`, in case of this delay.
+        [[nodiscard]] bool covers(float time, float low, float high) const {
+            return time >= low - most && time < high - least;
+        }
     };
+    /// As likely as each other: those of pilots between neighbouring quantiles, and some that hold them all.
+    using Delays = std::vector<Delay>;
     /// Of one body and emitter.
     struct Pair {
         float index = 1.0f; ///< refractive, inside over that about the emitter
@@ -75,6 +80,8 @@ class RefractedLight {
     [[nodiscard]] std::pair<float, float> window(const SealedVertex& vertex, const RefractedLamp& lamp) const;
 
     [[nodiscard]] float indexTowards(int medium, const RefractedLamp& lamp) const;
+    /// At least one; those given are sorted.
+    static Delays quantiles(std::vector<float>& delays);
     [[nodiscard]] std::vector<Delays> delaysOf(int medium, size_t lamp, Sampler sampler) const;
     /// Until light that starts at a vertex in a body, as seen from there, is met on the emitter; none if it is not.
     [[nodiscard]] std::optional<double> timeTo(const RefractedLamp& lamp, Ray ray, Region region,

@@ -15,6 +15,17 @@ namespace tungsten::path {
 
 using transport::Body;
 
+auto RefractedLight::quantiles(std::vector<float>& delays) -> Delays {
+    constexpr size_t Count = tuning::DelayQuantiles;
+    if (delays.size() < Count) return {Delay{}};
+    std::sort(delays.begin(), delays.end());
+    const auto at = [&](size_t k) { return delays[k * (delays.size() - 1) / Count]; };
+    Delays result;
+    for (size_t k = 0; k < Count; ++k) result.push_back({at(k), at(k + 1)});
+    result.resize(Count + tuning::WholeDelays, {delays.front(), delays.back()});
+    return result;
+}
+
 void RefractedLight::prepare(const Scene& scene, const std::vector<bool>& leftOut, const PassWatch& watch) {
     scene_ = &scene;
     gate_ = transport::Delays::of(scene).arrivals(scene.transport.gate);
@@ -37,7 +48,7 @@ void RefractedLight::prepare(const Scene& scene, const std::vector<bool>& leftOu
             watch.poll();
             Pair& pair = pairs_[medium][lamp];
             pair.index = indexTowards(int(medium), lamps_[lamp]);
-            pair.delays.resize(faces(int(medium)));
+            pair.delays.resize(faces(int(medium)), {Delay{}});
             pair.delays = delaysOf(int(medium), lamp, {0, RandomStream::RefractedLight, uint32_t(medium), ~lamp});
         }
     }
@@ -102,15 +113,8 @@ auto RefractedLight::delaysOf(int medium, size_t lamp, Sampler sampler) const ->
         seen.eachAlong(drawn->direction,
                        [&](const RefractedView::Aim& aim) { found[through].push_back(float(*time) - aim.time); });
     }
-    std::vector<Delays> delays(found.size());
-    for (size_t i = 0; i < found.size(); ++i) {
-        if (found[i].size() < tuning::DelayQuantiles) continue;
-        std::sort(found[i].begin(), found[i].end());
-        constexpr size_t Count = tuning::DelayQuantiles;
-        delays[i].values.clear();
-        for (size_t k = 0; k < Count; ++k) delays[i].values.push_back(found[i][(2 * k + 1) * found[i].size() / (2 * Count)]);
-        delays[i].spacing = (delays[i].values.back() - delays[i].values.front()) / float(Count);
-    }
+    std::vector<Delays> delays;
+    for (std::vector<float>& each : found) delays.push_back(quantiles(each));
     return delays;
 }
 
