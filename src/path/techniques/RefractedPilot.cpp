@@ -15,14 +15,17 @@ namespace tungsten::path {
 
 using transport::Body;
 
-auto RefractedLight::quantiles(std::vector<float>& delays) -> Delays {
+auto RefractedLight::quantiles(std::vector<float>& delays, const Delay& all) -> Delays {
     constexpr size_t Count = tuning::DelayQuantiles;
-    if (delays.size() < Count) return {Delay{}};
     std::sort(delays.begin(), delays.end());
-    const auto at = [&](size_t k) { return delays[k * (delays.size() - 1) / Count]; };
     Delays result;
-    for (size_t k = 0; k < Count; ++k) result.push_back({at(k), at(k + 1)});
-    result.resize(Count + tuning::WholeDelays, {delays.front(), delays.back()});
+    if (delays.size() < Count) {
+        result.push_back(all);
+    } else {
+        const auto at = [&](size_t k) { return delays[k * (delays.size() - 1) / Count]; };
+        for (size_t k = 0; k < Count; ++k) result.push_back({at(k), at(k + 1)});
+        result.resize(Count + tuning::WholeDelays, all);
+    }
     return result;
 }
 
@@ -113,8 +116,11 @@ auto RefractedLight::delaysOf(int medium, size_t lamp, Sampler sampler) const ->
         seen.eachAlong(drawn->direction,
                        [&](const RefractedView::Aim& aim) { found[through].push_back(float(*time) - aim.time); });
     }
+    Delay all; // of any face: through few ways that one has all may be late
+    for (const auto& each : found)
+        for (const float delay : each) all = {std::min(all.least, delay), std::max(all.most, delay)};
     std::vector<Delays> delays;
-    for (std::vector<float>& each : found) delays.push_back(quantiles(each));
+    for (auto& each : found) delays.push_back(quantiles(each, all));
     return delays;
 }
 
