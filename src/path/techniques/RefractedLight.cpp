@@ -135,7 +135,7 @@ auto RefractedLight::choose(const RefractedView& view, const SealedVertex& verte
         return medium.phase.eval(vertex.before, aim->direction) * through *
                std::exp(-sigmaT * (aim->way.inside() - view.depth)) / aim->density;
     };
-    const auto choice = lamp.points.choose(view.foot, from, to, u, importance);
+    const auto choice = lamp.points.choose(view.foot, from, to, u, importance, tuning::RefractedCandidates);
     if (!choice.vertex) return std::nullopt;
     const auto aim = view.towards(choice.vertex->at.position, choice.vertex->at.normal);
     return Drawn{aim->direction, choice.weight, 0, lamp.index};

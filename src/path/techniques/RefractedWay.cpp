@@ -14,7 +14,7 @@ double tangentOf(double a, double b, double m, double sum) {
         const double squared = slope + (slope - 1.0) * t * t, root = std::sqrt(squared);
         const double step = (sum - t * (a + b / root)) / (a + b * slope / (squared * root));
         t += step;
-        if (!(step > 1e-9 * t)) break;
+        if (!(step > 1e-5 * t)) break; // what is left is about the square of it
     }
     return t;
 }
