@@ -26,7 +26,8 @@ std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, c
     if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
     if (!facts.mediumScattering) return facts.noScattering();
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
-    if (noConnection(scene, settings, facts)) return "all that scatters lies behind walls that refract: no connection is complete";
+    if (noConnection(scene, settings, facts))
+        return "all that scatters lies behind walls that refract: no connection is complete";
     const TimeGate& gate = scene.transport.gate;
     const bool wide = settings.policy.followsBodies() && !facts.surfaceScattering && !gate.delta &&
                       gate.frames == 1 && // each of many is short
@@ -39,7 +40,8 @@ Choice refractedOf(const Scene& scene, const PathSettings& settings, const Effec
     if (!facts.timeResolved || !facts.mediumScattering || !facts.heterogeneousMedia.empty() ||
         !settings.lightSampling || !settings.volumeLightSampling || !noConnection(scene, settings, facts))
         return {false, "not all that scatters is sealed by walls that refract, in a time-resolved render"};
-    if (!RefractedLight::helpsWith(scene)) return {false, "no light with a simple surface is outside the bodies, or many are"};
+    if (!RefractedLight::helpsWith(scene))
+        return {false, "no light with a simple surface is outside the bodies, or many are"};
     return {true, "paths aim from inside bodies at points of lights that refraction brings them to in time"};
 }
 

@@ -161,8 +161,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{*scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr,
-                              plan_.forwardBoundaries};
+    const WalkContext context{
+        *scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries};
     const bool lasers = targets_->any();
     renderTiles(
         pass, film, statistics,

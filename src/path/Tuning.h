@@ -52,6 +52,8 @@ inline constexpr size_t PilotPaths = 32768;
 /// Vertices of sealed bodies aim at lights through a face with so many times the transmittance of the way to it, at
 /// most with probability 1; never from deeper than so many mean free paths.
 inline constexpr float RefractedOdds = 1.0f, DeepestRefracted = 10.0f;
+/// Towards where the way to a light leaves a sphere.
+inline constexpr int SphereSteps = 3;
 /// Of candidates in time, at most, whose ways are worked out.
 inline constexpr size_t RefractedCandidates = 8;
 /// Weight of a draw's density beside that of meeting the light by chance: candidates in time make it denser.

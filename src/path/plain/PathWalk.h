@@ -97,8 +97,8 @@ class PathWalk {
     const RefractedLight* refracted_;
     std::optional<SealedVertex> sealed_; ///< the ray's origin, if it is a vertex of a sealed body
     std::optional<WayOut> wayOut_;
-    int aimedAt_ = -1;               ///< the emitter, of a walk that follows a drawn way out
-    LobeMask onward_ = lobe::All;    ///< at the next surface
+    int aimedAt_ = -1;            ///< the emitter, of a walk that follows a drawn way out
+    LobeMask onward_ = lobe::All; ///< at the next surface
     /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while
     /// specular.
     bool weighted_ = false;

@@ -48,13 +48,19 @@ size_t RefractedLight::faces(int medium) const {
     return body.sphere ? 1 : body.faces.size();
 }
 
-Body::Face RefractedLight::face(int medium, size_t index, const Vec3f& position) const {
-    const Body& body = bodies_[size_t(medium)];
+Body::Face RefractedLight::face(const Vec3f& position, const Region& region, size_t index, size_t lamp) const {
+    const Body& body = bodies_[size_t(region.medium)];
     if (!body.sphere) return body.faces[index];
-    // The plane that touches it where the boundary is nearest.
-    const Vec3f from = position - body.sphere->centre;
-    const Vec3f normal = from.length2() > 0.0f ? from.normalized() : Vec3f(0.0f, 0.0f, 1.0f);
-    return {body.sphere->centre + normal * body.sphere->radius, normal};
+    // The plane that touches the sphere about where the way to the light's middle leaves it.
+    const RefractedLamp& to = lamps_[lamp];
+    Body::Face touching = body.leave(position, (to.bounds.centre - position).normalized()).face;
+    for (int i = 0; i < tuning::SphereSteps; ++i) {
+        const RefractedView seen(position, touching, pair(region.medium, lamp).index, region.speed, to);
+        const auto direction = seen.directionTo(to.bounds.centre);
+        if (!direction) break;
+        touching = body.leave(position, *direction).face;
+    }
+    return touching;
 }
 
 size_t RefractedLight::faceOf(int medium, const Vec3f& normal) const {
@@ -66,18 +72,21 @@ size_t RefractedLight::faceOf(int medium, const Vec3f& normal) const {
 }
 
 RefractedView RefractedLight::view(const Vec3f& position, const Region& region, size_t faceIndex, size_t lamp) const {
-    return {position, face(region.medium, faceIndex, position), pair(region.medium, lamp).index, region.speed,
+    return {position, face(position, region, faceIndex, lamp), pair(region.medium, lamp).index, region.speed,
             lamps_[lamp]};
 }
 
-auto RefractedLight::oddsOf(const Vec3f& position, int medium, const RefractedLamp& lamp) const -> Odds {
-    const float sigmaT = meanComponent(scene_->media[size_t(medium)].sigmaT());
+auto RefractedLight::oddsOf(const Vec3f& position, const Region& region, size_t lamp) const -> Odds {
+    const float sigmaT = meanComponent(scene_->media[size_t(region.medium)].sigmaT());
     Odds odds;
-    odds.count = faces(medium);
+    odds.count = faces(region.medium);
+    const BoundingSphere& bounds = lamps_[lamp].bounds;
+    const Body& body = bodies_[size_t(region.medium)];
     for (size_t i = 0; i < odds.count; ++i) {
-        const Body::Face at = face(medium, i, position);
+        const Body::Face at =
+            body.sphere ? body.leave(position, (bounds.centre - position).normalized()).face : body.faces[i];
         const float depth = (at.point - position).dot(at.normal);
-        const bool lit = (lamp.bounds.centre - at.point).dot(at.normal) + lamp.bounds.radius > 0.0f;
+        const bool lit = (bounds.centre - at.point).dot(at.normal) + bounds.radius > 0.0f;
         if (!lit || !(depth > 0.0f) || depth * sigmaT > tuning::DeepestRefracted) continue;
         odds.faces[i] = std::exp(-sigmaT * depth);
         odds.sum += odds.faces[i];
@@ -98,7 +107,7 @@ auto RefractedLight::draw(const SealedVertex& vertex, Sampler& sampler) const ->
     size_t emitter = size_t(lamps_.front().index);
     if (lamps_.size() > 1) emitter = choice_.sample(sampler.next1D()).index;
     const auto lamp = size_t(lampOf_[emitter]);
-    const Odds odds = oddsOf(vertex.position, vertex.region.medium, lamps_[lamp]);
+    const Odds odds = oddsOf(vertex.position, vertex.region, lamp);
     if (!(odds.sum > 0.0f)) return std::nullopt;
     float u = sampler.next1D();
     if (u >= odds.sum) return std::nullopt;
@@ -144,7 +153,7 @@ auto RefractedLight::choose(const RefractedView& view, const SealedVertex& verte
 float RefractedLight::density(const SealedVertex& vertex, const Vec3f& direction, size_t faceIndex, int emitter) const {
     if (emitter < 0 || lampOf_[size_t(emitter)] < 0) return 0.0f;
     const auto lamp = size_t(lampOf_[size_t(emitter)]);
-    const Odds odds = oddsOf(vertex.position, vertex.region.medium, lamps_[lamp]);
+    const Odds odds = oddsOf(vertex.position, vertex.region, lamp);
     if (!(odds.faces[faceIndex] > 0.0f)) return 0.0f;
     const Delays& delays = pair(vertex.region.medium, lamp).delays[faceIndex];
     const auto [low, high] = window(vertex, lamps_[lamp]);

@@ -59,7 +59,7 @@ class RefractedLight {
     using Delays = std::vector<Delay>;
     /// Of one body and emitter.
     struct Pair {
-        float index = 1.0f; ///< refractive, inside over that about the emitter
+        float index = 1.0f;         ///< refractive, inside over that about the emitter
         std::vector<Delays> delays; ///< by face
     };
     /// Of a vertex, by face: the chance that draw() chooses it.
@@ -68,8 +68,10 @@ class RefractedLight {
         size_t count = 0;
         float sum = 0.0f;
     };
-    [[nodiscard]] Odds oddsOf(const Vec3f& position, int medium, const RefractedLamp& lamp) const;
-    [[nodiscard]] transport::Body::Face face(int medium, size_t index, const Vec3f& position) const;
+    [[nodiscard]] Odds oddsOf(const Vec3f& position, const Region& region, size_t lamp) const;
+    /// The plane that a view has for it.
+    [[nodiscard]] transport::Body::Face face(const Vec3f& position, const Region& region, size_t index,
+                                             size_t lamp) const;
     [[nodiscard]] size_t faces(int medium) const;
     [[nodiscard]] const Pair& pair(int medium, size_t lamp) const { return pairs_[size_t(medium)][lamp]; }
     [[nodiscard]] RefractedView view(const Vec3f& position, const Region& region, size_t face, size_t lamp) const;
@@ -88,11 +90,11 @@ class RefractedLight {
                                                Sampler& sampler) const;
 
     const Scene* scene_ = nullptr;
-    TimeGate gate_; ///< of arrivals
+    TimeGate gate_;                       ///< of arrivals
     std::vector<transport::Body> bodies_; ///< by medium
     std::vector<RefractedLamp> lamps_;
-    Distribution1D choice_; ///< by emitter
-    std::vector<int> lampOf_; ///< by emitter, -1: none
+    Distribution1D choice_;                ///< by emitter
+    std::vector<int> lampOf_;              ///< by emitter, -1: none
     std::vector<std::vector<Pair>> pairs_; ///< by medium, lamp
 };
 

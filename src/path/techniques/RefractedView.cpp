@@ -47,7 +47,7 @@ auto RefractedView::aim(const RefractedWay& way, const Vec3f& direction, const V
                area / lamp.area().areaSampler->area()};
 }
 
-auto RefractedView::towards(const Vec3f& point, const Vec3f& normalThere) const -> std::optional<Aim> {
+auto RefractedView::courseTo(const Vec3f& point) const -> std::optional<Course> {
     const Vec3f offset = point - foot;
     const float height = offset.dot(normal);
     const Vec3f along = offset - normal * height;
@@ -56,9 +56,18 @@ auto RefractedView::towards(const Vec3f& point, const Vec3f& normalThere) const 
     if (!way) return std::nullopt;
     const float sine = std::sqrt(std::max(1.0f - sqr(way->cosInside), 0.0f));
     const Vec3f tangent = lateral > 0.0f ? along / lateral : Vec3f(0.0f);
-    const Vec3f direction = (tangent * sine + normal * way->cosInside).normalized();
-    const Vec3f outward = tangent * (index * sine) + normal * way->cosOutside;
-    return aim(*way, direction, outward, normalThere);
+    return Course{*way, (tangent * sine + normal * way->cosInside).normalized(),
+                  tangent * (index * sine) + normal * way->cosOutside};
+}
+
+std::optional<Vec3f> RefractedView::directionTo(const Vec3f& point) const {
+    const auto course = courseTo(point);
+    return course ? std::optional(course->direction) : std::nullopt;
+}
+
+auto RefractedView::towards(const Vec3f& point, const Vec3f& normalThere) const -> std::optional<Aim> {
+    const auto course = courseTo(point);
+    return course ? aim(course->way, course->direction, course->outward, normalThere) : std::nullopt;
 }
 
 } // namespace tungsten::path

@@ -49,12 +49,19 @@ struct RefractedView {
 
     RefractedView(const Vec3f& vertex, const transport::Body::Face& face, float relativeIndex, float speed,
                   const RefractedLamp& emitter);
+    /// Of the way to a point, whether or not there is light.
+    [[nodiscard]] std::optional<Vec3f> directionTo(const Vec3f& point) const;
     [[nodiscard]] std::optional<Aim> towards(const Vec3f& point, const Vec3f& normalThere) const;
     /// Of all points that `direction` leads to.
     template <typename Visit>
     void eachAlong(const Vec3f& direction, Visit&& visit) const;
 
   private:
+    struct Course {
+        RefractedWay way;
+        Vec3f direction, outward; ///< at its start and end, unit
+    };
+    [[nodiscard]] std::optional<Course> courseTo(const Vec3f& point) const;
     [[nodiscard]] std::optional<Aim> aim(const RefractedWay& way, const Vec3f& direction, const Vec3f& outward,
                                          const Vec3f& normalThere) const;
 };

@@ -4,8 +4,8 @@ namespace tungsten::path {
 
 namespace {
 
-/// t > 0 with a t + b t / sqrt(m² + (m² - 1) t²) = sum, for m of at least 1: the tangent of the angle where the index is
-/// lower. The left side is concave, so that Newton's steps from below never pass the solution.
+/// t > 0 with a t + b t / sqrt(m² + (m² - 1) t²) = sum, for m of at least 1: the tangent of the angle where the index
+/// is lower. The left side is concave, so that Newton's steps from below never pass the solution.
 double tangentOf(double a, double b, double m, double sum) {
     constexpr int MostSteps = 64;
     const double slope = m * m;
