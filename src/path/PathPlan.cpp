@@ -3,6 +3,7 @@
 #include "path/PathTarget.h"
 #include "path/Tuning.h"
 #include "path/techniques/LightPaths.h"
+#include "path/techniques/RefractedLight.h"
 
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
@@ -13,20 +14,35 @@ namespace tungsten::path {
 
 namespace {
 
+/// No vertex can be connected to an emitter.
+bool noConnection(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    return settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
+           transport::isSealed(scene);
+}
+
 std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
     if (!settings.policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
     if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
     if (!facts.mediumScattering) return facts.noScattering();
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
-    const bool sealed = settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
-                        transport::isSealed(scene);
-    if (sealed) return "all that scatters lies behind walls that refract: no connection is complete";
+    if (noConnection(scene, settings, facts))
+        return "all that scatters lies behind walls that refract: no connection is complete";
     const TimeGate& gate = scene.transport.gate;
     const bool wide = settings.policy.followsBodies() && !facts.surfaceScattering && !gate.delta &&
                       gate.frames == 1 && // each of many is short
                       transport::gateInBodies(scene).transport > tuning::WidestGate;
     return wide ? "a gate so wide that most light which leaves the bodies is in time" : "";
+}
+
+Choice refractedOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+    if (!settings.policy.guides()) return {false, "the scene does not ask for it"};
+    if (!facts.timeResolved || !facts.mediumScattering || !facts.heterogeneousMedia.empty() ||
+        !settings.lightSampling || !settings.volumeLightSampling || !noConnection(scene, settings, facts))
+        return {false, "not all that scatters is sealed by walls that refract, in a time-resolved render"};
+    if (!RefractedLight::helpsWith(scene))
+        return {false, "no light with a simple surface is outside the bodies, or many are"};
+    return {true, "paths aim from inside bodies at points of lights that refraction brings them to in time"};
 }
 
 std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
@@ -84,6 +100,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
                                                                         : "off by default in time-resolved renders"};
     plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
     plan.entryPoints = entryPointsOf(scene, settings, plan.guidance);
+    plan.refracted = refractedOf(scene, settings, facts);
     plan.chooseLightPaths(scene, settings, facts);
     return plan;
 }
@@ -107,6 +124,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
     if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
     add("guided paths", guidance, {"integrator.darts"}, {"control vertices"});
+    add("light through walls", refracted, {"integrator.darts"}, {"ways through walls"});
     add("EDA table", edaTable, {"integrator.darts"}, {"direction tables"});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);
     add("points of lights", entryPoints, {"integrator.darts"}, {"points of lights chosen anew"});

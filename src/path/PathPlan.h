@@ -20,6 +20,7 @@ struct PathPlan {
     Choice guidance;              ///< walks aim at emitters inside the gate
     Choice lightVertices;         ///< walks connect to surface points that light reaches first
     Choice reflectedLight;        ///< and to where glossy surfaces throw light
+    Choice refracted;             ///< plain walks aim at emitters through the walls of sealed bodies
     Choice entryPoints;           ///< points of lights are chosen anew where walks enter bodies
     Choice edaTable;              ///< directions come from tables of media
 

@@ -26,6 +26,7 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("points of lights chosen anew", counters.pointsChosen);
     statistics.add("light vertex connections", counters.lightVertices);
     statistics.add("reflected light connections", counters.reflectedLight);
+    statistics.add("ways through walls", counters.refracted);
     statistics.add("connections", counters.connections);
     statistics.add("arrivals while the sensor is open", counters.arrivals);
     statistics.add("arrivals inside the gate", counters.timed);
@@ -94,6 +95,10 @@ void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statist
     lights_.emplace(*scene_, plan.late);
     using Emitters = TargetChoice::Emitters;
     targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late);
+    if (plan_.refracted.on) {
+        const StageTimer timer(statistics, "light through walls");
+        refracted_.emplace().prepare(*scene_, plan.late, watch);
+    }
     if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
     guides_ = makeGuides(*scene_, settings_.policy.sampling, plan, watch);
@@ -107,6 +112,7 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
         const StageTimer timer(statistics, "light paths");
         lightPaths_.trace(*scene_, *targets_, pass.part(0.0, LightPathsPart), statistics);
     }
+    if (refracted_) refracted_->trace(pass.part(0.0, 0.0));
     const StageTimer timer(statistics, "camera pass");
     const PassInfo rest = pass.part(plan_.lightVertices.on ? LightPathsPart : 0.0, 1.0);
     if (plan_.guidance.on)
@@ -155,7 +161,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{*scene_, settings_, *lights_, *bound_, plan_.forwardBoundaries};
+    const WalkContext context{
+        *scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries};
     const bool lasers = targets_->any();
     renderTiles(
         pass, film, statistics,

@@ -3,6 +3,7 @@
 
 #include "path/PathPlan.h"
 #include "path/guided/GuidedPathWalk.h"
+#include "path/techniques/RefractedLight.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include "tungsten/render/Integrator.h"
@@ -35,6 +36,7 @@ class PathTracer : public Integrator {
     PathGuides guides_;
     std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
     LightPaths lightPaths_;                             ///< of the pass
+    std::optional<RefractedLight> refracted_;           ///< of plain paths in sealed scenes
 };
 
 } // namespace tungsten::path

@@ -62,6 +62,17 @@ OTHER_PULSE = {"name": "late", "type": "point", "emission": 8, "emission_time": 
 FAR_FOG = {"bsdf": {"type": "forward"}, "int_medium": "fog", "transform": {"position": [0, 0.5, -9]}}
 FRAMED = {**{name: PHOTONS[name] for name in PHOTONS if "center" not in name}, "start_time": 2, "transient_time_width": 1, "frame_num": 4}
 
+DARK_LAMP = {"name": "ceiling", "type": "quad", "bsdf": {"type": "null"}, "emission": 8,
+             "transform": {"position": [0, 1.9, 0], "scale": 2, "rotation": [180, 0, 0]}}
+
+
+def sealed(wall):
+    """Fog in a cube under a lamp, nothing else scatters."""
+    scene = room(best(PATHS), surface={"bsdf": wall, "int_medium": "fog"}, media__0__sigma_s=2)
+    scene["primitives"][0] = DARK_LAMP
+    return scene
+
+
 # effect, a scene that has it, an element behind it, a scene that lacks it
 EFFECTS = [
     ("time of flight", room(), "integrator", room({**PATHS, **STEADY})),
@@ -105,6 +116,7 @@ EFFECTS = [
     ("frames one by one", foggy(best(FRAMED, single_frames=True)), "integrator.darts", foggy(best(FRAMED))),
     ("Russian roulette", room({**PATHS, "enable_rr": True}), "integrator.enable_rr", room()),
     ("guided paths", foggy(best(PATHS)), "integrator.darts", foggy()),
+    ("light through walls", sealed("glass"), "integrator.darts", sealed({"type": "forward"})),
     ("EDA table", foggy(best(PATHS, direction="eda")), "integrator.darts", foggy(best(PATHS, direction="connection"))),
     ("light vertices", foggy(best(PATHS)), "integrator.darts", foggy(best(PATHS, surface_connections=False))),
     ("reflected light", foggy(best(PATHS), surface=GLOSSY), "primitives[2].bsdf", foggy(best(PATHS))),

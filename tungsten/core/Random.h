@@ -36,7 +36,8 @@ enum class RandomStream : uint32_t {
     Frame = 9,
     Folded = 10,
     ReflectedLight = 11,
-    Highlight = 12
+    Highlight = 12,
+    RefractedLight = 13
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.

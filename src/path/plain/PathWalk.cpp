@@ -1,8 +1,9 @@
 #include "path/plain/PathWalk.h"
 
-#include "transport/Roulette.h"
+#include "path/Tuning.h"
 
 #include "transport/Balance.h"
+#include "transport/Roulette.h"
 
 namespace tungsten::path {
 
@@ -13,6 +14,11 @@ void PathWalk<TimeResolved, Media>::run(Ray ray) {
     path_.ray = ray;
     path_.region = scene_.cameraRegion;
     ++path_.counters.paths;
+    goOn();
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::goOn() {
     while (path_.interactions < scene_.transport.maxBounces) {
         if constexpr (Media) {
             if (const Medium* medium = scene_.medium(path_.region)) {
@@ -28,6 +34,10 @@ void PathWalk<TimeResolved, Media>::run(Ray ray) {
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::crossMedium(const Medium& medium) {
     if (medium.scatters() && ++path_.flights > medium.maxBounces) return false;
+    if (refracted_ && medium.scatters()) {
+        if (aimedAt_ >= 0) return false;
+        wayOut_.reset();
+    }
     // The free flight comes first: the ray need not look beyond its collision.
     const FlightSample flight = sampleFlight(medium, Infinity, path_.sampler);
     path_.ray.tMax = flight.distance;
@@ -88,6 +98,10 @@ bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float 
     path_.ray = Ray{vertex_, medium.phase.sample(before, path_.sampler.next2D())};
     directionPdf_ = medium.phase.pdf(before, path_.ray.direction);
     weighted_ = settings_.volumeLightSampling;
+    if (refracted_) {
+        sealed_ = SealedVertex{vertex_, before, path_.time, path_.region};
+        aimThroughWall(medium);
+    }
     return continueRoulette();
 }
 
@@ -105,12 +119,13 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     const LobeMask lobes = surface.bsdf->lobes();
     if (settings_.lightSampling && (lobes & lobe::Smooth) != 0)
         connect({scene_, surface, path_.ray.direction, TransportMode::Radiance, path_.region});
-    const auto exit =
-        sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, path_.sampler);
+    const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, onward_),
+                                 scene_.transport.consistencyChecks, path_.sampler);
     if (!exit) return false;
     path_.throughput = path_.throughput * exit->weight;
     if (isBlack(path_.throughput)) return false;
     path_.counters.leave(exit->lobe);
+    if (refracted_) passWall(hit, exit->lobe);
     if ((exit->lobe & lobe::Smooth) != 0) {
         path_.scattered = true;
         weighted_ = settings_.lightSampling;
@@ -135,7 +150,59 @@ void PathWalk<TimeResolved, Media>::addEmission(const SurfaceHit& hit) {
         const float lightPdf = pdfDirect(emitter, vertex_, hit.position, hit.ng) * lights_.probability(index);
         weight = transport::powerHeuristic(directionPdf_, lightPdf);
     }
+    if (refracted_) weight *= refractedShare(index);
     path_.sink.add(path_.throughput * radiance * weight, path_.time + emitter.emissionTime, emitter);
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::aimThroughWall(const Medium& medium) {
+    if (path_.flights + 1 > medium.maxBounces) return;
+    const auto drawn = refracted_->draw(*sealed_, path_.sampler);
+    if (!drawn) return;
+    PathWalk other(*this);
+    other.follow(*drawn, medium);
+    path_.sampler = other.path_.sampler;
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::follow(const RefractedLight::Drawn& drawn, const Medium& medium) {
+    path_.ray = Ray{vertex_, drawn.direction};
+    ++path_.counters.rays;
+    ++path_.counters.refracted;
+    const auto hit = scene_.geometry->intersect(path_.ray);
+    const Primitive* boundary = refracted_->boundary(path_.region.medium);
+    if (!hit || &scene_.primitives[hit->shape] != boundary ||
+        refracted_->faceOf(path_.region.medium, hit->ng) != drawn.face)
+        return;
+    const float density = refracted_->density(*sealed_, drawn.direction, drawn.face, drawn.emitter);
+    if (!(density > 0.0f)) return;
+    const float phase = medium.phase.eval(sealed_->before, drawn.direction);
+    const float met = phase * probabilityFlightExits(medium, hit->t);
+    const float share = transport::balance(tuning::RefractedGain * density, met);
+    path_.throughput = path_.throughput * medium.transmittance(hit->t) * (phase * drawn.weight * share / density);
+    aimedAt_ = drawn.emitter;
+    onward_ = lobe::SpecularTransmission;
+    if (arriveAt(hit)) goOn();
+}
+
+template <bool TimeResolved, bool Media>
+void PathWalk<TimeResolved, Media>::passWall(const SurfaceHit& hit, LobeMask lobe) {
+    onward_ = lobe::All;
+    if (sealed_ && lobe == lobe::SpecularTransmission) {
+        const int medium = sealed_->region.medium;
+        if (&scene_.primitives[hit.shape] == refracted_->boundary(medium))
+            wayOut_ = WayOut{*sealed_, path_.ray.direction, refracted_->faceOf(medium, hit.ng),
+                             directionPdf_ * probabilityFlightExits(*scene_.medium(sealed_->region), hit.t)};
+    }
+    sealed_.reset();
+}
+
+template <bool TimeResolved, bool Media>
+float PathWalk<TimeResolved, Media>::refractedShare(int emitter) const {
+    if (aimedAt_ >= 0) return emitter == aimedAt_ ? 1.0f : 0.0f;
+    if (!wayOut_) return 1.0f;
+    const float density = refracted_->density(wayOut_->from, wayOut_->direction, wayOut_->face, emitter);
+    return transport::balance(wayOut_->pdf, tuning::RefractedGain * density);
 }
 
 template <bool TimeResolved, bool Media>

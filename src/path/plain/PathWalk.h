@@ -5,6 +5,7 @@
 #include "path/CameraPath.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
+#include "path/techniques/RefractedLight.h"
 #include "transport/Connection.h"
 #include "tungsten/scene/LightChoice.h"
 
@@ -16,7 +17,8 @@ struct WalkContext {
     const PathSettings& settings;
     const LightChoice& lights;
     const ArrivalBound& bound;
-    bool forwardBoundaries; ///< connections must look through index-matched surfaces
+    const RefractedLight* refracted; ///< of scenes whose bodies are all sealed, or null
+    bool forwardBoundaries;          ///< connections must look through index-matched surfaces
 };
 
 /// Traces one camera path and adds what it finds to the sink; light that starts in a single direction is found through
@@ -29,7 +31,7 @@ class PathWalk {
              const PathTarget* source)
         : path_(context.scene, sink, counters, sampler), scene_(context.scene), settings_(context.settings),
           lights_(context.lights), bound_(context.bound), connector_(context.scene, context.forwardBoundaries),
-          source_(source) {}
+          source_(source), refracted_(context.refracted) {}
 
     void run(Ray ray);
 
@@ -41,6 +43,15 @@ class PathWalk {
         float probability; ///< of choosing the emitter
     };
 
+    /// The way out of a sealed body, from its last vertex, as long as it meets nothing but surfaces.
+    struct WayOut {
+        SealedVertex from;
+        Vec3f direction;
+        size_t face;
+        float pdf; ///< of the direction, times the probability of the flight to the boundary
+    };
+
+    void goOn();
     // False ends the path.
     bool crossMedium(const Medium& medium);
     bool arriveAt(const std::optional<SurfaceHit>& hit);
@@ -52,11 +63,20 @@ class PathWalk {
     std::optional<LightSample> sampleLight(const Vec3f& position);
     /// Adds the light that connections of a vertex bring: to an emitter, and to the virtual source.
     void connect(const transport::Vertex& vertex) {
-        if (orderCounts()) connectToLight(vertex);
+        if (orderCounts() && !refracted_) connectToLight(vertex); // else no vertex is both smooth and in the open
         if (source_) connectToSource(vertex);
     }
     void connectToLight(const transport::Vertex& vertex);
     void connectToSource(const transport::Vertex& vertex);
+    // Sealed bodies.
+    /// From the vertex: a walk that aims at an emitter through a face.
+    void aimThroughWall(const Medium& medium);
+    /// Of that walk, all of it.
+    void follow(const RefractedLight::Drawn& drawn, const Medium& medium);
+    /// At a surface that is left through this lobe: whether a way out of a body begins, or has ended.
+    void passWall(const SurfaceHit& hit, LobeMask lobe);
+    /// Of light of an emitter that is met: the part that is not left to the other way of finding the same path.
+    [[nodiscard]] float refractedShare(int emitter) const;
     bool continueRoulette();
     void advanceClock(float length);
     /// Whether light found from `position` on can still arrive inside the gate.
@@ -74,6 +94,11 @@ class PathWalk {
     const ArrivalBound& bound_;
     transport::Connector connector_;
     const PathTarget* source_;
+    const RefractedLight* refracted_;
+    std::optional<SealedVertex> sealed_; ///< the ray's origin, if it is a vertex of a sealed body
+    std::optional<WayOut> wayOut_;
+    int aimedAt_ = -1;            ///< the emitter, of a walk that follows a drawn way out
+    LobeMask onward_ = lobe::All; ///< at the next surface
     /// The last vertex that connected to emitters, for weighting emitters found by the walk itself; none while
     /// specular.
     bool weighted_ = false;

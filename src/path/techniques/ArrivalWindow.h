@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace tungsten::path {
@@ -32,13 +33,31 @@ class ArrivalWindow {
     template <typename Trace>
     void fill(size_t paths, const char* stage, const PassWatch& watch, const Trace& trace);
     /// A candidate whose light, going on straight to `position`, arrives there after a length in [low, high), in
-    /// proportion to `importance(end, unit direction from there, distance)`; none if all of these are 0.
+    /// proportion to `importance(end, unit direction from there, distance)`; none if all of these are 0. Of more than
+    /// `most` that arrive so many, evenly spaced, stand for all.
     template <typename Importance>
     [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u,
-                                const Importance& importance) const;
+                                const Importance& importance, size_t most = Size) const;
     [[nodiscard]] const std::vector<End>& ends() const { return ends_; }
 
   private:
+    /// Keeps at most `most` of the candidates inside, every one with the same probability; `u` is uniform.
+    struct Thinned {
+        float each = 1.0f; ///< that one stands for
+        Thinned(std::array<uint32_t, Size>& inside, size_t most, float u) {
+            if (most >= Size) return;
+            const uint32_t all = std::accumulate(inside.begin(), inside.end(), 0u);
+            if (all <= most) return;
+            each = float(all) / float(most);
+            float next = u * each; // the place among those inside of the next to keep
+            for (uint32_t i = 0, place = 0; i < Size; ++i) {
+                if (inside[i] == 0) continue;
+                inside[i] = uint32_t(float(place++) + 1.0f > next);
+                if (inside[i] != 0) next += each;
+            }
+        }
+    };
+
     size_t paths_ = 0;
     std::vector<End> ends_;
     std::vector<float> x_, y_, z_, length_; ///< the first Size - 1 follow again at the end
@@ -71,7 +90,7 @@ void ArrivalWindow<End>::fill(size_t paths, const char* stage, const PassWatch& 
 template <typename End>
 template <typename Importance>
 auto ArrivalWindow<End>::choose(const Vec3f& position, float low, float high, const Vec2f& u,
-                                const Importance& importance) const -> Choice {
+                                const Importance& importance, size_t most) const -> Choice {
     const size_t count = ends_.size();
     if (count == 0) return {};
     const size_t first = std::min(size_t(u.x * float(count)), count - 1);
@@ -85,6 +104,7 @@ auto ArrivalWindow<End>::choose(const Vec3f& position, float low, float high, co
         const float total = std::sqrt(squared[i]) + length[i];
         inside[i] = uint32_t(total >= from) & uint32_t(total < to);
     }
+    const Thinned thinned(inside, most, u.x * float(count) - float(first));
     size_t number = 0;
     float sum = 0.0f;
     for (uint32_t i = 0; i < Size; ++i) {
@@ -105,7 +125,7 @@ auto ArrivalWindow<End>::choose(const Vec3f& position, float low, float high, co
         rest -= importances[chosen];
         if (rest < 0.0f) break;
     }
-    const float each = float(count) / (float(paths_) * float(Size));
+    const float each = float(count) * thinned.each / (float(paths_) * float(Size));
     return {&ends_[(first + candidates[chosen]) % count], each * (sum / importances[chosen])};
 }
 

@@ -1,0 +1,168 @@
+#include "path/techniques/RefractedLight.h"
+
+#include "path/Tuning.h"
+
+#include "tungsten/bsdf/Fresnel.h"
+
+namespace tungsten::path {
+
+using transport::Body;
+
+bool RefractedLight::helpsWith(const Scene& scene) {
+    const std::vector<Body> bodies = transport::bodiesOf(scene);
+    const auto boxOf = [](const Emitter& emitter) {
+        if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) return boundsOf(*area->shape);
+        const BoundingSphere sphere = boundingSphere(emitter);
+        return Imath::Box3f(sphere.centre - Vec3f(sphere.radius), sphere.centre + Vec3f(sphere.radius));
+    };
+    const auto lies = [&](const Emitter& emitter) {
+        return std::any_of(bodies.begin(), bodies.end(),
+                           [&](const Body& body) { return body.scatters() && body.box.intersects(boxOf(emitter)); });
+    };
+    return scene.emitters.size() <= tuning::MostEmitters &&
+           std::any_of(scene.emitters.begin(), scene.emitters.end(), RefractedLamp::isOne) &&
+           std::none_of(scene.emitters.begin(), scene.emitters.end(), lies);
+}
+
+void RefractedLight::trace(const PassInfo& pass) {
+    // Any neighbours in the sequence are spread evenly (Roberts 2018).
+    constexpr double StepU = 0.7548776662466927, StepV = 0.5698402909980532;
+    for (RefractedLamp& lamp : lamps_) {
+        Sampler sampler(pass.seed, RandomStream::RefractedLight, pass.index, uint64_t(lamp.index));
+        const double u = sampler.nextDouble(), v = sampler.nextDouble();
+        lamp.points.fill(tuning::LampPoints, "points of lights", pass.watch,
+                         [&](size_t i, std::vector<RefractedLamp::Point>& points) {
+                             const auto part = [&](double start, double step) {
+                                 const double at = start + double(i) * step;
+                                 return std::min(float(at - std::floor(at)), 0x1.fffffep-1f);
+                             };
+                             points.push_back({lamp.area().areaSampler->sample(*lamp.area().shape,
+                                                                               {part(u, StepU), part(v, StepV)})});
+                         });
+    }
+}
+
+size_t RefractedLight::faces(int medium) const {
+    const Body& body = bodies_[size_t(medium)];
+    return body.sphere ? 1 : body.faces.size();
+}
+
+Body::Face RefractedLight::face(const Vec3f& position, const Region& region, size_t index, size_t lamp) const {
+    const Body& body = bodies_[size_t(region.medium)];
+    if (!body.sphere) return body.faces[index];
+    // The plane that touches the sphere about where the way to the light's middle leaves it.
+    const RefractedLamp& to = lamps_[lamp];
+    Body::Face touching = body.leave(position, (to.bounds.centre - position).normalized()).face;
+    for (int i = 0; i < tuning::SphereSteps; ++i) {
+        const RefractedView seen(position, touching, pair(region.medium, lamp).index, region.speed, to);
+        const auto direction = seen.directionTo(to.bounds.centre);
+        if (!direction) break;
+        touching = body.leave(position, *direction).face;
+    }
+    return touching;
+}
+
+size_t RefractedLight::faceOf(int medium, const Vec3f& normal) const {
+    const Body& body = bodies_[size_t(medium)];
+    size_t best = 0;
+    for (size_t i = 1; !body.sphere && i < body.faces.size(); ++i)
+        if (body.faces[i].normal.dot(normal) > body.faces[best].normal.dot(normal)) best = i;
+    return best;
+}
+
+RefractedView RefractedLight::view(const Vec3f& position, const Region& region, size_t faceIndex, size_t lamp) const {
+    return {position, face(position, region, faceIndex, lamp), pair(region.medium, lamp).index, region.speed,
+            lamps_[lamp]};
+}
+
+auto RefractedLight::oddsOf(const Vec3f& position, const Region& region, size_t lamp) const -> Odds {
+    const float sigmaT = meanComponent(scene_->media[size_t(region.medium)].sigmaT());
+    Odds odds;
+    odds.count = faces(region.medium);
+    const BoundingSphere& bounds = lamps_[lamp].bounds;
+    const Body& body = bodies_[size_t(region.medium)];
+    for (size_t i = 0; i < odds.count; ++i) {
+        const Body::Face at =
+            body.sphere ? body.leave(position, (bounds.centre - position).normalized()).face : body.faces[i];
+        const float depth = (at.point - position).dot(at.normal);
+        const bool lit = (bounds.centre - at.point).dot(at.normal) + bounds.radius > 0.0f;
+        if (!lit || !(depth > 0.0f) || depth * sigmaT > tuning::DeepestRefracted) continue;
+        odds.faces[i] = std::exp(-sigmaT * depth);
+        odds.sum += odds.faces[i];
+    }
+    if (!(odds.sum > 0.0f)) return odds;
+    const float all = std::min(tuning::RefractedOdds * odds.sum, 1.0f);
+    for (float& each : odds.faces) each *= all / odds.sum;
+    odds.sum = all;
+    return odds;
+}
+
+std::pair<float, float> RefractedLight::window(const SealedVertex& vertex, const RefractedLamp& lamp) const {
+    const double soFar = vertex.time + lamp.emitter->emissionTime;
+    return {float(gate_.start - soFar), float(gate_.end() - soFar)};
+}
+
+auto RefractedLight::draw(const SealedVertex& vertex, Sampler& sampler) const -> std::optional<Drawn> {
+    size_t emitter = size_t(lamps_.front().index);
+    if (lamps_.size() > 1) emitter = choice_.sample(sampler.next1D()).index;
+    const auto lamp = size_t(lampOf_[emitter]);
+    const Odds odds = oddsOf(vertex.position, vertex.region, lamp);
+    if (!(odds.sum > 0.0f)) return std::nullopt;
+    float u = sampler.next1D();
+    if (u >= odds.sum) return std::nullopt;
+    size_t chosen = 0;
+    for (; chosen + 1 < odds.count; ++chosen) {
+        u -= odds.faces[chosen];
+        if (u < 0.0f) break;
+    }
+    if (!(odds.faces[chosen] > 0.0f)) return std::nullopt;
+    const RefractedView seen = view(vertex.position, vertex.region, chosen, lamp);
+    const Delays& delays = pair(vertex.region.medium, lamp).delays[chosen];
+    const auto [low, high] = window(vertex, lamps_[lamp]);
+    size_t which = 0;
+    if (delays.size() > 1) which = std::min(size_t(sampler.next1D() * float(delays.size())), delays.size() - 1);
+    const Vec2f uPoint = sampler.next2D();
+    auto drawn = choose(seen, vertex, low - delays[which].most, high - delays[which].least, uPoint);
+    if (drawn) drawn->face = chosen;
+    return drawn;
+}
+
+auto RefractedLight::choose(const RefractedView& view, const SealedVertex& vertex, float low, float high,
+                            const Vec2f& u) const -> std::optional<Drawn> {
+    const RefractedLamp& lamp = view.lamp;
+    const float from = (low - view.depth / (view.leastCosine * view.speedInside)) * lamp.speed - view.widest;
+    const float to = (high - view.depth / view.speedInside) * lamp.speed + view.widest;
+    const float centre = (lamp.bounds.centre - view.foot).length();
+    if (to < centre - lamp.bounds.radius || from > centre + lamp.bounds.radius) return std::nullopt;
+    const Medium& medium = scene_->media[size_t(vertex.region.medium)];
+    const float sigmaT = meanComponent(medium.sigmaT());
+    const auto importance = [&](const RefractedLamp::Point& point, const Vec3f&, float) {
+        const auto aim = view.towards(point.at.position, point.at.normal);
+        if (!aim || aim->time < low || aim->time >= high) return 0.0f;
+        const float through = 1.0f - fresnelDielectric(view.index, aim->way.cosInside);
+        return medium.phase.eval(vertex.before, aim->direction) * through *
+               std::exp(-sigmaT * (aim->way.inside() - view.depth)) / aim->density;
+    };
+    const auto choice = lamp.points.choose(view.foot, from, to, u, importance, tuning::RefractedCandidates);
+    if (!choice.vertex) return std::nullopt;
+    const auto aim = view.towards(choice.vertex->at.position, choice.vertex->at.normal);
+    return Drawn{aim->direction, choice.weight, 0, lamp.index};
+}
+
+float RefractedLight::density(const SealedVertex& vertex, const Vec3f& direction, size_t faceIndex, int emitter) const {
+    if (emitter < 0 || lampOf_[size_t(emitter)] < 0) return 0.0f;
+    const auto lamp = size_t(lampOf_[size_t(emitter)]);
+    const Odds odds = oddsOf(vertex.position, vertex.region, lamp);
+    if (!(odds.faces[faceIndex] > 0.0f)) return 0.0f;
+    const Delays& delays = pair(vertex.region.medium, lamp).delays[faceIndex];
+    const auto [low, high] = window(vertex, lamps_[lamp]);
+    float sum = 0.0f;
+    view(vertex.position, vertex.region, faceIndex, lamp).eachAlong(direction, [&](const RefractedView::Aim& aim) {
+        const auto inTime = std::count_if(delays.begin(), delays.end(),
+                                          [&](const Delay& delay) { return delay.covers(aim.time, low, high); });
+        sum += aim.density * float(inTime) / float(delays.size());
+    });
+    return sum * odds.faces[faceIndex] * choice_.probability(size_t(emitter));
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,127 @@
+// What is between the faces of sealed bodies and the lights: found out before the first pass.
+
+#include "path/techniques/RefractedLight.h"
+
+#include "path/Tuning.h"
+
+#include "transport/Delays.h"
+
+#include "tungsten/scene/Interaction.h"
+#include "tungsten/scene/LightChoice.h"
+
+#include <algorithm>
+
+namespace tungsten::path {
+
+using transport::Body;
+
+auto RefractedLight::quantiles(std::vector<float>& delays, const Delay& all) -> Delays {
+    constexpr size_t Count = tuning::DelayQuantiles;
+    std::sort(delays.begin(), delays.end());
+    Delays result;
+    if (delays.size() < Count) {
+        result.push_back(all);
+    } else {
+        const auto at = [&](size_t k) { return delays[k * (delays.size() - 1) / Count]; };
+        for (size_t k = 0; k < Count; ++k) result.push_back({at(k), at(k + 1)});
+        result.resize(Count + tuning::WholeDelays, all);
+    }
+    return result;
+}
+
+void RefractedLight::prepare(const Scene& scene, const std::vector<bool>& leftOut, const PassWatch& watch) {
+    scene_ = &scene;
+    gate_ = transport::Delays::of(scene).arrivals(scene.transport.gate);
+    bodies_ = transport::bodiesOf(scene);
+    choice_ = emitterDistribution(scene, RefractedLamp::isOne, leftOut);
+    lampOf_.assign(scene.emitters.size(), -1);
+    for (size_t i = 0; i < scene.emitters.size(); ++i) {
+        const Emitter& emitter = scene.emitters[i];
+        if (!(choice_.probability(i) > 0.0f)) continue;
+        lampOf_[i] = int(lamps_.size());
+        lamps_.push_back({&emitter, int(i), scene.regionOf(emitter).speed, boundingSphere(emitter), {}});
+    }
+    trace({.watch = watch}); // points for the pilot
+    pairs_.resize(bodies_.size());
+    watch.stage("light through walls", bodies_.size() * lamps_.size());
+    for (size_t medium = 0; medium < bodies_.size(); ++medium) {
+        if (!bodies_[medium].scatters()) continue;
+        pairs_[medium].resize(lamps_.size());
+        for (size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
+            watch.poll();
+            Pair& pair = pairs_[medium][lamp];
+            pair.index = indexTowards(int(medium), lamps_[lamp]);
+            pair.delays.resize(faces(int(medium)), {Delay{}});
+            pair.delays = delaysOf(int(medium), lamp, {0, RandomStream::RefractedLight, uint32_t(medium), ~lamp});
+        }
+    }
+}
+
+/// Along a straight way from the body's middle.
+float RefractedLight::indexTowards(int medium, const RefractedLamp& lamp) const {
+    const Body& body = bodies_[size_t(medium)];
+    const Vec3f from = body.box.center(), offset = lamp.bounds.centre - from;
+    const float distance = offset.length();
+    float index = 1.0f;
+    Ray ray{from, distance > 0.0f ? offset / distance : Vec3f(0.0f, 1.0f, 0.0f), 0.0f, distance};
+    for (int i = 0; i < tuning::MostBoundaries; ++i) {
+        const auto hit = scene_->geometry->intersect(ray);
+        if (!hit || scene_->primitives[hit->shape].emitter == lamp.index) break;
+        const float relative = relativeIndex(scene_->bsdfOf(*hit));
+        index *= ray.direction.dot(hit->ng) >= 0.0f ? relative : 1.0f / relative;
+        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
+    }
+    return index;
+}
+
+std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, Ray ray, Region region,
+                                             Sampler& sampler) const {
+    double time = 0.0;
+    for (int i = 0; i < tuning::MostBoundaries; ++i) {
+        const auto hit = scene_->geometry->intersect(ray);
+        if (!hit) return std::nullopt;
+        time += double(hit->t) / double(region.speed);
+        if (i > 0 && scene_->primitives[hit->shape].emitter == lamp.index) return time;
+        const SurfaceInteraction surface = makeInteraction(*scene_, *hit, ray.direction);
+        const LobeMask lobes = i == 0 ? lobe::SpecularTransmission : lobe::All;
+        const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, lobes), false, sampler);
+        if (!exit) return std::nullopt;
+        region = regionBeyond(surface, exit->direction, region);
+        const Medium* medium = scene_->medium(region);
+        if (medium && medium->scatters()) return std::nullopt;
+        ray = hit->leave(exit->direction);
+    }
+    return std::nullopt;
+}
+
+auto RefractedLight::delaysOf(int medium, size_t lamp, Sampler sampler) const -> std::vector<Delays> {
+    const Body& body = bodies_[size_t(medium)];
+    const float mfp = 1.0f / meanComponent(scene_->media[size_t(medium)].sigmaT());
+    const Region region = body.primitive->inside;
+    std::vector<std::vector<float>> found(faces(medium));
+    for (size_t i = 0; i < tuning::DelayPilots; ++i) {
+        const Vec2f u = sampler.next2D(), uPoint = sampler.next2D();
+        const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(1.0f - sqr(z), 0.0f));
+        const Vec3f outward(r * std::cos(2.0f * Pi * u.y), r * std::sin(2.0f * Pi * u.y), z);
+        const Body::Face exit = body.leave(body.box.center(), outward).face;
+        const Vec3f position = body.box.center() + outward * body.leave(body.box.center(), outward).distance -
+                               exit.normal * std::min(mfp, 0.1f * body.box.size().length());
+        const size_t through = faceOf(medium, exit.normal);
+        const RefractedView seen = view(position, region, through, lamp);
+        const SealedVertex vertex{position, outward, 0.0, region};
+        const auto drawn = choose(seen, vertex, -Infinity, Infinity, uPoint);
+        if (!drawn) continue;
+        const auto time = timeTo(lamps_[lamp], {position, drawn->direction}, region, sampler);
+        if (!time) continue;
+        seen.eachAlong(drawn->direction,
+                       [&](const RefractedView::Aim& aim) { found[through].push_back(float(*time) - aim.time); });
+    }
+    Delay all; // of any face: through few ways that one has all may be late
+    for (const auto& each : found)
+        for (const float delay : each) all = {std::min(all.least, delay), std::max(all.most, delay)};
+    std::vector<Delays> delays;
+    for (auto& each : found) delays.push_back(quantiles(each, all));
+    return delays;
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,73 @@
+#include "path/techniques/RefractedView.h"
+
+#include "path/Tuning.h"
+
+namespace tungsten::path {
+
+using transport::Body;
+
+bool RefractedLamp::isOne(const Emitter& emitter) {
+    const auto* area = std::get_if<AreaEmitter>(&emitter.model);
+    if (!area || !(area->areaSampler->area() > 0.0f)) return false;
+    return std::visit(
+        Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size() <= tuning::MostLampTriangles; },
+                   [](const OneOf<Sphere, Disk> auto&) { return true; }},
+        *area->shape);
+}
+
+/// Moeller and Trumbore 1997.
+float meetsFront(const TriangleMesh& mesh, const Triangle& triangle, const Vec3f& origin, const Vec3f& direction) {
+    const Vec3f a = mesh.positions[triangle.v[0]];
+    const Vec3f edge1 = mesh.positions[triangle.v[1]] - a, edge2 = mesh.positions[triangle.v[2]] - a;
+    const Vec3f across = direction.cross(edge2), from = origin - a;
+    const float determinant = edge1.dot(across); // positive: from the front
+    if (!(determinant > 0.0f)) return -1.0f;
+    const float b1 = from.dot(across);
+    const Vec3f turned = from.cross(edge1);
+    const float b2 = direction.dot(turned);
+    if (b1 < 0.0f || b2 < 0.0f || b1 + b2 > determinant) return -1.0f;
+    return edge2.dot(turned) / determinant;
+}
+
+RefractedView::RefractedView(const Vec3f& vertex, const Body::Face& face, float relativeIndex, float speed,
+                             const RefractedLamp& emitter)
+    : position(vertex), normal(face.normal), depth((face.point - vertex).dot(face.normal)), index(relativeIndex),
+      speedInside(speed), lamp(emitter) {
+    foot = vertex + normal * depth;
+    leastCosine = std::max(std::sqrt(std::max(1.0f - 1.0f / sqr(index), 0.0f)), tuning::LeastRefractedCosine);
+    widest = depth * std::sqrt(1.0f / sqr(leastCosine) - 1.0f);
+}
+
+auto RefractedView::aim(const RefractedWay& way, const Vec3f& direction, const Vec3f& outward,
+                        const Vec3f& normalThere) const -> std::optional<Aim> {
+    const float emission = -outward.dot(normalThere);
+    if (!(way.cosInside >= leastCosine) || !lamp.area().shinesAt(emission)) return std::nullopt;
+    const float area = way.areaPerSolidAngle(index) * way.cosOutside / emission;
+    return Aim{way, direction, way.inside() / speedInside + way.outside() / lamp.speed,
+               area / lamp.area().areaSampler->area()};
+}
+
+auto RefractedView::courseTo(const Vec3f& point) const -> std::optional<Course> {
+    const Vec3f offset = point - foot;
+    const float height = offset.dot(normal);
+    const Vec3f along = offset - normal * height;
+    const float lateral = along.length();
+    const auto way = refractedWay(depth, height, lateral, index);
+    if (!way) return std::nullopt;
+    const float sine = std::sqrt(std::max(1.0f - sqr(way->cosInside), 0.0f));
+    const Vec3f tangent = lateral > 0.0f ? along / lateral : Vec3f(0.0f);
+    return Course{*way, (tangent * sine + normal * way->cosInside).normalized(),
+                  tangent * (index * sine) + normal * way->cosOutside};
+}
+
+std::optional<Vec3f> RefractedView::directionTo(const Vec3f& point) const {
+    const auto course = courseTo(point);
+    return course ? std::optional(course->direction) : std::nullopt;
+}
+
+auto RefractedView::towards(const Vec3f& point, const Vec3f& normalThere) const -> std::optional<Aim> {
+    const auto course = courseTo(point);
+    return course ? aim(course->way, course->direction, course->outward, normalThere) : std::nullopt;
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,103 @@
+#pragma once
+// One face of a sealed body, seen from a vertex behind it: the ways through it to an emitter (docs/method.md, section
+// 10.5).
+
+#include "path/techniques/ArrivalWindow.h"
+#include "path/techniques/RefractedWay.h"
+
+#include "transport/Body.h"
+
+#include "tungsten/geometry/AnalyticShape.h"
+
+namespace tungsten::path {
+
+/// An emitter with an area whose points draw() finds by their directions: no two of one direction send light there.
+struct RefractedLamp {
+    /// A candidate.
+    struct Point {
+        SurfaceSample at;
+        [[nodiscard]] Vec3f position() const { return at.position; }
+        [[nodiscard]] static float length() { return 0.0f; }
+    };
+    static bool isOne(const Emitter& emitter);
+
+    const Emitter* emitter;
+    int index;
+    float speed; ///< of light about it
+    BoundingSphere bounds;
+    ArrivalWindow<Point> points; ///< of the pass
+
+    [[nodiscard]] const AreaEmitter& area() const { return std::get<AreaEmitter>(emitter->model); }
+    /// Calls `visit(point, normal)` for all of its points that a ray meets and that send light back along it.
+    template <typename Visit>
+    void eachOn(const Vec3f& origin, const Vec3f& direction, Visit&& visit) const;
+};
+
+/// One face of a body from a vertex behind it, towards one emitter: as if nothing else were between them.
+struct RefractedView {
+    /// A way to a point of the emitter.
+    struct Aim {
+        RefractedWay way;
+        Vec3f direction; ///< at the vertex, unit
+        float time;      ///< of flight
+        float density;   ///< of directions to points of the emitter that are drawn uniformly, per solid angle
+    };
+    Vec3f position, foot, normal; ///< foot: the point of the face's plane nearest to the vertex
+    float depth, index, speedInside;
+    const RefractedLamp& lamp;
+    float leastCosine, widest; ///< ways beyond the angle inside are left out; the greatest shift along the plane
+
+    RefractedView(const Vec3f& vertex, const transport::Body::Face& face, float relativeIndex, float speed,
+                  const RefractedLamp& emitter);
+    /// Of the way to a point, whether or not there is light.
+    [[nodiscard]] std::optional<Vec3f> directionTo(const Vec3f& point) const;
+    [[nodiscard]] std::optional<Aim> towards(const Vec3f& point, const Vec3f& normalThere) const;
+    /// Of all points that `direction` leads to.
+    template <typename Visit>
+    void eachAlong(const Vec3f& direction, Visit&& visit) const;
+
+  private:
+    struct Course {
+        RefractedWay way;
+        Vec3f direction, outward; ///< at its start and end, unit
+    };
+    [[nodiscard]] std::optional<Course> courseTo(const Vec3f& point) const;
+    [[nodiscard]] std::optional<Aim> aim(const RefractedWay& way, const Vec3f& direction, const Vec3f& outward,
+                                         const Vec3f& normalThere) const;
+};
+
+/// The length at which a ray meets a triangle's front, or a negative number.
+float meetsFront(const TriangleMesh& mesh, const Triangle& triangle, const Vec3f& origin, const Vec3f& direction);
+
+template <typename Visit>
+void RefractedLamp::eachOn(const Vec3f& origin, const Vec3f& direction, Visit&& visit) const {
+    const auto single = [&](const auto& shape, const auto& normalAt) {
+        const float t = intersectShape(shape, origin, direction, 0.0f, Infinity);
+        if (t > 0.0f) visit(origin + direction * t, normalAt(origin + direction * t));
+    };
+    std::visit(Overloaded{[&](const TriangleMesh& mesh) {
+                              for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+                                  const float t = meetsFront(mesh, mesh.triangles[i], origin, direction);
+                                  if (t > 0.0f) visit(origin + direction * t, mesh.faceNormal(i));
+                              }
+                          },
+                          [&](const Sphere& sphere) {
+                              single(sphere, [&](const Vec3f& at) { return (at - sphere.centre).normalized(); });
+                          },
+                          [&](const Disk& disk) { single(disk, [&](const Vec3f&) { return disk.frame.n; }); }},
+               *area().shape);
+}
+
+template <typename Visit>
+void RefractedView::eachAlong(const Vec3f& direction, Visit&& visit) const {
+    const auto outward = refractedOut(direction, normal, index);
+    if (!outward) return;
+    const float cosine = direction.dot(normal);
+    const Vec3f exit = position + direction * (depth / cosine);
+    lamp.eachOn(exit, *outward, [&](const Vec3f& point, const Vec3f& normalThere) {
+        const RefractedWay way{depth, (point - exit).dot(normal), cosine, outward->dot(normal)};
+        if (const auto found = aim(way, direction, *outward, normalThere)) visit(*found);
+    });
+}
+
+} // namespace tungsten::path
