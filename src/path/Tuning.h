@@ -54,7 +54,7 @@ inline constexpr size_t PilotPaths = 32768;
 /// at 2, 0.41 at 1, 0.47 at 0.5. Bench: study bodies
 inline constexpr float RefractedOdds = 1.0f, DeepestRefracted = 10.0f;
 /// Towards where the way to a light leaves a sphere. (A ball of fog in glass: 0.27; with the nearest point of the
-/// sphere 0.52.) Bench: study bodies, its scene with such a ball
+/// sphere 0.52; no study has such a scene.)
 inline constexpr int SphereSteps = 3;
 /// Of candidates in time, at most, whose ways are worked out. (Milk behind glass 0.41 without this, 0.33; a box in a
 /// long gate 0.31, 0.15.) Bench: study bodies
