@@ -102,15 +102,15 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
     std::visit(build, settings_.primitive);
 }
 
-void PhotonIntegrator::splat(const GatherStructures& structures, const SensorRecord& record, const PassInfo& pass,
+void PhotonIntegrator::splat(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass,
                              Film& film, Statistics& statistics) const {
     const StageTimer timer(statistics, "splat");
     const TimeGate& gate = structures.sensor.gate;
     const double perSample = (gate.steadyState ? 1.0 : gate.frameWidth) * double(pass.samples);
     std::visit(Overloaded{[](std::monostate) {},
-                          [&](const auto& gather) {
+                          [&](auto& gather) {
                               const uint64_t met =
-                                  gather.splat(record, double(gather.scale()) / perSample, film, pass.watch);
+                                  gather.splat(records, double(gather.scale()) / perSample, film, pass.watch);
                               statistics.add(gather.GatheredCounter, met);
                               statistics.add("splatted records", met);
                           }},
@@ -125,16 +125,20 @@ SensorRecord PhotonIntegrator::record(const PassInfo& pass, uint32_t sample, Sta
                              statistics, pass.watch);
 }
 
-void PhotonIntegrator::look(const GatherStructures& structures, const SensorRecord* record, const PassInfo& pass,
+void PhotonIntegrator::look(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass,
                             Film& film, Statistics& statistics) const {
-    const double splatted = !structures.splatted ? 0.0 : record && !plan_.looksAgain ? 1.0 : SplatPart;
-    if (structures.splatted) splat(structures, *record, pass.part(0.0, splatted), film, statistics);
-    if (record && !plan_.looksAgain) return;
+    const double splatted = !structures.splatted ? 0.0 : !records.empty() && !plan_.looksAgain ? 1.0 : SplatPart;
+    if (structures.splatted) splat(structures, records, pass.part(0.0, splatted), film, statistics);
+    if (!records.empty() && !plan_.looksAgain) return;
     const StageTimer timer(statistics, "sensor pass");
-    renderSensorPass(*scene_, structures, record, pass.part(splatted, 1.0), film, statistics);
+    if (records.empty()) renderSensorPass(*scene_, structures, nullptr, pass.part(splatted, 1.0), film, statistics);
+    const double each = (1.0 - splatted) / double(records.size());
+    for (size_t i = 0; i < records.size(); ++i)
+        renderSensorPass(*scene_, structures, records[i],
+                         pass.part(splatted + double(i) * each, splatted + double(i + 1) * each), film, statistics);
 }
 
-void PhotonIntegrator::see(const GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
+void PhotonIntegrator::see(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
                            const PassInfo& pass, Film& film, Statistics& statistics) const {
     if (plan_.connections.on) {
         const StageTimer timer(statistics, "share light");
@@ -146,12 +150,17 @@ void PhotonIntegrator::see(const GatherStructures& structures, const PhotonMaps&
         shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,
                    pass.watch.part(0.0, SharingPart));
     }
-    const double begin = plan_.connections.on ? SharingPart : 0.0, each = (1.0 - begin) / double(pass.samples);
-    look(structures, first, pass.part(begin, first ? begin + each : 1.0), film, statistics);
-    for (uint32_t s = 1; first && s < pass.samples; ++s) {
-        const PassInfo part = pass.part(begin + s * each, begin + (s + 1) * each);
-        const SensorRecord further = record(part, s, statistics);
-        look(structures, &further, part, film, statistics);
+    const double begin = plan_.connections.on ? SharingPart : 0.0;
+    if (!first) return look(structures, {}, pass.part(begin, 1.0), film, statistics);
+    const double each = (1.0 - begin) / double(pass.samples);
+    for (uint32_t s = 0; s < pass.samples; s += plan_.cameraPaths) {
+        const PassInfo part = pass.part(begin + s * each, begin + (s + plan_.cameraPaths) * each);
+        std::vector<SensorRecord> further;
+        for (uint32_t k = s > 0 ? 0 : 1; k < plan_.cameraPaths; ++k) further.push_back(record(part, s + k, statistics));
+        SensorRecords together;
+        if (s == 0) together.push_back(first);
+        for (const SensorRecord& one : further) together.push_back(&one);
+        look(structures, together, part, film, statistics);
     }
 }
 
@@ -178,7 +187,11 @@ void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMa
     });
 }
 
-void PhotonIntegrator::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
+void PhotonIntegrator::renderPass(const PassInfo& asked, Film& film, Statistics& statistics) {
+    // Camera paths beyond those asked for are numbered as if there were more samples.
+    PassInfo pass = asked;
+    pass.firstSample *= plan_.cameraPaths;
+    pass.samples *= plan_.cameraPaths;
     const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
     std::optional<SensorRecord> first;

@@ -38,15 +38,15 @@ class PhotonIntegrator : public Integrator {
     void gatherVolume(VolumeStore&& maps, const PassInfo& pass, GatherStructures& structures,
                       Statistics& statistics) const;
     /// Adds what all samples of the pass see of its photons; `first` is the record of the first, if there are any.
-    void see(const GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
-             const PassInfo& pass, Film& film, Statistics& statistics) const;
+    void see(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first, const PassInfo& pass,
+             Film& film, Statistics& statistics) const;
     /// Looks at the pass's photons again with narrower kernels, and says by how much the film's pass image is wrong.
     void estimateBias(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
                       const PassInfo& pass, Film& film, Statistics& statistics) const;
-    /// Adds what one recorded sample sees; without a record, what all the pass's samples see.
-    void look(const GatherStructures& structures, const SensorRecord* record, const PassInfo& pass, Film& film,
+    /// Adds what recorded samples see; without records, what all the pass's samples see.
+    void look(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass, Film& film,
               Statistics& statistics) const;
-    void splat(const GatherStructures& structures, const SensorRecord& record, const PassInfo& pass, Film& film,
+    void splat(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass, Film& film,
                Statistics& statistics) const;
 
     std::shared_ptr<const Scene> scene_;

@@ -53,6 +53,14 @@ std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings,
     return std::visit(own, settings.primitive);
 }
 
+uint32_t cameraPathsOf(const Scene& scene, const PhotonSettings& settings) {
+    const bool often = std::visit([](const auto& p) { return p.SplatsOften; }, settings.primitive);
+    if (!often || settings.policy.sampling.published) return 1;
+    const uint64_t pixels = uint64_t(scene.camera.resolution.x) * uint64_t(scene.camera.resolution.y);
+    const uint64_t paths = std::min<uint64_t>(tuning::CameraPaths, settings.volumePhotonCount);
+    return uint32_t(std::clamp<uint64_t>(paths / pixels, 1, tuning::MostCameraPaths));
+}
+
 std::string connectionObstacle(const PhotonPlan& plan, const PhotonSettings& settings, const EffectPlan& facts) {
     if (!plan.guidance.on) return plan.guidance.reason;
     if (facts.surfacesOutOfTime) return OutOfTime;
@@ -140,6 +148,7 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     primitiveSplats = std::visit([&](const auto& p) { return p.splats(straightRays, oneTime); }, settings.primitive);
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
+    cameraPaths = splats() && guidance.on && !glossyPaths.on ? cameraPathsOf(scene, settings) : 1;
     volume.reason = !facts.mediumScattering ? facts.noScattering() + ": no volume photon is stored or gathered"
                     : !volume.on            ? facts.heterogeneity()
                     : !settings.primitiveReason.empty()
@@ -175,6 +184,10 @@ void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan
     });
     if (volume.on && !settings.radiusReason.empty())
         plan.describe("default radius", true, settings.radiusReason, {"integrator.volume_gather_radius"});
+    describeSplatting(plan);
+}
+
+void PhotonPlan::describeSplatting(EffectPlan& plan) const {
     const bool splatted = volume.on && splats(), gathered = volume.on && (!splats() || folds);
     plan.describe("splatting", splatted,
                   !volume.on ? volume.reason
@@ -186,6 +199,12 @@ void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan
                   : gathered ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
                              : "all rays are straight: records are splatted",
                   {"camera"}, {"gathered records"});
+    plan.describe("more camera paths", cameraPaths > 1,
+                  cameraPaths > 1
+                      ? std::to_string(cameraPaths) + " for each sample of a pixel: the image is small, and "
+                                                      "they take little time beside guided light paths"
+                      : "one for each sample of a pixel",
+                  {"camera"});
 }
 
 void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {

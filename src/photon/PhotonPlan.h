@@ -45,6 +45,7 @@ struct PhotonPlan {
 
     bool primitiveSplats = false; ///< along the rays that this camera has
     bool looksAgain = false;      ///< at what sensor paths meet, when the photons are there: splats are not all
+    uint32_t cameraPaths = 1;     ///< through a pixel for each of its samples
 
     [[nodiscard]] bool splats() const { return volume.on && homogeneous && primitiveSplats; }
     /// Sensor paths are traced before the photons; else after them.
@@ -53,6 +54,7 @@ struct PhotonPlan {
   private:
     void describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
     void describeVolume(const PhotonSettings& settings, EffectPlan& plan) const;
+    void describeSplatting(EffectPlan& plan) const;
     void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

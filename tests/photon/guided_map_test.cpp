@@ -109,6 +109,31 @@ TEST_P(GuidedMaps, AgreeWithPathsAtSeveralSamplesAPass) {
     EXPECT_NEAR(double(photons->statistics.counter(counter)), expected, 0.05 * expected);
 }
 
+/// The image is one pixel; a black card before the lens hides half of it. With one camera path a pass half of the
+/// passes would be black: a relative variance of 1 or more; with six it is 0.17 and what the light paths bring.
+TEST(CameraPaths, SeeBothSidesOfAnEdgeInOnePass) {
+    const std::string json = R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.5}],
+        "primitives": [
+            {"type": "cube", "bsdf": {"type": "lambert", "albedo": 0}, "int_medium": "fog", "ext_medium": "fog",
+             "transform": {"position": [0.5, 0, -0.06], "scale": [1, 1, 0.02]}},
+            {"type": "point", "emission": 8, "ext_medium": "fog", "transform": {"position": [0.8, 0.5, -3]}}],
+        "camera": {"type": "pinhole", "resolution": [1, 1], "fov": 20, "medium": "fog",
+                   "transform": {"position": [0, 0, 0], "look_at": [0, 0, -1], "up": [0, 1, 0]}},
+        "integrator": {"type": "path_tracer", "max_bounces": 12, "transient_time_center": 6,
+                       "transient_time_width": 2}})";
+    const test::RenderOptions options{
+        {BestPreset, setting("photon_count", 6000), setting("volume_gather_radius", 0.03)}, 64, 1};
+    const double paths = renderPaths(json, {{}, 64, 4096})->mean();
+    for (const auto& rendered : {renderBeams(json, options), renderPhotons(json, options)}) {
+        const double mean = rendered->mean(), error = rendered->pixelError();
+        const double variance = 64.0 * error * error / (mean * mean);
+        EXPECT_NEAR(mean, paths, 4.5 * error + 0.01 * paths);
+        EXPECT_LT(variance, 0.5);
+        EXPECT_GT(variance, 0.1) << "the card should hide some of them";
+    }
+}
+
 /// Rounding moves photons across the ends of short frames, where paths that aim at one of them lose no light.
 TEST(GuidedFrames, MayBeShort) {
     const std::string json = test::fogOverFloor(R"("start_time": 7, "transient_time_width": 1e-5, "frame_num": 8)");

@@ -194,7 +194,7 @@ TEST_P(Splat, AddsWhatGatheringFinds) {
     Film splatted(record.width, record.height, gate.frames), gathered = splatted;
     splatted.beginPass();
     gathered.beginPass();
-    const uint64_t count = splatPhotons(scene, gate, record, store.records, radii, 3.0, splatted);
+    const uint64_t count = splatPhotons(scene, gate, {&record}, store.records, radii, 3.0, splatted);
     const uint64_t expected = gatherRecord(PointGather(scene, gate, store.records, radii), gate, record, gathered);
     // At the kernel's edge rounding decides.
     EXPECT_NEAR(double(count), double(expected), 1e-4 * double(expected) + 2.0);
@@ -215,7 +215,7 @@ TEST_P(Splat, AddsTheBeamsThatGatheringFinds) {
     for (const PhotonBeam& beam : inMediumOf(c, beamsAround(scene.camera.position(), 400))) {
         splatted.beginPass();
         gathered.beginPass();
-        const uint64_t count = splatBeams(scene, gate, record, {beam}, 0.1f, 3.0, splatted);
+        const uint64_t count = splatBeams(scene, gate, {&record}, {beam}, 0.1f, 3.0, splatted);
         const std::vector<PhotonBeam> single{beam};
         const uint64_t expected = gatherRecord(BeamGather(scene, gate, single, 0.1f), gate, record, gathered);
         EXPECT_NEAR(double(count), double(expected), 2.0);
@@ -241,8 +241,8 @@ TEST_P(Splat, AddsUpBeams) {
     singly.beginPass();
     const auto beams = inMediumOf(c, beamsAround(scene.camera.position(), 2000));
     uint64_t count = 0;
-    for (const PhotonBeam& beam : beams) count += splatBeams(scene, gate, record, {beam}, 0.1f, 1.0, singly);
-    EXPECT_EQ(splatBeams(scene, gate, record, beams, 0.1f, 1.0, together), count);
+    for (const PhotonBeam& beam : beams) count += splatBeams(scene, gate, {&record}, {beam}, 0.1f, 1.0, singly);
+    EXPECT_EQ(splatBeams(scene, gate, {&record}, beams, 0.1f, 1.0, together), count);
     expectScaled(together, singly, gate.frames, 1.0f, 1e-5f);
 }
 
@@ -276,7 +276,7 @@ TEST(PointSplat, AttenuatesFromTheStartOfEveryRay) {
     store.records.push_back({0.0, record.origin + offset, Vec3f(1.0f, 0.0f, 0.0f), Rgb(1.0f), 2, 3});
     Film film(16, 16, 1);
     film.beginPass();
-    EXPECT_EQ(splatPhotons(scene, TimeGate{}, record, store.records, 0.15f, 1.0, film), 256u);
+    EXPECT_EQ(splatPhotons(scene, TimeGate{}, {&record}, store.records, 0.15f, 1.0, film), 256u);
     for (size_t i = 0; i < fog.start.size(); ++i) {
         const Vec3f direction(record.x[i], record.y[i], record.z[i]);
         const float t = offset.dot(direction);

@@ -125,6 +125,8 @@ EFFECTS = [
     ("photon beams", foggy({**PHOTONS, "volume_photon_type": "beams"}), "integrator.volume_photon_type", foggy(PHOTONS)),
     ("splatting", foggy(PHOTONS), "camera", room(PHOTONS)),
     ("gathering", foggy(PHOTONS, camera__type="thinlens", camera__aperture_size=0.05), "camera", foggy(PHOTONS)),
+    ("more camera paths", foggy(best()), "camera", foggy(best(), camera__resolution=[200, 200])),
+    ("more camera paths", foggy(best()), "camera", foggy({**PHOTONS, "darts": "published"})),
     ("temporal kernel", foggy({**PHOTONS, "delta_time_gate": True}), "integrator.delta_time_gate", foggy(PHOTONS)),
     ("surface photons", room(PHOTONS), "primitives[0].bsdf", room({**PHOTONS, "include_surfaces": False})),
     ("surface photons", room(PHOTONS), "primitives[0].bsdf",

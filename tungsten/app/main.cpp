@@ -285,6 +285,7 @@ int withWholeOutput(int code) {
 
 int main(int argc, char** argv) {
     using namespace tungsten;
+    keepFreedMemory();
     std::unique_ptr<Team> team;
     try {
         team = joinTeam();

@@ -10,6 +10,10 @@
 
 #include <sys/resource.h>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace tungsten {
 
 namespace {
@@ -64,6 +68,14 @@ void requireMemory(const LoadedScene& loaded, double films, double integratorByt
                          memoryText(integratorBytes) + " for the integrator), " +
                          (limit > 0.0 ? "--memory-limit is " : "there are ") + memoryText(most) +
                          "; use fewer frames, photons or a smaller --resolution");
+}
+
+void keepFreedMemory() {
+#ifdef __GLIBC__
+    constexpr int LargestThreshold = 32 << 20, Kept = 512 << 20; // more the library does not take
+    mallopt(M_MMAP_THRESHOLD, LargestThreshold);
+    mallopt(M_TRIM_THRESHOLD, Kept);
+#endif
 }
 
 void limitMemory(double bytes, unsigned threads) {

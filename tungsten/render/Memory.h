@@ -18,6 +18,10 @@ struct LoadedScene;
 /// available).
 void requireMemory(const LoadedScene& loaded, double films, double integratorBytes, double limit);
 
+/// From now on freed memory stays with the process, up to half a gigabyte: passes take and free the same every time,
+/// and clearing the system's pages anew costs 2 to 4 % of a pass.
+void keepFreedMemory();
+
 /// From now on allocations beyond so many bytes fail (std::bad_alloc), instead of having the kernel end the process.
 /// What the libraries and the threads' stacks take comes on top: without it they end the process themselves.
 void limitMemory(double bytes, unsigned threads);

@@ -6,8 +6,9 @@ namespace tungsten {
 
 namespace {
 
-/// Keys of samples that are rendered in parts; whole ones come before.
-constexpr uint64_t FirstPartialSample = uint64_t(1) << 31;
+/// Keys of samples that are rendered in parts; whole ones come before. Integrators number up to six camera paths of
+/// each in 32 bits.
+constexpr uint64_t FirstPartialSample = uint64_t(1) << 29;
 
 } // namespace
 

@@ -16,5 +16,6 @@ namespace tungsten::photon {
 
 struct PhotonSettings;
 struct SensorRecord;
+using SensorRecords = std::vector<const SensorRecord*>; ///< of several samples of a pass
 
 } // namespace tungsten::photon

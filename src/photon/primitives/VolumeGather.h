@@ -30,9 +30,8 @@ class VolumeGather {
     /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
     VolumeGather(const Scene& scene, const transport::Sensor& sensor, const ArrivalCulling& culling,
                  Store<Record> store, Radii radii, const SensorRays& rays)
-        : scene_(scene), sensor_(sensor), scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
-        if (!culling.directView() && culling.straightTimesKnown())
-            straight_ = Primitive::straight(scene, culling, all_.records, all_.radii);
+        : scene_(scene), sensor_(sensor), culling_(culling),
+          scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
         if (rays.splatted && rays.folded) selectFolded(rays);
         buildGathers(rays);
     }
@@ -52,9 +51,10 @@ class VolumeGather {
 
     /// On the records' power: 1 / number of paths.
     [[nodiscard]] float scale() const { return scale_; }
-    /// Adds what straight rays see to the pass image; returns the records that it met.
-    uint64_t splat(const SensorRecord& record, double scale, Film& film, const PassWatch& watch) const {
-        return Primitive::splat(scene_, sensor_, record, straight_ ? *straight_ : all_, scale, film, watch);
+    /// Adds what straight rays of several samples see to the pass image; returns the records that it met.
+    uint64_t splat(const SensorRecords& samples, double scale, Film& film, const PassWatch& watch) {
+        const bool any = std::any_of(samples.begin(), samples.end(), [](const auto* s) { return !s->pieces.empty(); });
+        return any ? Primitive::splat(scene_, sensor_, samples, straight(), scale, film, watch) : 0;
     }
     /// Adds what a segment meets to the sums; returns how many records that were.
     uint64_t gather(const CameraSegment& segment, bool folded, FrameSums& sums) const {
@@ -69,6 +69,12 @@ class VolumeGather {
   private:
     using Gather = typename Primitive::Gather;
 
+    /// What straight rays can see, chosen when there are any.
+    const Selection<Record>& straight() {
+        if (culling_.directView() || !culling_.straightTimesKnown()) return all_;
+        if (!straight_) straight_ = Primitive::straight(scene_, culling_, all_.records, all_.radii);
+        return *straight_;
+    }
     [[nodiscard]] std::unique_ptr<Gather> gatherOf(const Selection<Record>& selection, bool fewRays) const {
         return std::make_unique<Gather>(scene_, sensor_, selection.records, selection.radii, fewRays);
     }
@@ -83,7 +89,7 @@ class VolumeGather {
     void buildGathers(const SensorRays& rays) {
         if (!rays.splatted) {
             gather_ = gatherOf(all_, false);
-            if (straight_) straightGather_ = gatherOf(*straight_, false);
+            if (const auto& seen = straight(); &seen != &all_) straightGather_ = gatherOf(seen, false);
         } else if (rays.folded) {
             gather_ = gatherOf(folded_, true);
             parts_.clear();
@@ -93,9 +99,10 @@ class VolumeGather {
 
     const Scene& scene_;
     transport::Sensor sensor_;
+    const ArrivalCulling& culling_;
     float scale_;
     Selection<Record> all_;
-    std::optional<Selection<Record>> straight_; ///< none: all
+    std::optional<Selection<Record>> straight_;
     Selection<Record> folded_;
     std::vector<Selection<Record>> dealt_;
     std::unique_ptr<Gather> gather_, straightGather_;

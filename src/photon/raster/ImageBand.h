@@ -47,6 +47,7 @@ class ImageBand {
     [[nodiscard]] size_t at(int column, int row) const { return size_t(row - firstRow) * stride + size_t(column); }
     /// Where the sums of a frame begin.
     [[nodiscard]] size_t sumsOf(int frame) const { return frames_ > 1 ? size_t(frame) * x.size() : 0; }
+    [[nodiscard]] const SensorRecord& record() const { return record_; }
     /// Adds the sums, times throughput, to the frame's pass image and begins new ones.
     void addToFilm(int frame, Film& film);
 

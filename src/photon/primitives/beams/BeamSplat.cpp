@@ -31,9 +31,8 @@ struct Ribbon {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, float radius,
-             double scale, Film& film)
-        : scene_(scene), sensor_(sensor), record_(record), footprint_(scene.camera), radius_(radius),
+    Splatter(const Scene& scene, const transport::Sensor& sensor, float radius, double scale, Film& film)
+        : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), footprint_(scene.camera), radius_(radius),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
           timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {}
 
@@ -42,7 +41,7 @@ class Splatter {
                                             beam.base + beam.direction * beam.tEnd, radius_);
         if (!area) return std::nullopt;
         const auto inDouble = [](const Vec3f& v) { return Vec3d(double(v.x), double(v.y), double(v.z)); };
-        const Vec3d base = inDouble(beam.base) - inDouble(record_.origin), along = inDouble(beam.direction);
+        const Vec3d base = inDouble(beam.base) - inDouble(origin_), along = inDouble(beam.direction);
         const double toFoot = -base.dot(along) / along.length2();
         const Vec3d foot = base + along * toFoot;
         const Medium& medium = scene_.media[size_t(beam.medium)];
@@ -108,7 +107,7 @@ class Splatter {
             }
             for (int lane = 0; lane < Lanes; ++lane)
                 if (found.weight[lane] > 0.0f)
-                    gathered += add(ribbon, record_.pieces[piece.number], y, x + lane, found, lane);
+                    gathered += add(ribbon, band.record(), piece.number, y, x + lane, found, lane);
         }
         return gathered;
     }
@@ -160,9 +159,10 @@ class Splatter {
     [[nodiscard]] bool rendered(int interactions) const {
         return transport::BounceLimits(scene_.transport).renders(interactions);
     }
-    uint64_t add(const Ribbon& ribbon, const StraightPiece& piece, int y, int x, const Approaches& found,
+    uint64_t add(const Ribbon& ribbon, const SensorRecord& record, size_t number, int y, int x, const Approaches& found,
                  int lane) const {
-        const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
+        const StraightPiece& piece = record.pieces[number];
+        const size_t pixel = size_t(y) * size_t(record.width) + size_t(x);
         if (piece.medium[pixel] != ribbon.medium) return 0;
         if (!rendered(int(piece.interactions[pixel]) + ribbon.bounce + 1)) return 0;
         float weight = found.weight[lane];
@@ -177,7 +177,7 @@ class Splatter {
         Rgb radiance = ribbon.power * piece.throughput[pixel] * weight;
         if (!ribbon.simple) {
             const Medium& medium = scene_.media[size_t(ribbon.medium)];
-            const Vec3f back(-record_.x[pixel], -record_.y[pixel], -record_.z[pixel]);
+            const Vec3f back(-record.x[pixel], -record.y[pixel], -record.z[pixel]);
             radiance = radiance *
                        medium.transmittance(ribbon.fromBase + found.alongBeam[lane] + found.alongRay[lane] -
                                             piece.start[pixel]) *
@@ -189,7 +189,7 @@ class Splatter {
 
     const Scene& scene_;
     transport::Sensor sensor_;
-    const SensorRecord& record_;
+    Vec3f origin_;
     ImageFootprint footprint_;
     float radius_, scale_;
     Film& film_;
@@ -199,11 +199,11 @@ class Splatter {
 
 } // namespace
 
-uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                     const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
                     const PassWatch& watch) {
-    const Splatter splatter(scene, sensor, record, radius, scale, film);
-    const size_t bands = ImageBand::count(record.height);
+    const Splatter splatter(scene, sensor, radius, scale, film);
+    const size_t bands = ImageBand::count(scene.camera.resolution.y);
     std::vector<std::optional<Ribbon>> ribbons(beams.size());
     tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) {
         watch.pollWithin(1024, i);
@@ -221,14 +221,16 @@ uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const S
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
         if (drawn.empty()) return;
-        ImageBand band(record, number);
-        for (size_t i = 0; i < drawn.size(); ++i) {
-            watch.pollWithin(64, i);
-            prefetch(*ribbons[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
-            gathered[number] += splatter.draw(*ribbons[drawn[i]], band);
+        for (const SensorRecord* record : records) {
+            ImageBand band(*record, number);
+            for (size_t i = 0; i < drawn.size(); ++i) {
+                watch.pollWithin(64, i);
+                prefetch(*ribbons[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
+                gathered[number] += splatter.draw(*ribbons[drawn[i]], band);
+            }
+            // With several frames nothing has been collected.
+            band.addToFilm(0, film);
         }
-        // With several frames nothing has been collected.
-        band.addToFilm(0, film);
         watch.poll();
     });
     uint64_t total = 0;

@@ -9,10 +9,10 @@
 
 namespace tungsten::photon {
 
-/// Adds what BeamGather would gather along the recorded straight rays to the pass image, times `scale`. Each beam
+/// Adds what BeamGather would gather along the straight rays of each record to the pass image, times `scale`. Each beam
 /// visits the pixels that its ribbon covers. Returns the number of beams gathered, one per pixel and beam. `sensor` has
 /// the pass's gate.
-uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                     const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
                     const PassWatch& watch = {});
 

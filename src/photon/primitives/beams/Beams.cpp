@@ -40,9 +40,9 @@ double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& rad
     return meeting.share();
 }
 
-uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch) {
-    return splatBeams(scene, sensor, record, beams.records, beams.radii[0], scale, film, watch);
+    return splatBeams(scene, sensor, records, beams.records, beams.radii[0], scale, film, watch);
 }
 
 } // namespace tungsten::photon

@@ -17,6 +17,7 @@ struct Beams {
     static constexpr bool ManyFrames = false;
     static constexpr bool NeedsPlace = true;
     static constexpr bool CountsRecords = false;
+    static constexpr bool SplatsOften = true;
     static constexpr const char* Effect = "photon beams";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
     static constexpr const char* Stored = "photon beams";
@@ -33,7 +34,7 @@ struct Beams {
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
     static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
-    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                           const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch);
 };
 

@@ -55,9 +55,9 @@ struct Meeting {
 
 class Splatter {
   public:
-    Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale)
-        : scene_(scene), sensor_(sensor), record_(record), scale_(float(scale)), footprint_(scene.camera),
-          media_(scene.media.begin(), scene.media.end()) {}
+    Splatter(const Scene& scene, const transport::Sensor& sensor, double scale)
+        : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), scale_(float(scale)),
+          footprint_(scene.camera), media_(scene.media.begin(), scene.media.end()) {}
 
     [[nodiscard]] Disc disc(const Photon& photon, float radius) const {
         Disc unseen{};
@@ -76,7 +76,7 @@ class Splatter {
         return {frame,
                 photon.medium,
                 photon.bounce,
-                photon.position - record_.origin,
+                photon.position - origin_,
                 photon.direction,
                 photon.power * (weight * 3.0f * InvPi * inverse),
                 inverse,
@@ -107,7 +107,7 @@ class Splatter {
   private:
     [[nodiscard]] double cameraTime(const Vec3f& position) const {
         if (scene_.transport.cameraUnwarped) return 0.0;
-        const Vec3f& o = record_.origin;
+        const Vec3f& o = origin_;
         const Vec3d way(double(position.x) - double(o.x), double(position.y) - double(o.y),
                         double(position.z) - double(o.z));
         return way.length() / double(scene_.cameraRegion.speed);
@@ -184,7 +184,7 @@ class Splatter {
 
     const Scene& scene_;
     transport::Sensor sensor_;
-    const SensorRecord& record_;
+    Vec3f origin_;
     float scale_;
     ImageFootprint footprint_;
     std::vector<MediumTerms> media_;
@@ -206,9 +206,9 @@ std::vector<uint32_t> drawingOrder(const std::vector<Disc>& discs, int width) {
 }
 
 /// In drawing order: the sums do not depend on the threads.
-std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, const SensorRecord& record) {
-    std::vector<std::vector<uint32_t>> byBand(ImageBand::count(record.height));
-    for (const uint32_t i : drawingOrder(discs, record.width)) {
+std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, const Vec2i& resolution) {
+    std::vector<std::vector<uint32_t>> byBand(ImageBand::count(resolution.y));
+    for (const uint32_t i : drawingOrder(discs, resolution.x)) {
         const PixelArea& area = discs[i].image.area;
         for (int band = area.top / ImageBand::Rows; band <= area.bottom / ImageBand::Rows; ++band)
             byBand[size_t(band)].push_back(i);
@@ -218,29 +218,31 @@ std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, c
 
 } // namespace
 
-uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
                       const PassWatch& watch) {
-    const Splatter splatter(scene, sensor, record, scale);
+    const Splatter splatter(scene, sensor, scale);
     std::vector<Disc> discs(photons.size());
     tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) {
         watch.pollWithin(1024, i);
         discs[i] = splatter.disc(photons[i], radii[i]);
     });
-    const auto byBand = discsByBand(discs, record);
+    const auto byBand = discsByBand(discs, scene.camera.resolution);
     watch.stage("splat", byBand.size());
     std::atomic<uint64_t> total = 0;
     tbb::parallel_for(size_t(0), byBand.size(), [&](size_t number) {
         const auto& drawn = byBand[number];
         if (drawn.empty()) return;
-        ImageBand band(record, number);
         uint64_t gathered = 0;
-        for (size_t i = 0; i < drawn.size(); ++i) {
-            watch.pollWithin(64, i);
-            prefetch(discs[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
-            const int frame = discs[drawn[i]].frame;
-            gathered += splatter.draw(discs[drawn[i]], band);
-            if (i + 1 == drawn.size() || discs[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
+        for (const SensorRecord* record : records) {
+            ImageBand band(*record, number);
+            for (size_t i = 0; i < drawn.size(); ++i) {
+                watch.pollWithin(64, i);
+                prefetch(discs[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
+                const int frame = discs[drawn[i]].frame;
+                gathered += splatter.draw(discs[drawn[i]], band);
+                if (i + 1 == drawn.size() || discs[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
+            }
         }
         total += gathered;
         watch.poll();

@@ -10,11 +10,11 @@
 
 namespace tungsten::photon {
 
-/// Adds what PointGather would gather along the recorded straight rays to the pass image, times `scale`. Each photon
-/// visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons and a
-/// traversal per ray (benchmarks/micro, gather). Returns the number of photons
-/// gathered, one per pixel and photon. `sensor` has the pass's gate.
-uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+/// Adds what PointGather would gather along the straight rays of each record to the pass image, times `scale`. Each
+/// photon visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons and
+/// a traversal per ray (benchmarks/micro, gather). Returns the number of photons gathered, one per pixel and photon.
+/// `sensor` has the pass's gate.
+uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
                       const PassWatch& watch = {});
 

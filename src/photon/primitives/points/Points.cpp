@@ -52,9 +52,9 @@ double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radi
     return meeting.share();
 }
 
-uint64_t Points::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+uint64_t Points::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                        const Selection<Photon>& photons, double scale, Film& film, const PassWatch& watch) {
-    return splatPhotons(scene, sensor, record, photons.records, photons.radii, scale, film, watch);
+    return splatPhotons(scene, sensor, records, photons.records, photons.radii, scale, film, watch);
 }
 
 } // namespace tungsten::photon

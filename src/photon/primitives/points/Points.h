@@ -17,6 +17,8 @@ struct Points {
     static constexpr bool ManyFrames = false;     ///< a record shows in one frame, or a few
     static constexpr bool NeedsPlace = true;      ///< to aim guided paths at, also where the camera's time is left out
     static constexpr bool CountsRecords = false;  ///< guided paths thin them by how many they expect (RecordCounts)
+    static constexpr bool SplatsOften =
+        true; ///< beside the light paths, splats of a few camera paths a pixel cost little
     static constexpr const char* Effect = "volume photon points";
     static constexpr const char* Reason = "a medium scatters";
     static constexpr const char* Stored = "stored volume photons"; ///< counters
@@ -43,7 +45,7 @@ struct Points {
                                       const std::vector<Photon>& photons, const Radii& radii);
     /// The part that folded rays need where straight ones have theirs splatted (FoldedMeeting).
     static double foldedShare(const std::vector<Photon>& photons, const Radii& radii);
-    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                           const Selection<Photon>& photons, double scale, Film& film, const PassWatch& watch);
 };
 

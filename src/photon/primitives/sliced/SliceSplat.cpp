@@ -247,7 +247,7 @@ uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const 
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
         watch.poll();
     });
-    uint64_t total = drawBeams ? splatBeams(scene, sensor, record, beams, radius[0], scale, film, watch) : 0;
+    uint64_t total = drawBeams ? splatBeams(scene, sensor, {&record}, beams, radius[0], scale, film, watch) : 0;
     for (const uint64_t count : gathered) total += count;
     return total;
 }

@@ -55,9 +55,12 @@ Radii Slices::radii(const KernelSettings& settings, bool deltaGate, const std::v
     return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
-uint64_t Slices::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+uint64_t Slices::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                        const Selection<CollapsedFlights>& slices, double scale, Film& film, const PassWatch& watch) {
-    return splatSlices(scene, sensor, record, slices.records, slices.radii, scale, film, watch);
+    uint64_t met = 0;
+    for (const SensorRecord* record : records)
+        met += splatSlices(scene, sensor, *record, slices.records, slices.radii, scale, film, watch);
+    return met;
 }
 
 } // namespace tungsten::photon

@@ -19,6 +19,7 @@ struct Slices {
     static constexpr bool ManyFrames = true;
     static constexpr bool NeedsPlace = false;
     static constexpr bool CountsRecords = true;
+    static constexpr bool SplatsOften = false;
     static constexpr const char* Effect = "sliced primitives";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
     static constexpr const char* Stored = "sliced primitives"; ///< counters
@@ -50,7 +51,7 @@ struct Slices {
         return std::nullopt;
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
-    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
+    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                           const Selection<CollapsedFlights>& slices, double scale, Film& film, const PassWatch& watch);
 };
 
