@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
+#include <array>
 
 namespace tungsten::path {
 namespace {
@@ -88,7 +88,79 @@ double letsOut(const transport::Body& body, size_t face, const Vec3f& direction)
     return 1.0 - double(fresnelDielectric(1.4f, std::max(direction.dot(body.faces[face].normal), 0.0f)));
 }
 
-/// The sum over draws of `weight` by what is let out, in cells of direction, against the integral of the density there.
+/// Sums by cells of equal solid angle of a direction, and over all, of several rounds that are alike.
+class CellSums {
+  public:
+    static constexpr int Rows = 12, Columns = 24;
+    static constexpr size_t Count = size_t(Rows * Columns);
+
+    /// Where a direction of this height and azimuth (over 2 pi) lies.
+    static size_t cellOf(double z, double azimuth) {
+        const int row = std::min(int((z + 1.0) * 0.5 * Rows), Rows - 1);
+        return size_t(row * Columns + std::min(int(azimuth * Columns), Columns - 1));
+    }
+    void add(size_t cell, double value) { round_[cell] += value, round_[Count] += value; }
+    void endRound() {
+        for (size_t k = 0; k <= Count; ++k) {
+            sums_[k] += round_[k];
+            squares_[k] += round_[k] * round_[k];
+        }
+        round_.fill(0.0);
+        ++rounds_;
+    }
+    /// The whole sum is that of cell Count.
+    [[nodiscard]] double mean(size_t cell = Count) const { return sums_[cell] / rounds_; }
+    [[nodiscard]] double variance(size_t cell = Count) const { // of the mean
+        return std::max(squares_[cell] / rounds_ - mean(cell) * mean(cell), 0.0) / (rounds_ - 1);
+    }
+
+  private:
+    std::array<double, Count + 1> round_{}, sums_{}, squares_{};
+    int rounds_ = 0;
+};
+
+/// The integral of the density times what is let out, by a random point in each part of a fine grid: midpoints, beside
+/// edges that lie along the grid, are off by up to 0.7 %. (With 4.7 million points a round and 3000 passes draws and
+/// integral differ by 0.06, 0.08 and -0.18 %, standard errors 0.08, 0.08 and 0.17 %.)
+CellSums integrated(const RefractedLight& light, const transport::Body& body, const SealedVertex& vertex,
+                    size_t emitters) {
+    constexpr int Rounds = 16, Fine = 16, Rows = CellSums::Rows * Fine, Columns = CellSums::Columns * Fine;
+    CellSums sums;
+    Sampler sampler(4, RandomStream::Test, 0, 0);
+    for (int round = 0; round < Rounds; ++round, sums.endRound())
+        for (int i = 0; i < Rows; ++i)
+            for (int j = 0; j < Columns; ++j) {
+                const double z = 2.0 * (i + sampler.nextDouble()) / Rows - 1.0,
+                             azimuth = (j + sampler.nextDouble()) / Columns;
+                const double r = std::sqrt(1.0 - z * z), phi = 2.0 * M_PI * azimuth;
+                const Vec3f direction(float(r * std::cos(phi)), float(r * std::sin(phi)), float(z));
+                for (size_t face = 0; face < light.faces(0); ++face)
+                    for (size_t emitter = 0; emitter < emitters; ++emitter)
+                        sums.add(CellSums::cellOf(z, azimuth),
+                                 double(light.density(vertex, direction, face, int(emitter))) *
+                                     letsOut(body, face, direction) * 4.0 * M_PI / (Rows * Columns));
+            }
+    return sums;
+}
+
+/// The sum over draws of `weight` times what is let out, by cells; a pass is a round.
+CellSums drawn(RefractedLight& light, const transport::Body& body, const SealedVertex& vertex) {
+    constexpr int Passes = 96, Draws = 4000;
+    CellSums sums;
+    for (uint32_t pass = 0; pass < Passes; ++pass, sums.endRound()) {
+        light.trace(PassInfo{.index = pass, .seed = 5});
+        for (int i = 0; i < Draws; ++i) {
+            Sampler sampler(3, RandomStream::Test, pass, uint64_t(i));
+            const auto one = light.draw(vertex, sampler);
+            if (!one) continue;
+            const double azimuth = std::atan2(double(one->direction.y), double(one->direction.x)) / (2.0 * M_PI);
+            sums.add(CellSums::cellOf(double(one->direction.z), azimuth + (azimuth < 0.0 ? 1.0 : 0.0)),
+                     double(one->weight) * letsOut(body, one->face, one->direction) / Draws);
+        }
+    }
+    return sums;
+}
+
 void expectDrawsAsDense(const std::string& json, const Vec3f& position, double time) {
     const test::SceneFile file(json);
     const LoadedScene loaded = loadScene(file.path());
@@ -97,56 +169,21 @@ void expectDrawsAsDense(const std::string& json, const Vec3f& position, double t
     RefractedLight light;
     light.prepare(scene, {}, {});
     const SealedVertex vertex{position, Vec3f(0.6f, 0.0f, 0.8f), time, scene.primitives[0].inside};
-    // Cells of equal solid angle; midpoints of finer ones integrate.
-    constexpr int Rows = 12, Columns = 24, Fine = 40, Passes = 96, Draws = 4000;
-    const size_t emitters = scene.emitters.size();
-    std::vector<double> exact(Rows * Columns, 0.0), sum(exact), squares(exact);
-    for (int i = 0; i < Rows * Fine; ++i)
-        for (int j = 0; j < Columns * Fine; ++j) {
-            const double z = 2.0 * (i + 0.5) / (Rows * Fine) - 1.0, phi = 2.0 * M_PI * (j + 0.5) / (Columns * Fine);
-            const double r = std::sqrt(1.0 - z * z);
-            const Vec3f direction(float(r * std::cos(phi)), float(r * std::sin(phi)), float(z));
-            for (size_t face = 0; face < light.faces(0); ++face)
-                for (size_t emitter = 0; emitter < emitters; ++emitter)
-                    exact[size_t(i / Fine * Columns + j / Fine)] +=
-                        double(light.density(vertex, direction, face, int(emitter))) * letsOut(body, face, direction) *
-                        4.0 * M_PI / (Rows * Columns * Fine * Fine);
-        }
-    double totals = 0.0, totalSquares = 0.0;
-    for (uint32_t pass = 0; pass < Passes; ++pass) {
-        light.trace(PassInfo{.index = pass, .seed = 5});
-        std::vector<double> found(exact.size(), 0.0);
-        for (int i = 0; i < Draws; ++i) {
-            Sampler sampler(3, RandomStream::Test, pass, uint64_t(i));
-            const auto drawn = light.draw(vertex, sampler);
-            if (!drawn) continue;
-            double phi = std::atan2(double(drawn->direction.y), double(drawn->direction.x)) / (2.0 * M_PI);
-            phi += phi < 0.0 ? 1.0 : 0.0;
-            const int row = std::min(int((double(drawn->direction.z) + 1.0) * 0.5 * Rows), Rows - 1);
-            found[size_t(row * Columns + std::min(int(phi * Columns), Columns - 1))] +=
-                double(drawn->weight) * letsOut(body, drawn->face, drawn->direction) / Draws;
-        }
-        for (size_t k = 0; k < found.size(); ++k) sum[k] += found[k], squares[k] += found[k] * found[k];
-        const double total = std::accumulate(found.begin(), found.end(), 0.0);
-        totals += total;
-        totalSquares += total * total;
-    }
-    const double all = std::accumulate(exact.begin(), exact.end(), 0.0);
+    const CellSums exact = integrated(light, body, vertex, scene.emitters.size()), found = drawn(light, body, vertex);
     double statistic = 0.0;
     int cells = 0;
-    for (size_t k = 0; k < exact.size(); ++k) {
-        const double mean = sum[k] / Passes, variance = (squares[k] / Passes - mean * mean) / (Passes - 1);
-        cells += exact[k] > 0.01 * all ? 1 : 0;
-        // Midpoints leave a little where edges of lamps and gates cross a cell.
-        const double error = std::sqrt(variance + std::pow(0.001 * all, 2));
-        EXPECT_NEAR(mean, exact[k], 5.0 * error) << k;
-        statistic += std::pow((mean - exact[k]) / error, 2);
+    for (size_t k = 0; k < CellSums::Count; ++k) {
+        cells += exact.mean(k) > 0.01 * exact.mean() ? 1 : 0;
+        // Of cells that few draws meet the variance is not known.
+        const double error = std::sqrt(found.variance(k) + exact.variance(k) + std::pow(3e-4 * exact.mean(), 2));
+        EXPECT_NEAR(found.mean(k), exact.mean(k), 5.0 * error) << k;
+        statistic += std::pow((found.mean(k) - exact.mean(k)) / error, 2);
     }
     EXPECT_GT(cells, 5);
-    EXPECT_LT(statistic, double(exact.size()));
-    const double mean = totals / Passes, variance = (totalSquares / Passes - mean * mean) / (Passes - 1);
-    EXPECT_NEAR(mean, all, 4.5 * std::sqrt(variance) + 0.003 * all);
-    EXPECT_LT(std::sqrt(variance), 0.012 * all);
+    EXPECT_LT(statistic, double(CellSums::Count));
+    const double error = std::sqrt(found.variance() + exact.variance());
+    EXPECT_NEAR(found.mean(), exact.mean(), 4.5 * error);
+    EXPECT_LT(error, 0.012 * exact.mean());
 }
 
 TEST(RefractedLight, DrawsAreAsDenseAsItSays) {
