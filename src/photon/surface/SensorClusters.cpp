@@ -80,10 +80,11 @@ SensorClusters::SensorClusters(const std::vector<ClusterPoint>& points, Sampler 
     begin_.push_back(0);
     if (order_.empty()) return;
     split(0, order_.size(), std::clamp<size_t>(order_.size() / LeastSize, 1, MostClusters), points);
+    addNeighbourhoods();
     // Whole registers can be read from any place.
     size_.resize(size_.size() + size_t(Lanes), 0.0f);
     for (auto* v : {&cx_, &cy_, &cz_, &squaredSize_, &centreLength_, &reach_, &x_, &y_, &z_, &cameraLength_, &spread_,
-                    &nx_, &ny_, &nz_})
+                    &nx_, &ny_, &nz_, &ux_, &uy_, &uz_, &uLength_})
         v->resize(v->size() + size_t(Lanes), 1.0f);
 }
 
@@ -151,10 +152,45 @@ void SensorClusters::addCluster(size_t first, size_t last, const std::vector<Clu
     begin_.push_back(uint32_t(last));
 }
 
+void SensorClusters::addNeighbourhoods() {
+    const size_t count = cx_.size();
+    for (size_t first = 0; first < count; first += size_t(Lanes)) {
+        const size_t last = std::min(first + size_t(Lanes), count), middle = (first + last) / 2;
+        const Vec3f centre(cx_[middle], cy_[middle], cz_[middle]);
+        float reach = 0.0f;
+        for (size_t i = first; i < last; ++i)
+            reach = std::max(reach, (Vec3f(cx_[i], cy_[i], cz_[i]) - centre).length() +
+                                        std::abs(centreLength_[i] - centreLength_[middle]) + reach_[i]);
+        ux_.push_back(centre.x);
+        uy_.push_back(centre.y);
+        uz_.push_back(centre.z);
+        uLength_.push_back(centreLength_[middle]);
+        uReach_.push_back(1.0001f * reach);
+    }
+    uReach_.resize(uReach_.size() + size_t(Lanes), -Infinity);
+}
+
+template <typename Visit>
+void SensorClusters::eachNeighbourhood(const ClusterQuery& query, const Visit& visit) const {
+    for (size_t i = 0; i * size_t(Lanes) < cx_.size(); i += size_t(Lanes)) {
+        const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
+        const Batch dx = load(ux_) - query.position.x, dy = load(uy_) - query.position.y,
+                    dz = load(uz_) - query.position.z;
+        const Batch length = xsimd::sqrt(dx * dx + dy * dy + dz * dz) + load(uLength_), reach = load(uReach_);
+        auto open = length < -1.0f;
+        for (const LengthRange& range : query.open)
+            open = open || (length + reach > range.least && length - reach < range.most);
+        if (!xsimd::any(open)) continue;
+        alignas(64) std::array<float, size_t(Lanes)> visited;
+        xsimd::select(open, Batch(1.0f), Batch(0.0f)).store_aligned(visited.data());
+        for (size_t k = 0; k < size_t(Lanes); ++k)
+            if (visited[k] > 0.0f) visit((i + k) * size_t(Lanes));
+    }
+}
+
 SensorClusters::ClusterWeights SensorClusters::weighClusters(const ClusterQuery& query) const {
     ClusterWeights weights;
-    const size_t count = begin_.size() - 1;
-    for (size_t i = 0; i < count; i += size_t(Lanes)) {
+    eachNeighbourhood(query, [&](size_t i) {
         const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
         const Batch dx = load(cx_) - query.position.x, dy = load(cy_) - query.position.y,
                     dz = load(cz_) - query.position.z;
@@ -168,7 +204,7 @@ SensorClusters::ClusterWeights SensorClusters::weighClusters(const ClusterQuery&
             open += xsimd::select(part > 0.0f, xsimd::max(part, least), Batch(0.0f));
         }
         weights.add(i, load(size_) * open / (2.0f * reach * (squared + load(squaredSize_))));
-    }
+    });
     return weights;
 }
 

@@ -66,6 +66,10 @@ class SensorClusters {
 
     void split(size_t first, size_t last, size_t parts, const std::vector<ClusterPoint>& points);
     void addCluster(size_t first, size_t last, const std::vector<ClusterPoint>& points);
+    void addNeighbourhoods();
+    /// Calls `visit` with the first cluster of every register that may hold one in time.
+    template <typename Visit>
+    void eachNeighbourhood(const ClusterQuery& query, const Visit& visit) const;
     [[nodiscard]] ClusterWeights weighClusters(const ClusterQuery& query) const;
     /// Of the points of a cluster, counted from its first.
     [[nodiscard]] PointWeights weighPoints(const ClusterQuery& query, size_t cluster) const;
@@ -74,6 +78,7 @@ class SensorClusters {
     std::vector<uint32_t> order_, begin_; ///< begin_[c]: rank of cluster c's first point; one more entry
     std::vector<float> x_, y_, z_, cameraLength_, spread_, nx_, ny_, nz_;         ///< of points, by rank
     std::vector<float> cx_, cy_, cz_, squaredSize_, centreLength_, reach_, size_; ///< of clusters
+    std::vector<float> ux_, uy_, uz_, uLength_, uReach_; ///< that hold a register of neighbouring clusters each
 };
 
 } // namespace tungsten::photon
