@@ -73,7 +73,7 @@ class VolumeGather {
     const Selection<Record>& straight() {
         if (culling_.directView() || !culling_.straightTimesKnown()) return all_;
         if (!straight_) straight_ = Primitive::straight(scene_, culling_, all_.records, all_.radii);
-        return *straight_;
+        return straight_ ? *straight_ : all_;
     }
     [[nodiscard]] std::unique_ptr<Gather> gatherOf(const Selection<Record>& selection, bool fewRays) const {
         return std::make_unique<Gather>(scene_, sensor_, selection.records, selection.radii, fewRays);
@@ -102,7 +102,7 @@ class VolumeGather {
     const ArrivalCulling& culling_;
     float scale_;
     Selection<Record> all_;
-    std::optional<Selection<Record>> straight_;
+    std::optional<Selection<Record>> straight_; ///< none: all, or not chosen yet
     Selection<Record> folded_;
     std::vector<Selection<Record>> dealt_;
     std::unique_ptr<Gather> gather_, straightGather_;
