@@ -1,6 +1,7 @@
 #include "photon/surface/SharedLight.h"
 
 #include "photon/Tuning.h"
+#include "photon/raster/Registers.h"
 
 #include <tbb/parallel_for.h>
 
@@ -17,22 +18,58 @@ std::vector<uint32_t> beginnings(size_t groups, size_t elements, const Group& gr
     return begin;
 }
 
-/// Points about whose light the other has something to say: near each other on one smooth surface, seen equally.
-bool mayShare(const SensorPoint& a, const SensorPoint& b, float distance) {
-    constexpr float LeastCosine = 0.95f, MostSlope = 0.2f;
-    if (a.interactions != b.interactions || a.region.medium != b.region.medium) return false;
-    const Vec3f offset = b.hit.position - a.hit.position;
-    const float squared = offset.length2();
-    if (squared > distance * distance || a.hit.ng.dot(b.hit.ng) < LeastCosine) return false;
-    return std::max(sqr(offset.dot(a.hit.ng)), sqr(offset.dot(b.hit.ng))) <= sqr(MostSlope) * squared;
-}
+/// What decides which points have something to say about each other's light, as arrays over the points.
+class Likeness {
+  public:
+    Likeness(const std::vector<SensorPoint>& points, float distance) : squaredDistance_(sqr(distance)) {
+        const size_t count = points.size() + size_t(Lanes); // whole registers can be read from any place
+        for (auto* v : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &interactions_, &medium_}) v->resize(count);
+        for (size_t i = 0; i < points.size(); ++i) {
+            const Vec3f &position = points[i].hit.position, &normal = points[i].hit.ng;
+            x_[i] = position.x, y_[i] = position.y, z_[i] = position.z;
+            nx_[i] = normal.x, ny_[i] = normal.y, nz_[i] = normal.z;
+            interactions_[i] = float(points[i].interactions);
+            medium_[i] = float(points[i].region.medium);
+        }
+    }
+
+    /// Of points `first` to last - 1, calls `visit` with those that are near point p on one smooth surface and seen
+    /// equally; returns how many those are.
+    template <typename Visit>
+    size_t eachAlike(size_t p, size_t first, size_t last, const Visit& visit) const {
+        constexpr float LeastCosine = 0.95f, MostSlope = 0.2f;
+        const auto lanes = Batch::load_aligned(LaneNumbers);
+        size_t count = 0;
+        for (size_t q = first; q < last; q += size_t(Lanes)) {
+            const auto load = [q](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + q); };
+            const Batch dx = load(x_) - x_[p], dy = load(y_) - y_[p], dz = load(z_) - z_[p];
+            const Batch squared = dx * dx + dy * dy + dz * dz;
+            auto alike = squared <= squaredDistance_ && lanes < float(last - q);
+            if (!xsimd::any(alike)) continue;
+            const Batch nx = load(nx_), ny = load(ny_), nz = load(nz_);
+            const Batch own = dx * nx_[p] + dy * ny_[p] + dz * nz_[p], others = dx * nx + dy * ny + dz * nz;
+            alike = alike && nx * nx_[p] + ny * ny_[p] + nz * nz_[p] >= LeastCosine &&
+                    xsimd::max(own * own, others * others) <= sqr(MostSlope) * squared &&
+                    load(interactions_) == interactions_[p] && load(medium_) == medium_[p];
+            alignas(64) std::array<float, size_t(Lanes)> found;
+            xsimd::select(alike, Batch(1.0f), Batch(0.0f)).store_aligned(found.data());
+            for (size_t k = 0; k < size_t(Lanes); ++k)
+                if (found[k] > 0.0f) ++count, visit(q + k);
+        }
+        return count;
+    }
+
+  private:
+    float squaredDistance_;
+    std::vector<float> x_, y_, z_, nx_, ny_, nz_, interactions_, medium_;
+};
 
 class Sharing {
   public:
     Sharing(const Scene& scene, const SensorRecord& record, const std::vector<ReceivedLight>& received,
             const SharingKernel& kernel, double scale, Film& film)
-        : scene_(scene), record_(record), kernel_(kernel), scale_(scale), film_(film),
-          reach_(int(std::floor(kernel.pixels))),
+        : scene_(scene), record_(record), likeness_(record.points, kernel.distance), kernel_(kernel), scale_(scale),
+          film_(film), reach_(int(std::floor(kernel.pixels))),
           firstPoint_(
               beginnings(record.x.size(), record.points.size(), [&](size_t i) { return record.points[i].pixel; })),
           first_(beginnings(record.points.size(), received.size(), [&](size_t i) { return received[i].point; })) {
@@ -72,18 +109,15 @@ class Sharing {
     size_t findNeighbours(uint32_t p, int x, int y, std::vector<uint32_t>& found) const {
         found.clear();
         size_t among = 0;
-        const SensorPoint& point = record_.points[p];
         for (int v = std::max(y - reach_, 0); v <= std::min(y + reach_, record_.height - 1); ++v) {
             // Half chord of the disc in this row.
             const int half = int(std::sqrt(std::max(sqr(kernel_.pixels) - sqr(float(v - y)), 0.0f)));
             const size_t start = size_t(v) * size_t(record_.width);
             const uint32_t first = firstPoint_[start + size_t(std::max(x - half, 0))],
                            last = firstPoint_[start + size_t(std::min(x + half, record_.width - 1)) + 1];
-            for (uint32_t q = first; q < last; ++q) {
-                if (q != p && !mayShare(point, record_.points[q], kernel_.distance)) continue;
-                ++among;
-                if (first_[q + 1] > first_[q]) found.push_back(q);
-            }
+            among += likeness_.eachAlike(p, first, last, [&](size_t q) {
+                if (first_[q + 1] > first_[q]) found.push_back(uint32_t(q));
+            });
         }
         return among;
     }
@@ -101,6 +135,7 @@ class Sharing {
 
     const Scene& scene_;
     const SensorRecord& record_;
+    Likeness likeness_;
     SharingKernel kernel_;
     double scale_;
     Film& film_;
