@@ -17,14 +17,25 @@ struct Query {
     const CameraSegment* segment;
     FrameSums* sums;
     float radius;
+    bool timed; ///< arrivals count, with the camera's time
     uint64_t gathered;
 };
+
+/// Whether light may leave the beam before `end`, its distance from the base, and arrive inside the gate: no more than
+/// by the triangle inequality, but most beams near a segment behind refraction are of another time.
+bool mayArrive(const TimeGate& gate, const CameraSegment& segment, const PhotonBeam& beam, float end) {
+    const float toBase = (beam.base - segment.origin).length(), rounding = 1e-5f * (toBase + end);
+    const double start = beam.time + segment.time;
+    return start + double(toBase - rounding) * segment.inverseSpeed < gate.end() &&
+           start + double(toBase + 2.0f * end + rounding) * segment.inverseSpeed >= gate.start;
+}
 
 void evaluate(Query& query, uint32_t index) {
     const EmbreeBeams::Piece& piece = query.pieces[index];
     const PhotonBeam& beam = query.beams[piece.beam];
     const CameraSegment& segment = *query.segment;
     if (beam.medium != segment.medium) return;
+    if (query.timed && !mayArrive(query.sensor->gate, segment, beam, piece.end)) return;
     const auto approach = closestApproach(beam.base, beam.direction, segment.origin, segment.direction);
     if (!approach || !(approach->distance < query.radius)) return;
     const float s = approach->alongBeam, t = approach->alongCamera;
@@ -59,7 +70,8 @@ BeamGather::BeamGather(const Scene& scene, const transport::Sensor& sensor, cons
 
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;
-    Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, 0};
+    const bool timed = !sensor_.gate.steadyState && !scene_.transport.cameraUnwarped;
+    Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, timed, 0};
     queryAbout<evaluate>(structure_.scene(), segment, radius_, query);
     return query.gathered;
 }
