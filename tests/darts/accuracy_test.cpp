@@ -7,22 +7,19 @@
 #include "darts/GreensFunction.h"
 #include "darts/Guide.h"
 
+#include "support/Exact.h"
 #include "support/LogUniform.h"
 
 #include "tungsten/core/Random.h"
 
-#include <boost/math/constants/constants.hpp>
-#include <boost/multiprecision/cpp_bin_float.hpp>
-#include <gtest/gtest.h>
-
 namespace darts {
 namespace {
 
-using Exact = boost::multiprecision::cpp_bin_float_50;
 using tungsten::RandomStream;
 using tungsten::Sampler;
+using tungsten::test::Exact;
+using tungsten::test::ExactPi;
 using tungsten::test::logUniform;
-const Exact ExactPi = boost::math::constants::pi<Exact>();
 
 /// Relative to the exact value.
 constexpr double Bound = 1e-5;
