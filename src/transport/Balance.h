@@ -3,6 +3,7 @@
 // them they add up to one.
 
 #include <cmath>
+#include <limits>
 
 namespace tungsten::transport {
 
@@ -15,8 +16,12 @@ template <typename... Densities>
 
 /// The same, more in favour of the higher of two densities (exponent 2).
 [[nodiscard]] inline float powerHeuristic(float own, float other) {
-    const float squared = own * own, others = other * other;
-    return squared + others > 0.0f ? squared / (squared + others) : 0.0f;
+    const float squared = own * own, sum = squared + other * other;
+    if (squared > 1e-30f && sum < std::numeric_limits<float>::infinity()) return squared / sum;
+    // Squares that leave the range of floats, as those of small lights far away do: by the ratio.
+    if (!(own > 0.0f)) return 0.0f;
+    const float ratio = other / own;
+    return 1.0f / (1.0f + ratio * ratio);
 }
 
 /// Density per length of free flights that end at `distance`, for weights: one rate for all channels.
