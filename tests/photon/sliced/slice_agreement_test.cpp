@@ -52,6 +52,22 @@ INSTANTIATE_TEST_SUITE_P(
                       R"("transient_time_center": 2, "transient_time_width": 0.05)", 0, 160}),
     [](const auto& test) { return test.param.name; });
 
+/// With all light at one speed straight rays may look at a choice of the records while others fold; slices have none.
+TEST(SlicesBesideMirrors, AgreeWithBeams) {
+    std::string json = boxOfFog(true, R"("transient_time_center": 2, "transient_time_width": 0.4)");
+    const std::string plaster = R"("bsdf": {"type": "lambert", "albedo": 0.5})";
+    json.replace(json.find(plaster), plaster.size(), R"("bsdf": {"type": "mirror"})");
+    const Mean beams = meanOf(json, "beams", "20000", 60, 0);
+    for (const char* type : {"volumes", "mis_volumes_balls"}) {
+        const Mean slices = meanOf(json, type, "5000", 20, 0);
+        for (int k = 0; k < 3; ++k) {
+            const double error = std::hypot(slices.error[k], beams.error[k]);
+            EXPECT_NEAR(slices.value[k], beams.value[k], 4.0 * error) << type << " channel " << k;
+            EXPECT_LT(error, 0.25 * beams.value[k]) << type;
+        }
+    }
+}
+
 /// Planes and volumes, which have one.
 TEST(SliceSteadyState, AgreesWithBeams) {
     const std::string json = boxOfFog(false, test::SteadyState);
