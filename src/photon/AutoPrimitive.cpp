@@ -27,20 +27,41 @@ Scatterings scatteringsOf(const Scene& scene) {
     return found;
 }
 
-/// All surfaces let light through straight on.
-bool passesLight(const Scene& scene) {
-    const auto passes = [](const BsdfPtr& bsdf) { return transport::passesStraight(*bsdf); };
-    return std::all_of(scene.primitives.begin(), scene.primitives.end(), [&](const Primitive& primitive) {
-        return std::all_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), passes);
-    });
+/// What is in light's way, apart from boundaries that it passes straight on.
+struct Obstacles {
+    bool any = false;
+    bool lenses = false; ///< some refract, with nothing inside that scatters
+    bool others = false; ///< some reflect, scatter or shine, or refract light out of fog
+
+    [[nodiscard]] bool onlyLenses() const { return lenses && !others; }
+};
+Obstacles obstaclesOf(const Scene& scene) {
+    Obstacles found;
+    for (const Primitive& primitive : scene.primitives) {
+        const Medium* inside = primitive.boundsMedium ? scene.medium(primitive.inside) : nullptr;
+        const bool hollow = !inside || !inside->scatters();
+        for (const BsdfPtr& bsdf : primitive.bsdfs) {
+            if (transport::passesStraight(*bsdf)) continue;
+            found.any = true;
+            (hollow && transport::refracts(*bsdf) ? found.lenses : found.others) = true;
+        }
+    }
+    return found;
 }
 
 /// Pixels of the largest image for which slices beat beams. Their time is in proportion to it, as every record shows in
-/// all of it; that of beams grows slowly.
-double largestImage(const Scene& scene) {
-    const bool unwarped = scene.transport.cameraUnwarped;
+/// all of it; that of beams grows slowly. Among surfaces each pixel needs shadow rays besides, and beams are left what
+/// scatters once after them: the more of the light scatters again, the longer slices are ahead.
+double largestImage(const Scene& scene, const Obstacles& obstacles, double scatterings) {
+    const bool unwarped = scene.transport.cameraUnwarped, delta = scene.transport.gate.delta;
     if (scene.primitives.empty()) return unwarped ? double(Infinity) : tuning::MostSlicedInOpenFog;
-    return unwarped ? tuning::MostSlicedUnwarped : tuning::MostSlicedBehindBoundaries;
+    if (!obstacles.any) return unwarped ? tuning::MostSlicedUnwarped : tuning::MostSlicedBehindBoundaries;
+    if (!unwarped)
+        return delta && !obstacles.lenses && scatterings <= tuning::MostScatteringsAmongSurfaces
+                   ? tuning::MostSlicedAmongSurfaces
+                   : 0.0;
+    return std::min(scatterings, tuning::MostSharedScatterings) *
+           (delta ? tuning::MostSlicedPerScattering : tuning::MostGatedPerScattering);
 }
 
 AutoPrimitive kernels(bool beams, const std::string& reason) {
@@ -65,12 +86,17 @@ AutoPrimitive AutoPrimitive::of(const Scene& scene, bool hasRadius) {
     const SliceKind kind = many ? SliceKind::Hypervolumes : SliceKind::MisVolumesBalls;
     const bool needsBeams = slicesNeedBeams(scene, SliceClasses::of(kind, false, true, false));
     if (needsBeams && !hasRadius) return kernels(false, "slices and beams need a volume_gather_radius here");
-    if (hasRadius && !passesLight(scene))
-        return kernels(true, "surfaces are in the way, for which slices need shadow rays all over the image");
+    const Obstacles obstacles = obstaclesOf(scene);
     const Vec2i& image = scene.camera.resolution;
+    const double pixels = double(image.x) * double(image.y);
     const std::string size = std::to_string(image.x) + " x " + std::to_string(image.y) + " pixels";
-    if (hasRadius && double(image.x) * double(image.y) > largestImage(scene))
-        return kernels(true, "slices are drawn to all of " + size);
+    const bool gathered = transport.cameraUnwarped && !transport.gate.delta && obstacles.onlyLenses();
+    if (hasRadius && gathered && pixels <= tuning::MostPlanedBehindLenses)
+        return {Slices{SliceKind::Planes, {}}, "planes: light behind lenses, " + size};
+    if (hasRadius && pixels > largestImage(scene, obstacles, scatterings.densest))
+        return kernels(true, obstacles.any
+                                 ? "surfaces are in the way, for which slices need shadow rays at all of " + size
+                                 : "slices are drawn to all of " + size);
     const std::string what = many ? "light of many scatterings or in colours, " : "a time gate in fog, ";
     return {Slices{kind, {}}, std::string(sliceName(kind).type) + ": " + what + size};
 }

@@ -77,10 +77,32 @@ inline constexpr float MostSlicedPeak = 0.4f, MostUnwarpedPeak = 0.8f, MostGuide
 /// small and in large images. Fog without surfaces: fog seen from 1.5 away, delta 0.17 at 80 x 60, 0.36 at 240 x 180;
 /// box 0.32, 1.2; laser-in-fog, delta 0.3 at 96 x 72, 0.7 at 288 x 216; without the leg 0.04 to 0.1 and 0.13 to 0.4.
 /// Index-matched boundaries: box of fog, delta 0.27 at 32 x 32, 3.0 at 240 x 180, amber 1.4 and 4.4; without the leg
-/// 0.3 and 0.5. Surfaces in the way are left to beams: without the leg fogged-box 0.7 at 32 x 32, 3.1 at 96 x 96, 5.6
-/// at 160 x 160; a card and a ball in fog, delta 0.28, 1.3, 3.5, box 0.55, 2.3, 4.5; the published volumetric-caustic
-/// 0.35 at 80 x 44, 0.8 at 160 x 88; two rooms 2.8 and 3.6 at 32 x 32 and 48 x 48. Bench: study liu-primitives
+/// 0.3 and 0.5. Bench: study liu-primitives
 inline constexpr double MostSlicedInOpenFog = 6e4, MostSlicedUnwarped = 5e4, MostSlicedBehindBoundaries = 7e3;
+
+/// The same among surfaces, without the camera's leg, for each scattering before the gate: at delta gates and at
+/// others. Variance x CPU of mis_volumes_balls against beams, scatterings in brackets: fogged-box (0.8), delta 0.7 at
+/// 32 x 32, 3.6 at 96 x 96, box 1.7 at 32 x 32, 3.6 at 64 x 64; the published volumetric-caustic (1.4), delta 0.37 at
+/// 80 x 44, 0.8 at 160 x 88, box 1.05 at 80 x 44; a card and a ball in fog (1.7), delta 0.28, 1.3, 3.5 at 32 x 32, 96 x
+/// 96, 160 x 160, box 0.55 to 1.2, 2.3, 4.5, and with what surfaces show 1.24 and 1.4 at 32 x 32, 2.0 and 4.6 at 64 x
+/// 64; two rooms (12), delta 0.33 at 32 x 32, 0.49 at 64 x 64, box 0.48 and 0.73; (18), delta 0.56 at 32 x 32. Bench:
+/// study liu-primitives
+inline constexpr double MostSlicedPerScattering = 2700.0, MostGatedPerScattering = 800.0;
+
+/// With the camera's leg: pixels at delta gates, up to so many scatterings and without lenses. Others are left to
+/// beams. As above: fogged-box (2.7), delta 0.31 at 32 x 32, 0.63 at 64 x 64, 1.1 at 96 x 96, box 1.6 at 32 x 32, 4.5
+/// at 64 x 64; a card and a ball in fog (6.6) at 32 x 32, delta 1.9, box 0.98, and with what surfaces show 0.94 and
+/// 0.71, at 64 x 64 1.5 and 2.6; two rooms (18), delta 8 and 2.7, box 3.2 and 21. Bench: study liu-primitives
+inline constexpr double MostSlicedAmongSurfaces = 4200.0, MostScatteringsAmongSurfaces = 4.0;
+
+/// Pixels of the largest image for which `auto` chooses planes where lenses alone are in light's way, at gates that
+/// last without the camera's leg. What lenses gather and scatter once is left to beams by every slice; planes cost
+/// little beside them, but their time is in proportion to the pixels. Variance x CPU of planes against beams,
+/// volumetric-caustic: 0.16 at 48 x 27, 0.5 at 128 x 72, 2.2 at 256 x 144. A ball of glass beside a lamp that is a
+/// sphere 1.5 at 32 x 32, 2.5 at 96 x 96; with walls about (the published one) 1.7 at 80 x 44. At delta gates 0.12 on
+/// the first, where blur is nearly all of the error, and 4.4 on the second, where mis_volumes_balls has 0.44. Bench:
+/// study liu-primitives
+inline constexpr double MostPlanedBehindLenses = 1.6e4;
 
 /// Scatterings before the gate, on the average, above which `auto` chooses hypervolumes about a camera in fog, and
 /// points anywhere. Variance x CPU of hypervolumes against mis_volumes_balls in fog seen from within, delta gates: 1.5

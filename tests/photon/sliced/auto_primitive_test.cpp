@@ -72,18 +72,36 @@ std::string with(const char* primitive, const std::string& json) {
     return scene;
 }
 
-TEST(AutoPrimitive, BeamsAmongSurfacesAndInLargeImagesBehindBoundaries) {
-    const auto sliced = [](const char* bsdf, const char* resolution, const Overrides& further) {
-        const std::string cube =
-            std::string(R"({"type": "cube", "int_medium": "fog", "bsdf": {"type": ")") + bsdf + R"("}})";
-        Overrides overrides{std::string("camera.resolution=") + resolution, Radius};
-        overrides.insert(overrides.end(), further.begin(), further.end());
-        return planOf(with(cube.c_str(), fog(DeltaGate)), overrides).slices() != nullptr;
-    };
-    EXPECT_FALSE(sliced("lambert", "[16, 16]", {}));
-    EXPECT_TRUE(sliced("forward", "[80, 80]", {}));
-    EXPECT_FALSE(sliced("forward", "[100, 100]", {}));
-    EXPECT_TRUE(sliced("forward", "[100, 100]", {Unwarped}));
+/// Fog with a lamp, and a cube of it that ends so.
+bool slicedBehind(const char* bsdf, const char* resolution, const Overrides& further, const char* gate = DeltaGate) {
+    const std::string cube =
+        std::string(R"({"type": "cube", "int_medium": "fog", "bsdf": {"type": ")") + bsdf + R"("}})";
+    Overrides overrides{std::string("camera.resolution=") + resolution, Radius};
+    overrides.insert(overrides.end(), further.begin(), further.end());
+    const Planned planned = planOf(with(cube.c_str(), fog(gate)), overrides);
+    const bool inTheWay = planned.plan.volume.reason.find("surfaces are in the way") != std::string::npos;
+    EXPECT_EQ(inTheWay, !planned.slices() && std::string(bsdf) != "forward") << planned.plan.volume.reason;
+    EXPECT_NE(planned.plan.volume.reason.find(" x "), std::string::npos) << planned.plan.volume.reason;
+    return planned.slices() != nullptr;
+}
+
+TEST(AutoPrimitive, BeamsInLargeImagesBehindBoundaries) {
+    EXPECT_TRUE(slicedBehind("forward", "[80, 80]", {}));
+    EXPECT_FALSE(slicedBehind("forward", "[100, 100]", {}));
+    EXPECT_TRUE(slicedBehind("forward", "[100, 100]", {Unwarped}));
+}
+
+/// Slices need shadow rays at every pixel there, and light that scatters again.
+TEST(AutoPrimitive, BeamsAmongSurfacesButInSmallImages) {
+    EXPECT_TRUE(slicedBehind("lambert", "[60, 60]", {}));
+    EXPECT_FALSE(slicedBehind("lambert", "[70, 70]", {}));
+    EXPECT_FALSE(slicedBehind("lambert", "[16, 16]", {"integrator.transient_time_center=5"})) << "many scatterings";
+    EXPECT_FALSE(slicedBehind("lambert", "[16, 16]", {}, BoxGate));
+    EXPECT_TRUE(slicedBehind("lambert", "[80, 80]", {Unwarped}));
+    EXPECT_FALSE(slicedBehind("lambert", "[100, 100]", {Unwarped}));
+    EXPECT_TRUE(slicedBehind("lambert", "[40, 40]", {Unwarped}, BoxGate));
+    EXPECT_FALSE(slicedBehind("lambert", "[50, 50]", {Unwarped}, BoxGate));
+    EXPECT_FALSE(slicedBehind("lambert", "[40, 40]", {Unwarped, "integrator.transient_time_center=0.5"}));
 }
 
 TEST(AutoPrimitive, HypervolumesForManyScatteringsAndColours) {
@@ -126,9 +144,30 @@ TEST(AutoPrimitive, SeveralSpeedsOfLight) {
     const Planned warped = planOf(json, {Small, Radius});
     EXPECT_TRUE(std::holds_alternative<Beams>(warped.settings.primitive)) << warped.plan.volume.reason;
     EXPECT_NE(warped.plan.volume.reason.find("several speeds"), std::string::npos) << warped.plan.volume.reason;
-    const Planned unwarped = planOf(json, {Radius, Unwarped});
+    const Planned unwarped = planOf(json, {Large, Radius, Unwarped});
     EXPECT_TRUE(std::holds_alternative<Beams>(unwarped.settings.primitive)) << unwarped.plan.volume.reason;
     EXPECT_NE(unwarped.plan.volume.reason.find("in the way"), std::string::npos) << unwarped.plan.volume.reason;
+}
+
+/// Nothing but glass in light's way, a gate that lasts, and time that stops before the camera.
+TEST(AutoPrimitive, PlanesBehindLenses) {
+    const auto kindOf = [](const std::string& json, const char* resolution) {
+        const Planned planned = planOf(json, {resolution, Radius, Unwarped});
+        const bool lenses = planned.plan.volume.reason.find("lenses") != std::string::npos;
+        EXPECT_EQ(lenses, planned.slices() && planned.slices()->kind == SliceKind::Planes)
+            << planned.plan.volume.reason;
+        return planned.slices() ? std::optional(planned.slices()->kind) : std::nullopt;
+    };
+    const std::string lens = inCube(fog(BoxGate, SlowGlass));
+    EXPECT_EQ(kindOf(lens, Small), SliceKind::Planes);
+    EXPECT_EQ(kindOf(lens, Large), std::nullopt);
+    const char* wall = R"({"type": "quad", "bsdf": {"type": "lambert"}})";
+    EXPECT_EQ(kindOf(with(wall, lens), Small), std::nullopt);
+    std::string milk = lens;
+    const std::string glass = R"("int_medium": "glass")";
+    milk.replace(milk.find(glass), glass.size(), R"("int_medium": "fog")");
+    EXPECT_EQ(kindOf(milk, Small), std::nullopt);
+    EXPECT_EQ(kindOf(inCube(fog(DeltaGate, SlowGlass)), Small), SliceKind::MisVolumesBalls);
 }
 
 TEST(GuidedSlicesPlan, PlainWhereGuidingLoses) {
