@@ -106,7 +106,8 @@ TEST(CandidatesAccuracy, DensitiesOfProposals) {
 Exact logUseful(const Drawn& drawn, Shape shape, const Exact& d, Exact& terms) {
     const Ellipse<float>& e = drawn.draw.latest;
     const Exact C(e.C), S = C + e.delta, s = S - d, rho2 = d * d - 2 * d * C * (1 - Exact(e.h)) + C * C;
-    const Exact sigmaA(drawn.medium.sigmaA.x), sigmaS(drawn.medium.sigmaS.x), reduced = sigmaS * (1 - Exact(drawn.medium.g));
+    const Exact sigmaA(drawn.medium.sigmaA.x), sigmaS(drawn.medium.sigmaS.x),
+        reduced = sigmaS * (1 - Exact(drawn.medium.g));
     terms = 1 + (sigmaA + sigmaS) * d;
     if (shape == Shape::TimeBound) return -(sigmaA + sigmaS) * d;
     if (shape == Shape::Diffusion) {
@@ -132,8 +133,8 @@ void expectUseful(const char* name, double bound) {
         Register factors(0.0f);
         float factor = 0.0f;
         const Usefulness<G> usefulness(drawn.draw, 0, true);
-        const double found = double(firstLane(usefulness.exponent(Register(d), at, factors))) +
-                             std::log(double(firstLane(factors)));
+        const double found =
+            double(firstLane(usefulness.exponent(Register(d), at, factors))) + std::log(double(firstLane(factors)));
         const double single = double(usefulness.exponent(d, alone, factor)) + std::log(double(factor));
         Exact terms;
         const Exact exact = logUseful(drawn, G, d, terms);
@@ -183,7 +184,9 @@ struct Cap {
 /// has them.
 TEST(CandidatesAccuracy, MixturesOfDirections) {
     LargestError mixed("mixtures");
-    const auto dotOf = [](const Vec3& a, const Vec3& b) { return Exact(Exact(a.x) * b.x + Exact(a.y) * b.y + Exact(a.z) * b.z); };
+    const auto dotOf = [](const Vec3& a, const Vec3& b) {
+        return Exact(Exact(a.x) * b.x + Exact(a.y) * b.y + Exact(a.z) * b.z);
+    };
     const auto henyeyGreenstein = [](const Exact& g, const Exact& h) {
         const Exact d = (1 - g) * (1 - g) + 2 * g * h;
         return Exact((1 - g * g) / (4 * ExactPi * d * sqrt(d)));
@@ -205,7 +208,8 @@ TEST(CandidatesAccuracy, MixturesOfDirections) {
             const Vec3 difference = a - b;
             return Exact(dotOf(difference, difference) / 2);
         };
-        const Exact h = apart(direction, residual.axis), t = delta * (S + distance) / (2 * (delta + distance * h)), r = S - t;
+        const Exact h = apart(direction, residual.axis), t = delta * (S + distance) / (2 * (delta + distance * h)),
+                    r = S - t;
         std::array<Exact, 3> seen;
         Exact off = 0;
         for (int k = 0; k < 3; ++k) {
@@ -216,7 +220,8 @@ TEST(CandidatesAccuracy, MixturesOfDirections) {
         const Exact fromView = henyeyGreenstein(Exact(view.g), off / 2) * t * t / (r * r);
         const Exact lobe = 1 / (2 * ExactPi * (delta / distance + h) * log1p(2 * distance / delta));
         const Settings& settings = guide.settings();
-        const Exact focus = std::max(Exact(settings.focus), std::min(Exact(settings.thinFocus), Exact(Exact(1.2f) / (sigma * S))));
+        const Exact focus =
+            std::max(Exact(settings.focus), std::min(Exact(settings.thinFocus), Exact(Exact(1.2f) / (sigma * S))));
         const Exact ratio = distance / S, share = ratio / (ratio + Exact(settings.alpha));
         const Exact exact = share * ((1 - focus) * lobe + focus * fromView) +
                             (1 - share) * henyeyGreenstein(Exact(phase.g), apart(direction, phase.before));

@@ -103,8 +103,7 @@ struct ExactPassage {
         Exact depth = positive(face.depth - c.along * cosine);
         const Exact outside = sqrt(positive(rho * rho - depth * (depth + 2 * Exact(face.height))));
         const Exact longest = positive(excess + rho - outside * c.exit.outerSpeed);
-        if (c.persistence > 0)
-            depth = positive(depth - cosine * c.persistence * -expm1(-longest / c.persistence));
+        if (c.persistence > 0) depth = positive(depth - cosine * c.persistence * -expm1(-longest / c.persistence));
         const Exact reachable = least(most(excess, c.exit.gate * Exact(0.01f)), least(longest, c.exit.gate));
         return {depth, longest, reachable};
     }

@@ -58,7 +58,8 @@ Exact reflectedFromOutside(const Exact& n) {
            8 * n4 * (n4 + 1) / (plus * (n4 - 1) * (n4 - 1)) * log(n);
 }
 
-/// A = (1 + R) / (1 - R) of a fit within 0.002 from 1 / 2 to 2; beyond, where the fit would leave [0, 1], in closed form.
+/// A = (1 + R) / (1 - R) of a fit within 0.002 from 1 / 2 to 2; beyond, where the fit would leave [0, 1], in closed
+/// form.
 TEST(NumbersAccuracy, WhatBoundariesReflect) {
     LargestError reflectance("reflectance"), mismatch("mismatch"), beyond("mismatch_beyond");
     for (uint64_t i = 0; i < 600; ++i) {
@@ -119,7 +120,8 @@ TEST(NumbersAccuracy, PhaseFunctionsAsTheyAreDrawn) {
             return Exact(Exact(a.x) * b.x + Exact(a.y) * b.y + Exact(a.z) * b.z);
         };
         const Exact found = 1 - dotOf(peak, after) / sqrt(dotOf(peak, peak) * dotOf(after, after));
-        const Exact g(strength), root = (1 - g * g) / (1 - g + 2 * g * u), exact = 1 - (1 + g * g - root * root) / (2 * g);
+        const Exact g(strength), root = (1 - g * g) / (1 - g + 2 * g * u),
+                                 exact = 1 - (1 + g * g - root * root) / (2 * g);
         drawn.add(double(found), exact, sqrt(exact) + Exact(1e-7));
     }
     EXPECT_TRUE(drawn.within(6e-7));
@@ -146,7 +148,8 @@ TEST(NumbersAccuracy, UsefulnessOfWalks) {
         const Exact phi = i % 2 == 0 ? Exact(-1.5 * log(ExactPi * fourDs) - rho * rho / fourDs)
                                      : Exact(log(u) / 8 - 1.5 * log(4 * ExactPi * l * length / 3) - length / l + x +
                                              log(1 + Exact(2.026) / x) / 2);
-        const Exact least = 1e-6 * length, reach = std::min(Exact(residual.excess), std::max(Exact(residual.width), least));
+        const Exact least = 1e-6 * length,
+                    reach = std::min(Exact(residual.excess), std::max(Exact(residual.width), least));
         const Exact exact = log(throughput * reach) + phi - sigmaA * length;
         const float found = guide.logUsefulness(residual, throughput);
         useful.add(double(found), exact, 1 + abs(exact));

@@ -25,8 +25,8 @@ class LargestError {
     /// Relative to the exact value, or to `scale` > 0. What is not finite is infinitely wrong.
     void add(double value, const Exact& exact, const Exact& scale) {
         ++count_;
-        const double error = std::isfinite(value) ? double(abs(Exact(value) - exact) / scale)
-                                                  : std::numeric_limits<double>::infinity();
+        const double error =
+            std::isfinite(value) ? double(abs(Exact(value) - exact) / scale) : std::numeric_limits<double>::infinity();
         if (error <= largest_) return;
         largest_ = error;
         value_ = value;

@@ -37,7 +37,8 @@ TEST(TransportAccuracy, WeightsOfTechniques) {
         three.add(double(balance(a, b, c)), Exact(a) / (Exact(a) + b + c));
         power.add(double(powerHeuristic(a, b)), Exact(a) * a / (Exact(a) * a + Exact(b) * b));
         const auto sigma = float(logUniform(s, 1e-9, 1e4)), d = float(logUniform(s, 1e-6, 60.0) / double(sigma));
-        flight.add(double(pdfFreeFlight(sigma, d)), sigma * exp(-Exact(sigma) * d), sigma * exp(-Exact(sigma) * d) * (1 + Exact(sigma) * d));
+        flight.add(double(pdfFreeFlight(sigma, d)), sigma * exp(-Exact(sigma) * d),
+                   sigma * exp(-Exact(sigma) * d) * (1 + Exact(sigma) * d));
     }
     EXPECT_TRUE(two.within(2e-7));
     EXPECT_TRUE(three.within(3e-7));
@@ -84,7 +85,8 @@ TEST(TransportAccuracy, TimesOfArrival) {
         plan.highestSpeed = float(logUniform(s, 1e-3, 1e3));
         const GateBounds bounds(gate, plan);
         const double time = gate.start * s.nextDouble(), left = gate.start + gate.frameWidth * s.nextDouble() - time;
-        const double first = (gate.start - time) * double(plan.highestSpeed), distance = left * double(plan.highestSpeed);
+        const double first = (gate.start - time) * double(plan.highestSpeed),
+                     distance = left * double(plan.highestSpeed);
         soonest.add(bounds.soonest(time, distance), time + Exact(distance) / plan.highestSpeed);
         for (const double in : {first, distance}) {
             EXPECT_TRUE(bounds.mayArrive(time, in));
@@ -116,7 +118,8 @@ TEST(TransportAccuracy, SensorsWithDelays) {
         const Sensor sensor = Sensor::of(scene, gate);
         const Exact from(begin), over = Exact(begin + width) - from;
         start.add(sensor.arrivals.start, Exact(gate.start) - Exact(begin + width), Exact(gate.end()) + over);
-        length.add(sensor.arrivals.end(), Exact(gate.start) + 5 * Exact(gate.frameWidth) - from, Exact(gate.end()) + over);
+        length.add(sensor.arrivals.end(), Exact(gate.start) + 5 * Exact(gate.frameWidth) - from,
+                   Exact(gate.end()) + over);
         const double time = gate.start - begin - width + (gate.end() - gate.start + width) * s.nextDouble();
         const auto until = [&](const Exact& at) { // part of the pulse before
             const Exact x = (at - time - from) / over;
@@ -133,7 +136,8 @@ TEST(TransportAccuracy, SensorsWithDelays) {
         gate.frames = 1;
         const double seen = gate.start + gate.frameWidth * s.nextDouble();
         const Exact gone = (Exact(seen) - gate.start) / (Exact(gate.start + gate.frameWidth) - gate.start);
-        weight.add(double(Sensor::of(scene, gate).weight(seen)), 2 * (1 - gone), 1 + Exact(gate.start) * 1e-9 / gate.frameWidth);
+        weight.add(double(Sensor::of(scene, gate).weight(seen)), 2 * (1 - gone),
+                   1 + Exact(gate.start) * 1e-9 / gate.frameWidth);
     }
     EXPECT_TRUE(share.within(6e-8));
     EXPECT_TRUE(start.within(2e-15));
@@ -169,7 +173,8 @@ TEST(TransportAccuracy, WaysOutOfSimpleBodies) {
         const Exact distance = (sqrt(along * along + unit * inside) - along) / unit;
         sphere.add(double(exit.distance), distance, Exact(radius));
         for (int axis = 0; axis < 3; ++axis)
-            normal.add(double(exit.face.normal[axis]), (from[size_t(axis)] + distance * direction[axis]) / radius, Exact(1));
+            normal.add(double(exit.face.normal[axis]), (from[size_t(axis)] + distance * direction[axis]) / radius,
+                       Exact(1));
         Body walls;
         for (int axis = 0; axis < 3; ++axis)
             for (const float side : {-1.0f, 1.0f}) {
