@@ -73,7 +73,8 @@ class FirstPassage {
     /// `reducedS` = sigmaS (1 - g) > 0.
     FirstPassage(float absorption, float reducedS, const Exit& exit, float allowance = 1.0f)
         : exit_(exit), sigmaA_(absorption), fourthInverseD_(0.75f * (absorption + reducedS)),
-          margin_(0.5f * exit.mismatch / fourthInverseD_), meanFreePath_(1.0f / reducedS), allowance_(allowance) {}
+          margin_(0.5f * std::min(exit.mismatch, MostMismatch) / fourthInverseD_), meanFreePath_(1.0f / reducedS),
+          allowance_(allowance) {}
     FirstPassage(const Medium& medium, const Exit& exit, float allowance = 1.0f)
         : FirstPassage(mean(medium.sigmaA), medium.reducedSigmaS(), exit, allowance) {}
 
@@ -162,6 +163,11 @@ class FirstPassage {
         const float power = through<float>(face, left, factor);
         return power + std::log(std::max(factor, 1e-37f));
     }
+
+    /// Where boundaries reflect nearly all light, leaving takes many tries, the next as likely as the last; a boundary
+    /// extrapolated by as much would seem out of reach for whatever is about to leave. (A dense block of index 3 and 4,
+    /// points, image over that of plain paths: 0.02 and 1e-13 without, 1.1 and 0.99 with standard errors of 1.)
+    static constexpr float MostMismatch = 8.5f;
 
     const Exit& exit_;
     float sigmaA_;

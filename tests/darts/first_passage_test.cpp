@@ -69,6 +69,18 @@ TEST(FirstPassage, ExtrapolatedFartherWhereTheBoundaryReflects) {
     EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, 3e-3);
 }
 
+/// Light at a boundary that reflects nearly all of it may leave at any time. Guided light paths that took it for
+/// hopeless ended there: bodies of an index of 3 and more were black.
+TEST(FirstPassage, LeavesSoonHoweverMuchTheBoundaryReflects) {
+    const auto at = [](double length, float mismatch) {
+        Residual residual = outOf(0.01, 3.0, 3.0 + length, 0.1);
+        residual.exit.mismatch = mismatch;
+        return logPassage(residual, 1.0f);
+    };
+    for (const float index : {1.5f, 2.0f, 3.0f, 4.0f, 20.0f})
+        EXPECT_GT(at(0.3, boundaryMismatch(index)) - at(10.0, boundaryMismatch(index)), -10.0) << index;
+}
+
 TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
     const double thickness = 0.5, length = 4.0;
     const auto at = [&](double depth, double time) {
