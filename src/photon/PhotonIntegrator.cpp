@@ -131,7 +131,8 @@ void PhotonIntegrator::look(GatherStructures& structures, const SensorRecords& r
     if (structures.splatted) splat(structures, records, pass.part(0.0, splatted), film, statistics);
     if (!records.empty() && !plan_.looksAgain) return;
     const StageTimer timer(statistics, "sensor pass");
-    if (records.empty()) renderSensorPass(*scene_, structures, nullptr, pass.part(splatted, 1.0), film, statistics);
+    if (records.empty())
+        return renderSensorPass(*scene_, structures, nullptr, pass.part(splatted, 1.0), film, statistics);
     const double each = (1.0 - splatted) / double(records.size());
     for (size_t i = 0; i < records.size(); ++i)
         renderSensorPass(*scene_, structures, records[i],

@@ -53,9 +53,17 @@ std::string guidanceObstacle(const Scene& scene, const PhotonSettings& settings,
     return std::visit(own, settings.primitive);
 }
 
-uint32_t cameraPathsOf(const Scene& scene, const PhotonSettings& settings) {
+/// Why there is one camera path for each sample, whatever the image's size; empty where there may be more.
+std::string cameraPathsObstacle(const PhotonPlan& plan, const PhotonSettings& settings) {
+    if (!plan.guidance.on) return plan.guidance.reason;
+    if (!plan.splats()) return "nothing is splatted";
+    if (settings.policy.sampling.published) return "the preset has one";
+    if (plan.glossyPaths.on) return "paths on from glossy surfaces take long";
     const bool often = std::visit([](const auto& p) { return p.SplatsOften; }, settings.primitive);
-    if (!often || settings.policy.sampling.published) return 1;
+    return often ? "" : "slices take long to draw";
+}
+
+uint32_t cameraPathsOf(const Scene& scene, const PhotonSettings& settings) {
     const uint64_t pixels = uint64_t(scene.camera.resolution.x) * uint64_t(scene.camera.resolution.y);
     const uint64_t paths = std::min<uint64_t>(tuning::CameraPaths, settings.volumePhotonCount);
     return uint32_t(std::clamp<uint64_t>(paths / pixels, 1, tuning::MostCameraPaths));
@@ -148,7 +156,13 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     primitiveSplats = std::visit([&](const auto& p) { return p.splats(straightRays, oneTime); }, settings.primitive);
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
     volume.on = facts.mediumScattering && (homogeneous || atVertices);
-    cameraPaths = splats() && guidance.on && !glossyPaths.on ? cameraPathsOf(scene, settings) : 1;
+    const std::string obstacle = cameraPathsObstacle(*this, settings);
+    cameraPaths = obstacle.empty() ? cameraPathsOf(scene, settings) : 1;
+    cameraPathsReason = !obstacle.empty()  ? obstacle
+                        : cameraPaths == 1 ? "the image has many pixels, or passes have few light paths"
+                                           : std::to_string(cameraPaths) +
+                                                 " for each sample of a pixel: the image is small, and they take "
+                                                 "little time beside guided light paths";
     volume.reason = !facts.mediumScattering ? facts.noScattering() + ": no volume photon is stored or gathered"
                     : !volume.on            ? facts.heterogeneity()
                     : !settings.primitiveReason.empty()
@@ -199,12 +213,7 @@ void PhotonPlan::describeSplatting(EffectPlan& plan) const {
                   : gathered ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
                              : "all rays are straight: records are splatted",
                   {"camera"}, {"gathered records"});
-    plan.describe("more camera paths", cameraPaths > 1,
-                  cameraPaths > 1
-                      ? std::to_string(cameraPaths) + " for each sample of a pixel: the image is small, and "
-                                                      "they take little time beside guided light paths"
-                      : "one for each sample of a pixel",
-                  {"camera"});
+    plan.describe("more camera paths", cameraPaths > 1, cameraPathsReason, {"camera"});
 }
 
 void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {

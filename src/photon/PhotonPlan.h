@@ -46,6 +46,7 @@ struct PhotonPlan {
     bool primitiveSplats = false; ///< along the rays that this camera has
     bool looksAgain = false;      ///< at what sensor paths meet, when the photons are there: splats are not all
     uint32_t cameraPaths = 1;     ///< through a pixel for each of its samples
+    std::string cameraPathsReason;
 
     [[nodiscard]] bool splats() const { return volume.on && homogeneous && primitiveSplats; }
     /// Sensor paths are traced before the photons; else after them.

@@ -19,7 +19,7 @@ struct LoadedScene;
 void requireMemory(const LoadedScene& loaded, double films, double integratorBytes, double limit);
 
 /// From now on freed memory stays with the process, up to half a gigabyte: passes take and free the same every time,
-/// and clearing the system's pages anew costs 2 to 4 % of a pass.
+/// and having the system clear its pages anew costs about 1 % of a pass.
 void keepFreedMemory();
 
 /// From now on allocations beyond so many bytes fail (std::bad_alloc), instead of having the kernel end the process.

@@ -180,11 +180,7 @@ void SensorClusters::eachNeighbourhood(const ClusterQuery& query, const Visit& v
         auto open = length < -1.0f;
         for (const LengthRange& range : query.open)
             open = open || (length + reach > range.least && length - reach < range.most);
-        if (!xsimd::any(open)) continue;
-        alignas(64) std::array<float, size_t(Lanes)> visited;
-        xsimd::select(open, Batch(1.0f), Batch(0.0f)).store_aligned(visited.data());
-        for (size_t k = 0; k < size_t(Lanes); ++k)
-            if (visited[k] > 0.0f) visit((i + k) * size_t(Lanes));
+        eachLane(open, [&](size_t k) { visit((i + k) * size_t(Lanes)); });
     }
 }
 

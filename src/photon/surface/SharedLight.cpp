@@ -51,10 +51,10 @@ class Likeness {
             alike = alike && nx * nx_[p] + ny * ny_[p] + nz * nz_[p] >= LeastCosine &&
                     xsimd::max(own * own, others * others) <= sqr(MostSlope) * squared &&
                     load(interactions_) == interactions_[p] && load(medium_) == medium_[p];
-            alignas(64) std::array<float, size_t(Lanes)> found;
-            xsimd::select(alike, Batch(1.0f), Batch(0.0f)).store_aligned(found.data());
-            for (size_t k = 0; k < size_t(Lanes); ++k)
-                if (found[k] > 0.0f) ++count, visit(q + k);
+            eachLane(alike, [&](size_t k) {
+                ++count;
+                visit(q + k);
+            });
         }
         return count;
     }
