@@ -16,16 +16,33 @@ struct Approach {
     float distance;
     float sine; ///< of the angle between the lines
 };
-/// None for lines that are parallel to 1e-4 (docs/photon-primitives.md, sections 2.2 and 5). Unit directions.
+namespace detail {
+
+template <typename Real>
+std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& direction, const Vec3f& origin,
+                                        const Vec3f& cameraDirection) {
+    using Vector = Imath::Vec3<Real>;
+    constexpr Real LeastSine = Real(1e-4);
+    const Vector beam(direction), ray(cameraDirection), offset = Vector(base) - Vector(origin),
+                                                        normal = beam.cross(ray);
+    const Real squaredSine = normal.length2();
+    if (!(squaredSine > LeastSine * LeastSine)) return std::nullopt;
+    const Real sine = std::sqrt(squaredSine);
+    return Approach{float(offset.cross(ray).dot(normal) / -squaredSine),
+                    float(offset.cross(beam).dot(normal) / -squaredSine), float(std::abs(offset.dot(normal)) / sine),
+                    float(sine)};
+}
+
+} // namespace detail
+
+/// None for lines that are parallel to 1e-4 (docs/photon-primitives.md, sections 2.2 and 5). Unit directions. In double
+/// where they are nearly parallel: in floats the cross product would lose four digits, and the kernel's weight with it.
 inline std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& direction, const Vec3f& origin,
                                                const Vec3f& cameraDirection) {
-    constexpr float LeastSine = 1e-4f;
-    const Vec3f offset = base - origin, normal = direction.cross(cameraDirection);
-    const float squaredSine = normal.length2();
-    if (!(squaredSine > LeastSine * LeastSine)) return std::nullopt;
-    const float sine = std::sqrt(squaredSine);
-    return Approach{offset.cross(cameraDirection).dot(normal) / -squaredSine,
-                    offset.cross(direction).dot(normal) / -squaredSine, std::abs(offset.dot(normal)) / sine, sine};
+    constexpr float Oblique = 0.01f; // of the squared sine: floats keep six digits above
+    return direction.cross(cameraDirection).length2() > Oblique
+               ? detail::closestApproach<float>(base, direction, origin, cameraDirection)
+               : detail::closestApproach<double>(base, direction, origin, cameraDirection);
 }
 
 class BeamGather {

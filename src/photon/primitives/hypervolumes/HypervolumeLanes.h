@@ -8,17 +8,9 @@ namespace tungsten::photon {
 /// At one path length, or a random one of each frame.
 class HypervolumeLanes {
   public:
-    explicit HypervolumeLanes(const CollapsedFlights& flights) {
-        const auto& w = flights.directions;
-        const Vec3f a = w[0] - w[3], b = w[1] - w[3], c = w[2] - w[3];
-        rows_ = {b.cross(c), c.cross(a), a.cross(b)};
-        const float determinant = a.dot(rows_[0]);
-        jacobian_ = std::abs(determinant);
-        if (!usable()) return;
-        for (size_t i = 0; i < 3; ++i) {
-            rows_[i] /= determinant;
-            perResidual_[i] = -w[3].dot(rows_[i]);
-        }
+    explicit HypervolumeLanes(const CollapsedFlights& flights)
+        : edges_(edge(flights, 0), edge(flights, 1), edge(flights, 2)) {
+        for (size_t i = 0; i < 3; ++i) perResidual_[i] = -flights.directions[3].dot(edges_.rows[i]);
     }
     /// emit(frame, reach)
     template <typename Emit>
@@ -29,11 +21,11 @@ class HypervolumeLanes {
         ChordLanes<4> chord{};
         std::array<Batch, 3> start;
         for (size_t i = 0; i < 3; ++i) {
-            start[i] = rays.toOrigin.dot(rows_[i]);
-            chord.slope[i] = change.dot(rows_[i]);
+            start[i] = rays.toOrigin.dot(edges_.rows[i]);
+            chord.slope[i] = change.dot(edges_.rows[i]);
         }
         chord.slope[3] = -record.warp() - chord.slope[0] - chord.slope[1] - chord.slope[2];
-        const Batch factor = record.towardsCamera(Lanes3(last), rays) * (1.0f / jacobian_);
+        const Batch factor = record.towardsCamera(Lanes3(last), rays) * (1.0f / edges_.determinant);
         const Batch least = record.warped ? rays.originDistance() : rays.distance();
         const FrameRange range = framesOf(record.times, rays.seen, least, Batch(Infinity));
         for (int frame = range.first; frame <= range.last; ++frame) {
@@ -50,10 +42,13 @@ class HypervolumeLanes {
     }
 
   private:
-    [[nodiscard]] bool usable() const { return jacobian_ > LeastLaneDeterminant; }
-    std::array<Vec3f, 3> rows_;
+    /// Beyond the last direction.
+    [[nodiscard]] static Vec3d edge(const CollapsedFlights& flights, size_t i) {
+        return Vec3d(flights.directions[i]) - Vec3d(flights.directions[3]);
+    }
+    [[nodiscard]] bool usable() const { return edges_.determinant > LeastLaneDeterminant; }
+    DualTriple edges_;
     std::array<float, 3> perResidual_{};
-    float jacobian_;
 };
 
 } // namespace tungsten::photon

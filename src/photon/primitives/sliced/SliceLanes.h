@@ -36,15 +36,32 @@ inline Batch henyeyGreenstein(float g, const Lanes3& before, const Lanes3& after
     return (1.0f - strength) * (1.0f + strength) * 0.25f * InvPi / (d * xsimd::sqrt(d));
 }
 
-/// For p = x a + y b: x = p . first, y = p . second.
+/// For p = x a + y b: x = p . first, y = p . second. Found in double, once for each record: cross products of nearly
+/// parallel directions keep few digits of a float.
 struct DualPair {
     Vec3f normal, first{0.0f}, second{0.0f};
 
-    DualPair(const Vec3f& a, const Vec3f& b) : normal(a.cross(b)) {
-        const float square = normal.length2();
-        if (!(square > 0.0f)) return;
-        first = b.cross(normal) / square;
-        second = normal.cross(a) / square;
+    DualPair(const Vec3f& a, const Vec3f& b) {
+        const Vec3d u(a), v(b), across = u.cross(v);
+        normal = Vec3f(across);
+        const double square = across.length2();
+        if (!(square > 0.0)) return;
+        first = Vec3f(v.cross(across) / square);
+        second = Vec3f(across.cross(u) / square);
+    }
+};
+
+/// For p = x a + y b + z c: x = p . rows[0] and so on. In double, as DualPair.
+struct DualTriple {
+    std::array<Vec3f, 3> rows{};
+    float determinant; ///< |a b c|
+
+    DualTriple(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+        const std::array<Vec3d, 3> across{b.cross(c), c.cross(a), a.cross(b)};
+        const double whole = a.dot(across[0]);
+        determinant = float(std::abs(whole));
+        if (!(determinant > 0.0f)) return;
+        for (size_t i = 0; i < 3; ++i) rows[i] = Vec3f(across[i] / whole);
     }
 };
 

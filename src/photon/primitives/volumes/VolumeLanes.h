@@ -119,29 +119,24 @@ class VolumeSliceLanes {
 /// Inside each frame.
 class VolumeChordLanes {
   public:
-    explicit VolumeChordLanes(const CollapsedFlights& flights) {
-        const auto& w = flights.directions;
-        rows_ = {w[1].cross(w[2]), w[2].cross(w[0]), w[0].cross(w[1])};
-        const float determinant = w[0].dot(rows_[0]);
-        jacobian_ = std::abs(determinant);
-        if (usable())
-            for (Vec3f& row : rows_) row /= determinant;
-    }
+    explicit VolumeChordLanes(const CollapsedFlights& flights)
+        : edges_(Vec3d(flights.directions[0]), Vec3d(flights.directions[1]), Vec3d(flights.directions[2])) {}
     /// emit(frame, reach)
     template <typename Emit>
     void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         if (!usable()) return;
         ChordLanes<3> chord{{}, {}, rays.start, rays.end};
         for (size_t i = 0; i < 3; ++i) {
-            chord.offset[i] = rays.toOrigin.dot(rows_[i]);
-            chord.slope[i] = rays.direction.dot(rows_[i]);
+            chord.offset[i] = rays.toOrigin.dot(edges_.rows[i]);
+            chord.slope[i] = rays.direction.dot(edges_.rows[i]);
         }
         chord.keepFlights(record.reach);
         const LaneMask met = rays.seen && chord.holds();
         if (!xsimd::any(met)) return;
         const Batch p = chord.offsetSum(), q = chord.slopeSum() + record.warp();
         const Batch a = p + q * chord.start, b = p + q * chord.end;
-        const Batch factor = record.towardsCamera(Lanes3(record.flights->directions[2]), rays) * (1.0f / jacobian_);
+        const Batch factor =
+            record.towardsCamera(Lanes3(record.flights->directions[2]), rays) * (1.0f / edges_.determinant);
         const auto& w = record.flights->directions;
         const Batch slices = volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), Lanes3(w[2]), rays.direction, record.warped);
         const FrameRange range = framesOf(record.times, met, xsimd::min(a, b), xsimd::max(a, b));
@@ -162,9 +157,8 @@ class VolumeChordLanes {
     }
 
   private:
-    [[nodiscard]] bool usable() const { return jacobian_ > LeastLaneDeterminant; }
-    std::array<Vec3f, 3> rows_;
-    float jacobian_;
+    [[nodiscard]] bool usable() const { return edges_.determinant > LeastLaneDeterminant; }
+    DualTriple edges_;
 };
 
 } // namespace tungsten::photon
