@@ -18,6 +18,9 @@ namespace lanes {
 inline float select(bool condition, float a, float b) {
     return condition ? a : b;
 }
+inline bool all(bool condition) {
+    return condition;
+}
 inline float sum(float a) {
     return a;
 }

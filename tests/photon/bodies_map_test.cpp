@@ -75,6 +75,44 @@ TEST(PhotonMapsOfBodies, LightThatGetsInWhereItIsOfNoUseEndsSoon) {
     }
 }
 
+/// A block of milk under a lamp; its walls send back what meets them from inside, but for 1 / index^2 and less.
+std::string blockScene(double index) {
+    std::ostringstream json;
+    json << R"({"media": [{"name": "milk", "type": "homogeneous", "sigma_s": 30, "sigma_a": 0.02}],
+        "primitives": [{"type": "cube", "int_medium": "milk", "bsdf": {"type": "dielectric", "ior": )"
+         << index << R"(}},
+                       {"type": "quad", "emission": 40, "bsdf": {"type": "null"},
+                        "transform": {"position": [0, 3, 1], "scale": [3, 1, 3], "rotation": [180, 0, 0]}}],
+        "camera": {"type": "pinhole", "fov": 8, "resolution": 4, "transform": {"position": [0, 0, 5],
+                   "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "progressive_transient_photon_map", "max_bounces": 512, "photon_count": 20000,
+                       "fixed_volume_radius": true, "volume_gather_radius": 0.04,
+                       "transient_time_center": 8, "transient_time_width": 0.1}, "renderer": {}})";
+    return json.str();
+}
+
+/// What is about to leave is of use however many tries it takes. With the boundary extrapolated instead, it ended:
+/// points had an error of 590 % of a pixel (11 now), beams of 60 (16) at 39 % of the light.
+TEST(PhotonMapsOfBodies, ShowLightBehindWallsThatReflectNearlyAll) {
+    const auto error = [](const test::Rendered& rendered) { // of a pixel
+        double squares = 0.0;
+        const auto image = rendered.film.standardError(0);
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) squares += double(image.at(x, y).y * image.at(x, y).y) / 16.0;
+        return std::sqrt(squares);
+    };
+    const std::string scene = blockScene(3);
+    const auto paths = test::renderPaths(scene, {{test::BestPreset}, 64, 64});
+    for (const std::string type : {"points", "beams"}) {
+        const auto best =
+            test::renderPhotons(scene, {{test::BestPreset, "integrator.volume_photon_type=" + type}, 40, 1});
+        // Pixels of a pass share photons: their errors add up at worst.
+        const double both = std::hypot(error(*paths) / 4.0, error(*best));
+        EXPECT_NEAR(best->mean(), paths->mean(), 4.5 * both + 0.04 * paths->mean()) << type;
+        EXPECT_LT(error(*best), 0.2 * paths->mean()) << type;
+    }
+}
+
 TEST(PhotonMapsOfBodies, HaveBoundsInTimeAloneUnderWideGates) {
     for (const double gate : {0.5, 6.0}) { // 10 and 120 mean free paths
         const std::string scene = slabScene(3, gate);
