@@ -1,0 +1,114 @@
+#include "tungsten/app/RenderScene.h"
+
+#include "tungsten/app/ExitCodes.h"
+#include "tungsten/app/PlanCost.h"
+#include "tungsten/app/Signals.h"
+#include "tungsten/core/Errors.h"
+#include "tungsten/render/PlanReport.h"
+#include "tungsten/render/Progress.h"
+#include "tungsten/render/RenderSession.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+
+namespace tungsten {
+
+namespace {
+
+SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer, Team* team) {
+    SessionOptions session;
+    session.seed = options.seed;
+    session.spp = options.spp.value_or(renderer.spp);
+    session.sppStep = renderer.sppStep;
+    session.passes = options.passes;
+    session.timeoutSeconds = options.timeoutSeconds.value_or(renderer.timeoutSeconds);
+    session.checkpointSeconds = options.checkpointSeconds.value_or(renderer.checkpointSeconds);
+    session.resumeEnabled = !options.passes && (renderer.enableResume || options.checkpointSeconds);
+    session.restart = options.restart;
+    session.targetError = options.targetError;
+    session.bias = options.bias;
+    session.memoryLimit = options.memoryLimit;
+    session.quiet = options.quiet;
+    session.team = team;
+    session.trace = options.trace;
+    session.command = options.command;
+    session.interrupted = &interrupted;
+    return session;
+}
+
+/// Job and outputs of a scene that is rendered; only rank 0 warns.
+Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+    std::optional<Job> job;
+    {
+        const Loading loading;
+        together(team, [&] {
+            job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins,
+                          options.everything);
+        });
+    }
+    const Diagnostics& diagnostics = *job->loaded.diagnostics;
+    if (speaks(team)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
+    return std::move(*job);
+}
+
+/// What a scene calls for, and what it leaves to defaults; renders nothing.
+void explain(const std::filesystem::path& file, const Job& job, const std::vector<DefaultTaken>& defaults,
+             bool asJson) {
+    if (asJson) {
+        std::cout << planJson(job, defaults) << '\n';
+        return;
+    }
+    std::cout << file.string() << " (" << job.loaded.integratorType << ")\n";
+    printPlan(job.plan, std::cout);
+    printDefaults(defaults, std::cout);
+}
+
+void printSummary(const SessionResult& result) {
+    if (result.film.passes() == 0) {
+        std::printf("interrupted before the first pass had ended: nothing was written\n");
+        return;
+    }
+    std::printf("%u passes, %.10g samples per pixel in %.1f s (%s)", result.film.passes(), result.film.totalWeight(),
+                result.renderSeconds, toString(result.reason).c_str());
+    const double error = result.film.relativeStandardError();
+    if (!std::isnan(error))
+        std::printf(", %s", errorText(error, result.film.relativeErrorBound(), result.relativeBias()).c_str());
+    std::printf("\n");
+    constexpr size_t MostListed = 12;
+    for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)
+        std::printf("wrote %s\n", result.written[i].c_str());
+    if (result.written.size() > MostListed) std::printf("and %zu more files\n", result.written.size() - MostListed);
+    std::fflush(stdout);
+}
+
+} // namespace
+
+void printWarnings(const std::vector<Problem>& warnings, size_t more) {
+    for (const Problem& warning : warnings) std::cerr << "warning: " << warning.text() << '\n';
+    if (more > 0) std::cerr << "warning: and " << more << " more\n";
+}
+
+int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+    if (options.planCost) return planCost(file, options, plugins, interrupted) ? 0 : ExitInterrupted;
+    SessionResult result;
+    std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
+    const Job job = loadJob(file, options, plugins, team);
+    const LoadedScene& loaded = job.loaded;
+    loading.reset();
+    if (options.explain || options.explainAsJson) {
+        explain(file, job, defaultsTaken(job, plugins.registry), options.explainAsJson);
+        return 0;
+    }
+    OutputFiles outputs;
+    together(team, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
+    const SessionOptions session = sessionOptions(options, loaded.renderer, team);
+    runSession(loaded, *job.integrator, job.plan, outputs, session, result);
+    if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
+        together(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
+    if (!options.quiet && speaks(team)) printSummary(result);
+    return result.film.passes() == 0 ? ExitInterrupted : 0;
+}
+
+} // namespace tungsten

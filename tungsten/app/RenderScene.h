@@ -1,0 +1,21 @@
+#pragma once
+// One scene of the command: loaded, then explained, priced or rendered.
+
+#include "tungsten/app/Options.h"
+#include "tungsten/render/Job.h"
+#include "tungsten/render/Team.h"
+
+namespace tungsten {
+
+/// Whether this process tells what happens: one without others, and rank 0.
+inline bool speaks(const Team* team) {
+    return !team || team->rank() == 0;
+}
+
+void printWarnings(const std::vector<Problem>& warnings, size_t more = 0);
+
+/// Exit code: 0, or 130 when interrupted before there was anything to write. Throws what keeps the scene from being
+/// rendered.
+int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team);
+
+} // namespace tungsten
