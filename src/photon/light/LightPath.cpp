@@ -27,6 +27,12 @@ void LightPath::collide(const Vec3f& position, double length) {
     fromLight = false;
 }
 
+double LightPath::distanceTo(const Vec3f& position) const {
+    const Vec3f &a = ray.origin, &b = position;
+    const Vec3d d(double(b.x) - double(a.x), double(b.y) - double(a.y), double(b.z) - double(a.z));
+    return d.length();
+}
+
 bool LightPath::bears(const Rgb& carried) {
     if (isFinite(carried)) return !isBlack(carried);
     ++counters.nonFinite;

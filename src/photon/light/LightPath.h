@@ -57,6 +57,12 @@ struct LightPath {
     }
     /// To a vertex in a medium after a flight of this length; its direction is yet to be drawn.
     void collide(const Vec3f& position, double length);
+    /// From where the path is to a point as it is stored, so that times are those of the path that is gathered.
+    [[nodiscard]] double distanceTo(const Vec3f& position) const;
+    /// When light gets there, in this medium.
+    [[nodiscard]] double timeAt(const Vec3f& position) const {
+        return time + distanceTo(position) / double(region.speed);
+    }
     /// Time, bounce and deposit; `surface` is set. False ends the path.
     bool arriveOnSurface(const SurfaceHit& hit);
     /// By the BSDF. False ends the path.
