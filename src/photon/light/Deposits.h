@@ -15,6 +15,10 @@ struct Deposits {
     std::vector<float>
         expectedLight; ///< light of each vertex's connections, where nobody knows yet what one is to bring
 
+    [[nodiscard]] size_t volumeRecords() const {
+        return std::visit([](const auto& list) { return list.records.size(); }, volume);
+    }
+
     void endPath() {
         surface.endPath();
         std::visit([](auto& list) { list.endPath(); }, volume);

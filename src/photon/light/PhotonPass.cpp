@@ -3,6 +3,7 @@
 #include "photon/Tuning.h"
 #include "photon/light/GuidedPhotonWalk.h"
 #include "photon/light/PhotonWalk.h"
+#include "photon/light/TracedPaths.h"
 #include "photon/store/StoreFilling.h"
 
 #include <tbb/parallel_for.h>
@@ -15,12 +16,6 @@ namespace {
 /// beside the stores.
 constexpr uint64_t PathsPerBatch = 256, BatchesPerWave = 16;
 
-struct Batch {
-    explicit Batch(const VolumePrimitive& primitive) : deposits(primitive) {}
-    Deposits deposits;
-    WalkCounters counters;
-};
-
 /// use(store, list of deposits) of the volume primitive in use: both are variants of one kind.
 template <typename Use>
 void withVolume(VolumeStore& store, const VolumeDeposits& deposits, Use&& use) {
@@ -30,10 +25,6 @@ void withVolume(VolumeStore& store, const VolumeDeposits& deposits, Use&& use) {
             use(s, std::get<DepositList<Record>>(deposits));
         },
         store);
-}
-
-size_t countOf(const VolumeDeposits& deposits) {
-    return std::visit([](const auto& list) { return list.records.size(); }, deposits);
 }
 
 Distribution1D powerDistribution(const Scene& scene, const std::vector<bool>& leftOut) {
@@ -59,6 +50,10 @@ bool needsPhotonsBesideConnections(const Scene& scene, bool glossyPaths) {
            });
 }
 
+bool isFull(const VolumeStore& stores) {
+    return std::visit([](const auto& store) { return store.full; }, stores);
+}
+
 void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings, Sampler& sampler) {
     appendPaths(maps.surface, d.surface, settings.photonCount, sampler);
     withVolume(maps.volume, d.volume,
@@ -67,11 +62,11 @@ void append(PhotonMaps& maps, const Deposits& d, const PhotonSettings& settings,
 }
 
 /// Room for what the first wave lets expect, so that growing does not hold the photons twice.
-void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const PhotonSettings& settings) {
+void reserveStores(PhotonMaps& maps, const std::vector<TracedPaths>& wave, const PhotonSettings& settings) {
     uint64_t surface = 0, volume = 0, paths = 0;
-    for (const Batch& batch : wave) {
+    for (const TracedPaths& batch : wave) {
         surface += batch.deposits.surface.records.size();
-        volume += countOf(batch.deposits.volume);
+        volume += batch.deposits.volumeRecords();
         paths += batch.deposits.surface.pathEnds.size();
     }
     constexpr double Margin = 1.02;
@@ -81,18 +76,10 @@ void reserveStores(PhotonMaps& maps, const std::vector<Batch>& wave, const Photo
     std::visit([&](auto& store) { store.records.reserve(room); }, maps.volume);
 }
 
-/// A few paths of their own, one after the other, from which a pass learns: it must not depend on the paths that it is
-/// for.
-Deposits tracePilots(const WalkContext& context, const PhotonGuidance& guidance, const PassInfo& pass, uint64_t paths,
-                     Statistics& statistics) {
-    Batch pilot(context.settings.primitive);
-    for (uint64_t path = 0; path < paths; ++path) {
-        pass.watch.poll(0);
-        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
-        GuidedPhotonWalk(context, guidance, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
-    }
-    statistics.add("rays", pilot.counters.rays);
-    return std::move(pilot.deposits);
+/// Light paths that surfaces are owed, however soon the volume's store is full.
+uint64_t leastPathsFor(const SurfaceConnections& connections) {
+    return std::min(tuning::ConnectionsPerPoint * connections.points(), tuning::MostLeast) /
+           uint64_t(tuning::MostPerPath);
 }
 
 void report(const WalkCounters& counters, Statistics& statistics) {
@@ -134,70 +121,6 @@ void PhotonPass::setGate(const TimeGate& gate) {
     if (guidance_) guidance_->setGate(gate);
 }
 
-std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
-                                                             Statistics& statistics) const {
-    if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
-    auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
-    const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
-    WalkContext context = contextOf(settings, nullptr);
-    context.measured = first.get();
-    tracePilots(context, *guidance_, pass, paths, statistics);
-    return first;
-}
-
-void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings,
-                                       const FirstUsefulness* first, SurfaceConnections& connections,
-                                       Statistics& statistics) const {
-    // Paths of their own: it must not depend on the paths that it is for.
-    const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-    WalkContext context = contextOf(settings, first);
-    context.storeVolume = storeVolume_;
-    const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
-    std::vector<Batch> pilots(paths, Batch(settings_.primitive));
-    tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
-        pass.watch.poll(0);
-        const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
-        Batch& pilot = pilots[path];
-        const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
-        GuidedPhotonWalk(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters).run();
-    });
-    std::vector<float> expectedLight;
-    uint64_t deposits = 0;
-    for (const Batch& pilot : pilots) {
-        expectedLight.insert(expectedLight.end(), pilot.deposits.expectedLight.begin(),
-                             pilot.deposits.expectedLight.end());
-        deposits += countOf(pilot.deposits.volume);
-        statistics.add("rays", pilot.counters.rays);
-    }
-    // Paths until the store of photons or beams is full.
-    const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
-    const double expected = std::min(double(settings.volumePhotonCount) * perDeposit, double(settings.photonCount));
-    const double perPath =
-        std::clamp(tuning::ConnectionsPerPass / std::max(expected, 1.0), tuning::LeastPerPath, tuning::MostPerPath);
-    connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
-}
-
-std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
-                                                       const FirstUsefulness* first, Statistics& statistics) const {
-    if (!guidance_ || !storeVolume_) return nullptr;
-    const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordCounts> {
-        if constexpr (!Primitive::CountsRecords)
-            return nullptr;
-        else {
-            auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
-            const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-            WalkContext context = contextOf(settings, first);
-            context.storeVolume = true;
-            context.recordCounts = counts.get();
-            const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
-            const auto& list = std::get<DepositList<typename Primitive::Record>>(deposits.volume);
-            counts->measure(list.records, primitive.classes);
-            return counts;
-        }
-    };
-    return std::visit(countsOf, settings.primitive);
-}
-
 PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     PhotonSettings settings = settings_.ofShare(pass.share);
     if (!scene_.transport.gate.delta) return settings;
@@ -229,47 +152,58 @@ void PhotonPass::tracePaths(uint64_t first, uint64_t last, const WalkContext& co
     pass.watch.poll(last - first);
 }
 
-PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
-    const PhotonSettings settings = settingsOf(pass);
-    const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
-    if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
-    const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
+PhotonMaps PhotonPass::emptyMaps() const {
     PhotonMaps maps;
     maps.surface.full = !storeSurface_;
     maps.volume = storeOf(settings_.primitive);
     std::visit([&](auto& store) { store.full = !storeVolume_; }, maps.volume);
-    const auto volumeFull = [&] { return std::visit([](const auto& store) { return store.full; }, maps.volume); };
-    uint64_t traced = 0;
-    const uint64_t least = connections
-                               ? std::min(tuning::ConnectionsPerPoint * connections->points(), tuning::MostLeast) /
-                                     uint64_t(tuning::MostPerPath)
-                               : 0;
-    Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
+    return maps;
+}
+
+std::vector<TracedPaths> PhotonPass::traceWave(uint64_t first, uint64_t last, const WalkContext& context,
+                                               const PassInfo& pass, const SurfaceConnections* connections) const {
+    std::vector<TracedPaths> batches((last - first + PathsPerBatch - 1) / PathsPerBatch,
+                                     TracedPaths(settings_.primitive));
+    tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
+        const uint64_t begin = first + b * PathsPerBatch, end = std::min(begin + PathsPerBatch, last);
+        tracePaths(begin, end, context, pass, connections, batches[b].deposits, batches[b].counters);
+    });
+    return batches;
+}
+
+PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
+    const PhotonSettings settings = settingsOf(pass);
+    // Pilots, each of which knows what those before it have found.
+    const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
+    if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
+    const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
+
     WalkContext context = contextOf(settings, usefulAtFirst.get());
     context.frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     context.connects = connections != nullptr;
     context.densityPhotons = densityPhotons_;
     context.glossySensorPaths = glossySensorPaths_;
     context.recordCounts = counts.get();
-    const auto finished = [&] { return volumeFull() && (connections ? traced >= least : maps.surface.full); };
+
+    PhotonMaps maps = emptyMaps();
+    const uint64_t least = connections ? leastPathsFor(*connections) : 0;
+    const auto finished = [&] {
+        return isFull(maps.volume) && (connections ? maps.paths >= least : maps.surface.full);
+    };
+    Sampler thinning(pass.seed, RandomStream::Folded, pass.index, 1);
     pass.watch.stage("photons", settings.photonCount);
-    while (traced < settings.photonCount && !finished()) {
-        const uint64_t wave = std::min(settings.photonCount - traced, PathsPerBatch * BatchesPerWave);
-        std::vector<Batch> batches((wave + PathsPerBatch - 1) / PathsPerBatch, Batch(settings_.primitive));
+    while (maps.paths < settings.photonCount && !finished()) {
+        const uint64_t last = std::min(maps.paths + PathsPerBatch * BatchesPerWave, settings.photonCount);
         context.storeSurface = !maps.surface.full;
-        context.storeVolume = !volumeFull();
-        tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
-            const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
-            tracePaths(first, last, context, pass, connections, batches[b].deposits, batches[b].counters);
-        });
-        if (traced == 0) reserveStores(maps, batches, settings);
-        for (const Batch& batch : batches) {
+        context.storeVolume = !isFull(maps.volume);
+        const std::vector<TracedPaths> wave = traceWave(maps.paths, last, context, pass, connections);
+        if (maps.paths == 0) reserveStores(maps, wave, settings);
+        for (const TracedPaths& batch : wave) {
             append(maps, batch.deposits, settings, thinning);
             report(batch.counters, statistics);
         }
-        traced += wave;
+        maps.paths = last;
     }
-    maps.paths = traced;
     reportStored(maps, settings_.primitive, statistics);
     return maps;
 }

@@ -14,6 +14,7 @@
 namespace tungsten::photon {
 
 struct Deposits;
+struct TracedPaths;
 struct WalkContext;
 struct WalkCounters;
 
@@ -46,19 +47,26 @@ class PhotonPass {
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// What every walk is told; nothing is stored and nothing connected to.
     [[nodiscard]] WalkContext contextOf(const PhotonSettings& settings, const FirstUsefulness* first) const;
+
+    // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
+    // for.
     /// What light paths are useful for at first in bodies that they must leave, from what a few find; null without any.
     [[nodiscard]] std::unique_ptr<FirstUsefulness> firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
                                                                    Statistics& statistics) const;
     /// Tells connections what each of them is to bring, from what a few paths find.
     void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, const FirstUsefulness* first,
                                SurfaceConnections& connections, Statistics& statistics) const;
-
-    void tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
-                    const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const;
     /// Guided slices: how many records a base leaves, from what a few paths find.
     [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const PhotonSettings& settings,
                                                              const FirstUsefulness* first,
                                                              Statistics& statistics) const;
+
+    [[nodiscard]] PhotonMaps emptyMaps() const;
+    /// Paths [first, last) in batches of consecutive ones.
+    [[nodiscard]] std::vector<TracedPaths> traceWave(uint64_t first, uint64_t last, const WalkContext& context,
+                                                     const PassInfo& pass, const SurfaceConnections* connections) const;
+    void tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
+                    const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;

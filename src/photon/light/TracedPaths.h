@@ -1,0 +1,15 @@
+#pragma once
+// What one task's light paths have left, and counted.
+
+#include "photon/light/Deposits.h"
+#include "photon/light/LightPath.h"
+
+namespace tungsten::photon {
+
+struct TracedPaths {
+    explicit TracedPaths(const VolumePrimitive& primitive) : deposits(primitive) {}
+    Deposits deposits;
+    WalkCounters counters;
+};
+
+} // namespace tungsten::photon
