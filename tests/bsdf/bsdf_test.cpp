@@ -4,6 +4,7 @@
 #include "support/ChiSquare.h"
 
 #include "tungsten/bsdf/Bsdf.h"
+#include "tungsten/bsdf/Evenness.h"
 #include "tungsten/bsdf/Fresnel.h"
 #include "tungsten/core/Warp.h"
 
@@ -97,6 +98,36 @@ TEST(Bsdf, NothingGainsEnergy) {
             EXPECT_LT(sum / Count, limit) << model.name << " " << wi.z;
             EXPECT_GT(sum / Count, 0.1) << model.name << " " << wi.z;
         }
+}
+
+/// What says that it scatters evenly does, and nothing else does.
+TEST(Bsdf, EvenOnesHaveOneValue) {
+    const auto shared = [](BsdfModel model) {
+        return std::make_shared<const Bsdf>("", std::move(model), Texture(0.6f));
+    };
+    const BsdfPtr metal = shared(RoughConductor{GoldEta, GoldK, MicrofacetModel::Ggx, Texture(0.4f)});
+    std::vector<Named> models = smoothModels();
+    const auto add = [&](const std::string& name, BsdfModel model) {
+        models.push_back({name, Bsdf(name, std::move(model), Texture(0.8f))});
+    };
+    add("two lamberts", Mixed{shared(Lambert{}), shared(Lambert{}), Texture(0.3f)});
+    add("transparency of lambert", Transparency{shared(Lambert{}), Texture(0.4f)});
+    add("transparency of metal", Transparency{metal, Texture(0.4f)});
+    int even = 0;
+    for (const Named& model : models) {
+        float least = Infinity, most = 0.0f;
+        for (uint64_t i = 0; i < 400; ++i) {
+            Sampler s(8, RandomStream::Test, 0, i);
+            const Vec3f wi = warp::squareToCosineHemisphere(s.next2D()), wo = warp::squareToSphere(s.next2D());
+            const float f = model.bsdf.eval({}, wi, wo).x / std::abs(wo.z);
+            if (wo.z > 0.0f) least = std::min(least, f);
+            if (wo.z < 0.0f && f > 0.0f) least = 0.0f; // comes out on the other side
+            most = std::max(most, f);
+        }
+        EXPECT_EQ(scattersEvenly(model.bsdf), most <= 1.0001f * least) << model.name << ": " << least << ", " << most;
+        even += scattersEvenly(model.bsdf) ? 1 : 0;
+    }
+    EXPECT_EQ(even, 3);
 }
 
 TEST(Bsdf, ReflectionIsReciprocal) {

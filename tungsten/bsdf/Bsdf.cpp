@@ -1,5 +1,6 @@
 #include "tungsten/bsdf/Bsdf.h"
 
+#include "tungsten/bsdf/Evenness.h"
 #include "tungsten/bsdf/Models.h"
 #include "tungsten/core/Overloaded.h"
 
@@ -51,6 +52,15 @@ float relativeIndex(const Bsdf& bsdf) {
                                  [](const OneOf<Forward, Transparency, Mixed> auto&) { return 1.0f; },
                                  [](const Reflecting auto&) { return 1.0f; }},
                       bsdf.model);
+}
+
+bool scattersEvenly(const Bsdf& bsdf) {
+    return std::visit(
+        Overloaded{[](const Lambert&) { return true; }, [](const Transparency& m) { return scattersEvenly(*m.base); },
+                   [](const Mixed& m) { return scattersEvenly(*m.bsdf0) && scattersEvenly(*m.bsdf1); },
+                   [](const OneOf<OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric, Plastic,
+                                  RoughPlastic, PbrtPlastic, Null, Forward> auto&) { return false; }},
+        bsdf.model);
 }
 
 } // namespace tungsten

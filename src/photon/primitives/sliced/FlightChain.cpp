@@ -1,5 +1,6 @@
 #include "photon/primitives/sliced/FlightChain.h"
 
+#include "tungsten/bsdf/Evenness.h"
 #include "tungsten/emitter/Emitter.h"
 
 namespace tungsten::photon {
@@ -78,7 +79,7 @@ void FlightChain::depositLight(const Rules& rules, ChainVertex start, Sampler& s
 void FlightChain::leaveSurface(const Rules& rules, const SurfaceInteraction& surface, const ChainVertex& at,
                                const Region& region, Sampler& sampler, DepositList<CollapsedFlights>& list) {
     // Others are left to the chain's other records: only where f is one value do balls know it for every direction.
-    if (rules.classes.shortBeams == 0.0f || !std::holds_alternative<Lambert>(surface.bsdf->model)) return;
+    if (rules.classes.shortBeams == 0.0f || !scattersEvenly(*surface.bsdf)) return;
     const Vec3f &ng = surface.hit.ng, &ns = surface.frame.n;
     const Vec3f side = ng.dot(ns) < 0.0f ? -ng : ng;
     const float arriving = -at.direction.dot(side);
