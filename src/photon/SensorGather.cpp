@@ -20,13 +20,9 @@ void SensorGather::addVolume(const Rgb& scale, uint64_t gathered) {
 template <typename Look>
 void SensorGather::gatherVolume(const SensorState& state, const std::optional<SurfaceHit>& hit, const Look& look) {
     if (!scene_.medium(state.region)) return;
-    const CameraSegment segment{state.ray.origin,
-                                state.ray.direction,
-                                hit ? hit->t : Infinity,
-                                state.time,
-                                1.0 / double(state.region.speed),
-                                state.interactions,
-                                state.region.medium};
+    const CameraSegment segment{
+        state.ray.origin,   state.ray.direction, hit ? hit->t : Infinity, state.time, 1.0 / double(state.region.speed),
+        state.interactions, state.region.medium};
     std::visit(Overloaded{[](std::monostate) {},
                           [&](const auto& gather) {
                               std::fill(workspace_.volume.begin(), workspace_.volume.end(), Vec3d(0.0));
@@ -61,8 +57,7 @@ void SensorGather::highlight(const SensorState& state, const SurfaceInteraction&
     if (surface.primitive->emitter >= 0 && state.glossy)
         addEmission(state, surface, share * structures_.glossy->emissionWeight(state, surface));
     if (!isGlossyOnly(*surface.bsdf)) return;
-    const auto light =
-        structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.steps.rays);
+    const auto light = structures_.glossy->connect(structures_.sensor, state, surface, lights_, counters_.steps.rays);
     if (light) add(light->radiance * share, light->time);
 }
 

@@ -64,9 +64,12 @@ class SensorClusters {
     using ClusterWeights = Weights<MostClusters>;
     using PointWeights = Weights<MostSize>;
 
+    // How clusters are made (SensorClusters.cpp).
     void split(size_t first, size_t last, size_t parts, const std::vector<ClusterPoint>& points);
     void addCluster(size_t first, size_t last, const std::vector<ClusterPoint>& points);
     void addNeighbourhoods();
+
+    // How points are drawn (ClusterDraws.cpp).
     /// Calls `visit` with the first cluster of every register that may hold one in time.
     template <typename Visit>
     void eachNeighbourhood(const ClusterQuery& query, const Visit& visit) const;

@@ -23,6 +23,8 @@ struct BandRays {
 
 constexpr size_t PilotStep = 8;
 
+/// Draws on the straight rays of one sample, registers of them where a slice has such a form, else ray by ray.
+/// Functions return how many records rays met, and may run in many threads, one a band.
 class Splatter {
   public:
     Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale, Film& film)
@@ -42,6 +44,50 @@ class Splatter {
         return gathered;
     }
 
+    uint64_t gatherBeams(const BeamGather& beams, const ImageBand& band) const {
+        uint64_t gathered = 0;
+        FrameSums sums(size_t(sensor_.gate.frames));
+        for (int y = band.firstRow; y <= band.lastRow; ++y)
+            for (int x = 0; x < record_.width; ++x) {
+                const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
+                for (const StraightPiece& piece : record_.pieces) {
+                    if (!(piece.end[pixel] > piece.start[pixel])) continue;
+                    std::fill(sums.begin(), sums.end(), Vec3d(0.0));
+                    gathered += beams.gather(segmentOf(piece, pixel), sums);
+                    addToFilm(sums, piece.throughput[pixel], x, y);
+                }
+            }
+        return gathered;
+    }
+    /// By a pilot over a part of what is to be drawn.
+    void findDoses(const std::vector<std::optional<ImageSlice>>& slices, const std::vector<uint32_t>& drawn,
+                   ImageBand& band, BandRays& rays) const {
+        if (!occluders_ || drawn.empty()) return;
+        rays.doses.reserve(band.x.size());
+        for (size_t k = 0; k < drawn.size(); k += PilotStep)
+            if (slices[drawn[k]]->inLanes) draw(*slices[drawn[k]], band, rays);
+        const CollapsedFlights& first = *slices[drawn.front()]->record.flights;
+        Sampler sampler(first.random[0], RandomStream::Folded, first.random[1], drawn.size());
+        rays.doses.begin(1.0f / float(PilotStep), tuning::DosesPerRay, sampler);
+    }
+    [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
+        BandRays rays;
+        rays.rotation.resize(band.x.size());
+        for (size_t i = 0; i < rays.rotation.size(); ++i)
+            rays.rotation[i] = float(rayRotation(Vec3f(band.x[i], band.y[i], band.z[i])));
+        if (record_.origins.empty()) return rays;
+        for (auto* v : {&rays.x, &rays.y, &rays.z}) v->resize(band.x.size());
+        for (int row = band.firstRow; row <= band.lastRow; ++row)
+            for (int column = 0; column < record_.width; ++column) {
+                const Vec3f& o = record_.origins[size_t(row) * size_t(record_.width) + size_t(column)];
+                const size_t i = band.at(column, row);
+                rays.x[i] = o.x;
+                rays.y[i] = o.y;
+                rays.z[i] = o.z;
+            }
+        return rays;
+    }
+
   private:
     /// Of a piece that all rays share.
     [[nodiscard]] bool shownIn(const ImageSlice& slice, const BandPiece& piece) const {
@@ -50,7 +96,7 @@ class Splatter {
                sum < scene_.transport.maxBounces;
     }
 
-    /// A register of rays after the other.
+    // A register of rays after the other.
     template <typename Kernel>
     uint64_t drawLanes(const Kernel& kernel, const ImageSlice& slice, ImageBand& band, BandPiece& piece,
                        BandRays& rays) const {
@@ -105,6 +151,7 @@ class Splatter {
         return uint64_t(darts::lanes::sum(xsimd::select(reach.met, Batch(1.0f), Batch(0.0f))));
     }
 
+    // Ray by ray.
     uint64_t drawRays(const ImageSlice& slice, const ImageBand& band) const {
         uint64_t gathered = 0;
         for (int y = std::max(slice.area.top, band.firstRow); y <= std::min(slice.area.bottom, band.lastRow); ++y)
@@ -145,52 +192,6 @@ class Splatter {
                 piece.medium[pixel]};
     }
 
-  public:
-    uint64_t gatherBeams(const BeamGather& beams, const ImageBand& band) const {
-        uint64_t gathered = 0;
-        FrameSums sums(size_t(sensor_.gate.frames));
-        for (int y = band.firstRow; y <= band.lastRow; ++y)
-            for (int x = 0; x < record_.width; ++x) {
-                const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
-                for (const StraightPiece& piece : record_.pieces) {
-                    if (!(piece.end[pixel] > piece.start[pixel])) continue;
-                    std::fill(sums.begin(), sums.end(), Vec3d(0.0));
-                    gathered += beams.gather(segmentOf(piece, pixel), sums);
-                    addToFilm(sums, piece.throughput[pixel], x, y);
-                }
-            }
-        return gathered;
-    }
-    /// By a pilot over a part of what is to be drawn.
-    void findDoses(const std::vector<std::optional<ImageSlice>>& slices, const std::vector<uint32_t>& drawn,
-                   ImageBand& band, BandRays& rays) const {
-        if (!occluders_ || drawn.empty()) return;
-        rays.doses.reserve(band.x.size());
-        for (size_t k = 0; k < drawn.size(); k += PilotStep)
-            if (slices[drawn[k]]->inLanes) draw(*slices[drawn[k]], band, rays);
-        const CollapsedFlights& first = *slices[drawn.front()]->record.flights;
-        Sampler sampler(first.random[0], RandomStream::Folded, first.random[1], drawn.size());
-        rays.doses.begin(1.0f / float(PilotStep), tuning::DosesPerRay, sampler);
-    }
-    [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
-        BandRays rays;
-        rays.rotation.resize(band.x.size());
-        for (size_t i = 0; i < rays.rotation.size(); ++i)
-            rays.rotation[i] = float(rayRotation(Vec3f(band.x[i], band.y[i], band.z[i])));
-        if (record_.origins.empty()) return rays;
-        for (auto* v : {&rays.x, &rays.y, &rays.z}) v->resize(band.x.size());
-        for (int row = band.firstRow; row <= band.lastRow; ++row)
-            for (int column = 0; column < record_.width; ++column) {
-                const Vec3f& o = record_.origins[size_t(row) * size_t(record_.width) + size_t(column)];
-                const size_t i = band.at(column, row);
-                rays.x[i] = o.x;
-                rays.y[i] = o.y;
-                rays.z[i] = o.z;
-            }
-        return rays;
-    }
-
-  private:
     const Scene& scene_;
     transport::Sensor sensor_;
     const SensorRecord& record_;
@@ -207,27 +208,40 @@ bool oneSpeed(const Scene& scene) {
     });
 }
 
+using SliceList = std::vector<std::optional<ImageSlice>>;
+
+/// As the image shows them; none where it does not, and of beams.
+SliceList prepared(const SliceFootprints& footprints, const std::vector<CollapsedFlights>& records,
+                   const FrameShares& shares, const PassWatch& watch) {
+    SliceList slices(records.size());
+    tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
+        watch.pollWithin(256, i);
+        if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i], shares.of(i));
+    });
+    return slices;
+}
+
+/// Indices of those that each band shows, in their own order: the sums do not depend on the threads.
+std::vector<std::vector<uint32_t>> byBand(const SliceList& slices, size_t bands) {
+    std::vector<std::vector<uint32_t>> indices(bands);
+    for (size_t i = 0; i < slices.size(); ++i) {
+        if (!slices[i]) continue;
+        const int first = slices[i]->area.top / ImageBand::Rows, last = slices[i]->area.bottom / ImageBand::Rows;
+        for (int band = first; band <= last; ++band) indices[size_t(band)].push_back(uint32_t(i));
+    }
+    return indices;
+}
+
 } // namespace
 
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                      const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
                      const PassWatch& watch) {
     const Splatter splatter(scene, sensor, record, scale, film);
-    const SliceFootprints footprints(scene, sensor, scale);
-    const size_t bands = ImageBand::count(record.height);
     const FrameShares shares(scene, sensor.gate, records, watch);
-    std::vector<std::optional<ImageSlice>> slices(records.size());
-    tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
-        watch.pollWithin(256, i);
-        if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i], shares.of(i));
-    });
-    // Records by band, in their own order: the sums do not depend on the threads.
-    std::vector<std::vector<uint32_t>> byBand(bands);
-    for (size_t i = 0; i < slices.size(); ++i)
-        if (slices[i])
-            for (int band = slices[i]->area.top / ImageBand::Rows; band <= slices[i]->area.bottom / ImageBand::Rows;
-                 ++band)
-                byBand[size_t(band)].push_back(uint32_t(i));
+    const SliceList slices = prepared(SliceFootprints(scene, sensor, scale), records, shares, watch);
+    const size_t bands = ImageBand::count(record.height);
+    const std::vector<std::vector<uint32_t>> drawnIn = byBand(slices, bands);
     const auto beams = beamsAmong(scene, records);
     const bool drawBeams = record.origins.empty() && oneSpeed(scene);
     std::optional<BeamGather> beamGather;
@@ -235,7 +249,7 @@ uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const 
     std::vector<uint64_t> gathered(bands, 0);
     watch.stage("splat", bands);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
-        const auto& drawn = byBand[number];
+        const auto& drawn = drawnIn[number];
         ImageBand band(record, number, sensor.gate.frames);
         BandRays rays = splatter.originsOf(band);
         splatter.findDoses(slices, drawn, band, rays);
