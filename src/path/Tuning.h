@@ -39,9 +39,10 @@ inline constexpr float WidestGate = 8.0f;
 
 /// Light paths of a pass, a quarter of its samples within these. Bench: study cbox-128
 inline constexpr size_t FewestPaths = 4096, MostPaths = 32768;
-/// Scenes with more lights have none of these: each would be reached by few. Variance x CPU of paths, cornell-fog at 48
-/// x 48 with its point light cut into so many: 0.39 with 64, 0.29 with 65, 8 seeds of 8 samples.
-inline constexpr size_t MostEmitters = 64;
+/// Scenes with more lights have none of these: each would be reached by few. Variance x CPU with over without them, in
+/// gates of 0.05 and 0.3: 0.92 and 0.73 under 1 light, 0.92 and 0.87 under 4, 0.94 and 1.13 under 8, 1.33 and 1.33
+/// under 16, 1.85 and 1.59 under 64. Bench: study many-lights (both are the same above the limit: raise it first)
+inline constexpr size_t MostEmitters = 8;
 /// Candidates of a vertex among light vertices, and among ends of reflected light. Bench: study cbox-128
 inline constexpr size_t Candidates = 64;
 /// Light paths that tell how many of an emitter's reflect. Bench: study dragon-160
@@ -64,8 +65,9 @@ inline constexpr size_t RefractedCandidates = 8;
 inline constexpr float RefractedGain = 4.0f;
 /// Between a way to the boundary and its normal.
 inline constexpr float LeastRefractedCosine = 0.2f;
-/// Points of a light in a pass; triangles of one at most: each is asked whether a direction meets it.
-inline constexpr size_t LampPoints = 1024, MostLampTriangles = 64;
+/// Points of a light in a pass; triangles of one at most: each is asked whether a direction meets it. Scenes with more
+/// lights have none of these: a bound on the points of a pass, and on what a vertex looks through.
+inline constexpr size_t LampPoints = 1024, MostLampTriangles = 64, MostLamps = 64;
 /// Ways from under the boundary of a body that tell how late its light arrives through what else is in between, of
 /// which so many quantiles are kept, and so many that hold them all, for rare ways; boundaries on one of them.
 inline constexpr size_t DelayPilots = 2048, DelayQuantiles = 32, WholeDelays = 4;

@@ -19,7 +19,7 @@ bool RefractedLight::helpsWith(const Scene& scene) {
         return std::any_of(bodies.begin(), bodies.end(),
                            [&](const Body& body) { return body.scatters() && body.box.intersects(boxOf(emitter)); });
     };
-    return scene.emitters.size() <= tuning::MostEmitters &&
+    return scene.emitters.size() <= tuning::MostLamps &&
            std::any_of(scene.emitters.begin(), scene.emitters.end(), RefractedLamp::isOne) &&
            std::none_of(scene.emitters.begin(), scene.emitters.end(), lies);
 }
