@@ -28,7 +28,7 @@ TEST_P(SwitchesAlone, AgreeWithPlainPaths) {
     AgreementScene& scene =
         *std::find_if(scenes.begin(), scenes.end(), [](const AgreementScene& s) { return s.name == GetParam(); });
     const bool glass = scene.name == "glass-tank";
-    scene.effort.pathSamples = glass ? 48 : 20;
+    scene.effort.pathSamples = glass ? 32 : 12;
     const BlockMeans reference = renderBlocks(scene, Plain);
     // Connections through its boundary are left to chance without control vertices.
     AgreementScene longer = scene;

@@ -47,7 +47,7 @@ Photons renderBest(const std::string& scene) {
     Photons result;
     double squares = 0.0, events = 0.0, paths = 0.0;
     for (int seed = 1; seed <= Seeds; ++seed) {
-        const auto rendered = test::renderPhotons(scene, {{"integrator.darts=best"}, 24, 1, uint64_t(seed)});
+        const auto rendered = test::renderPhotons(scene, {{"integrator.darts=best"}, 14, 1, uint64_t(seed)});
         result.mean += rendered->mean() / Seeds;
         squares += rendered->mean() * rendered->mean() / Seeds;
         events += double(rendered->statistics.counter("medium events"));

@@ -123,7 +123,7 @@ TEST(CameraPaths, SeeBothSidesOfAnEdgeInOnePass) {
         "integrator": {"type": "path_tracer", "max_bounces": 12, "transient_time_center": 6,
                        "transient_time_width": 2}})";
     const test::RenderOptions options{
-        {BestPreset, setting("photon_count", 6000), setting("volume_gather_radius", 0.03)}, 64, 1};
+        {BestPreset, setting("photon_count", 3000), setting("volume_gather_radius", 0.03)}, 64, 1};
     const double paths = renderPaths(json, {{}, 64, 4096})->mean();
     for (const auto& rendered : {renderBeams(json, options), renderPhotons(json, options)}) {
         const double mean = rendered->mean(), error = rendered->pixelError();

@@ -75,10 +75,10 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
         all.push_back(darts);
         return all;
     };
-    const auto paths = renderPaths(json, {metal, 16, 256});
-    const auto followed = renderPhotons(json, {with(BestPreset), 128, 1});
+    const auto paths = renderPaths(json, {metal, 16, 160});
+    const auto followed = renderPhotons(json, {with(BestPreset), 72, 1});
     expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
-    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 128, 1});
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 72, 1});
     expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
 }
 
@@ -110,9 +110,9 @@ TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     Overrides metal{R"(primitives.floor.bsdf={"type": "mirror", "albedo": 0.9})",
                     R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})"};
-    const auto paths = renderPaths(json, {metal, 16, 512});
+    const auto paths = renderPaths(json, {metal, 16, 320});
     metal.push_back(BestPreset);
-    expectSameBlocks(*renderPhotons(json, {metal, 96, 1}), *paths, 0, 0.05, 0.15);
+    expectSameBlocks(*renderPhotons(json, {metal, 60, 1}), *paths, 0, 0.05, 0.15);
 }
 
 /// Mean over the image and its standard error, from the spread over seeds.
@@ -187,7 +187,7 @@ TEST(SurfaceConnections, GatherTheNearestPhotonsBesideAMirror) {
     const auto gathered = [&](const Overrides& settings) {
         Overrides all{Mirror, BestPreset, setting("photon_count", 20000)};
         all.insert(all.end(), settings.begin(), settings.end());
-        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 7, 1, seed}); });
+        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 4, 1, seed}); });
     };
     const auto [expected, radiusError] = gathered({});
     const auto [mean, error] = gathered({"integrator.gather_radius=1e30", "integrator.gather_photon_count=20"});
@@ -227,7 +227,7 @@ TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
     const auto render = [&](const std::string& darts) {
         Overrides all = mirror;
         all.push_back(darts);
-        return Warm(*test::renderPhotonFile(file, {all, 20, 128}));
+        return Warm(*test::renderPhotonFile(file, {all, 20, 48}));
     };
     const Warm paths(*test::renderPathFile(file, {mirror, 16, 4096}));
     for (const std::string preset : {"published", "best"}) {

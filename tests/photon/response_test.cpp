@@ -85,7 +85,7 @@ TEST_P(PhotonResponse, AgreesWithPathsInDoubleScattering) {
     for (const std::string& response : {TwoPeaks, Gaussian}) {
         const auto photons = renderOrder(2, false, response, response == TwoPeaks ? 60 : 30);
         const auto paths =
-            test::renderPaths(test::configurationA(2, false), {{response, "integrator.darts=best"}, 40, 5000});
+            test::renderPaths(test::configurationA(2, false), {{response, "integrator.darts=best"}, 40, 2500});
         const double error = std::hypot(photons->pixelError(), paths->pixelError()), expected = paths->mean();
         constexpr double KernelBias = 0.01;
         EXPECT_NEAR(photons->mean(), expected, 4.0 * error + KernelBias * expected) << response << " error " << error;
@@ -124,7 +124,7 @@ TEST(PhotonResponseOfBodies, ConnectionsByResponseAndByLengthAgree) {
         constexpr int Seeds = 8;
         double sum = 0.0, squares = 0.0;
         for (uint64_t seed = 1; seed <= Seeds; ++seed) {
-            const double value = test::renderPhotons(json, {{"integrator.darts=" + darts}, 16, 1, seed})->mean();
+            const double value = test::renderPhotons(json, {{"integrator.darts=" + darts}, 10, 1, seed})->mean();
             sum += value / Seeds;
             squares += value * value / Seeds;
         }

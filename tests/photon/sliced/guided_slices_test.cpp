@@ -56,11 +56,11 @@ TEST_P(GuidedSlices, AgreeWithPlainSlicesAndBeams) {
                                        : R"("transient_time_center": 5.6, "transient_time_width": 0.05)";
     const std::string gate = c.delta ? box + R"(, "delta_time_gate": true)" : box;
     const bool forward = std::string(c.g) != "0"; // light that scatters forward rarely turns to the camera
-    const Mean beams = meanOf(boxOfFog(c.unwarped, box, c.g), "beams", "20000", 60, 0);
+    const Mean beams = meanOf(boxOfFog(c.unwarped, box, c.g), "beams", "20000", 40, 0);
     for (const SliceName& name : SliceNames) {
         if (name.kind == SliceKind::Balls || name.kind == SliceKind::VolumesBalls) continue; // others have theirs
-        const Mean plain = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", 60, 0);
-        const Mean guided = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", forward ? 80 : 60, 0, "best");
+        const Mean plain = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", 40, 0);
+        const Mean guided = meanOf(boxOfFog(c.unwarped, gate, c.g), name.type, "4000", forward ? 80 : 40, 0, "best");
         for (int k = 0; k < 3; ++k) {
             EXPECT_NEAR(guided.value[k], plain.value[k], 4.0 * std::hypot(guided.error[k], plain.error[k]))
                 << name.type << " channel " << k;

@@ -23,7 +23,7 @@ class SliceAgreement : public testing::TestWithParam<AgreementCase> {};
 
 TEST_P(SliceAgreement, WithBeams) {
     const AgreementCase& c = GetParam();
-    const Mean beams = meanOf(boxOfFog(c.unwarped, c.beamGate), "beams", "20000", 120, c.frame);
+    const Mean beams = meanOf(boxOfFog(c.unwarped, c.beamGate), "beams", "20000", 80, c.frame);
     for (const SliceName& name : SliceNames) {
         const Mean slices = meanOf(boxOfFog(c.unwarped, c.gate), name.type, "5000", c.passes, c.frame);
         for (int k = 0; k < 3; ++k) {
@@ -46,10 +46,10 @@ INSTANTIATE_TEST_SUITE_P(
         AgreementCase{"UnwarpedFrame", true, UnwarpedSequence, UnwarpedSequence, 4, 30},
         AgreementCase{"WarpedDelta", false,
                       R"("transient_time_center": 5.6, "transient_time_width": 0.05, "delta_time_gate": true)",
-                      R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 160},
+                      R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 110},
         AgreementCase{"UnwarpedDelta", true,
                       R"("transient_time_center": 2, "transient_time_width": 0.05, "delta_time_gate": true)",
-                      R"("transient_time_center": 2, "transient_time_width": 0.05)", 0, 160}),
+                      R"("transient_time_center": 2, "transient_time_width": 0.05)", 0, 110}),
     [](const auto& test) { return test.param.name; });
 
 /// With all light at one speed straight rays may look at a choice of the records while others fold; slices have none.
