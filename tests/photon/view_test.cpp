@@ -166,7 +166,8 @@ TEST(EmissionDirections, HaveADensityWhereverTheyAreDrawn) {
     for (const float degrees : {0.1f, 0.15f, 1.0f, 30.0f, 120.0f}) {
         int without = 0;
         for (int i = 0; i < 200000; ++i) {
-            SpotEmitter spot;
+            SpotEmitter spot{};
+            spot.position = Vec3f(0.0f);
             spot.direction = warp::squareToSphere(sampler.next2D());
             spot.cosOuter = std::cos(degrees * Pi / 180.0f);
             const EmissionDirections directions(Emitter{"", spot}, {});
