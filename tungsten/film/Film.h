@@ -5,6 +5,7 @@
 #include "tungsten/core/Types.h"
 #include "tungsten/film/FilmContents.h"
 #include "tungsten/film/LazyTiles.h"
+#include "tungsten/film/MeanUpdate.h"
 #include "tungsten/film/PassBatches.h"
 #include "tungsten/film/PassScatter.h"
 
@@ -70,9 +71,9 @@ class Film {
         if (value == Rgb(0.0f)) return;
         float* pixel = passPixelToChange(frame, x, y);
         if (contents_.channels == 1)
-            *pixel += luminanceOf(value);
+            addEvenly(*pixel, luminanceOf(value));
         else
-            for (int c = 0; c < 3; ++c) pixel[c] += value[c];
+            for (int c = 0; c < 3; ++c) addEvenly(pixel[c], value[c]);
     }
     /// Instead of what the pass in progress has there.
     void set(int frame, int x, int y, const Rgb& value) {

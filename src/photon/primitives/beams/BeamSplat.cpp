@@ -227,6 +227,7 @@ uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const S
                 watch.pollWithin(64, i);
                 prefetch(*ribbons[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
                 gathered[number] += splatter.draw(*ribbons[drawn[i]], band);
+                band.countDrawn();
             }
             // With several frames nothing has been collected.
             band.addToFilm(0, film);

@@ -241,6 +241,7 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
                 prefetch(discs[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
                 const int frame = discs[drawn[i]].frame;
                 gathered += splatter.draw(discs[drawn[i]], band);
+                band.countDrawn();
                 if (i + 1 == drawn.size() || discs[drawn[i + 1]].frame != frame) band.addToFilm(frame, film);
             }
         }

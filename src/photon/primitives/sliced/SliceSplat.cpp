@@ -16,9 +16,10 @@ namespace {
 
 /// What a band's rays have besides the band.
 struct BandRays {
-    std::vector<float> x, y, z;  ///< origins; empty: all the record's
-    std::vector<float> rotation; ///< of random numbers
-    SliceDoses doses;            ///< with occluders
+    std::vector<float> x, y, z;           ///< origins; empty: all the record's
+    std::vector<float> rotation;          ///< of random numbers
+    SliceDoses doses;                     ///< with occluders
+    std::vector<const ImageSlice*> drawn; ///< the last one that was drawn into each frame
 };
 
 constexpr size_t PilotStep = 8;
@@ -72,6 +73,7 @@ class Splatter {
     }
     [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
         BandRays rays;
+        rays.drawn.resize(size_t(sensor_.gate.frames), nullptr);
         rays.rotation.resize(band.x.size());
         for (size_t i = 0; i < rays.rotation.size(); ++i)
             rays.rotation[i] = float(rayRotation(Vec3f(band.x[i], band.y[i], band.z[i])));
@@ -106,6 +108,7 @@ class Splatter {
                 const size_t i = band.at(x, y);
                 const LaneRays lanes = raysOf(slice, band, piece, rays, i);
                 kernel.meet(slice.record, lanes, [&](int frame, const LaneReach& reach) {
+                    if (std::exchange(rays.drawn[size_t(frame)], &slice) != &slice) band.countDrawn(frame);
                     gathered += collect(slice, lanes, reach, piece, frame, band.sumsOf(frame), rays, i);
                 });
             }
