@@ -55,6 +55,9 @@ class SmallDisk {
     SmallDisk(const SmallDisk&) = delete;
     SmallDisk& operator=(const SmallDisk&) = delete;
     [[nodiscard]] bool mounted() const { return mounted_; }
+    [[nodiscard]] bool makeReadOnly() const {
+        return ::mount("tmpfs", where_.c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, nullptr) == 0;
+    }
 
   private:
     fs::path where_;
@@ -152,6 +155,19 @@ TEST_F(FullDisk, AFullDiskLeavesTheEarlierFiles) {
         std::ofstream(out() / "rest") << std::string(1 << 20, 'x');
         return run("128x128");
     });
+}
+
+TEST_F(FullDisk, AReadOnlyFolderIsRefusedBeforeRendering) {
+    const SmallDisk disk(out(), 1024);
+    if (!disk.mounted()) GTEST_SKIP() << "mounting a small disk is not permitted here";
+    ASSERT_EQ(render({"-e", "box.exr", "--resolution", "8x8"}).exitCode, 0);
+    const std::string before = contentOf(out() / "box.exr");
+    ASSERT_TRUE(disk.makeReadOnly());
+    const CommandResult result = render({"-e", "box.exr", "-r"});
+    EXPECT_EQ(result.exitCode, BadInput) << result.all();
+    EXPECT_NE(result.err.find("cannot be created or written to; choose another with -d"), std::string::npos)
+        << result.err;
+    EXPECT_EQ(contentOf(out() / "box.exr"), before);
 }
 
 TEST_F(FullDisk, StandardOutputOnAFullDiskIsAnError) {
