@@ -5,7 +5,8 @@
 
 namespace darts {
 
-/// Coefficients per unit of length in three colour channels; equal ones are treated as grey, at a third of the cost.
+/// Coefficients per unit of length in three colour channels; equal ones are treated as grey: a draw of a distance takes
+/// 107 instead of 156 ns (micro).
 struct Medium {
     Vec3 sigmaA, sigmaS;
     float g = 0; ///< mean cosine of the phase function

@@ -119,7 +119,7 @@ class Splatter {
         Rgb power; ///< the disc's, times phase function and e^middle
     };
     /// If the medium is grey and isotropic and the rays that meet the disc have so even exponents that a cubic about
-    /// their middle is exact to rounding.
+    /// their middle is exact to rounding. Discs of some 8 pixels take 7 % longer without, small ones as long.
     [[nodiscard]] std::optional<EvenTerms> evenTerms(const Disc& disc, const BandPiece& piece) const {
         constexpr float MostDifference = 0.03f;
         const MediumTerms& medium = media_[size_t(piece.medium)];
