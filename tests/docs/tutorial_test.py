@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The commands and listings of docs/tutorial.md run as they stand there, in their order, but for their seconds: one each.
+"""The commands and listings of docs/tutorial.md run as they stand there, in their order, but for their seconds: three each.
 
     tutorial_test.py FOLDER     for what they write; the environment's TUNGSTEN is the renderer
 """
@@ -36,7 +36,7 @@ text, said = (PROJECT / "docs/tutorial.md").read_text(), []
 for block in re.finditer(r"(?:<!-- snippet: (\S+) -->\n)?```(\w+)\n(.*?)```", text, re.S):
     name, language, content = block.groups()
     if language == "sh":
-        shorter = re.sub(r"(--timeout|--seconds) \d+", r"\1 1", content)
+        shorter = re.sub(r"(--timeout|--seconds) \d+", r"\1 3", content)
         said += [run(shlex.split(line)) for line in shorter.splitlines()]
     else:
         (FOLDER / name).write_text(content)
