@@ -21,6 +21,7 @@ CASES = [
     ("dense cube, 60", "dense-cube-60", [], 60),
     ("dense cube, 300", "dense-cube-300", [], 60),
     ("milk behind glass", "milk-behind-glass", [], 240),
+    ("milk in an index of 3", "milk-behind-glass", ["bsdfs.milk_surface.ior=3"], 120),
     ("layered tissue", "layered-tissue", [], 240),
     ("layered tissue, gate of 0.5", "layered-tissue", [gate(0.5)], 120),
     ("layered tissue, gate of 4", "layered-tissue", [gate(4)], 60),
