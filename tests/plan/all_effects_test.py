@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """`--effects all` shows the same image: every integrator and primitive, plain and guided, in a few scenes each, by one thread. Bit for bit
-where nothing is left out; to rounding where a plain integrator leaves out a medium; within errors where a guided one does. The renderer is named by the environment's TUNGSTEN."""
+where nothing is left out; to rounding where a plain integrator leaves out a medium; within errors where a guided one does. The renderer
+is named by the environment's TUNGSTEN."""
 
 import json
 import os
