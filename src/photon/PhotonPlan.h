@@ -28,6 +28,7 @@ struct PhotonPlan {
     Choice connections;     ///< guided light paths connect to visible surface points
     Choice exactCulling;    ///< what arrives outside the gate is known and not stored
     Choice edaTable;        ///< directions come from tables of media
+    Choice moreCameraPaths; ///< through a pixel than its samples
 
     std::vector<bool> lateEmitters;   ///< EffectPlan::late
     std::vector<bool> mediaOutOfTime; ///< EffectPlan::mediaOutOfTime
@@ -46,7 +47,6 @@ struct PhotonPlan {
     bool primitiveSplats = false; ///< along the rays that this camera has
     bool looksAgain = false;      ///< at what sensor paths meet, when the photons are there: splats are not all
     uint32_t cameraPaths = 1;     ///< through a pixel for each of its samples
-    std::string cameraPathsReason;
 
     [[nodiscard]] bool splats() const { return volume.on && homogeneous && primitiveSplats; }
     /// Sensor paths are traced before the photons; else after them.
@@ -56,7 +56,6 @@ struct PhotonPlan {
     void describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
     void describeVolume(const PhotonSettings& settings, EffectPlan& plan) const;
     void describeSplatting(EffectPlan& plan) const;
-    void chooseSensorPaths(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
 };

@@ -1,0 +1,81 @@
+// What a photon map's plan says under --explain.
+
+#include "photon/PhotonPlan.h"
+#include "photon/view/SensorPath.h"
+
+#include "transport/Body.h"
+#include "transport/StepCounters.h"
+#include "transport/WaysOut.h"
+
+#include "tungsten/render/SceneUses.h"
+
+namespace tungsten::photon {
+
+void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan) const {
+    const std::vector<std::string> type{"integrator.volume_photon_type"};
+    forEachPrimitive(settings.primitive, [&](const auto& p) {
+        using Primitive = std::decay_t<decltype(p)>;
+        const bool used = std::holds_alternative<Primitive>(settings.primitive);
+        const std::string other = std::visit([](const auto& q) { return std::string(q.Effect); }, settings.primitive);
+        plan.describe(p.Effect, used && volume.on, used ? volume.reason : "volumes store " + other, type, {p.Stored});
+    });
+    if (volume.on && !settings.radiusReason.empty())
+        plan.describe("default radius", true, settings.radiusReason, {"integrator.volume_gather_radius"});
+    describeSplatting(plan);
+}
+
+void PhotonPlan::describeSplatting(EffectPlan& plan) const {
+    const bool splatted = volume.on && splats(), gathered = volume.on && (!splats() || folds);
+    plan.describe("splatting", splatted,
+                  !volume.on ? volume.reason
+                  : splatted ? "straight rays: every record visits the pixels that see it"
+                             : "rays are not straight, or not of one speed",
+                  {"camera"}, {"splatted records"});
+    plan.describe("gathering", gathered,
+                  !volume.on ? volume.reason
+                  : gathered ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
+                             : "all rays are straight: records are splatted",
+                  {"camera"}, {"gathered records"});
+    plan.describe("more camera paths", moreCameraPaths.on, moreCameraPaths.reason, {"camera"});
+}
+
+void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+    const std::vector<std::string> darts{"integrator.darts"};
+    const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
+    plan.describe("guided light paths", guidance.on, guidance.reason, darts,
+                  atVertices ? std::vector<std::string>{"control vertices"} : std::vector<std::string>{});
+    plan.describe("EDA table", edaTable.on, edaTable.reason, darts, {"direction tables"});
+    plan.describe("surface connections", connections.on, connections.reason, darts, {"surface connections"});
+    plan.describe("sharing", connections.on,
+                  connections.on ? "what a surface point receives is shared among neighbouring pixels"
+                                 : connections.reason,
+                  darts, {"surface connections"});
+    plan.describe("glossy sensor paths", glossyPaths.on, glossyPaths.reason,
+                  bsdfUses(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).causes(),
+                  {"glossy sensor reflections"});
+    if (!guidance.on) return;
+    plan.describe("bounds in time alone", boundsAlone.on, boundsAlone.reason, {"integrator.darts"});
+    if (!scene.transport.cameraUnwarped && !boundsAlone.on)
+        transport::WaysOut::plan(scene, settings.policy, false, plan);
+    const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
+    plan.describe("light towards bodies", bodies > 0,
+                  bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +
+                                   (bodies > 1 ? " bodies" : " body") + " of it"
+                             : "no body of fog in what does not scatter, or left alone",
+                  darts);
+    if (scene.transport.gate.frames > 1)
+        plan.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts, {"frames aimed at"});
+    plan.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
+}
+
+void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+    transport::countSteps(plan);
+    describeVolume(settings, plan);
+    plan.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
+    plan.describe("surface photons", surfacePhotons.on, surfacePhotons.reason, lobeUses(scene, lobe::Smooth).causes(),
+                  {"stored surface photons", "photons gathered on surfaces"});
+    describeGuidance(scene, settings, plan);
+    plan.describe("exact arrival culling", exactCulling.on, exactCulling.reason, {"integrator"});
+}
+
+} // namespace tungsten::photon
