@@ -6,12 +6,17 @@
 
 namespace tungsten {
 
-std::optional<uint32_t> Emitter::primitive() const {
-    using Answer = std::optional<uint32_t>;
-    return std::visit(Overloaded{[](const AreaEmitter& area) { return Answer(area.primitive); },
+const AreaEmitter* Emitter::surface() const {
+    using Answer = const AreaEmitter*;
+    return std::visit(Overloaded{[](const AreaEmitter& area) { return Answer(&area); },
                                  [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
-                                                InfiniteSphereEmitter> auto&) { return Answer(); }},
+                                                InfiniteSphereEmitter> auto&) { return Answer(nullptr); }},
                       model);
+}
+
+std::optional<uint32_t> Emitter::primitive() const {
+    const AreaEmitter* area = surface();
+    return area ? std::optional(area->primitive) : std::nullopt;
 }
 
 bool Emitter::isConnectable() const {

@@ -94,7 +94,9 @@ struct Emitter {
                 [](const OneOf<PointEmitter, SpotEmitter, AreaEmitter, InfiniteSphereEmitter> auto&) { return false; }},
             model);
     }
-    /// Is a surface: the index of its primitive in Scene::primitives.
+    /// Null for emitters that are no surface.
+    [[nodiscard]] const AreaEmitter* surface() const;
+    /// Of a surface: the index of its primitive in Scene::primitives.
     [[nodiscard]] std::optional<uint32_t> primitive() const;
     /// Vertices may connect to it.
     [[nodiscard]] bool isConnectable() const;

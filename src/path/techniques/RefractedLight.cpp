@@ -11,7 +11,7 @@ using transport::Body;
 bool RefractedLight::helpsWith(const Scene& scene) {
     const std::vector<Body> bodies = transport::bodiesOf(scene);
     const auto boxOf = [](const Emitter& emitter) {
-        if (const auto* area = std::get_if<AreaEmitter>(&emitter.model)) return boundsOf(*area->shape);
+        if (const AreaEmitter* area = emitter.surface()) return boundsOf(*area->shape);
         const BoundingSphere sphere = boundingSphere(emitter);
         return Imath::Box3f(sphere.centre - Vec3f(sphere.radius), sphere.centre + Vec3f(sphere.radius));
     };

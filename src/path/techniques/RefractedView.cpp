@@ -7,7 +7,7 @@ namespace tungsten::path {
 using transport::Body;
 
 bool RefractedLamp::isOne(const Emitter& emitter) {
-    const auto* area = std::get_if<AreaEmitter>(&emitter.model);
+    const AreaEmitter* area = emitter.surface();
     if (!area || !(area->areaSampler->area() > 0.0f)) return false;
     return std::visit(
         Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size() <= tuning::MostLampTriangles; },
