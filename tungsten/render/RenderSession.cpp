@@ -5,10 +5,10 @@
 #include "tungsten/render/HtmlPage.h"
 #include "tungsten/render/Memory.h"
 #include "tungsten/render/Progress.h"
+#include "tungsten/render/RoundAgreement.h"
 #include "tungsten/render/RoundPass.h"
 #include "tungsten/render/SceneFilm.h"
 #include "tungsten/render/SessionFiles.h"
-#include "tungsten/render/SharedResult.h"
 #include "tungsten/render/TimeLimit.h"
 #include "tungsten/render/WatchedPass.h"
 
@@ -107,11 +107,10 @@ class Session {
             whole = watched_.run({}, limit_.end(), build);
         });
         watched_.rethrow();
-        const auto ranks = size_t(result_.ranks);
-        const bool prepared = agree(whole, ranks) == ranks;
-        if (!prepared) result_.reason = StopReason::TimedOut;
+        agree(whole, false);
+        if (!agreed_.whole) result_.reason = StopReason::TimedOut;
         if (agreed_.interrupted) result_.reason = StopReason::Interrupted;
-        return prepared;
+        return agreed_.whole;
     }
 
     void renderPasses() {
@@ -153,7 +152,8 @@ class Session {
         const size_t mine = shared_.rank();
         const bool whole = mine >= round.size() || renderPass(round[mine]);
         watched_.rethrow();
-        const size_t passes = agree(whole, round.size());
+        agree(whole, false);
+        const size_t passes = std::min(round.size(), agreed_.wholePasses);
         if (passes == 0) return false;
         if (partial_) partial_->add(result_.film, round[0].size.samples);
         shared_.collect(passes);
@@ -198,7 +198,7 @@ class Session {
             result_.reason = agreed_.interrupted ? StopReason::Interrupted : StopReason::TimedOut;
             return true;
         }
-        sizes_.cut(brokenAt_);
+        sizes_.cut(agreed_.brokenAt);
         if (shared_.speaks())
             std::fprintf(stderr,
                          "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
@@ -206,20 +206,20 @@ class Session {
         return false;
     }
 
-    /// What any rank has met counts for all. Returns how many passes of the round there are before the first that was
-    /// broken off.
-    size_t agree(bool whole = true, size_t passes = 0, bool wantsFilm = false) {
-        const double broken = whole ? double(result_.ranks) : double(shared_.rank());
-        const auto all = shared_.largest({double(watched_.interrupted()), double(limit_.isOver()), double(wantsFilm),
-                                          -broken, whole ? -1.0 : -watched_.brokenAt()});
-        agreed_ = {all[0] > 0.0, all[1] > 0.0, all[2] > 0.0};
-        brokenAt_ = -all[4];
-        return std::min(passes, size_t(-all[3]));
+    /// Among all ranks.
+    void agree(bool whole, bool wantsFilm) {
+        RoundAgreement own;
+        own.interrupted = watched_.interrupted();
+        own.timedOut = limit_.isOver();
+        own.wantsFilm = wantsFilm;
+        own.whole = whole;
+        own.brokenAt = watched_.brokenAt();
+        agreed_ = own.among(shared_, size_t(result_.ranks));
     }
 
     bool shouldStop() {
         const bool due = files_.checkpointDue() || trace_.due() || (!options_.quiet && shared_.mayShow());
-        agree(true, 0, shared_.speaks() && due);
+        agree(true, shared_.speaks() && due);
         const bool stop = stopsAfterRound();
         if (stop || agreed_.wantsFilm) shared_.gather();
         return stop;
@@ -264,12 +264,9 @@ class Session {
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
     PassSizes sizes_;
-    struct {
-        bool interrupted = false, timedOut = false, wantsFilm = false;
-    } agreed_;                ///< of all ranks
+    RoundAgreement agreed_;   ///< of all ranks
     bool endedAPass_ = false; ///< in this run
     bool targetReached_ = false;
-    double brokenAt_ = 0.0; ///< where the last pass that was broken off was, in any rank
     TimeLimit limit_;
     WatchedPass watched_;
     PartialStateWriter* partial_ = nullptr;
