@@ -1,6 +1,7 @@
 #include "tungsten/render/EarliestArrival.h"
 
 #include "tungsten/render/SceneUses.h"
+#include "tungsten/scene/Field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +15,6 @@ constexpr double Never = std::numeric_limits<double>::infinity();
 
 /// Rounding of positions, and of the lengths that walks add up: far more than either.
 constexpr double Slack = 1e-5;
-
-std::string formatted(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", number);
-    return text;
-}
 
 /// No less than this lies between the sensor and a point within `radius` of `centre`.
 double gapToSensor(const Scene& scene, const Vec3f& centre, float radius) {
@@ -72,12 +67,11 @@ double firstPulse(const Scene& scene) {
 }
 
 void planEmitters(const Scene& scene, const std::vector<double>& earliest, double end, EffectPlan& plan) {
-    const std::string until = "the sensor closes at " + formatted(end);
+    const std::string until = "the sensor closes at " + brief(end);
     Uses late;
     for (size_t i = 0; i < earliest.size(); ++i)
         if (earliest[i] > end)
-            late.add(nameOf(scene.emitters[i].name, i) + " not before " + formatted(earliest[i]),
-                     scene.emitters[i].path);
+            late.add(nameOf(scene.emitters[i].name, i) + " not before " + brief(earliest[i]), scene.emitters[i].path);
     plan.nothingArrives = late.count() == earliest.size() && !plan.everything;
     // Where all are late nothing is rendered, and integrators need no emitter to be left.
     const bool leaves = late.any() && !plan.nothingArrives && !plan.everything;
@@ -102,7 +96,7 @@ void planFrames(const Scene& scene, double first, EffectPlan& plan) {
     const bool some = gate.frames > 1 && dark > 0;
     plan.darkFrames = some && !plan.everything ? std::min(dark, gate.frames - 1) : 0;
     plan.describe("frames before all light", some,
-                  some ? "the first " + std::to_string(dark) + " frames end before " + formatted(first) +
+                  some ? "the first " + std::to_string(dark) + " frames end before " + brief(first) +
                              ", when light can arrive at the soonest"
                   : gate.frames > 1 ? "light may arrive in the first frame"
                                     : "a single image",
@@ -111,7 +105,7 @@ void planFrames(const Scene& scene, double first, EffectPlan& plan) {
 
 void planMediaInTime(const Scene& scene, double end, EffectPlan& plan) {
     const std::vector<double> earliest = earliestThroughMedia(scene, plan);
-    const std::string until = "the sensor closes at " + formatted(end);
+    const std::string until = "the sensor closes at " + brief(end);
     Uses scattering, late;
     for (const int index : reachableMedia(scene)) {
         const auto i = size_t(index);
@@ -119,7 +113,7 @@ void planMediaInTime(const Scene& scene, double end, EffectPlan& plan) {
         const std::string name = nameOf(medium.name, i);
         if (!medium.scatters()) continue;
         scattering.add(name, medium.path);
-        if (earliest[i] > end) late.add(name + " not before " + formatted(earliest[i]), medium.path);
+        if (earliest[i] > end) late.add(name + " not before " + brief(earliest[i]), medium.path);
     }
     const bool leaves = late.any() && !plan.everything;
     if (leaves)
@@ -206,9 +200,9 @@ void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
     const bool some = !scene.primitives.empty() && !plan.surfacesOutOfTime;
     plan.describe("surfaces in time", some,
                   scene.primitives.empty() ? "there is no surface"
-                  : some ? "what the nearest surface shows may arrive before the sensor closes at " + formatted(end)
-                         : "what surfaces show does not arrive before " + formatted(surfaces) +
-                               ", the sensor closes at " + formatted(end),
+                  : some ? "what the nearest surface shows may arrive before the sensor closes at " + brief(end)
+                         : "what surfaces show does not arrive before " + brief(surfaces) + ", the sensor closes at " +
+                               brief(end),
                   {"primitives"});
     planMediaInTime(scene, end, plan);
 }

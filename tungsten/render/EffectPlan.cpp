@@ -1,6 +1,7 @@
 #include "tungsten/render/EffectPlan.h"
 
 #include "tungsten/render/SceneUses.h"
+#include "tungsten/scene/Field.h"
 
 #include <algorithm>
 #include <set>
@@ -9,23 +10,17 @@ namespace tungsten {
 
 namespace {
 
-std::string formatted(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", number);
-    return text;
-}
-
 std::string describeGate(const TimeGate& gate) {
     if (gate.steadyState) return "no time gate: steady state";
-    if (gate.delta) return "delta gate at time " + formatted(gate.start);
-    const std::string interval = "[" + formatted(gate.start) + ", " + formatted(gate.end()) + ")";
+    if (gate.delta) return "delta gate at time " + brief(gate.start);
+    const std::string interval = "[" + brief(gate.start) + ", " + brief(gate.end()) + ")";
     return gate.frames > 1
-               ? std::to_string(gate.frames) + " frames of width " + formatted(gate.frameWidth) + " over " + interval
+               ? std::to_string(gate.frames) + " frames of width " + brief(gate.frameWidth) + " over " + interval
                : "one gate " + interval;
 }
 
 std::string spanOf(const TimeProfile& profile) {
-    return formatted(profile.times.front()) + " to " + formatted(profile.times.back());
+    return brief(profile.times.front()) + " to " + brief(profile.times.back());
 }
 
 /// When lights shine.
@@ -150,9 +145,9 @@ void planSpeeds(const Scene& scene, EffectPlan& plan) {
     plan.speedsDiffer = plan.timeResolved && several;
     plan.highestSpeed = speeds.highest;
     plan.describe("several speeds of light", plan.speedsDiffer,
-                  several ? std::to_string(speeds.count) + " speeds, from " + formatted(double(speeds.lowest)) +
-                                " to " + formatted(double(speeds.highest))
-                          : "one speed everywhere: " + formatted(double(speeds.highest)),
+                  several ? std::to_string(speeds.count) + " speeds, from " + brief(double(speeds.lowest)) + " to " +
+                                brief(double(speeds.highest))
+                          : "one speed everywhere: " + brief(double(speeds.highest)),
                   speeds.causes);
 }
 
