@@ -161,9 +161,9 @@ void table(const std::string& input) {
 }
 
 constexpr Target Targets[] = {
-    {"scene", scene},   {"override", override}, {"wo3", mesh<Wo3>}, {"obj", mesh<Obj>},
-    {"ply", mesh<Ply>}, {"gltf", gltf},         {"image", image},   {"exr", exr},
-    {"state", state},   {"partial", partial},   {"table", table},
+    {"scene", scene},   {"sky", scene},     {"override", override}, {"wo3", mesh<Wo3>},
+    {"obj", mesh<Obj>}, {"ply", mesh<Ply>}, {"gltf", gltf},         {"image", image},
+    {"exr", exr},       {"state", state},   {"partial", partial},   {"table", table},
 };
 
 } // namespace
