@@ -82,6 +82,15 @@ TEST(Outputs, UnknownExtensionsNameTheAcceptedOnes) {
     EXPECT_EQ(errorOf({folder.path() / "a.PNG", folder.path() / "b.EXR", {}, {}, {}, {}, {}}), "");
 }
 
+/// Their permissions would let the superuser write, as whom tests may run; others are refused by those.
+TEST(Outputs, FoldersThatTakeNoFilesAreReported) {
+    for (const char* folder : {"/sys", "/dev/pts"}) {
+        if (!fs::is_directory(folder)) continue;
+        const std::string text = errorOf({fs::path(folder) / "a.png", {}, {}, {}, {}, {}, {}});
+        EXPECT_NE(text.find("cannot be created or written to"), std::string::npos) << folder << ": " << text;
+    }
+}
+
 TEST(Outputs, MissingFoldersAreCreatedAndImpossibleOnesReported) {
     const test::TemporaryFolder folder;
     EXPECT_EQ(errorOf({folder.path() / "x" / "y" / "a.png", {}, {}, {}, {}, {}, {}}), "");

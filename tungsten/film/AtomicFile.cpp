@@ -95,6 +95,15 @@ void requireReplaceable(const fs::path& file) {
         throw cannotWrite(file, "a device or a pipe has this name, which would be replaced by a file");
 }
 
+bool takesFiles(const fs::path& folder) {
+    try {
+        const TemporaryFile trial(folder / "trial");
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 void writeAtomically(const fs::path& destination, const std::function<void(std::ostream&)>& write) {
     requireReplaceable(destination);
     TemporaryFile temporary(destination);

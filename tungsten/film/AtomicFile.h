@@ -10,6 +10,9 @@ namespace tungsten {
 /// Throws InputError if something that is not a file (a folder, device or pipe) has this name.
 void requireReplaceable(const std::filesystem::path& file);
 
+/// Whether files can be made in the folder, which its permissions alone do not tell: makes one and removes it.
+bool takesFiles(const std::filesystem::path& folder);
+
 /// `write` fills a temporary file in the destination's folder, created for this alone under a random name. What it
 /// wrote is checked, brought to the disk and renamed to the destination. On any failure, a full disk among them, the
 /// destination stays as it was, nothing is left behind, and InputError names it. Streams can be sought.

@@ -73,8 +73,10 @@ void requireMemory(const LoadedScene& loaded, double films, double integratorByt
 void keepFreedMemory() {
 #ifdef __GLIBC__
     constexpr int LargestThreshold = 32 << 20, Kept = 512 << 20; // more the library does not take
+    // NOLINTBEGIN(concurrency-mt-unsafe): before there are other threads
     mallopt(M_MMAP_THRESHOLD, LargestThreshold);
     mallopt(M_TRIM_THRESHOLD, Kept);
+    // NOLINTEND(concurrency-mt-unsafe)
 #endif
 }
 

@@ -56,6 +56,25 @@ std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan&
     return files;
 }
 
+fs::path folderOf(const fs::path& file) {
+    return file.parent_path().empty() ? fs::path(".") : file.parent_path();
+}
+
+InputError noFilesIn(const fs::path& folder, const fs::path& file) {
+    return {file.string(), "cannot be written: the folder '" + folder.string() +
+                               "' cannot be created or written to; choose another with -d DIRECTORY"};
+}
+
+void checkName(const fs::path& file) {
+    requireReplaceable(file);
+    const long longest = ::pathconf(folderOf(file).c_str(), _PC_NAME_MAX);
+    const size_t length = file.filename().string().size();
+    if (length == 0 || (longest > 0 && length > size_t(longest)))
+        throw InputError(file.string(), "cannot be written: the name has " + std::to_string(length) +
+                                            " bytes, the folder takes 1 to " + std::to_string(longest) +
+                                            "; choose another with -o or -e");
+}
+
 } // namespace
 
 fs::path OutputFiles::partialState(uint32_t first, uint32_t end) const {
@@ -104,27 +123,16 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
 }
 
 void makeFolderOf(const fs::path& file) {
-    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+    const fs::path folder = folderOf(file);
     std::error_code error;
     fs::create_directories(folder, error);
-    if (!fs::is_directory(folder, error))
-        throw InputError(file.string(), "cannot be written: the folder '" + folder.string() +
-                                            "' cannot be created or written to; choose another with -d DIRECTORY");
+    if (!fs::is_directory(folder, error)) throw noFilesIn(folder, file);
 }
 
 void checkWritable(const fs::path& file) {
     makeFolderOf(file);
-    const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-    if (::access(folder.c_str(), W_OK) != 0)
-        throw InputError(file.string(), "cannot be written: the folder '" + folder.string() +
-                                            "' cannot be created or written to; choose another with -d DIRECTORY");
-    requireReplaceable(file);
-    const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
-    const size_t length = file.filename().string().size();
-    if (length == 0 || (longest > 0 && length > size_t(longest)))
-        throw InputError(file.string(), "cannot be written: the name has " + std::to_string(length) +
-                                            " bytes, the folder takes 1 to " + std::to_string(longest) +
-                                            "; choose another with -o or -e");
+    if (!takesFiles(folderOf(file))) throw noFilesIn(folderOf(file), file);
+    checkName(file);
 }
 
 void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
@@ -149,8 +157,10 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     std::set<fs::path> folders, inputs, taken;
     for (const fs::path& input : plan.inputs) inputs.insert(identityOf(input));
     for (const fs::path& file : plannedFiles(outputs, plan)) {
-        checkWritable(file);
-        folders.insert(file.parent_path());
+        if (folders.insert(folderOf(file)).second)
+            checkWritable(file);
+        else
+            checkName(file);
         if (inputs.count(identityOf(file)) > 0)
             throw InputError(file.string(), "would be replaced by an output, but the scene reads it; choose another "
                                             "name with -d, -o, -e or --stats");
@@ -158,7 +168,7 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
             throw InputError(file.string(), "is the name of two outputs; choose another for one of them with -o, -e "
                                             "or --stats");
     }
-    for (const fs::path& folder : folders) removeAbandonedFiles(folder.empty() ? "." : folder);
+    for (const fs::path& folder : folders) removeAbandonedFiles(folder);
 }
 
 } // namespace tungsten

@@ -155,11 +155,12 @@ float RefractedLight::density(const SealedVertex& vertex, const Vec3f& direction
     const Odds odds = oddsOf(vertex.position, vertex.region, lamp);
     if (!(odds.faces[faceIndex] > 0.0f)) return 0.0f;
     const Delays& delays = pair(vertex.region.medium, lamp).delays[faceIndex];
-    const auto [low, high] = window(vertex, lamps_[lamp]);
+    const std::pair<float, float> open = window(vertex, lamps_[lamp]);
     float sum = 0.0f;
     view(vertex.position, vertex.region, faceIndex, lamp).eachAlong(direction, [&](const RefractedView::Aim& aim) {
-        const auto inTime = std::count_if(delays.begin(), delays.end(),
-                                          [&](const Delay& delay) { return delay.covers(aim.time, low, high); });
+        const auto inTime = std::count_if(delays.begin(), delays.end(), [&](const Delay& delay) {
+            return delay.covers(aim.time, open.first, open.second);
+        });
         sum += aim.density * float(inTime) / float(delays.size());
     });
     return sum * odds.faces[faceIndex] * choice_.probability(size_t(emitter));
