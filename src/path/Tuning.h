@@ -54,8 +54,8 @@ inline constexpr size_t PilotPaths = 32768;
 /// most with probability 1; never from deeper than so many mean free paths. Variance x CPU of milk behind glass: 0.56
 /// at 2, 0.41 at 1, 0.47 at 0.5. Bench: study bodies
 inline constexpr float RefractedOdds = 1.0f, DeepestRefracted = 10.0f;
-/// Towards where the way to a light leaves a sphere. Variance x CPU of a ball of milk (the study's, its jar a sphere of
-/// scale 0.5), 8 seeds: 0.48 at 0, 0.45 at 1, 0.38 at 2, 0.37 at 3, 0.44 at 8. Bench: study bodies
+/// Towards where the way to a light leaves a sphere. Variance x CPU of a ball of milk, 8 seeds: 0.48 at 0, 0.45 at 1,
+/// 0.38 at 2, 0.37 at 3, 0.44 at 8. Bench: milk of study bodies with primitives.jar.type=sphere and scale 0.5
 inline constexpr int SphereSteps = 3;
 /// Of candidates in time, at most, whose ways are worked out. (Milk behind glass 0.41 without this, 0.33; a box in a
 /// long gate 0.31, 0.15.) Bench: study bodies

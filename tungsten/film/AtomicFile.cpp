@@ -23,10 +23,6 @@ constexpr const char* Prefix = ".tungsten-";
 constexpr const char* Suffix = ".tmp";
 constexpr std::time_t YoungSeconds = 60;
 
-fs::path folderOf(const fs::path& file) {
-    return file.parent_path().empty() ? fs::path(".") : file.parent_path();
-}
-
 InputError cannotWrite(const fs::path& file, const std::string& why) {
     return {file.string(), "cannot be written: " + why};
 }
@@ -86,6 +82,10 @@ class TemporaryFile {
 };
 
 } // namespace
+
+fs::path folderOf(const fs::path& file) {
+    return file.parent_path().empty() ? fs::path(".") : file.parent_path();
+}
 
 void requireReplaceable(const fs::path& file) {
     std::error_code error;

@@ -7,6 +7,9 @@
 
 namespace tungsten {
 
+/// Where the file is; "." for a bare name.
+std::filesystem::path folderOf(const std::filesystem::path& file);
+
 /// Throws InputError if something that is not a file (a folder, device or pipe) has this name.
 void requireReplaceable(const std::filesystem::path& file);
 

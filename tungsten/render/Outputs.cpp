@@ -56,10 +56,6 @@ std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan&
     return files;
 }
 
-fs::path folderOf(const fs::path& file) {
-    return file.parent_path().empty() ? fs::path(".") : file.parent_path();
-}
-
 InputError noFilesIn(const fs::path& folder, const fs::path& file) {
     return {file.string(), "cannot be written: the folder '" + folder.string() +
                                "' cannot be created or written to; choose another with -d DIRECTORY"};
