@@ -149,9 +149,10 @@ Image readExr(const std::filesystem::path& file, int part, const std::string& la
             const std::string name = grey ? "Y" : layer + Components[c];
             if (!channels.findChannel(name)) throw InputError(file.string(), "the EXR image has no channel " + name);
             if (grey && c > 0) continue;
-            char* base = reinterpret_cast<char*>(image.pixels.data()) + size_t(c) * sizeof(float) -
-                         (int64_t(window.min.x) + int64_t(window.min.y) * width) * int64_t(sizeof(Rgb));
-            buffer.insert(name, Imf::Slice(Imf::FLOAT, base, sizeof(Rgb), sizeof(Rgb) * size_t(width)));
+            buffer.insert(name,
+                          Imf::Slice::Make(Imf::FLOAT,
+                                           reinterpret_cast<char*>(image.pixels.data()) + size_t(c) * sizeof(float),
+                                           window, sizeof(Rgb), sizeof(Rgb) * size_t(width)));
         }
         input.setFrameBuffer(buffer);
         input.readPixels(window.min.y, window.max.y);
