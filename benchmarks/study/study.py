@@ -9,12 +9,9 @@ import importlib.util
 import sys
 from pathlib import Path
 
-from bench import Bench
 from images import ImageError
 from new_study import write_study
 from results import collect
-from page import write_page
-from report import write_report
 from references import SECONDS, SEEDS, render_references
 from runs import check, plan, run_all
 from study_file import StudyError, load_study, missing_references, require_references
@@ -103,6 +100,8 @@ def perform_program(file, options):
     work = (options.work or base / file.stem).resolve()
     renders = work / "renders" if options.work else base / "renders"
     results = work if options.quick else ROOT / "benchmarks/results" / file.stem
+    from bench import Bench  # with matplotlib, which takes long: most calls draw nothing
+
     program.run(Bench(file.stem, options.tungsten.resolve(), work, renders, results, options.quick))
     return EXIT_DONE
 
@@ -181,6 +180,9 @@ def perform(options):
         if options.part:
             return EXIT_DONE
     failed = [run for run in runs if (record := run.record()) and record["error"]]
+    from page import write_page  # with matplotlib
+    from report import write_report
+
     summaries, references = collect(study, runs)
     print(f"{write_report(study, summaries, references, work)}\n{write_page(study, summaries, references, runs, work)}")
     if failed:

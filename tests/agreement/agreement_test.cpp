@@ -41,10 +41,14 @@ class ClosedForms : public testing::TestWithParam<PulsesInFog> {};
 
 TEST_P(ClosedForms, MatchEveryMethod) {
     constexpr int Side = 24;
-    const AgreementScene scene = builtScene(GetParam().name, sceneJson(GetParam()), 0.1, ClosedFormEffort);
+    AgreementScene scene = builtScene(GetParam().name, sceneJson(GetParam()), 0.1, ClosedFormEffort);
     const BlockMeans exact = closedForm(GetParam(), Side);
-    for (const Method& method : methodsUnderTest()) {
+    for (Method& method : methodsUnderTest()) {
         SCOPED_TRACE(method.name);
+        // Beams have half the noise of plain points, guided points less but in slow fog, guided paths hardly any.
+        const bool plainPoints = method.name == "plain points", beams = method.name.ends_with("beams");
+        scene.effort.photonPasses = plainPoints ? ClosedFormEffort.photonPasses : beams ? 24 : 32;
+        if (!method.kernel && !method.steadyState) method.share *= 0.25;
         expectAgreement(renderBlocks(scene, method), exact);
     }
 }

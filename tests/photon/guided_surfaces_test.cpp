@@ -227,7 +227,7 @@ TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
     const auto render = [&](const std::string& darts) {
         Overrides all = mirror;
         all.push_back(darts);
-        return Warm(*test::renderPhotonFile(file, {all, 20, 48}));
+        return Warm(*test::renderPhotonFile(file, {all, 20, 16}));
     };
     const Warm paths(*test::renderPathFile(file, {mirror, 16, 4096}));
     for (const std::string preset : {"published", "best"}) {

@@ -107,6 +107,13 @@ class LeftOut(unittest.TestCase):
         self.command(scene, "-d", self.folder.name, "-e", "film.npz", *options)
         return np.load(Path(self.folder.name) / "film.npz")["mean"]
 
+    def means(self, scene, spp, passes, axes):
+        """With what can be left out left out, and without. Of photon maps, whose noise is that of the light paths, camera samples are
+        a quarter."""
+        spp //= 4 if "photon_map" in scene["integrator"]["type"] else 1
+        more = ("--spp", str(spp), "--set", f"renderer.spp_step={spp // passes}")
+        return (self.image(scene, *more, *options).mean(axis=axes) for options in ([], ["--effects", "all"]))
+
     def alone(self, scene, kept):
         one = copy.deepcopy(scene)
         for primitive in one["primitives"]:
@@ -151,8 +158,7 @@ class LeftOut(unittest.TestCase):
             scene = self.scene(**kind)
             self.assertEqual(self.effects(scene)["late emitters left out"]["causes"], ["primitives[1]"])
             self.assertFalse(self.effects(scene, "--effects", "all")["late emitters left out"]["on"])
-            few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
-                          for options in ([], ["--effects", "all"]))
+            few, every = self.means(scene, 2048, 32, (0, 1, 2))
             np.testing.assert_allclose(few, every, rtol=0.06)
             del scene["primitives"][1]
             if "photon_map" not in scene["integrator"]["type"]:
@@ -219,8 +225,7 @@ class LeftOut(unittest.TestCase):
                 some, every = (self.counters(scene, *options) for options in ([], ["--effects", "all"]))
                 self.assertEqual(some.get("direction tables"), None if darts == "off" else 1)
                 self.assertEqual(every.get("direction tables"), None if darts == "off" else 2)
-                few, all_ = (self.image(scene, "--spp", "1024", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
-                             for options in ([], ["--effects", "all"]))
+                few, all_ = self.means(scene, 1024, 16, (0, 1, 2))
                 np.testing.assert_allclose(few, all_, rtol=0.085)
                 # Now that is the only fog.
                 scene["media"] = scene["media"][2:]
@@ -239,8 +244,7 @@ class LeftOut(unittest.TestCase):
         self.assertIn("the first 2 frames", self.effects(scene)["frames before all light"]["reason"])
         self.assertEqual(self.counters(scene)["frames aimed at"], 10)
         self.assertEqual(self.counters(scene, "--effects", "all")["frames aimed at"], 12)
-        few, every = (self.image(scene, "--spp", "1024", "--set", "renderer.spp_step=64", *options).mean(axis=(1, 2, 3))
-                      for options in ([], ["--effects", "all"]))
+        few, every = self.means(scene, 1024, 16, (1, 2, 3))
         self.assertEqual(float(few[:2].max()), 0)
         np.testing.assert_allclose(few[:7], every[:7], rtol=0.11)  # later ones are noisier
         np.testing.assert_allclose(few.sum(), every.sum(), rtol=0.055)
@@ -250,8 +254,7 @@ class LeftOut(unittest.TestCase):
         scene["primitives"][2]["transform"]["position"] = [0, -3, 0]
         self.assertFalse(self.effects(scene)["surfaces in time"]["on"])
         self.assertTrue(self.effects(scene, "--effects", "all")["surfaces in time"]["on"])
-        few, every = (self.image(scene, "--spp", "2048", "--set", "renderer.spp_step=64", *options).mean(axis=(0, 1, 2))
-                      for options in ([], ["--effects", "all"]))
+        few, every = self.means(scene, 2048, 32, (0, 1, 2))
         np.testing.assert_allclose(few, every, rtol=0.06)
         scene["media"][0]["speed_of_light"] = 2  # the floor's light needs 3 / 2, and the sensor closes at 1.7
         self.assertTrue(self.effects(scene)["surfaces in time"]["on"])

@@ -35,8 +35,8 @@ Method beamMethod(Method method, double share);
 std::vector<Method> methodsUnderTest();
 /// Those that prove the harness itself.
 std::vector<Method> plainMethods();
-/// Those that a test has the time for on a scene; benchmarks/agreement runs all. Guided light paths and beams take long
-/// through refraction and slow light.
+/// Those that a test has the time for on a scene, and with the samples that it needs; benchmarks/agreement runs all.
+/// Guided light paths and beams take long through refraction and slow light.
 std::vector<Method> methodsInTests(const std::string& scene);
 
 /// Samples spent on one method.

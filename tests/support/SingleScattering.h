@@ -39,7 +39,7 @@ inline std::vector<PulsesInFog> singleScatteringCases() {
         {"two pulses", Vec3d(0.05), Vec3d(0.4), 0.0, 1.0, {red, blue}, 4.85, 0.15},
     };
 }
-inline constexpr Effort ClosedFormEffort{32, 128, 48, 60000};
+inline constexpr Effort ClosedFormEffort{32, 64, 48, 60000};
 
 inline std::string toJson(const Vec3d& v) {
     std::ostringstream text;
