@@ -102,6 +102,23 @@ TEST(Outputs, MissingFoldersAreCreatedAndImpossibleOnesReported) {
     EXPECT_NE(errorOf({folder.path() / "x", {}, {}, {}, {}, {}, {}}), "") << "no extension";
 }
 
+/// OpenEXR holds a header for every frame.
+TEST(Outputs, AnExrOfTooManyFramesIsRefused) {
+    const test::TemporaryFolder folder;
+    const OutputFiles exr{folder.path() / "a.png", folder.path() / "a.exr", {}, {}, {}, {}, {}, {}, {}, false};
+    EXPECT_NO_THROW(checkOutputs(exr, {10000}));
+    try {
+        checkOutputs(exr, {10001});
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("a.exr: cannot hold 10001 frames; .exr takes 10000"),
+                  std::string::npos)
+            << error.what();
+    }
+    const OutputFiles npy{folder.path() / "a.png", folder.path() / "a.npy", {}, {}, {}, {}, {}, {}, {}, false};
+    EXPECT_NO_THROW(checkOutputs(npy, {1000000}));
+}
+
 TEST(Outputs, AFolderInTheWayIsReported) {
     const test::TemporaryFolder folder;
     fs::create_directories(folder.path() / "a.png");

@@ -53,6 +53,12 @@ TEST_F(Robustness, OutputsReplaceNothingButOutputs) {
     refuses({"-o", "a.png", "--set", R"(renderer.output_buffers=[{"type": "color", "ldr_output_file": "b/../a.png"}])"},
             BadInput, {"a.png", "two outputs"});
     EXPECT_FALSE(fs::exists(image));
+    // Names that the checks themselves would make folders of.
+    refuses({"--trace", image.string(), "-o", "a.png"}, BadInput, {"a.png", "two outputs"});
+    refuses({"--trace", out().string(), "--stats", (out() / "trace.json").string()}, BadInput,
+            {"trace.json", "two outputs"});
+    refuses({"--stats", (out() / "new/").string()}, BadInput, {"new/", "the name of a folder"});
+    for (const fs::path& folder : {image, out() / "new"}) EXPECT_FALSE(fs::exists(folder)) << folder;
 }
 
 TEST_F(Robustness, NamesAreCheckedBeforeRendering) {
@@ -120,14 +126,15 @@ TEST_F(Robustness, ScenesOfOneCommandHaveStatesOfTheirOwn) {
 TEST_F(Robustness, TemporaryFilesOfKilledRendersAreRemoved) {
     fs::create_directories(out());
     const fs::path old = out() / ".tungsten-0123456789abcdef.tmp", young = out() / ".tungsten-0123456789abcdee.tmp",
-                   other = out() / ".tungsten-notes.txt";
-    for (const fs::path& file : {old, young, other}) std::ofstream(file) << "x";
-    for (const fs::path& file : {old, other})
+                   other = out() / ".tungsten-notes.txt", named = out() / ".tungsten-important-notes.tmp";
+    for (const fs::path& file : {old, young, other, named}) std::ofstream(file) << "x";
+    for (const fs::path& file : {old, other, named})
         fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(1));
     ASSERT_EQ(render({}).exitCode, 0);
     EXPECT_FALSE(fs::exists(old));
     EXPECT_TRUE(fs::exists(young)) << "somebody may be about to write it";
     EXPECT_TRUE(fs::exists(other));
+    EXPECT_TRUE(fs::exists(named)) << "no render makes such a name";
 }
 
 /// Kills at many moments: what is there is whole, and resuming gives what an uninterrupted render gives.
@@ -162,6 +169,20 @@ TEST_F(Robustness, StatisticsAreJsonWhateverTheSceneIsCalled) {
     EXPECT_NE(contentOf(stats).find("a\xef\xbf\xbd\xc3\xa9.json"), std::string::npos) << contentOf(stats);
 }
 
+TEST_F(Robustness, MetadataAreUtf8WhateverTheSceneNames) {
+    std::string json = contentOf(scene.path());
+    const size_t name = json.find("\"fog\"");
+    ASSERT_NE(name, std::string::npos);
+    for (size_t at = name; at != std::string::npos; at = json.find("\"fog\"", at)) json.replace(at, 5, "\"f\xff\"");
+    const SceneFile odd(json);
+    ASSERT_EQ(
+        test::tungsten({"--quiet", "--spp", "2", "-d", out().string(), "-e", "a.npy", odd.path().string()}).exitCode,
+        0);
+    const std::string metadata = contentOf(out() / "a.npy.json");
+    EXPECT_NE(metadata.find("\"f\xef\xbf\xbd\""), std::string::npos) << metadata;
+    EXPECT_EQ(metadata.find('\xff'), std::string::npos);
+}
+
 TEST_F(Robustness, ScenesKeepToTheirFolder) {
     const test::FileFolder elsewhere;
     const fs::path mesh = elsewhere.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -186,8 +207,11 @@ TEST_F(Robustness, ScenesKeepToTheirFolder) {
 TEST_F(Robustness, ScenesWriteToTheOutputFolder) {
     const TemporaryFolder elsewhere;
     const std::string absolute = "renderer.output_file=" + (elsewhere.path() / "x.png").string();
-    refuses({"--set", absolute}, BadInput, {"x.png", "--allow-outside"});
-    refuses({"--set", "renderer.hdr_output_file=../x.pfm"}, BadInput, {"x.pfm", "--allow-outside"});
+    refuses({"--set", absolute}, BadInput, {"renderer.output_file", "x.png", "--allow-outside"});
+    refuses({"--set", "renderer.hdr_output_file=../x.pfm"}, BadInput,
+            {"renderer.hdr_output_file", "x.pfm", "--allow-outside"});
+    refuses({"--set", "renderer.output_file=" + std::string(300, 'n') + ".png"}, BadInput,
+            {"renderer.output_file", "a name of 304 bytes"});
     refuses({"--set", R"(renderer.output_buffers=[{"type": "color", "ldr_output_file": "../x.png"}])"}, BadInput,
             {"x.png", "--allow-outside"});
     EXPECT_TRUE(fs::is_empty(elsewhere.path()));

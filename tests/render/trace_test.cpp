@@ -81,6 +81,35 @@ TEST(Trace, AFolderThatCannotBeWrittenIsFoundBeforeRendering) {
     EXPECT_TRUE(session.integrator.passes.empty());
 }
 
+/// Traces are written beside the render, which is worth more.
+TEST(Trace, OneThatCannotBeWrittenCostsNoImage) {
+    SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 1, "hdr_output_file": "image.pfm")"));
+    session.options.trace = session.folder() / "trace";
+    session.outputs.statistics = session.folder() / "stats.json";
+    session.integrator.afterPass = [&](const PassInfo& pass) {
+        if (pass.index == 0) std::filesystem::create_directories(session.folder() / "trace/mean-000008.npy");
+    };
+    try {
+        session.run();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("mean-000008.npy"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(session.results.back().film.passes(), 8u);
+    for (const char* name : {"TungstenRender.png", "image.pfm", "stats.json", "trace/trace.json"})
+        EXPECT_TRUE(session.has(name)) << name;
+}
+
+TEST(Trace, AFolderThatVanishesIsMadeAgain) {
+    SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 1)"));
+    session.options.trace = session.folder() / "trace";
+    session.integrator.afterPass = [&](const PassInfo& pass) {
+        if (pass.index == 7) std::filesystem::remove_all(session.folder() / "trace");
+    };
+    session.run();
+    for (const char* name : {"trace/trace.json", "trace/mean-000008.npy"}) EXPECT_TRUE(session.has(name)) << name;
+}
+
 TEST(Trace, TakesOneSceneAtATime) {
     const auto result = test::tungsten({"--trace", "folder", "a.json", "b.json"});
     EXPECT_EQ(result.exitCode, 2);

@@ -49,6 +49,24 @@ TEST(HostileScene, NestingHasALimit) {
     }
 }
 
+/// Names of files would end there, and the parser does.
+TEST(HostileScene, ZeroBytesAreRefused) {
+    EXPECT_NE(problemsOf(std::string(Lit) + std::string("\n\0 garbage", 10)).find("line 8, column 1: a zero byte"),
+              std::string::npos);
+    EXPECT_NE(problemsOf(Lit, {R"(renderer.output_file="q.png\u0000.exe")"}).find("a zero byte in a string"),
+              std::string::npos);
+    EXPECT_NE(problemsOf(R"({"primitives": [{"na\u0000me": "x"}]})").find("a zero byte in a string"),
+              std::string::npos);
+}
+
+/// A terminal would act on them.
+TEST(HostileScene, ControlCharactersArePrintedAsNumbers) {
+    const std::string text = problemsOf(Lit, {R"(primitives.box.bsdf="\u001b]0;x\u0007\u009b2J\n\u00e9")"});
+    EXPECT_NE(text.find("'\\x1b]0;x\\x07\\x9b2J\\x0a\xc3\xa9'"), std::string::npos) << text;
+    const std::string length = problemsOf(Lit, {"primitives.box.bsdf=" + times("x", 1000000)});
+    EXPECT_LT(length.size(), 5000u);
+}
+
 TEST(HostileScene, ADeepOrBranchingBsdfIsRefused) {
     std::string bsdfs = R"({"bsdfs": [{"name": "m0", "type": "lambert"})";
     for (int i = 1; i <= 60; ++i) {

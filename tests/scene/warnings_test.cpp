@@ -23,6 +23,18 @@ std::string warningsOfLamp(const std::string& lamp, double height, bool everywhe
                       R"("transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}}})");
 }
 
+/// The format casts numbers.
+TEST(SceneWarnings, BrokenWholeNumbersAreWarnedAbout) {
+    const auto warnings = [](const std::string& bounces, const std::string& width) {
+        return warningsOf(R"({"primitives": [{"type": "point", "emission": 1}], "camera": {"resolution": [)" + width +
+                          R"(, 8]}, "integrator": {"max_bounces": )" + bounces + "}}");
+    };
+    EXPECT_EQ(warnings("8.0", "1e1"), "");
+    const std::string text = warnings("1.5", "8.7");
+    EXPECT_NE(text.find("integrator.max_bounces: a whole number is meant: 1.5 counts as 1"), std::string::npos) << text;
+    EXPECT_NE(text.find("camera.resolution: a whole number is meant: 8.7 counts as 8"), std::string::npos) << text;
+}
+
 TEST(SceneWarnings, LightsInAMediumTheyDoNotNameAreWarnedAbout) {
     for (const std::string lamp :
          {R"("type": "point")", R"("type": "sphere", "bsdf": {"type": "null"})", R"("type": "quad")"}) {

@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 
 namespace tungsten {
@@ -200,6 +202,8 @@ void understand(const OptionTexts& text, Options& options) {
     if (!text.memoryLimit.empty()) options.memoryLimit = sizeOption(text.memoryLimit);
     if (!text.checkpoint.empty()) options.checkpointSeconds = durationOption("--checkpoint", text.checkpoint);
     if (!text.timeout.empty()) options.timeoutSeconds = durationOption("--timeout", text.timeout);
+    if (std::isnan(options.targetError)) // no range keeps it out
+        throw UsageError("--target-error nan: expected a number from 1e-6 to 1e6");
     if (text.spp > 0) options.spp = text.spp;
     if (!text.passes.empty()) options.passes = passesOption(text.passes);
     if (!text.resolution.empty()) options.overrides.push_back(resolutionOverride(text.resolution));
@@ -249,6 +253,8 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
                                           {options.outputs.sheet.has_value(), "--sheet"},
                                           {options.outputs.video.has_value(), "--video"}})
             if (given) throw UsageError(std::string(name) + ": takes one scene at a time");
+    if (!options.scenes.empty() && options.scenes.front() == "merge" && !std::filesystem::exists("merge"))
+        throw UsageError("merge: comes first, as in tungsten merge STATES -e IMAGE");
     if (options.scenes.empty() && !options.list && !options.describe)
         throw UsageError("no scene file given (--help lists the options)");
     return options;

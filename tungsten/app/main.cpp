@@ -50,7 +50,7 @@ int tell(const std::exception_ptr& failure, const std::string& file, bool aloud 
     } catch (const std::exception& error) {
         message = file + ": " + error.what();
     }
-    if (aloud) std::cerr << "error: " << message << '\n';
+    if (aloud) std::cerr << "error: " << printable(message) << '\n';
     return code;
 }
 

@@ -1,6 +1,7 @@
 #include "tungsten/core/Errors.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <numeric>
 
 namespace tungsten {
@@ -33,10 +34,30 @@ size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
+std::string printable(std::string_view text) {
+    constexpr size_t LongestShown = 4096;
+    std::string shown;
+    for (size_t i = 0; i < std::min(text.size(), LongestShown); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : ' ');
+        const bool wide = byte == 0xC2 && next >= 0x80 && next < 0xA0; // U+0080 to U+009F
+        if (byte >= 0x20 && byte != 0x7F && !wide) {
+            shown += text[i];
+            continue;
+        }
+        char escaped[8];
+        std::snprintf(escaped, sizeof escaped, "\\x%02x", wide ? next : byte);
+        shown += escaped;
+        if (wide) ++i;
+    }
+    if (text.size() > LongestShown) shown += " ... (" + std::to_string(text.size()) + " bytes)";
+    return shown;
+}
+
 std::string Problem::text() const {
     std::string out = file;
     if (!path.empty()) out += (out.empty() ? "" : ": ") + path;
-    return out.empty() ? message : out + ": " + message;
+    return printable(out.empty() ? message : out + ": " + message);
 }
 
 InputError::InputError(std::vector<Problem> problems)

@@ -14,8 +14,12 @@ struct Problem {
     std::string path; ///< JSON path such as `primitives[3].transform`; empty for other files
     std::string message;
 
+    /// To be printed.
     [[nodiscard]] std::string text() const;
 };
+
+/// On one line of a terminal, which acts on control characters: those as \x1b, and cut where it is very long.
+std::string printable(std::string_view text);
 
 /// Bad input: exit code 1. Carries every problem found, not only the first.
 class InputError : public std::runtime_error {

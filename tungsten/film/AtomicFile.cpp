@@ -27,6 +27,15 @@ InputError cannotWrite(const fs::path& file, const std::string& why) {
     return {file.string(), "cannot be written: " + why};
 }
 
+constexpr size_t Digits = 16; ///< of the random part of a name
+
+/// Of what randomName() makes.
+bool isTemporaryName(const std::string& name) {
+    const size_t begin = std::string(Prefix).size();
+    return name.size() == begin + Digits + std::string(Suffix).size() && name.starts_with(Prefix) &&
+           name.ends_with(Suffix) && name.find_first_not_of("0123456789abcdef", begin) == begin + Digits;
+}
+
 std::string randomName() {
     std::random_device random;
     char name[48];
@@ -115,7 +124,7 @@ void removeAbandonedFiles(const fs::path& folder) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
         const std::string name = entry.path().filename().string();
-        if (!name.starts_with(Prefix) || !name.ends_with(Suffix)) continue;
+        if (!isTemporaryName(name)) continue;
         const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
         if (descriptor < 0) continue;
         // A writer locks its file right after making it: a young one may not be locked yet.

@@ -5,8 +5,10 @@
 #include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/Video.h"
 #include "tungsten/render/PlannedImages.h"
+#include "tungsten/render/Trace.h"
 
 #include <algorithm>
+#include <climits>
 #include <set>
 
 #include <unistd.h>
@@ -53,6 +55,7 @@ std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan&
     if (!outputs.statistics.empty()) files.push_back(outputs.statistics);
     if (!outputs.page.empty()) files.push_back(outputs.page);
     if (plan.state) files.push_back(outputs.state);
+    if (!plan.trace.empty()) files.push_back(Trace::listIn(plan.trace));
     return files;
 }
 
@@ -71,6 +74,47 @@ void checkName(const fs::path& file) {
                                             "; choose another with -o or -e");
 }
 
+/// Of a scene's name for an output, which stands at a place in it.
+void requireInside(const fs::path& file, const fs::path& top, Problem place) {
+    for (const fs::path& step : file)
+        if (step.string().size() > NAME_MAX) {
+            place.message = "a name of " + std::to_string(step.string().size()) + " bytes, folders take " +
+                            std::to_string(NAME_MAX);
+            throw InputError({place});
+        }
+    if (isInside(file, top)) return;
+    const std::string folder = top.empty() ? "." : top.string();
+    place.message = "'" + file.string() + "' lies outside the output folder '" + folder +
+                    "'; -d chooses another, and if you trust the scene, --allow-outside lets it write anywhere";
+    throw InputError({place});
+}
+
+/// Before any folder is made.
+void requireOwnNames(const std::vector<fs::path>& files, const OutputPlan& plan) {
+    std::set<fs::path> inputs, taken;
+    for (const fs::path& input : plan.inputs) inputs.insert(identityOf(input));
+    if (!plan.trace.empty()) taken.insert(identityOf(plan.trace));
+    for (const fs::path& file : files) {
+        if (!file.has_filename())
+            throw InputError(file.string(), "cannot be written: this is the name of a folder, not of a file");
+        if (inputs.count(identityOf(file)) > 0)
+            throw InputError(file.string(), "would be replaced by an output, but the scene reads it; choose another "
+                                            "name with -d, -o, -e or --stats");
+        if (!taken.insert(identityOf(file)).second)
+            throw InputError(file.string(), "is the name of two outputs; choose another for one of them with -o, -e, "
+                                            "--stats or --trace");
+    }
+}
+
+/// OpenEXR keeps a header of 28 KiB for every part, in memory and while it writes.
+void requireFewFrames(const OutputFiles& outputs, int frames) {
+    constexpr int MostParts = 10000;
+    if (extensionOf(outputs.hdr) == ".exr" && frames > MostParts)
+        throw InputError(outputs.hdr.string(), "cannot hold " + std::to_string(frames) + " frames; .exr takes " +
+                                                   std::to_string(MostParts) +
+                                                   ", .npz, .h5 and .npy any number of them");
+}
+
 } // namespace
 
 fs::path OutputFiles::partialState(uint32_t first, uint32_t end) const {
@@ -87,31 +131,29 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
         return overrides.directory ? *overrides.directory / file : file;
     };
     const fs::path top = overrides.directory ? *overrides.directory : sceneFile.parent_path();
-    const auto rebase = [&](const std::string& name) {
+    const auto rebase = [&](const std::string& name, const std::string& field) {
         const fs::path file = name.empty() ? fs::path() : (base / name).lexically_normal();
-        if (!overrides.allowOutside && !name.empty() && !isInside(file, top))
-            throw InputError(file.string(), "lies outside the output folder '" + top.string() +
-                                                "'; -d chooses another, and if you trust the scene, --allow-outside "
-                                                "lets it write anywhere");
+        if (!overrides.allowOutside && !name.empty()) requireInside(file, top, {sceneFile, "renderer." + field, ""});
         return file;
     };
     OutputFiles outputs;
-    outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile);
-    outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile);
+    outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile, "output_file");
+    outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile, "hdr_output_file");
     if (overrides.statistics) outputs.statistics = *overrides.statistics;
     if (overrides.page) outputs.page = *overrides.page;
     if (overrides.sheet) outputs.sheet = commandLine(*overrides.sheet);
     if (overrides.video) outputs.video = commandLine(*overrides.video);
     outputs.frames = !overrides.noFrames;
     outputs.exposure = overrides.exposure ? overrides.exposure : renderer.exposure;
-    if (outputs.ldr.empty()) outputs.ldr = rebase("TungstenRender.png");
+    if (outputs.ldr.empty()) outputs.ldr = rebase("TungstenRender.png", "output_file");
     // Scenes of one command have different images, and so different states.
-    outputs.state = renderer.resumeFile ? rebase(*renderer.resumeFile)
+    outputs.state = renderer.resumeFile ? rebase(*renderer.resumeFile, "resume_render_file")
                                         : (base / (outputs.ldr.stem().string() + "State.dat")).lexically_normal();
     if (!renderer.overwriteOutputFiles && !overrides.ldr) outputs.ldr = freeName(outputs.ldr);
     if (!renderer.overwriteOutputFiles && !overrides.hdr && !outputs.hdr.empty()) outputs.hdr = freeName(outputs.hdr);
     const auto resolved = [&](const OutputBuffer& buffer) {
-        return OutputBuffer{rebase(buffer.ldrFile).string(), rebase(buffer.hdrFile).string()};
+        return OutputBuffer{rebase(buffer.ldrFile, "output_buffers").string(),
+                            rebase(buffer.hdrFile, "output_buffers").string()};
     };
     for (const OutputBuffer& buffer : renderer.colors) outputs.colors.push_back(resolved(buffer));
     for (const OutputBuffer& buffer : renderer.transients) outputs.series.push_back(resolved(buffer));
@@ -137,6 +179,7 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     checkExtension(outputs.page, {".html", ".htm"});
     checkExtension(outputs.sheet, {".png"});
     checkExtension(outputs.video, {".mp4", ".gif"});
+    requireFewFrames(outputs, plan.frames);
     if (!outputs.video.empty()) requireFfmpeg(outputs.video);
     for (const fs::path& film : {outputs.sheet, outputs.video})
         if (!film.empty() && plan.frames <= 1)
@@ -150,19 +193,14 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     for (const OutputBuffer& buffer : outputs.series) check(buffer, {".exr", ".pfm"});
     if (plan.state && outputs.state.empty())
         throw InputError("", "the resume state has no name: renderer.resume_render_file is empty");
-    std::set<fs::path> folders, inputs, taken;
-    for (const fs::path& input : plan.inputs) inputs.insert(identityOf(input));
-    for (const fs::path& file : plannedFiles(outputs, plan)) {
+    const std::vector<fs::path> files = plannedFiles(outputs, plan);
+    requireOwnNames(files, plan);
+    std::set<fs::path> folders;
+    for (const fs::path& file : files) {
         if (folders.insert(folderOf(file)).second)
             checkWritable(file);
         else
             checkName(file);
-        if (inputs.count(identityOf(file)) > 0)
-            throw InputError(file.string(), "would be replaced by an output, but the scene reads it; choose another "
-                                            "name with -d, -o, -e or --stats");
-        if (!taken.insert(identityOf(file)).second)
-            throw InputError(file.string(), "is the name of two outputs; choose another for one of them with -o, -e "
-                                            "or --stats");
     }
     for (const fs::path& folder : folders) removeAbandonedFiles(folder);
 }

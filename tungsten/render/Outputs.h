@@ -46,13 +46,14 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const std::filesyst
 /// What a render is going to write.
 struct OutputPlan {
     int frames = 1;
-    bool state = false, checkpoints = false;   ///< besides the images
-    std::vector<std::filesystem::path> inputs; ///< files that must not be replaced
+    bool state = false, checkpoints = false;     ///< besides the images
+    std::vector<std::filesystem::path> inputs{}; ///< files that must not be replaced
+    std::filesystem::path trace{};               ///< folder; empty: none
 };
 
 /// Creates missing folders, removes temporary files that killed renders left there, and throws InputError if an output
-/// could not be written: unknown extension, no permission, a name that is too long, taken by something that is no file,
-/// by an input or by another output.
+/// could not be written: unknown extension, more frames than it can hold, no permission, a name that is too long, taken
+/// by something that is no file, by an input or by another output.
 void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan);
 
 /// The folder of an output, made again if it has gone. Throws InputError.

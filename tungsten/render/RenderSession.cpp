@@ -56,6 +56,10 @@ class Session {
         shared_.gatherStatistics();
         if (result_.film.passes() > 0 && shared_.speaks()) files_.finish();
     }
+    /// Once everything else is written.
+    void tellOfTrace() const {
+        if (trace_.failure()) std::rethrow_exception(trace_.failure());
+    }
 
   private:
     /// Checks, films, and what earlier runs have left.
@@ -65,7 +69,7 @@ class Session {
             checkWritable(partialState());
         else if (shared_.speaks())
             checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
-                                    options_.checkpointSeconds > 0.0, loaded_.inputs});
+                                    options_.checkpointSeconds > 0.0, loaded_.inputs, options_.trace});
         const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(plan);
         // Film, that of its bias, and one more copy of its images while they are written.
         requireMemory(loaded_, bias ? 3.0 : 2.0, integrator_.memoryBytes(), options_.memoryLimit);
@@ -280,7 +284,8 @@ class Session {
 
 void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
                 const SessionOptions& options, SessionResult& result) {
-    Session(loaded, integrator, outputs, options, result).run(plan);
+    Session session(loaded, integrator, outputs, options, result);
+    session.run(plan);
     if (result.film.passes() == 0 || (options.team && options.team->rank() > 0)) return;
     if (!outputs.statistics.empty()) {
         makeFolderOf(outputs.statistics);
@@ -292,6 +297,7 @@ void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectP
         writeFilmPage(outputs.page, loaded, options, result);
         result.written.push_back(outputs.page);
     }
+    session.tellOfTrace();
 }
 
 } // namespace tungsten

@@ -1,5 +1,6 @@
 #include "tungsten/render/Trace.h"
 
+#include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/render/Outputs.h"
 #include "tungsten/render/Statistics.h"
@@ -18,8 +19,10 @@ double wallNow() {
 } // namespace
 
 Trace::Trace(std::filesystem::path folder, const Scene& scene, uint64_t seed)
-    : folder_(std::move(folder)), scene_(scene), seed_(seed) {
-    if (!folder_.empty()) checkWritable(folder_ / "trace.json");
+    : folder_(std::move(folder)), scene_(scene), seed_(seed) {}
+
+std::filesystem::path Trace::listIn(const std::filesystem::path& folder) {
+    return folder / "trace.json";
 }
 
 void Trace::start() {
@@ -28,7 +31,7 @@ void Trace::start() {
 }
 
 bool Trace::due() const {
-    return !folder_.empty() && wallNow() - wallStart_ >= next_;
+    return !folder_.empty() && !failure_ && wallNow() - wallStart_ >= next_;
 }
 
 void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool whole) {
@@ -37,11 +40,20 @@ void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool wh
     wall_ = wallNow();
     cpu_ = processCpuSeconds();
     written_ = false;
-    if (writes) write(film, bias, samples);
+    if (writes) attempt(film, bias, samples);
 }
 
 void Trace::end(const Film& film, const Film& bias, uint64_t samples) {
-    if (!written_) write(film, bias, samples);
+    if (!written_ && !failure_) attempt(film, bias, samples);
+}
+
+/// The render is worth more than its trace.
+void Trace::attempt(const Film& film, const Film& bias, uint64_t samples) {
+    try {
+        write(film, bias, samples);
+    } catch (const InputError&) {
+        failure_ = std::current_exception();
+    }
 }
 
 void Trace::write(const Film& film, const Film& bias, uint64_t samples) {
@@ -56,6 +68,7 @@ void Trace::write(const Film& film, const Film& bias, uint64_t samples) {
         errors.push_back(inOutputUnits(film.standardError(frame), scene_, 1));
         if (frame < bias.frames()) biases.push_back(inOutputUnits(bias.mean(frame), scene_, 1));
     }
+    makeFolderOf(listIn(folder_));
     writeNpy(folder_ / entry.mean, means);
     writeNpy(folder_ / entry.standardError, errors);
     if (!biases.empty()) {
@@ -93,7 +106,7 @@ void Trace::writeList() const {
         json.endObject();
     }
     json.endArray();
-    writeTextFile(folder_ / "trace.json", json.finish());
+    writeTextFile(listIn(folder_), json.finish());
 }
 
 } // namespace tungsten

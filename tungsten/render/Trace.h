@@ -26,22 +26,27 @@ struct TraceEntry {
 /// appear whole or not at all.
 class Trace {
   public:
-    /// Writes to nothing without a folder. Throws InputError if the folder cannot be made or written to.
+    /// Writes to nothing without a folder.
     Trace(std::filesystem::path folder, const Scene& scene, uint64_t seed);
 
     /// Before the first pass.
     void start();
     /// Whether record() has something to write.
     [[nodiscard]] bool due() const;
-    /// After a pass. Throws InputError if a file cannot be written.
+    /// After a pass. Of files that cannot be written failure() tells; the trace ends before them.
     /// `bias`: of the film, without frames where none is estimated.
     /// `whole`: the film is; else nothing is written yet.
     void record(const Film& film, const Film& bias, uint64_t samples, bool whole = true);
     /// After the last pass, or one that was broken off: the film as it was at the last `record`, if that wrote nothing.
     void end(const Film& film, const Film& bias, uint64_t samples);
     [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }
+    /// Null while all could be written.
+    [[nodiscard]] const std::exception_ptr& failure() const { return failure_; }
+    /// What every trace has; of a folder's other files the names are those of passes.
+    [[nodiscard]] static std::filesystem::path listIn(const std::filesystem::path& folder);
 
   private:
+    void attempt(const Film& film, const Film& bias, uint64_t samples);
     void write(const Film& film, const Film& bias, uint64_t samples);
     void writeList() const;
 
@@ -53,6 +58,7 @@ class Trace {
     double next_ = 0.0;                       ///< seconds of passes
     bool written_ = true;                     ///< the last pass's film
     std::vector<TraceEntry> entries_;
+    std::exception_ptr failure_;
 };
 
 } // namespace tungsten

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 #include <locale>
 #include <sstream>
 
@@ -36,6 +37,7 @@ class ShallowHandler {
     explicit ShallowHandler(rapidjson::Document& document) : document_(document) {}
     [[nodiscard]] bool tooDeep() const { return depth_ > DeepestJson; }
     [[nodiscard]] bool tooLarge() const { return tooLarge_; }
+    [[nodiscard]] bool endsEarly() const { return endsEarly_; }
 
     bool Null() { return document_.Null(); }
     bool Bool(bool value) { return document_.Bool(value); }
@@ -58,25 +60,36 @@ class ShallowHandler {
         tooLarge_ = !(outOfRange >> value);
         return !tooLarge_ && document_.Double(value);
     }
-    bool String(const char* text, unsigned length, bool copy) { return document_.String(text, length, copy); }
-    bool Key(const char* text, unsigned length, bool copy) { return document_.Key(text, length, copy); }
+    bool String(const char* text, unsigned length, bool copy) {
+        return isText(text, length) && document_.String(text, length, copy);
+    }
+    bool Key(const char* text, unsigned length, bool copy) {
+        return isText(text, length) && document_.Key(text, length, copy);
+    }
     bool StartObject() { return ++depth_ <= DeepestJson && document_.StartObject(); }
     bool EndObject(unsigned members) { return --depth_ >= 0 && document_.EndObject(members); }
     bool StartArray() { return ++depth_ <= DeepestJson && document_.StartArray(); }
     bool EndArray(unsigned elements) { return --depth_ >= 0 && document_.EndArray(elements); }
 
   private:
+    /// Names of files end where a zero byte is.
+    bool isText(const char* text, unsigned length) {
+        endsEarly_ = std::memchr(text, 0, length) != nullptr;
+        return !endsEarly_;
+    }
+
     rapidjson::Document& document_;
     int depth_ = 0;
-    bool tooLarge_ = false;
+    bool tooLarge_ = false, endsEarly_ = false;
 };
 
 struct ParseOutcome {
     rapidjson::ParseResult result;
-    bool tooDeep = false, tooLarge = false;
+    bool tooDeep = false, tooLarge = false, endsEarly = false;
 
     [[nodiscard]] std::string message() const {
         if (tooDeep) return "nested more than " + std::to_string(DeepestJson) + " levels deep";
+        if (endsEarly) return "a zero byte in a string";
         return rapidjson::GetParseError_En(tooLarge ? rapidjson::kParseErrorNumberTooBig : result.Code());
     }
 };
@@ -91,6 +104,7 @@ ParseOutcome parseInto(rapidjson::Document& document, const std::string& text) {
         outcome.result = reader.Parse<Grammar>(stream, handler);
         outcome.tooDeep = handler.tooDeep();
         outcome.tooLarge = handler.tooLarge();
+        outcome.endsEarly = handler.endsEarly();
         return !outcome.result.IsError();
     };
     document.Populate(parse);
@@ -159,6 +173,7 @@ rapidjson::Value parseValue(const std::string& text, rapidjson::Document::Alloca
     const ParseOutcome outcome = parseInto(parsed, text);
     rapidjson::Value value;
     if (outcome.tooDeep) throw UsageError("--set: the value is " + outcome.message());
+    if (outcome.endsEarly) throw UsageError("--set: the value has " + outcome.message());
     if (outcome.result.IsError())
         value.SetString(text.c_str(), rapidjson::SizeType(text.size()), allocator);
     else
@@ -170,6 +185,8 @@ rapidjson::Value parseValue(const std::string& text, rapidjson::Document::Alloca
 
 std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const std::string& file) {
     auto document = std::make_shared<rapidjson::Document>();
+    if (const size_t zero = text.find('\0'); zero != std::string::npos) // the parser would stop there
+        throw InputError(file, "not valid JSON at " + lineAndColumn(text, zero) + ": a zero byte");
     const ParseOutcome outcome = parseInto(*document, text);
     if (outcome.result.IsError())
         throw InputError(file, "not valid JSON at " + lineAndColumn(text, outcome.result.Offset()) + ": " +

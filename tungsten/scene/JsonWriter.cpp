@@ -31,7 +31,7 @@ size_t sequenceLength(const std::string& text, size_t at) {
     return wrong ? 0 : length;
 }
 
-/// Names of files may be any bytes; JSON is UTF-8. What is not becomes the replacement character.
+/// Names of files, and a scene's own, may be any bytes; JSON is UTF-8. What is not becomes the replacement character.
 std::string validUtf8(const std::string& text) {
     std::string valid;
     for (size_t at = 0; at < text.size();) {
@@ -90,7 +90,8 @@ void JsonWriter::field(const std::string& name, const std::vector<std::string>& 
 
 void JsonWriter::jsonField(const std::string& name, const std::string& json) {
     implementation_->writer.Key(name.c_str());
-    implementation_->writer.RawValue(json.data(), json.size(), rapidjson::kObjectType);
+    const std::string valid = validUtf8(json);
+    implementation_->writer.RawValue(valid.data(), valid.size(), rapidjson::kObjectType);
 }
 
 void JsonWriter::field(const std::string& name, uint64_t value) {

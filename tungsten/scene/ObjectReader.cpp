@@ -17,11 +17,22 @@ std::string numberText(double number) {
     return "the number " + (number == std::floor(number) ? text.substr(0, text.find('.')) : text);
 }
 
+/// Of a short array that has nothing else.
+std::string numbersOf(const rapidjson::Value& array) {
+    constexpr rapidjson::SizeType MostShown = 4;
+    std::string text;
+    for (const auto& entry : array.GetArray()) {
+        if (!entry.IsNumber() || array.Size() > MostShown) return "";
+        text += (text.empty() ? ": " : ", ") + brief(entry.GetDouble());
+    }
+    return text;
+}
+
 std::string found(const rapidjson::Value& value) {
     if (value.IsNull()) return "null";
     if (value.IsBool()) return value.GetBool() ? "true" : "false";
     if (value.IsString()) return "the string \"" + std::string(value.GetString()).substr(0, 60) + "\"";
-    if (value.IsArray()) return "an array of " + std::to_string(value.Size());
+    if (value.IsArray()) return "an array of " + std::to_string(value.Size()) + numbersOf(value);
     if (value.IsObject()) return "an object";
     return numberText(value.GetDouble());
 }
@@ -116,7 +127,15 @@ int64_t ObjectReader::integer(const std::string& name, int64_t fallback, const M
     if (describes()) declare(name, describe(range, true), std::to_string(fallback), meaning);
     constexpr double Largest = 9e15; // exact in a double
     const Range bounded{std::max(range.low, -Largest), std::min(range.high, Largest)};
-    return int64_t(readNumber(name, double(fallback), bounded));
+    const double value = readNumber(name, double(fallback), bounded);
+    warnIfBroken(name, value);
+    return int64_t(value);
+}
+
+/// The format casts numbers: 1e4 and 512.0 are whole ones.
+void ObjectReader::warnIfBroken(const std::string& name, double value) const {
+    if (value != std::trunc(value))
+        warn(name, "a whole number is meant: " + brief(value) + " counts as " + brief(std::trunc(value)));
 }
 
 bool ObjectReader::flag(const std::string& name, bool fallback, const Meaning& meaning) const {
@@ -203,7 +222,10 @@ Vec2i ObjectReader::pair(const std::string& name, const Vec2i& fallback, const M
     const std::vector<double> values = oneOrSeveral(valueOf(node), 2);
     const bool valid = values.size() == 2 && inside(range, values[0]) && inside(range, values[1]) && values[0] < 2e9 &&
                        values[1] < 2e9;
-    if (valid) return {int(values[0]), int(values[1])};
+    if (valid) {
+        for (const double value : values) warnIfBroken(name, value);
+        return {int(values[0]), int(values[1])};
+    }
     problem(name, "expected one number or an array of 2, each " + describe(range) + "; found " + found(valueOf(node)));
     return fallback;
 }

@@ -109,6 +109,7 @@ class ObjectReader {
     [[nodiscard]] const Node* find(const std::string& name) const;
     /// Fields nobody asked for, each once; warns about those given more than once.
     [[nodiscard]] std::vector<std::string> unknownNames() const;
+    void warnIfBroken(const std::string& name, double value) const;
     [[nodiscard]] double readNumber(const std::string& name, double fallback, Range range) const;
     [[nodiscard]] std::vector<double> readNumbers(const std::string& name, Range range) const;
     [[nodiscard]] Vec3f readVec3(const std::string& name, const Vec3f& fallback, Range range) const;
