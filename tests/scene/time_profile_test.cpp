@@ -49,7 +49,8 @@ TEST(TimeProfiles, BadResponsesAreErrors) {
          "integrator.temporal_response.times: expected as many"},
         {R"("temporal_response": {"times": [0, 1], "values": [1]})", "at least two"},
         {R"("temporal_response": {"times": [0, 1, 1], "values": [1, 2, 1]})", "increasing times"},
-        {R"("temporal_response": {"times": [0, 1], "values": [1, -1]})", "no negative value"},
+        {R"("temporal_response": {"times": [0, 1], "values": [1, -1]})",
+         "temporal_response.values: expected no negative value, found -1"},
         {R"("temporal_response": {"times": [0, 1], "values": [0, 0]})", "zero at all times"},
         {R"("temporal_response": {"type": "box", "start": 2, "end": 1})", "temporal_response.end: expected increasing"},
         {R"("temporal_response": {"type": "gaussian", "sigma": 0})", "temporal_response.sigma"},
@@ -102,7 +103,7 @@ TEST(TimeProfiles, PulsesAreOfEmitters) {
     const std::vector<std::pair<std::string, std::string>> bad{
         {R"({"times": [0, NaN], "values": [1, 1]})", "primitives[0].pulse.times[1]"},
         {R"({"times": [0, 1], "values": [1, NaN]})", "primitives[0].pulse.values[1]"},
-        {R"({"times": [0, 1], "values": [1, -1]})", "primitives[0].pulse.times: expected no negative value"},
+        {R"({"times": [0, 1], "values": [1, -1]})", "primitives[0].pulse.values: expected no negative value"},
         {R"({"times": [0, 1e300], "values": [1, 1]})", "primitives[0].pulse.times[1]"},
         {R"({"type": "box", "start": 1, "end": 1})", "primitives[0].pulse.end: expected increasing times"},
         {R"({"type": "gaussian", "sigma": 0})", "primitives[0].pulse.sigma"},

@@ -56,10 +56,7 @@ class Session {
         shared_.gatherStatistics();
         if (result_.film.passes() > 0 && shared_.speaks()) files_.finish();
     }
-    /// Once everything else is written.
-    void tellOfTrace() const {
-        if (trace_.failure()) std::rethrow_exception(trace_.failure());
-    }
+    [[nodiscard]] const Trace& trace() const { return trace_; }
 
   private:
     /// Checks, films, and what earlier runs have left.
@@ -297,7 +294,7 @@ void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectP
         writeFilmPage(outputs.page, loaded, options, result);
         result.written.push_back(outputs.page);
     }
-    session.tellOfTrace();
+    session.trace().requireWritten(); // now that everything else is
 }
 
 } // namespace tungsten

@@ -56,6 +56,10 @@ void Trace::attempt(const Film& film, const Film& bias, uint64_t samples) {
     }
 }
 
+void Trace::requireWritten() const {
+    if (failure_) std::rethrow_exception(failure_);
+}
+
 void Trace::write(const Film& film, const Film& bias, uint64_t samples) {
     const double wallSeconds = wall_ - wallStart_, cpuSeconds = cpu_ - cpuStart_;
     const std::string number = std::to_string(film.passes());

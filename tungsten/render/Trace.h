@@ -33,15 +33,15 @@ class Trace {
     void start();
     /// Whether record() has something to write.
     [[nodiscard]] bool due() const;
-    /// After a pass. Of files that cannot be written failure() tells; the trace ends before them.
+    /// After a pass. Where a file cannot be written the trace ends, and requireWritten() tells.
     /// `bias`: of the film, without frames where none is estimated.
     /// `whole`: the film is; else nothing is written yet.
     void record(const Film& film, const Film& bias, uint64_t samples, bool whole = true);
     /// After the last pass, or one that was broken off: the film as it was at the last `record`, if that wrote nothing.
     void end(const Film& film, const Film& bias, uint64_t samples);
     [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }
-    /// Null while all could be written.
-    [[nodiscard]] const std::exception_ptr& failure() const { return failure_; }
+    /// Throws the InputError of the file that could not be.
+    void requireWritten() const;
     /// What every trace has; of a folder's other files the names are those of passes.
     [[nodiscard]] static std::filesystem::path listIn(const std::filesystem::path& folder);
 

@@ -20,15 +20,22 @@ TimeProfile pointsOf(double (*shape)(double), double from, double to, int points
     return profile;
 }
 
-/// Why (times, values) are no density; empty if they are.
-std::string profileProblem(const TimeProfile& profile) {
+/// Which field keeps (times, values) from being a density, and why; the message is empty if they are one.
+struct ProfileProblem {
+    std::string field, message;
+};
+ProfileProblem problemOf(const TimeProfile& profile) {
     const std::vector<double>&times = profile.times, &values = profile.values;
-    if (times.size() < 2 || times.size() != values.size()) return "expected as many values as times, at least two";
-    if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
-        return "expected increasing times";
-    if (std::any_of(values.begin(), values.end(), [](double v) { return v < 0.0; }))
-        return "expected no negative value";
-    if (std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; })) return "zero at all times";
+    if (times.size() < 2 || times.size() != values.size())
+        return {"times", "expected as many values as times, at least two; found " + std::to_string(times.size()) +
+                             " times and " + std::to_string(values.size()) + " values"};
+    const auto earlier = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>());
+    if (earlier != times.end())
+        return {"times", "expected increasing times, found " + brief(earlier[0]) + " before " + brief(earlier[1])};
+    const auto negative = std::find_if(values.begin(), values.end(), [](double v) { return v < 0.0; });
+    if (negative != values.end()) return {"values", "expected no negative value, found " + brief(*negative)};
+    if (std::all_of(values.begin(), values.end(), [](double v) { return v == 0.0; }))
+        return {"values", "zero at all times"};
     return {};
 }
 
@@ -104,8 +111,8 @@ TimeProfile readTimeProfile(const ObjectReader& reader, const std::string& field
                                            {"none", "shape of the density over time, whose integral counts as 1"});
     TimeProfile profile = readShape(*block, type);
     const bool read = problems() == before; // else its numbers are not those of the scene
-    const std::string problem = read ? profileProblem(profile) : "";
-    if (!problem.empty()) block->problem(type == "box" ? "end" : "times", problem);
+    const auto [where, problem] = read ? problemOf(profile) : ProfileProblem{};
+    if (!problem.empty()) block->problem(type == "box" ? "end" : where, problem);
     block->refuseUnknown(hints());
     return read && problem.empty() ? profile : TimeProfile{};
 }
