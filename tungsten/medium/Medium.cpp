@@ -2,17 +2,13 @@
 
 namespace tungsten {
 
-bool Homogeneous::isGrey() const {
-    return sigmaA.x == sigmaA.y && sigmaA.y == sigmaA.z && sigmaS.x == sigmaS.y && sigmaS.y == sigmaS.z;
-}
-
 Rgb Homogeneous::transmittance(float distance) const {
     const auto channel = [distance](float sigma) { return sigma > 0.0f ? std::exp(-sigma * distance) : 1.0f; };
     const Rgb sigma = sigmaT();
     // Nothing comes from infinitely far through a medium, not even in a channel that it leaves alone
     // (docs/scene-format.md, section 9).
     if (std::isinf(distance)) return Rgb(isVacuum() ? 1.0f : 0.0f);
-    if (sigma.x == sigma.y && sigma.y == sigma.z) return Rgb(channel(sigma.x));
+    if (grey_) return Rgb(channel(sigma.x));
     return {channel(sigma.x), channel(sigma.y), channel(sigma.z)};
 }
 
@@ -25,17 +21,18 @@ float probabilityFlightExits(const Homogeneous& medium, float distance) {
 FlightSample sampleFlight(const Homogeneous& medium, float tMax, Sampler& sampler) {
     if (!medium.scatters()) return {tMax, true, medium.transmittance(tMax), 1.0f};
     const Rgb sigma = medium.sigmaT();
-    const int channel = std::min(int(sampler.next1D() * 3.0f), 2);
+    const float uChannel = sampler.next1D();
+    const float chosen = medium.isGrey() ? sigma.x : sigma[std::min(int(uChannel * 3.0f), 2)];
     // u < 1 always, so the logarithm is finite.
     const float u = sampler.next1D();
-    const float t = sigma[channel] > 0.0f ? -std::log1p(-u) / sigma[channel] : Infinity;
+    const float t = chosen > 0.0f ? -std::log1p(-u) / chosen : Infinity;
     if (t >= tMax) {
         const float probability = probabilityFlightExits(medium, tMax);
         return {tMax, true, medium.transmittance(tMax) / probability, probability};
     }
     const Rgb transmittance = medium.transmittance(t);
     const float pdf = meanComponent(sigma * transmittance);
-    return {t, false, medium.sigmaS * transmittance / pdf, pdf};
+    return {t, false, medium.sigmaS() * transmittance / pdf, pdf};
 }
 
 float pdfFlight(const Homogeneous& medium, float distance) {

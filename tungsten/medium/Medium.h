@@ -10,15 +10,26 @@
 namespace tungsten {
 
 /// The same everywhere. Coefficients per scene unit of length (density already multiplied in), per RGB channel.
-struct Homogeneous {
-    Rgb sigmaA{0.0f}, sigmaS{0.0f};
+class Homogeneous {
+  public:
+    Homogeneous() : Homogeneous(Rgb(0.0f), Rgb(0.0f)) {}
+    Homogeneous(const Rgb& sigmaA, const Rgb& sigmaS)
+        : sigmaA_(sigmaA), sigmaS_(sigmaS), grey_(isEven(sigmaA) && isEven(sigmaS)) {}
 
-    [[nodiscard]] Rgb sigmaT() const { return sigmaA + sigmaS; }
-    [[nodiscard]] bool scatters() const { return !isBlack(sigmaS); }
+    [[nodiscard]] const Rgb& sigmaA() const { return sigmaA_; }
+    [[nodiscard]] const Rgb& sigmaS() const { return sigmaS_; }
+    [[nodiscard]] Rgb sigmaT() const { return sigmaA_ + sigmaS_; }
+    [[nodiscard]] bool scatters() const { return !isBlack(sigmaS_); }
     [[nodiscard]] bool isVacuum() const { return isBlack(sigmaT()); }
-    [[nodiscard]] bool isGrey() const;
+    [[nodiscard]] bool isGrey() const { return grey_; }
     /// e^{-sigmaT d}; zero at infinity unless the medium is empty.
     [[nodiscard]] Rgb transmittance(float distance) const;
+
+  private:
+    [[nodiscard]] static bool isEven(const Rgb& sigma) { return sigma.x == sigma.y && sigma.y == sigma.z; }
+
+    Rgb sigmaA_, sigmaS_;
+    bool grey_; ///< asked in every flight
 };
 
 using MediumModel = std::variant<Homogeneous>;
@@ -55,8 +66,8 @@ struct Medium {
 
     /// Where isHomogeneous().
     [[nodiscard]] const Homogeneous& homogeneous() const { return std::get<Homogeneous>(model); }
-    [[nodiscard]] const Rgb& sigmaA() const { return homogeneous().sigmaA; }
-    [[nodiscard]] const Rgb& sigmaS() const { return homogeneous().sigmaS; }
+    [[nodiscard]] const Rgb& sigmaA() const { return homogeneous().sigmaA(); }
+    [[nodiscard]] const Rgb& sigmaS() const { return homogeneous().sigmaS(); }
     [[nodiscard]] Rgb sigmaT() const { return homogeneous().sigmaT(); }
 };
 

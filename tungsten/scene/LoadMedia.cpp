@@ -44,12 +44,11 @@ Medium readMedium(const ObjectReader& reader) {
     if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(mediumTypes()));
     const float density =
         float(reader.number("density", 1.0, {"none", "factor on both coefficients"}, Range::nonNegative()));
-    Homogeneous coefficients;
-    coefficients.sigmaA =
+    const Rgb sigmaA =
         reader.rgb("sigma_a", Rgb(0.0f), {"1/length", "absorption coefficient"}, Range::nonNegative()) * density;
-    coefficients.sigmaS =
+    const Rgb sigmaS =
         reader.rgb("sigma_s", Rgb(0.0f), {"1/length", "scattering coefficient"}, Range::nonNegative()) * density;
-    medium.model = coefficients;
+    medium.model = Homogeneous(sigmaA, sigmaS);
     medium.speedOfLight = float(reader.number(
         "speed_of_light", 1.0, {"length/time", "speed at which light travels in it"}, Range::positiveMeasure()));
     medium.maxBounces =

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""What code of effects that a scene does not use costs it: takes it out, one effect at a time, builds, and counts the instructions of a
+render of cornell-fog, which uses none of these. Counts of valgrind do not depend on what else the machine does; set-up is left out, as
+the difference of two lengths. Works in the tree that it is in, restores every file, and builds once more at the end. Some two minutes
+an effect.
+
+    benchmarks/unused/unused.py [--build build] [--only TEXT] [--jobs N] [--markdown FILE]
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from removals import REMOVALS  # noqa: E402
+
+SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
+PATHS, MAP = "integrator.type=path_tracer", "integrator.volume_photon_type="
+SMALLER_MAP = ["integrator.photon_count=6000", "integrator.volume_photon_count=3000", "renderer.spp_step=1"]
+#   method: its settings, and samples of a pixel of the shorter and the longer render
+METHODS = {
+    "plain paths": ([PATHS], (4, 20)),
+    "best paths": ([PATHS, "integrator.darts=best"], (2, 6)),
+    "plain points": ([MAP + "points", *SMALLER_MAP], (1, 4)),
+    "best points": ([MAP + "points", *SMALLER_MAP, "integrator.darts=best"], (1, 4)),
+    "plain beams": ([MAP + "beams", *SMALLER_MAP], (1, 4)),
+    "best beams": ([MAP + "beams", *SMALLER_MAP, "integrator.darts=best"], (1, 4)),
+}
+SIDE = 24  # pixels
+
+
+def instructions(tungsten, method, samples, folder):
+    settings, _ = METHODS[method]
+    render = [tungsten, SCENE, "--quiet", "-t", "1", "-d", folder, "--resolution", f"{SIDE}x{SIDE}", "--spp", str(samples)]
+    for setting in settings:
+        render += ["--set", setting]
+    counts = Path(folder) / "counts"
+    subprocess.run(["valgrind", "--tool=cachegrind", "--cache-sim=no", f"--cachegrind-out-file={counts}", *map(str, render)], check=True,
+                   capture_output=True)
+    return int(counts.read_text().rsplit("summary:", 1)[1].split()[0])
+
+
+def of_samples(tungsten, method):
+    shorter, longer = METHODS[method][1]
+    with tempfile.TemporaryDirectory() as folder:
+        return instructions(tungsten, method, longer, folder) - instructions(tungsten, method, shorter, folder)
+
+
+def build(folder, jobs):
+    subprocess.run(["cmake", "--build", folder, f"-j{jobs}", "--target", "tungsten-app", "tungsten-path", "tungsten-photon"], check=True,
+                   stdout=subprocess.DEVNULL)
+
+
+def without(edits, folder, jobs, methods):
+    """Counts of a build that lacks this."""
+    kept = {}
+    try:
+        for file, text, instead in edits:
+            path = PROJECT / file
+            now = path.read_text()
+            kept.setdefault(path, now)
+            if now.count(text) != 1:
+                sys.exit(f"{file}: '{text}' is there {now.count(text)} times")
+            path.write_text(now.replace(text, instead))
+        build(folder, jobs)
+        return {method: of_samples(folder / "bin/tungsten", method) for method in methods}
+    finally:
+        for path, text in kept.items():
+            path.write_text(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=PROJECT / "build")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    folder = options.build.resolve()
+    build(folder, options.jobs)
+    every = {method: of_samples(folder / "bin/tungsten", method) for method in METHODS}
+    lines = ["| what the other build lacks | " + " | ".join(METHODS) + " |", "| --- |" + " --- |" * len(METHODS)]
+    print(*lines, sep="\n", flush=True)
+    for what, methods, edits in REMOVALS:
+        if options.only not in what:
+            continue
+        lacking = without(edits, folder, options.jobs, methods)
+        cells = [f"{every[m] / lacking[m] - 1:+.2%}" if m in lacking else "" for m in METHODS]
+        lines.append(f"| {what} | " + " | ".join(cells) + " |")
+        print(lines[-1], flush=True)
+    build(folder, options.jobs)
+    if options.markdown:
+        options.markdown.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
