@@ -169,6 +169,13 @@ class LeftOut(unittest.TestCase):
         scene["media"][0]["speed_of_light"] = 2
         self.assertFalse(self.effects(scene)["late emitters left out"]["on"])
 
+    def test_a_lens_is_nearer_than_its_middle(self):
+        scene = self.scene()
+        scene["primitives"][1]["transform"]["position"] = [0, 0, 5.1]  # the sensor closes at 5
+        self.assertTrue(self.effects(scene)["late emitters left out"]["on"])
+        scene["camera"] |= {"type": "thinlens", "aperture_size": 0.4, "focus_distance": 2}
+        self.assertFalse(self.effects(scene)["late emitters left out"]["on"])
+
     def test_a_black_image_is_there_at_once_and_says_why(self):
         scene = self.scene(transient_time_center=0.4, transient_time_width=0.4)
         scene["renderer"]["spp"] = 10 ** 9
