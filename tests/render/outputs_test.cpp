@@ -115,6 +115,9 @@ TEST(Outputs, AnExrOfTooManyFramesIsRefused) {
                   std::string::npos)
             << error.what();
     }
+    OutputFiles further{folder.path() / "a.png", {}, {}, {}, {}, {}, {}, {}, {}, false};
+    further.colors = {{"", (folder.path() / "b.exr").string()}};
+    EXPECT_THROW(checkOutputs(further, {10001}), InputError);
     const OutputFiles npy{folder.path() / "a.png", folder.path() / "a.npy", {}, {}, {}, {}, {}, {}, {}, false};
     EXPECT_NO_THROW(checkOutputs(npy, {1000000}));
 }

@@ -107,12 +107,11 @@ void requireOwnNames(const std::vector<fs::path>& files, const OutputPlan& plan)
 }
 
 /// OpenEXR keeps a header of 28 KiB for every part, in memory and while it writes.
-void requireFewFrames(const OutputFiles& outputs, int frames) {
+void requireFewFrames(const fs::path& file, int frames) {
     constexpr int MostParts = 10000;
-    if (extensionOf(outputs.hdr) == ".exr" && frames > MostParts)
-        throw InputError(outputs.hdr.string(), "cannot hold " + std::to_string(frames) + " frames; .exr takes " +
-                                                   std::to_string(MostParts) +
-                                                   ", .npz, .h5 and .npy any number of them");
+    if (extensionOf(file) == ".exr" && frames > MostParts)
+        throw InputError(file.string(), "cannot hold " + std::to_string(frames) + " frames; .exr takes " +
+                                            std::to_string(MostParts) + ", .npz, .h5 and .npy any number of them");
 }
 
 } // namespace
@@ -179,7 +178,8 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     checkExtension(outputs.page, {".html", ".htm"});
     checkExtension(outputs.sheet, {".png"});
     checkExtension(outputs.video, {".mp4", ".gif"});
-    requireFewFrames(outputs, plan.frames);
+    requireFewFrames(outputs.hdr, plan.frames);
+    for (const OutputBuffer& buffer : outputs.colors) requireFewFrames(buffer.hdrFile, plan.frames);
     if (!outputs.video.empty()) requireFfmpeg(outputs.video);
     for (const fs::path& film : {outputs.sheet, outputs.video})
         if (!film.empty() && plan.frames <= 1)
