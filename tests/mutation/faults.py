@@ -3,7 +3,7 @@
 LIB, APP = "tungsten", "tungsten-app"
 MEDIUM, EMITTER, BSDF, FILM = ("medium_tests", "*"), ("emitter_tests", "*"), ("bsdf_tests", "*"), ("film_tests", "*")
 SCENE, DARTS, TRANSPORT = ("scene_tests", "*"), ("darts_tests", "*Response*:*FirstPassage*"), ("transport_tests", "*")
-PLAN, LEFT_OUT, NASTY = (APP, "tests/plan/plan_test.py"), (APP, "tests/plan/left_out_test.py"), (APP, "tests/nasty/nasty_test.py")
+PLAN, LEFT_OUT = (APP, "tests/plan/plan_test.py"), (APP, "tests/plan/left_out_test.py")
 PLAIN = ("path_tests", "PathTracer.*:DirectLight*:Bounces*:Energy*:SingleScattering*:SpecularTime*")
 LIGHT, GUIDED = ("path_tests", "LightTracer*:Energy*"), ("path_tests", "*Guided*:LightVertices*:*DirectLight*")
 MAPS = ("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:PointGather*")
@@ -45,7 +45,7 @@ FAULTS = [
     ("src/transport/Connection.cpp", "medium ? medium->transmittance(distance) :", "medium ? medium->transmittance(0.0f) :", [PLAIN]),
     ("src/transport/Connection.cpp", "double(distance) / double(region.speed)", "double(distance)", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "double(length) / double(path_.region.speed)", "double(length) * double(path_.region.speed)", [PLAIN]),
-    ("src/path/plain/PathWalk.cpp", "* weight, path_.time + emitter.emissionTime", "* weight, path_.time - emitter.emissionTime", [PLAIN, NASTY]),
+    ("src/path/plain/PathWalk.cpp", "* weight, path_.time + emitter.emissionTime", "* weight, path_.time - emitter.emissionTime", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "powerHeuristic(pdf * light->probability,", "powerHeuristic(pdf,", [PLAIN]),
     ("src/path/plain/PathWalk.cpp", "(medium.transmittance(reach) / probabilityFlightExits(medium, reach))",
      "(Rgb(1.0f) / probabilityFlightExits(medium, reach))", [PLAIN]),
@@ -57,7 +57,7 @@ FAULTS = [
     ("src/path/light/LightWalk.cpp", "throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction)", "throughput_", [LIGHT]),
     ("src/path/light/LightWalk.cpp", "time_ + (unwarped ? 0.0 : connection->time)", "time_ + connection->time", [LIGHT]),
     ("src/path/light/LightWalk.cpp", "interactions_ + connection->crossings", "interactions_", [LIGHT]),
-    ("src/path/light/LightWalk.cpp", "time_ = emitter.emissionTime +", "time_ = 0.0 +", [LIGHT, NASTY]),
+    ("src/path/light/LightWalk.cpp", "time_ = emitter.emissionTime +", "time_ = 0.0 +", [LIGHT]),
     ("src/path/techniques/ControlVertices.cpp", "phase / sqr(vertex.toTarget)", "phase / vertex.toTarget", [GUIDED]),
     ("src/path/techniques/ControlVertices.cpp", "vertex.inversePdf * share / chance", "vertex.inversePdf * share", [GUIDED]),
     ("src/path/techniques/EmitterConnections.cpp", "? 1.0f - controlShare : 1.0f", "? 1.0f : 1.0f", [GUIDED]),

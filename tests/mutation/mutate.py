@@ -7,6 +7,7 @@ Works in the tree that it is in, restores every file, and builds once more at th
 
 import argparse
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -34,7 +35,12 @@ def noticed(build, target, tests):
     """By which test, or None."""
     if tests.endswith(".py"):
         done = call([sys.executable, PROJECT / tests])
-        return None if done and done.returncode == 0 else tests
+        if done and done.returncode == 0:
+            return None
+        failed = [line.split()[1] for line in (done.stderr if done else "").splitlines() if line.startswith(("FAIL: ", "ERROR: "))]
+        if done and not failed:
+            sys.exit(f"{tests} does not run: {done.stderr.strip()[-300:]}")
+        return f"{tests}, {failed[0]}" if failed else f"{tests} (time-out)"
     done = call([build / "bin" / target, f"--gtest_filter={tests}", "--gtest_brief=1", "--gtest_fail_fast"])
     if done and done.returncode == 0:
         return None
@@ -71,6 +77,7 @@ def main():
     parser.add_argument("--count", type=int, default=len(FAULTS))
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # files are restored then, too
     results = []
     for number, fault in list(enumerate(FAULTS))[arguments.first:arguments.first + arguments.count]:
         results.append(plant(fault, arguments.build.resolve(), arguments.jobs))

@@ -139,5 +139,53 @@ TEST(Bodies, PathsThatEnterChooseAmongPointsOfALampUnlessTheGateIsWide) {
     }
 }
 
+/// The corner between a layer of fog, one mean free path deep, and a block of the same that is 30 high.
+constexpr auto Corner = R"(v 0 -10 0
+v 2 -10 0
+v 12 -10 0
+v 12 -10 1
+v 2 -10 1
+v 2 -10 30
+v 0 -10 30
+v 0 10 0
+v 2 10 0
+v 12 10 0
+v 12 10 1
+v 2 10 1
+v 2 10 30
+v 0 10 30
+f 8 9 2 1
+f 9 10 3 2
+f 10 11 4 3
+f 11 12 5 4
+f 12 13 6 5
+f 13 14 7 6
+f 14 8 1 7
+f 2 6 7 1
+f 3 4 5 2
+f 14 13 9 8
+f 12 11 10 9
+)";
+
+TEST(Bodies, GuidedControlVerticesThatRouletteKeepsAreWeighedUp) {
+    // Light from above that scatters twice, seen along the block's foot: from there the way to the lamp leads up
+    // through the block, but control vertices in the layer beside it are just under its surface.
+    const test::FileFolder folder;
+    folder.write("corner.obj", Corner);
+    const auto scene = folder.write("scene.json", R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 1}],
+        "primitives": [{"type": "mesh", "file": "corner.obj", "int_medium": "fog", "bsdf": {"type": "forward"}},
+                       {"type": "point", "emission": 1e6, "transform": {"position": [6, 0, 1000]}}],
+        "camera": {"type": "pinhole", "fov": 0.2, "resolution": 1, "transform": {"position": [1.5, -100, 0.4],
+                   "look_at": [1.5, 0, 0.4], "up": [0, 0, 1]}},
+        "integrator": {"type": "path_tracer", "min_bounces": 4, "max_bounces": 5, "transient_time_center": 1094,
+                       "transient_time_width": 8}, "renderer": {}})");
+    const auto plain = test::renderPathFile(scene, {{"integrator.darts=off"}, 16, 5000, 9});
+    const auto guided = test::renderPathFile(scene, {{"integrator.darts=best"}, 16, 5000, 9});
+    EXPECT_GT(guided->statistics.counter("control vertices"), 0u);
+    const double error = std::hypot(plain->pixelError(), guided->pixelError());
+    EXPECT_NEAR(guided->mean(), plain->mean(), 4.5 * error);
+    EXPECT_LT(error, 0.03 * plain->mean()); // without their weight 42 % would be missing
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -79,10 +79,11 @@ TEST(DirectLight, SphereFrameByFrameWithAndWithoutLightSampling) {
     constexpr double Width = 0.03;
     for (const std::string sampling : {"true", "false"}) {
         const auto rendered = renderPaths(
-            floorUnder(R"({"type": "sphere", "emission": 2, "bsdf": {"type": "null"},
-                           "transform": {"position": [0, 1, 0], "scale": 0.2}})",
-                       R"("start_time": 3, "transient_time_width": 0.03, "frame_num": 10, "enable_light_sampling": )" +
-                           sampling),
+            floorUnder(
+                R"({"type": "sphere", "emission": 2, "emission_time": 0.5, "bsdf": {"type": "null"},
+                    "transform": {"position": [0, 1, 0], "scale": 0.2}})",
+                R"("start_time": 3.5, "transient_time_width": 0.03, "frame_num": 10, "enable_light_sampling": )" +
+                    sampling),
             {{}, 100, 3000});
         for (int frame = 0; frame < 10; ++frame) {
             const double reach = 1.0 + frame * Width; // the camera is 2 away

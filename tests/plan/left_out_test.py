@@ -169,6 +169,10 @@ class LeftOut(unittest.TestCase):
         scene["media"][0]["speed_of_light"] = 2
         self.assertFalse(self.effects(scene)["late emitters left out"]["on"])
 
+    def test_what_a_late_lamp_lights_is_in_time_without_the_cameras_time(self):
+        self.assertTrue(self.effects(self.scene())["late emitters left out"]["on"])
+        self.assertFalse(self.effects(self.scene(camera_unwarped=True))["late emitters left out"]["on"])
+
     def test_a_lens_is_nearer_than_its_middle(self):
         scene = self.scene()
         scene["primitives"][1]["transform"]["position"] = [0, 0, 5.1]  # the sensor closes at 5

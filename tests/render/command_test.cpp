@@ -54,6 +54,8 @@ TEST(Command, BadUsageIsExitCodeTwo) {
         {{"--timeout", "soon", file}, {"--timeout", "minutes"}},
         {{"-c", "often", file}, {"--checkpoint"}},
         {{"--target-error", "-1", file}, {"--target-error"}},
+        {{"--target-error", "nan", file}, {"--target-error", "1e-6 to 1e6"}},
+        {{"--quiet", "merge", "a.state", "-e", "a.exr"}, {"merge: comes first"}},
         {{"--time-center", "noon", file}, {"--time-center"}},
         {{"--set", "camera", file}, {"path.to.field=value"}},
         {{"--set", "primitives.7.bsdf=3", file}, {"3 elements"}},
