@@ -180,11 +180,11 @@ TEST(Bodies, GuidedControlVerticesThatRouletteKeepsAreWeighedUp) {
         "integrator": {"type": "path_tracer", "min_bounces": 4, "max_bounces": 5, "transient_time_center": 1094,
                        "transient_time_width": 8}, "renderer": {}})");
     const auto plain = test::renderPathFile(scene, {{"integrator.darts=off"}, 16, 5000, 9});
-    const auto guided = test::renderPathFile(scene, {{"integrator.darts=best"}, 16, 5000, 9});
+    const auto guided = test::renderPathFile(scene, {{"integrator.darts=best"}, 16, 12000, 9});
     EXPECT_GT(guided->statistics.counter("control vertices"), 0u);
     const double error = std::hypot(plain->pixelError(), guided->pixelError());
     EXPECT_NEAR(guided->mean(), plain->mean(), 4.5 * error);
-    EXPECT_LT(error, 0.03 * plain->mean()); // without their weight 42 % would be missing
+    EXPECT_LT(error, 0.04 * plain->mean()); // without their weight 42 % would be missing
 }
 
 } // namespace
