@@ -84,6 +84,28 @@ int64_t pngTexelsPerByte(std::string_view bytes) {
     return std::max(MostDeflated * 8 / bits, int64_t(1));
 }
 
+/// The lines of pixels: after an empty line of the header, and that of the resolution.
+std::string_view radianceScanlines(std::string_view bytes) {
+    const size_t end = bytes.find("\n\n"), resolution = end == std::string_view::npos ? end : bytes.find('\n', end + 2);
+    return resolution == std::string_view::npos ? std::string_view() : bytes.substr(resolution + 1);
+}
+
+/// Removes the runs of one component of a line; false if they are corrupt or end too soon.
+bool skipRadianceRuns(std::string_view& bytes, int width) {
+    constexpr uint8_t LongestLiteral = 128; // above: so many less times one value
+    while (width > 0) {
+        if (bytes.empty()) return false;
+        const uint8_t code = byteAt(bytes, 0);
+        const bool repeats = code > LongestLiteral;
+        const int count = repeats ? code - LongestLiteral : code;
+        const size_t stored = 1 + (repeats ? 1 : size_t(count));
+        if (count == 0 || count > width || stored > bytes.size()) return false;
+        bytes.remove_prefix(stored);
+        width -= count;
+    }
+    return true;
+}
+
 /// At most. Those without a case of their own know runs, of 128 texels in two bytes.
 int64_t texelsPerByte(std::string_view bytes) {
     constexpr int64_t Packed = 1 << 12, Runs = 64;
@@ -140,6 +162,28 @@ void requireSaneJpegTables(std::string_view bytes, const std::filesystem::path& 
         const size_t end = std::min(position + std::max<size_t>(length, 2), bytes.size());
         if (marker == DefineTables) requireSaneTables(bytes.substr(position + 2, end - position - 2), file);
         position = end;
+    }
+}
+
+bool isRadiance(std::string_view bytes) {
+    return bytes.starts_with("#?RADIANCE\n") || bytes.starts_with("#?RGBE\n");
+}
+
+void requireSaneRadianceRuns(std::string_view bytes, int width, int height, const std::filesystem::path& file) {
+    constexpr int Narrowest = 8, Widest = 32767; // of images that have runs
+    constexpr size_t LineStart = 4;              // two marks, and the width again
+    constexpr int Components = 4;
+    if (width < Narrowest || width > Widest) return;
+    const auto fail = [&]() -> InputError {
+        return {file.string(), "not a readable image: corrupt or truncated runs"};
+    };
+    std::string_view rest = radianceScanlines(bytes);
+    for (int line = 0; line < height; ++line) {
+        if (rest.size() < LineStart) throw fail();
+        if (rest[0] != 2 || rest[1] != 2 || byteAt(rest, 2) >= 0x80) return; // from here on pixels without runs
+        rest.remove_prefix(LineStart);
+        for (int component = 0; component < Components; ++component)
+            if (!skipRadianceRuns(rest, width)) throw fail();
     }
 }
 

@@ -18,6 +18,10 @@ bool isJpeg(std::string_view bytes);
 /// Huffman tables of more than 256 codes: stb writes them past the end of its own.
 void requireSaneJpegTables(std::string_view bytes, const std::filesystem::path& file);
 
+bool isRadiance(std::string_view bytes);
+/// Runs of no length, or beyond the end of the file: stb never gets past them.
+void requireSaneRadianceRuns(std::string_view bytes, int width, int height, const std::filesystem::path& file);
+
 /// Attributes that end beyond the file: OpenEXR allocates what their sizes claim before it reads them.
 void requireSaneExrAttributes(std::string_view bytes, const std::filesystem::path& file);
 

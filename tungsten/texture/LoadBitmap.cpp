@@ -84,6 +84,7 @@ void loadThroughStb(std::string_view bytes, const std::filesystem::path& file, B
     if (!stbi_info_from_callbacks(&callbacks, &header, &bitmap.width, &bitmap.height, &bitmap.channels))
         throw fail(reason() + "; accepted: png, jpg, tga, bmp, gif, psd, hdr, pfm and exr");
     requirePlausibleSize(bitmap.width, bitmap.height, bytes, file);
+    if (isRadiance(bytes)) requireSaneRadianceRuns(bytes, bitmap.width, bitmap.height, file);
     const size_t texels = size_t(bitmap.width) * size_t(bitmap.height);
     ByteStream probe{bytes}, stream{bytes};
     int width = 0, height = 0, channels = 0;
