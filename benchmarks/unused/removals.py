@@ -53,7 +53,9 @@ REMOVALS = [
         ("src/photon/primitives/beams/BeamSplat.cpp", "* henyeyGreenstein(r.g, w, dx, dy, dz);", "* (0.25f * InvPi);"),
     ]),
     ("colour of media", [*PATHS, *MAPS], [
-        ("tungsten/medium/Medium.cpp", "if (grey_) return Rgb(channel(sigma.x));", "if (true) return Rgb(channel(sigma.x));"),
+        ("tungsten/medium/Medium.cpp", "[[gnu::noinline]] Rgb", "[[maybe_unused]] Rgb"),
+        ("tungsten/medium/Medium.cpp", "grey_ ? Rgb(transmittanceOf(sigmaT().x, distance)) : transmittanceOf(sigmaT(), distance);",
+         "Rgb(transmittanceOf(sigmaT().x, distance));"),
         ("tungsten/medium/Medium.cpp", "medium.isGrey() ? sigma.x : sigma[std::min(int(uChannel * 3.0f), 2)];", "sigma.x; (void)uChannel;"),
         ("src/photon/primitives/points/PointSplat.cpp", "if (k > 0 && !medium.grey) weight =", "if (false) weight ="),
     ]),
