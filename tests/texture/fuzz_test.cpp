@@ -94,7 +94,7 @@ TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
     accepted += fuzz(folder, "rle.tga", test::tgaRle(16, {texels.begin(), texels.begin() + 8}));
     accepted += fuzz(folder, "a.pfm", test::pfm(16, 8, values));
     accepted += fuzz(folder, "a.hdr", test::radiance(16, 8, texels));
-    accepted += fuzz(folder, "rle.hdr", test::radianceRuns(16, texels[5]));
+    accepted += fuzz(folder, "rle.hdr", test::radianceRuns(16, {texels[5], texels[9]}));
     accepted += fuzz(folder, "a.exr", exr);
     accepted += fuzz(folder, "a.jpg", jpeg(16, 8, texels));
     accepted += fuzz(folder, "a.bmp", bmp(16, 8, texels));
@@ -110,10 +110,11 @@ TEST(ImageFuzz, DamagedFilesLoadOrAreInputErrors) {
 /// stb never got to the end of them.
 TEST(ImageFuzz, RunsOfRadianceFilesEndWithTheFileAndHaveALength) {
     const FileFolder folder;
-    const std::string whole = test::radianceRuns(16, {128, 64, 32, 129});
+    const std::string whole = test::radianceRuns(16, {{128, 64, 32, 129}, {128, 64, 32, 130}});
     const auto bitmap = loadBitmap(folder.write("a.hdr", whole));
-    ASSERT_EQ(bitmap->hdr.size(), 48u);
-    for (size_t i = 0; i < 48; ++i) EXPECT_EQ(bitmap->hdr[i], i % 3 == 0 ? 1.0f : i % 3 == 1 ? 0.5f : 0.25f);
+    ASSERT_EQ(bitmap->hdr.size(), 96u);
+    for (size_t i = 0; i < 96; ++i)
+        EXPECT_EQ(bitmap->hdr[i], (i < 48 ? 1.0f : 2.0f) * (i % 3 == 0 ? 1.0f : i % 3 == 1 ? 0.5f : 0.25f)) << i;
     for (size_t size = 0; size < whole.size(); ++size)
         EXPECT_THROW(loadBitmap(folder.write("a.hdr", whole.substr(0, size))), InputError) << size;
     std::string none = whole;

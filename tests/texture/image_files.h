@@ -107,11 +107,14 @@ inline std::string radiance(int width, int height, const std::vector<Texel>& rgb
     return out;
 }
 
-/// A line of one colour, as runs; of 8 to 127 texels.
-inline std::string radianceRuns(int width, const Texel& rgbe) {
-    std::string out = radiance(width, 1, {}) + std::string{'\2', '\2', '\0', char(width)};
-    for (const uint8_t value : rgbe)
-        out += {char(128 + width - 3), char(value), '\3', char(value), char(value), char(value)};
+/// Lines of one colour each, as runs; of 8 to 127 texels.
+inline std::string radianceRuns(int width, const std::vector<Texel>& lines) {
+    std::string out = radiance(width, int(lines.size()), {});
+    for (const Texel& rgbe : lines) {
+        out += {'\2', '\2', '\0', char(width)};
+        for (const uint8_t value : rgbe)
+            out += {char(128 + width - 3), char(value), '\3', char(value), char(value), char(value)};
+    }
     return out;
 }
 
