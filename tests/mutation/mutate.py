@@ -1,91 +1,146 @@
 #!/usr/bin/python3
-"""Plants the faults of faults.py one at a time, builds what they are in and runs the tests that should notice: prints caught or missed.
-Works in the tree that it is in, restores every file, and builds once more at the end. Takes about a minute a fault.
+"""Plants the faults of faults.py and says which tests notice: prints caught or missed for each, with the first test that fails.
 
-    tests/mutation/mutate.py [--build build] [--from N] [--count N] [--jobs N]
+All faults are compiled into one build of a copy of the tree, each behind a switch (switches.py), so that the whole takes one build and
+one short run of tests a fault. Nothing in the work tree is touched.
+
+    tests/mutation/mutate.py [--build build-mutation] [--only N,N...] [--folder NAME] [--jobs N] [--all-tests] [--table]
 """
 
 import argparse
+import concurrent.futures
 import os
-import signal
+import shutil
 import subprocess
 import sys
+import time
+from collections import defaultdict
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import switches  # noqa: E402
 from faults import FAULTS  # noqa: E402
 
-LONGEST = 900  # seconds
+LONGEST = 600  # seconds of one test program
 
 
-def call(arguments):
+def write_if_changed(path, content):
+    """Files that stay the same keep their time, so that the next build is short."""
+    if path.exists() and path.read_bytes() == content:
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+def copy_tree(source):
+    """The tree as it is, every fault in it behind its switch."""
+    by_file = defaultdict(list)
+    for number, (file, good, bad, _) in enumerate(FAULTS):
+        by_file[file].append((number, good, bad))
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=PROJECT, capture_output=True, text=True, check=True)
+    header = source / "planted.h"
+    for name in listed.stdout.splitlines():
+        path = PROJECT / name
+        if not path.is_file():
+            continue
+        content = path.read_bytes()
+        if name in by_file:
+            text = switches.switched(content.decode(), by_file.pop(name))
+            content = f'#include "{header}"\n#line 1\n{text}'.encode()
+        write_if_changed(source / name, content)
+        shutil.copymode(path, source / name)
+    write_if_changed(header, switches.HEADER.encode())
+    assert not by_file, f"not in the tree: {list(by_file)}"
+
+
+def build(source, build_folder, jobs):
+    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    options = [f"-DTUNGSTEN_{name}=ON" for name in ("TESTS", "PYTHON", "BENCHMARKS")]
+    subprocess.run(["cmake", "-S", source, "-B", build_folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", *options, *launcher],
+                   stdout=subprocess.DEVNULL, check=True)
+    subprocess.run(["cmake", "--build", build_folder, f"-j{jobs}"], check=True)
+
+
+def run(command, number, build_folder):
+    environment = dict(os.environ, PLANTED_FAULT=str(number), TUNGSTEN=str(build_folder / "bin/tungsten"), PYTHONDONTWRITEBYTECODE="1",
+                       PYTHONPATH=str(build_folder / "python"))
     try:
-        return subprocess.run([str(a) for a in arguments], cwd=PROJECT, capture_output=True, text=True, timeout=LONGEST)
+        return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=LONGEST, env=environment,
+                              cwd=build_folder, errors="replace")
     except subprocess.TimeoutExpired:
         return None
 
 
-def built(build, targets, jobs):
-    done = call(["cmake", "--build", build, "--target", *targets, f"-j{jobs}"])
-    return done is not None and done.returncode == 0
-
-
-def noticed(build, target, tests):
-    """By which test, or None."""
-    if tests.endswith(".py"):
-        done = call([sys.executable, PROJECT / tests])
-        if done and done.returncode == 0:
-            return None
+def noticed(source, build_folder, number, target, tests):
+    """The test that fails, or None."""
+    if target == "ctest":
+        done = run(["ctest", "--stop-on-failure", "-R", tests], number, build_folder)
+        failed = [line.split("***")[0].split()[-1] for line in (done.stdout if done else "").splitlines() if "***" in line]
+        if done and done.returncode and not failed:
+            sys.exit(f"ctest -R {tests} does not run: {done.stdout[-300:]}{done.stderr[-300:]}")
+    elif target.endswith(".py"):
+        done = run([sys.executable, source / target, *tests.split()], number, build_folder)
         failed = [line.split()[1] for line in (done.stderr if done else "").splitlines() if line.startswith(("FAIL: ", "ERROR: "))]
-        if done and not failed:
-            sys.exit(f"{tests} does not run: {done.stderr.strip()[-300:]}")
-        return f"{tests}, {failed[0]}" if failed else f"{tests} (time-out)"
-    done = call([build / "bin" / target, f"--gtest_filter={tests}", "--gtest_brief=1", "--gtest_fail_fast"])
+        if done and done.returncode and not failed:
+            sys.exit(f"{target} does not run: {done.stderr.strip()[-300:]}")
+    else:
+        done = run([build_folder / "bin" / target, f"--gtest_filter={tests}", "--gtest_brief=1", "--gtest_fail_fast"], number, build_folder)
+        failed = [line[13:].split(",")[0].split(" (")[0] for line in (done.stdout if done else "").splitlines()
+                  if line.startswith("[  FAILED  ]")]
     if done and done.returncode == 0:
         return None
-    failed = [line for line in (done.stdout if done else "").splitlines() if line.startswith("[  FAILED  ]")]
-    return failed[0][13:].split(",")[0].split(" (")[0] if failed else f"{target} (crash or time-out)"
+    return failed[0] if failed else f"{target} ({'crash' if done else 'time-out'})"
 
 
-def plant(fault, build, jobs):
-    file, good, bad, tests = fault
-    path = PROJECT / file
-    text = path.read_text()
-    if text.count(good) != 1:
-        return f"stale: '{good}' is there {text.count(good)} times"
-    targets = sorted({target for target, _ in tests})
-    if any(target == "tungsten-app" for target in targets):
-        targets += ["tungsten-path", "tungsten-photon"]
-    try:
-        path.write_text(text.replace(good, bad))
-        if not built(build, targets, jobs):
-            return "does not compile"
-        for target, which in tests:
-            by = noticed(build, target, which)
-            if by:
-                return f"caught by {by}"
-        return "MISSED"
-    finally:
-        path.write_text(text)
+def judge(source, build_folder, number, whole):
+    begin = time.monotonic()
+    tests = list(FAULTS[number][3])
+    if whole:
+        tests += [("ctest", ".")]
+    for target, which in tests:
+        by = noticed(source, build_folder, number, target, which)
+        if by:
+            return by, time.monotonic() - begin
+    return None, time.monotonic() - begin
+
+
+def unharmed(source, build_folder, numbers):
+    """Tests that fail without a fault would catch everything."""
+    for target, which in sorted({test for number in numbers for test in FAULTS[number][3]}):
+        by = noticed(source, build_folder, -1, target, which)
+        if by:
+            sys.exit(f"{by} fails without a fault")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=Path, default=PROJECT / "build")
-    parser.add_argument("--from", type=int, default=0, dest="first")
-    parser.add_argument("--count", type=int, default=len(FAULTS))
+    parser.add_argument("--build", type=Path, default=PROJECT / "build-mutation")
+    parser.add_argument("--only", type=lambda text: [int(number) for number in text.split(",")], help="numbers of faults")
+    parser.add_argument("--folder", default="", help="faults of files below it")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--all-tests", action="store_true", help="what is missed by its tests is shown to all others, too")
+    parser.add_argument("--table", action="store_true", help="print rows of a table of docs/accuracy.md")
+    parser.add_argument("--no-build", action="store_true", help="the build is there, with the faults as they are")
     arguments = parser.parse_args()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # files are restored then, too
-    results = []
-    for number, fault in list(enumerate(FAULTS))[arguments.first:arguments.first + arguments.count]:
-        results.append(plant(fault, arguments.build.resolve(), arguments.jobs))
-        print(f"{number:2} {fault[0]}: {fault[1]} -> {fault[2]}: {results[-1]}", flush=True)
-    built(arguments.build.resolve(), ["tungsten-app", "tungsten-path", "tungsten-photon"], arguments.jobs)
-    caught = sum(result.startswith("caught") for result in results)
-    print(f"{caught} of {len(results)} caught")
-    sys.exit(caught < len(results))
+    source, build_folder = arguments.build.resolve() / "source", arguments.build.resolve() / "build"
+    numbers = [number for number in arguments.only or range(len(FAULTS)) if FAULTS[number][0].startswith(arguments.folder)]
+    if not arguments.no_build:
+        copy_tree(source)
+        build(source, build_folder, arguments.jobs)
+        unharmed(source, build_folder, numbers)
+    caught = 0
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        verdicts = pool.map(lambda number: judge(source, build_folder, number, arguments.all_tests), numbers)
+        for number, (by, seconds) in zip(numbers, verdicts):
+            caught += by is not None
+            file, good, bad, _ = FAULTS[number]
+            if arguments.table:
+                print(f"| {number} | {file.removeprefix('src/')} | `{good}` → `{bad}` | {by or '**missed**'} | {seconds:.1f} |", flush=True)
+            else:
+                print(f"{number:3} {file}: {good} -> {bad}: {'caught by ' + by if by else 'MISSED'} ({seconds:.1f} s)", flush=True)
+    print(f"{caught} of {len(numbers)} caught")
+    sys.exit(caught < len(numbers))
 
 
 if __name__ == "__main__":
