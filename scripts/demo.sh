@@ -1,13 +1,21 @@
 #!/usr/bin/env bash
-# One command from a clean clone to a picture: sets up the renderer without tests and benchmarks, then renders a
-# time-gated view of a foggy Cornell box.
+# One command from a clean clone to a picture: sets up the renderer, then renders a time-gated view of a foggy Cornell box for a
+# minute. The picture is there after some seconds, is opened where there is a desktop, and gets better until the render ends.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+picture=data/scenes/cornell-fog/output/cornell-fog.png
 
-scripts/setup.sh --target tungsten-app tungsten-photon tungsten-path
-echo
-echo "Rendering data/scenes/cornell-fog (one minute) ..."
-build/bin/tungsten data/scenes/cornell-fog/scene.json "$@"
-echo
-echo "Look at data/scenes/cornell-fog/output/cornell-fog.png"
-echo "(linear values and their standard error are in cornell-fog.exr beside it)"
+scripts/setup.sh
+rm -f "$picture"
+# Images are saved every 5 seconds; what they show is all that has been rendered so far.
+build/bin/tungsten --restart --checkpoint 5s data/scenes/cornell-fog/scene.json "$@" &
+render=$!
+trap 'kill -INT $render 2>/dev/null; wait $render' INT
+until [ -e "$picture" ] || ! kill -0 $render 2>/dev/null; do sleep 0.2; done
+if [ -e "$picture" ]; then
+  echo
+  echo "Look at $picture: it is there $SECONDS s after the start, and gets better for a minute"
+  if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && command -v xdg-open >/dev/null; then xdg-open "$picture" >/dev/null 2>&1 || true; fi
+fi
+wait $render
+echo "Linear values and their standard error are in ${picture%.png}.exr beside it."

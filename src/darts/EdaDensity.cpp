@@ -8,10 +8,12 @@ namespace darts {
 namespace {
 
 /// Positive half of the 16-point Gauss-Legendre rule.
-constexpr std::array<double, 8> Nodes{0.0950125098376374, 0.2816035507792589, 0.4580167776572274, 0.6178762444026438,
-                                      0.7554044083550030, 0.8656312023878318, 0.9445750230732326, 0.9894009349916499};
-constexpr std::array<double, 8> Weights{0.1894506104550685, 0.1826034150449236, 0.1691565193950025, 0.1495959888165767,
-                                        0.1246289712555339, 0.0951585116824928, 0.0622535239386479, 0.0271524594117541};
+constexpr std::array<double, 8> GaussNodes{0.0950125098376374, 0.2816035507792589, 0.4580167776572274,
+                                           0.6178762444026438, 0.7554044083550030, 0.8656312023878318,
+                                           0.9445750230732326, 0.9894009349916499};
+constexpr std::array<double, 8> GaussWeights{0.1894506104550685, 0.1826034150449236, 0.1691565193950025,
+                                             0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
+                                             0.0622535239386479, 0.0271524594117541};
 
 /// Parts of the integrand below e^-Cutoff of its maximum are left out.
 constexpr double Cutoff = 20.0;
@@ -51,9 +53,9 @@ double clipToCutoff(const LogIntegrand& f, double low, double high, double maxim
 double gaussLegendre(const LogIntegrand& f, double from, double to, double maximum) {
     const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
     double sum = 0.0;
-    for (size_t i = 0; i < Nodes.size(); ++i)
-        sum += Weights[i] * (std::exp(f.at(middle - half * Nodes[i]) - maximum) +
-                             std::exp(f.at(middle + half * Nodes[i]) - maximum));
+    for (size_t i = 0; i < GaussNodes.size(); ++i)
+        sum += GaussWeights[i] * (std::exp(f.at(middle - half * GaussNodes[i]) - maximum) +
+                                  std::exp(f.at(middle + half * GaussNodes[i]) - maximum));
     return std::abs(half) * sum;
 }
 

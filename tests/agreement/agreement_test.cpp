@@ -24,8 +24,11 @@ void expectAgreement(const BlockMeans& method, const BlockMeans& reference) {
 
 class MethodsAgree : public testing::TestWithParam<AgreementScene> {};
 
+/// Published methods have their light of several scatterings compared in Sequence and, by a mirror, in photon's
+/// DirectView.
 TEST_P(MethodsAgree, WithThePathTracer) {
-    const std::vector<Method> methods = methodsInTests(GetParam().name);
+    std::vector<Method> methods = methodsInTests(GetParam().name);
+    std::erase_if(methods, [](const Method& method) { return method.name.starts_with("published"); });
     const BlockMeans reference = renderBlocks(GetParam(), methods.front());
     ASSERT_GT(channelMean(reference.whole(0)), 0.0);
     for (size_t i = 1; i < methods.size(); ++i) {
@@ -34,7 +37,13 @@ TEST_P(MethodsAgree, WithThePathTracer) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, MethodsAgree, testing::ValuesIn(singleGateScenes()),
+/// Light that scatters backward differs from other light by its phase function alone, which ClosedForms knows.
+std::vector<AgreementScene> scenesInTests() {
+    std::vector<AgreementScene> scenes = singleGateScenes();
+    std::erase_if(scenes, [](const AgreementScene& scene) { return scene.name == "backward-fog"; });
+    return scenes;
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, MethodsAgree, testing::ValuesIn(scenesInTests()),
                          [](const auto& instance) { return identifier(instance.param.name); });
 
 class ClosedForms : public testing::TestWithParam<PulsesInFog> {};
@@ -43,7 +52,11 @@ TEST_P(ClosedForms, MatchEveryMethod) {
     constexpr int Side = 24;
     AgreementScene scene = builtScene(GetParam().name, sceneJson(GetParam()), 0.1, ClosedFormEffort);
     const BlockMeans exact = closedForm(GetParam(), Side);
+    // Slow fog is dear to guided points, and published methods meet it in other tests.
+    const bool slow = GetParam().speed != 1.0;
+    if (!slow) scene.effort.photons /= 2;
     for (Method& method : methodsUnderTest()) {
+        if (slow && method.name.starts_with("published")) continue;
         SCOPED_TRACE(method.name);
         // Beams have half the noise of plain points, guided points less but in slow fog, guided paths hardly any.
         const bool plainPoints = method.name == "plain points", beams = method.name.ends_with("beams");
@@ -53,7 +66,13 @@ TEST_P(ClosedForms, MatchEveryMethod) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(SingleScattering, ClosedForms, testing::ValuesIn(singleScatteringCases()),
+/// Without the forward case, which the backward one mirrors.
+std::vector<PulsesInFog> pulsesInTests() {
+    std::vector<PulsesInFog> cases = singleScatteringCases();
+    std::erase_if(cases, [](const PulsesInFog& pulses) { return pulses.name == "forward"; });
+    return cases;
+}
+INSTANTIATE_TEST_SUITE_P(SingleScattering, ClosedForms, testing::ValuesIn(pulsesInTests()),
                          [](const auto& instance) { return identifier(instance.param.name); });
 
 /// Block means of the sum over the frames of radiance times width.
@@ -70,7 +89,7 @@ BlockMeans summedOverFrames(const BlockMeans& sequence, double width) {
     return sum;
 }
 
-/// Frame by frame, and in sum.
+/// Frame by frame, and in sum. Beams that are not guided best have their frames compared in photon's CornellFog.
 TEST(Sequence, FramesAgreeAndSumToTheSteadyStateOfThePathTracer) {
     std::vector<Method> methods = methodsUnderTest();
     Method independent = methods.front();
@@ -80,6 +99,7 @@ TEST(Sequence, FramesAgreeAndSumToTheSteadyStateOfThePathTracer) {
     for (Method& method : methods) {
         SCOPED_TRACE(method.name);
         const bool plain = method.name.starts_with("plain"), best = method.name.starts_with("best");
+        if (method.name.ends_with("beams") && !best) continue;
         if (best) method.share *= 2.0; // paths arrive anywhere in the twenty frames
         const BlockMeans frames = renderBlocks(fogSequence(), method);
         EXPECT_EQ(frames.frames, 20);

@@ -49,8 +49,7 @@ TEST_P(MomentsAgree, WithTheLightTracer) {
 // The light tracer's connections to a camera amid the fog of laser-in-fog are too noisy where the way to it counts, and
 // it does not show the fog behind the ball of volumetric-caustic.
 INSTANTIATE_TEST_SUITE_P(Scenes, MomentsAgree,
-                         testing::Values(Moment{"fogged-box", true, 1.6}, Moment{"fogged-box", false, 5.3},
-                                         Moment{"laser-in-fog", true, 1.8}, Moment{"amber-half-space", true, 2.4},
+                         testing::Values(Moment{"fogged-box", true, 1.6}, Moment{"laser-in-fog", true, 1.8},
                                          Moment{"amber-half-space", false, 5.9, 0.6}),
                          [](const auto& test) {
                              std::string name = test.param.scene;

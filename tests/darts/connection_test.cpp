@@ -2,12 +2,12 @@
 // definitions.
 
 #include "support/ChiSquare.h"
+#include "support/Quadrature.h"
 
 #include "darts/ConnectionLobe.h"
 #include "darts/ControlVertex.h"
 #include "darts/GreensFunction.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 namespace darts {
@@ -57,8 +57,8 @@ TEST(ConnectionLength, SamplesFollowTheDensity) {
                   tungsten::test::SmallestPValue)
             << depth;
         const double scale = depth > 1.0 ? 0.5 / depth : 0.5;
-        const double integral = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
-            [&](double x) { return length.pdf(x); }, 0.0, std::min(40.0 * scale, 0.5), 15, 1e-10);
+        const double integral = tungsten::test::integrate<61>([&](double x) { return length.pdf(x); }, 0.0,
+                                                              std::min(40.0 * scale, 0.5), 15, 1e-10);
         EXPECT_NEAR(integral, 1.0, 1e-6) << depth;
     }
 }
@@ -69,8 +69,7 @@ TEST(ConnectionLength, SamplesFollowTheDensityOfForwardPeaks) {
             for (const double sigmaT : {0.5, 20.0}) {
                 const ConnectionLength<double> length{low, 2.0, sigmaT, needle};
                 const auto cumulative = [&](double x) {
-                    return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
-                        [&](double y) { return length.pdf(y); }, 0.0, x, 10, 1e-7);
+                    return tungsten::test::integrate<61>([&](double y) { return length.pdf(y); }, 0.0, x, 10, 1e-7);
                 };
                 EXPECT_NEAR(cumulative(2.0), 1.0, 1e-5) << low << " " << needle << " " << sigmaT;
                 const auto sample = length.sample(0.73);
@@ -93,8 +92,7 @@ void testLobe(DoubleLobe (*make)(double C, double delta)) {
             const auto cumulative = [&](double h) {
                 const auto integrand = [&](double x) { return TwoPi * lobe.pdf(std::exp(x)) * std::exp(x); };
                 const double low = std::log(1e-32);
-                return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(integrand, low, std::log(h), 12,
-                                                                                     1e-9);
+                return tungsten::test::integrate<61>(integrand, low, std::log(h), 12, 1e-9);
             };
             EXPECT_NEAR(cumulative(2.0), 1.0, 1e-6) << C << " " << delta;
             const double p = tungsten::test::chiSquareUniform(
@@ -130,7 +128,7 @@ TEST(ConnectionLobe, PathLobeCancelsTheConnectionWeight) {
 TEST(GreensFunction, DiffusionIntegratesToTheSurvivingEnergy) {
     const DiffusionGreensFunction<double> phi{0.02, 3.0, 0.4};
     const double s = 40.0; // deep: the causal bound cuts off nothing that counts
-    const double total = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+    const double total = tungsten::test::integrate<61>(
         [&](double rho) { return 2.0 * TwoPi * rho * rho * std::exp(phi.log(rho, s)); }, 0.0, s, 15, 1e-10);
     EXPECT_NEAR(total, std::exp(-0.02 * s), 1e-6);
 }
@@ -138,7 +136,7 @@ TEST(GreensFunction, DiffusionIntegratesToTheSurvivingEnergy) {
 TEST(GreensFunction, CausalConservesEnergyWithinItsAccuracy) {
     const CausalGreensFunction<double> phi{0.0, 1.0};
     for (const double s : {1.0, 3.0, 10.0, 30.0}) {
-        const double scattered = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+        const double scattered = tungsten::test::integrate<61>(
             [&](double rho) { return 2.0 * TwoPi * rho * rho * std::exp(phi.log(1.0 - rho * rho / (s * s), s)); }, 0.0,
             s, 15, 1e-9);
         EXPECT_NEAR(scattered / -std::expm1(-s), 1.0, 0.05) << s;

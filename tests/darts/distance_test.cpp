@@ -5,8 +5,8 @@
 
 #include "support/ChiSquare.h"
 #include "support/LogUniform.h"
+#include "support/Quadrature.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -100,8 +100,8 @@ void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar
     }
     for (int k = 0; k < 3; ++k) {
         const double sigma = double(k == 0 ? sigmaT.x : k == 1 ? sigmaT.y : sigmaT.z);
-        const double expected = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
-            [&](double d) { return std::exp(-sigma * d) * shape(d); }, 0.0, bound, 10, 1e-10);
+        const double expected = tungsten::test::integrate<61>([&](double d) { return std::exp(-sigma * d) * shape(d); },
+                                                              0.0, bound, 10, 1e-10);
         EXPECT_NEAR(medium[k].mean(), expected, sigmas * medium[k].error() + 1e-5 * expected) << c.name << " " << k;
         if (c.surface < last) {
             EXPECT_NEAR(surface[k].mean(), std::exp(-sigma * c.surface), sigmas * surface[k].error() + 1e-6) << c.name;

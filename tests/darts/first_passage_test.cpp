@@ -4,8 +4,8 @@
 #include "darts/Guide.h"
 
 #include "support/BodyExit.h"
+#include "support/Quadrature.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 namespace darts {
@@ -13,7 +13,6 @@ namespace {
 
 using tungsten::test::outOf;
 using tungsten::test::thickMedium;
-using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 
 constexpr double SigmaA = 0.02, ReducedS = 10.0;
 constexpr double D = 1.0 / (3.0 * (SigmaA + ReducedS));
@@ -28,8 +27,9 @@ double logPassage(const Residual& residual, float allowance) {
 double flux(double z, double s, double mismatch = 1.0) {
     const double zb = 2.0 * mismatch * D, spread = 4.0 * D * s;
     const double images = 2.0 * std::exp(-z * z / spread);
-    const double sinks = Quadrature::integrate([&](double l) { return std::exp(-(z + l) * (z + l) / spread - l / zb); },
-                                               0.0, 12.0 * std::sqrt(spread), 15, 1e-10);
+    const double sinks =
+        tungsten::test::integrate<31>([&](double l) { return std::exp(-(z + l) * (z + l) / spread - l / zb); }, 0.0,
+                                      12.0 * std::sqrt(spread), 15, 1e-10);
     return D / zb * (images - 2.0 / zb * sinks) / std::sqrt(M_PI * spread);
 }
 
@@ -40,8 +40,8 @@ TEST(FirstPassage, IsTheFluxThroughTheBoundaryIntegratedOverTheGate) {
                 // Target straight above: what is left inside is the depth and the whole excess.
                 const Residual residual = outOf(depth, 3.0, 3.0 + length, gate);
                 if (!residual.alive()) continue;
-                const double expected = Quadrature::integrate([&](double s) { return flux(depth, s); },
-                                                              std::max(length - gate, depth), length, 15, 1e-9);
+                const double expected = tungsten::test::integrate<31>([&](double s) { return flux(depth, s); },
+                                                                      std::max(length - gate, depth), length, 15, 1e-9);
                 // The gate's start is moved by at most 1e-4 of a mean free path.
                 const double tolerance = 2e-3 + 2e-5 / gate;
                 EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, tolerance)
@@ -62,15 +62,15 @@ double fresnel(double n, double cosine) {
 TEST(FirstPassage, LeavesSlowlyWhereTheBoundaryReflects) {
     EXPECT_EQ(boundaryMismatch(1.0f), 1.0f);
     for (const double n : {1.2, 1.4, 1.5}) {
-        const double reflectance =
-            Quadrature::integrate([n](double cosine) { return 2.0 * cosine * fresnel(n, cosine); }, 0.0, 1.0, 15, 1e-8);
+        const double reflectance = tungsten::test::integrate<31>(
+            [n](double cosine) { return 2.0 * cosine * fresnel(n, cosine); }, 0.0, 1.0, 15, 1e-8);
         EXPECT_NEAR(boundaryMismatch(float(n)), (1.0 + reflectance) / (1.0 - reflectance), 0.1) << n;
     }
     Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
     residual.exit.mismatch = 2.95f;
     const double length = 2.0;
     const double expected =
-        Quadrature::integrate([&](double s) { return flux(0.3, s, 2.95); }, length - 0.2, length, 15, 1e-9);
+        tungsten::test::integrate<31>([&](double s) { return flux(0.3, s, 2.95); }, length - 0.2, length, 15, 1e-9);
     EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, 3e-3);
 }
 

@@ -4,8 +4,8 @@
 
 #include "support/ChiSquare.h"
 #include "support/LogUniform.h"
+#include "support/Quadrature.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 namespace darts {
@@ -18,7 +18,7 @@ using tungsten::test::logUniform;
 /// From an isotropic vertex, all connections of one scattering with length in [low, high): the integral of
 /// e^{-sigmaT S} ln((S + C) / (S - C)) / (C S) times sigmaS (the density g_1 of a walk of two flights, times 4 pi).
 double onceScattered(double C, double low, double high, double sigmaS, double sigmaT) {
-    return sigmaS * boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+    return sigmaS * tungsten::test::integrate<61>(
                         [&](double S) { return std::exp(-sigmaT * S) * std::log((S + C) / (S - C)) / (C * S); },
                         std::max(low, C * (1.0 + 1e-12)), high, 20, 1e-10);
 }
@@ -34,7 +34,7 @@ void expectOnceScattered(const Settings& settings, const Geometry& geometry, uin
     const Vec3 target = directionAbout({0, 0, 1}, 0.7f, 0.2f) * float(geometry.C);
     const Residual residual = Residual::of(target, {geometry.low, geometry.high});
     double sum = 0.0, squares = 0.0;
-    constexpr int Count = 200000;
+    constexpr int Count = 60000;
     for (uint64_t i = 0; i < Count; ++i) {
         Sampler s(seed, RandomStream::Test, 0, i);
         const auto random = [&s] { return s.next1D(); };

@@ -5,8 +5,8 @@
 
 #include "support/BodyExit.h"
 #include "support/ChiSquare.h"
+#include "support/Quadrature.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 namespace darts {
@@ -16,7 +16,6 @@ using tungsten::RandomStream;
 using tungsten::Sampler;
 using tungsten::test::outOf;
 using tungsten::test::thickMedium;
-using Quadrature = boost::math::quadrature::gauss_kronrod<double, 31>;
 
 struct Place {
     double depth, height, longest, gate;
@@ -125,7 +124,7 @@ void expectDistancesOf(Mode mode, const Place& p, float g, double h, float leave
         return std::sqrt((totalSquares / Count - total * total / (double(Count) * Count)) / Count);
     };
     const double expected =
-        Quadrature::integrate([](double d) { return std::exp(-10.02 * d) * (1.0 + d); }, 0.0, end, 15, 1e-10);
+        tungsten::test::integrate<31>([](double d) { return std::exp(-10.02 * d) * (1.0 + d); }, 0.0, end, 15, 1e-10);
     EXPECT_NEAR(sum / Count, expected, 5.0 * error(sum, squares) + 1e-5 * expected);
     if (end == surface && end < 0.6) {
         EXPECT_NEAR(reached / Count, std::exp(-10.02 * surface), 5.0 * error(reached, reachedSquares) + 1e-6);

@@ -3,6 +3,7 @@
 #include "darts/CandidateKernel.h"
 
 #include "support/ChiSquare.h"
+#include "support/Quadrature.h"
 
 #include <gtest/gtest.h>
 
@@ -34,8 +35,7 @@ void expectSamplesDensity(const CandidateDraw& draw) {
     edges.insert(edges.begin(), 0.0);
     double integral = 0.0;
     for (size_t i = 0; i + 1 < edges.size(); ++i)
-        integral +=
-            boost::math::quadrature::gauss_kronrod<double, 15>::integrate(density, edges[i], edges[i + 1], 8, 1e-7);
+        integral += tungsten::test::integrate<15>(density, edges[i], edges[i + 1], 8, 1e-7);
     EXPECT_NEAR(integral, 1.0, 1e-5);
     edges.back() = bound * 1.000001;
     const double p = tungsten::test::chiSquareInterval(
@@ -57,8 +57,8 @@ void expectSamplesDensity(const CandidateDraw& draw) {
 TEST(Proposal, EveryKindSamplesItsDensityWhichIntegratesToOne) {
     for (const Proposals kind :
          {Proposals::Exponential, Proposals::MixedUniform, Proposals::MixedQuarter, Proposals::Equiangular})
-        for (const float depth : {1e-6f, 0.04f, 0.06f, 1.0f, 8.0f, 60.0f})
-            for (const float excess : {1e-3f, 0.5f, 4.0f})
+        for (const float depth : {1e-6f, 0.04f, 0.06f, 1.0f, 60.0f})
+            for (const float excess : {1e-3f, 4.0f})
                 for (const float h : {1e-4f, 0.7f}) {
                     SCOPED_TRACE(testing::Message() << "proposals " << int(kind) << " depth " << depth << " excess "
                                                     << excess << " h " << h);

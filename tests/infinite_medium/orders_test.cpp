@@ -3,7 +3,8 @@
 
 #include "estimates.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include "support/Quadrature.h"
+
 #include <gtest/gtest.h>
 
 namespace infinite_medium::test {
@@ -25,7 +26,7 @@ struct Verified {
 /// Radiance per path length of single scattering is sigmaS f_p e^{-sigmaT S} r^-2 dt/dS.
 double singleScattering(float g) {
     const double C = std::sqrt(1.44 + 0.25 + 4.0), h = 1 - 2.0 / C;
-    return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+    return tungsten::test::integrate<31>(
         [&](double S) {
             const darts::Ellipse<double> e{C, S - C, h};
             const double t = e.firstLeg(), r = e.secondLeg();

@@ -1,10 +1,10 @@
 // Phase functions and free flights.
 
 #include "support/ChiSquare.h"
+#include "support/Quadrature.h"
 
 #include "tungsten/medium/Medium.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 namespace tungsten {
@@ -26,7 +26,7 @@ TEST(PhaseFunction, SamplesFollowTheDensity) {
         std::vector<double> observed(Bins, 0.0), expected(Bins, 0.0);
         for (int bin = 0; bin < Bins; ++bin)
             expected[size_t(bin)] =
-                Samples * boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+                Samples * test::integrate<31>(
                               [&](double theta) {
                                   const double s = std::sin(theta);
                                   const Vec3f after = frame.toWorld({float(s), 0.0f, float(std::cos(theta))});

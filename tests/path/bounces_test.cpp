@@ -64,6 +64,22 @@ TEST(Bounces, MediumLimitsCountDistancesSinceTheLastSurface) {
     EXPECT_EQ(value(3), value(1024));
 }
 
+TEST(Bounces, WhatALaserMeetsFirstCountsToo) {
+    const auto value = [](int maxBounces, const std::string& preset) {
+        return renderPaths(test::withLaser(test::configurationA(1, false)),
+                           {{"integrator.type=path_tracer", preset, "integrator.min_bounces=0",
+                             "integrator.max_bounces=" + std::to_string(maxBounces)},
+                            1,
+                            5000})
+            ->mean();
+    };
+    // The thin line of sight and the laser's do not meet: two scatterings at least.
+    for (const std::string& preset : {std::string("integrator.darts=off"), test::BestPreset}) {
+        EXPECT_EQ(value(2, preset), 0.0) << preset;
+        EXPECT_GT(value(3, preset), 0.0) << preset;
+    }
+}
+
 TEST(Bounces, LowOrdersCanBeLeftOut) {
     const auto value = [](int order, bool lowOrder) {
         return renderPaths(test::configurationA(order, false),

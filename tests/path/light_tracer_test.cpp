@@ -131,7 +131,6 @@ TEST(LightTracer, ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime) {
 
 TEST(LightTracer, ShowsSurfacesThroughALens) {
     const std::string lens = R"("type": "thinlens", "fov": 45, "focus_distance": 3, "aperture_size": 0.4)";
-    expectAgreement(room("", lens), {}, {128, 256});
     const std::string gate = R"(, "transient_time_center": 5.5, "transient_time_width": 1.5)";
     expectAgreement(room(gate, lens), {}, {192, 256});
 }
@@ -173,7 +172,6 @@ TEST(LightTracer, ShowsALaserThroughSlowGlassAndOffVarnish) {
         "camera": {"type": "pinhole", "fov": 40, "reconstruction_filter": "tent",
                    "transform": {"position": [0, 0, 4], "look_at": [0, 0, -1.5], "up": [0, 1, 0]}},
         "integrator": {"max_bounces": 10)";
-    expectAgreement(scene + "}}", {}, {128, 256});
     const std::string frames = R"(, "start_time": 20.5, "transient_time_width": 1, "frame_num": 3}})";
     expectAgreement(scene + frames, {}, {256, 512});
 }
@@ -192,7 +190,6 @@ TEST(LightTracer, StartsLightPathsWithDelays) {
 
 TEST(LightTracer, ShowsFogBehindAnIndexMatchedBoundary) {
     const std::string fog = fogCube(R"("sigma_a": 0.1, "sigma_s": 0.6)", 0.5);
-    expectAgreement(fog, {"integrator.transient_time_center=-1"}, {512, 128});
     expectAgreement(fog, {"integrator.start_time=5", "integrator.transient_time_width=1", "integrator.frame_num=3"},
                     {1024, 512});
 }

@@ -53,20 +53,27 @@ Estimate estimate(const std::string& scene, const std::vector<std::string>& over
     return {sum, std::sqrt(std::max(squares - sum * sum, 0.0) / (Runs - 1))};
 }
 
-/// Mean of `value` over light paths, which is the integral of `value` x density over glossy points and ends.
-template <typename Value>
-Estimate overPaths(const Scene& scene, const Value& value) {
+/// Means of two values over light paths, which are the integrals of value x density over glossy points and ends.
+template <typename Values>
+std::array<Estimate, 2> overPaths(const Scene& scene, const Values& values) {
     constexpr uint32_t Passes = 40, Paths = 100000;
-    double sum = 0.0, squares = 0.0;
+    std::array<double, 2> sum{}, squares{};
     path::ReflectedLightCache cache;
     for (uint32_t pass = 0; pass < Passes; ++pass) {
         cache.trace(scene, scene.emitters[0], 1.0f, Paths, {.index = pass, .seed = 3}, {0.8f});
-        double mean = 0.0;
-        for (const path::ReflectedVertex& vertex : cache.vertices()) mean += value(vertex) / Paths;
-        sum += mean / Passes;
-        squares += mean * mean / Passes;
+        std::array<double, 2> mean{};
+        for (const path::ReflectedVertex& vertex : cache.vertices()) {
+            const std::array<double, 2> found = values(vertex);
+            for (size_t k = 0; k < 2; ++k) mean[k] += found[k] / Paths;
+        }
+        for (size_t k = 0; k < 2; ++k) {
+            sum[k] += mean[k] / Passes;
+            squares[k] += mean[k] * mean[k] / Passes;
+        }
     }
-    return {sum, std::sqrt((squares - sum * sum) / (Passes - 1))};
+    std::array<Estimate, 2> estimates;
+    for (size_t k = 0; k < 2; ++k) estimates[k] = {sum[k], std::sqrt((squares[k] - sum[k] * sum[k]) / (Passes - 1))};
+    return estimates;
 }
 
 TEST(ReflectedLight, ItsDensityIsThatOfWhereItGoes) {
@@ -79,14 +86,13 @@ TEST(ReflectedLight, ItsDensityIsThatOfWhereItGoes) {
         return (vertex.glossy.vertex.position() - glossy).length() < 0.3f &&
                (vertex.position() - centre).length() < radius;
     };
-    const Estimate areas = overPaths(*scene, [&](const path::ReflectedVertex& vertex) {
-        return vertex.surface && inside(vertex, wall, 0.4f) ? 1.0 / double(vertex.density) : 0.0;
+    const auto [areas, volumes] = overPaths(*scene, [&](const path::ReflectedVertex& vertex) {
+        const bool found = vertex.surface ? inside(vertex, wall, 0.4f) : inside(vertex, fog, 0.25f);
+        const double value = found ? 1.0 / double(vertex.density) : 0.0;
+        return vertex.surface ? std::array{value, 0.0} : std::array{0.0, value};
     });
     EXPECT_NEAR(areas.mean, disk * M_PI * 0.4 * 0.4, 4.5 * areas.error);
     EXPECT_LT(areas.error, 0.02 * areas.mean) << "the test would not see a wrong density";
-    const Estimate volumes = overPaths(*scene, [&](const path::ReflectedVertex& vertex) {
-        return !vertex.surface && inside(vertex, fog, 0.25f) ? 1.0 / double(vertex.density) : 0.0;
-    });
     EXPECT_NEAR(volumes.mean, disk * 4.0 / 3.0 * M_PI * std::pow(0.25, 3), 4.5 * volumes.error);
     EXPECT_LT(volumes.error, 0.04 * volumes.mean) << "the test would not see a wrong density";
 }
@@ -107,15 +113,14 @@ TEST_P(WithReflectedLight, MeansAreAsWithout) {
     with.push_back(R"(integrator.darts={"preset": "best"})");
     without.push_back(R"(integrator.darts={"preset": "best", "surface_connections": false})");
     const std::string scene = corner(room.light, room.thick);
-    const Estimate a = estimate(scene, with, 320), b = estimate(scene, without, 640);
+    const Estimate a = estimate(scene, with, 200), b = estimate(scene, without, 400);
     const double error = std::hypot(a.error, b.error);
     EXPECT_NEAR(a.mean, b.mean, 4.5 * error);
     EXPECT_LT(error, 0.016 * b.mean) << "the test would not see a wrong weight";
 }
 
 INSTANTIATE_TEST_SUITE_P(Corners, WithReflectedLight,
-                         testing::Values(CornerCase{"Point", Point, true}, CornerCase{"PointThinFog", Point, false},
-                                         CornerCase{"BallThinFog", Ball, false}),
+                         testing::Values(CornerCase{"Point", Point, true}, CornerCase{"BallThinFog", Ball, false}),
                          [](const auto& instance) { return instance.param.name; });
 
 } // namespace

@@ -42,14 +42,10 @@ TEST_P(BeamOrders, MatchVerifiedValues) {
 
 INSTANTIATE_TEST_SUITE_P(
     Configurations, BeamOrders,
-    testing::Values(BeamOrderCase{test::verified("A1WarpedBox")}, BeamOrderCase{test::verified("A1UnwarpedBox")},
-                    BeamOrderCase{test::verified("A1WarpedDelta")}, BeamOrderCase{test::verified("A1UnwarpedDelta")},
-                    BeamOrderCase{test::verified("A2WarpedBox")}, BeamOrderCase{test::verified("A2UnwarpedBox")},
-                    BeamOrderCase{test::verified("A2WarpedDelta")}, BeamOrderCase{test::verified("A2UnwarpedDelta")},
-                    BeamOrderCase{test::verified("A3WarpedBox")}, BeamOrderCase{test::verified("A3UnwarpedBox")},
-                    BeamOrderCase{test::verified("A3UnwarpedDelta")}, BeamOrderCase{test::verified("B2WarpedBox"), 60},
-                    BeamOrderCase{test::verified("B2UnwarpedBox")}, BeamOrderCase{test::verified("C2WarpedBox")},
-                    BeamOrderCase{test::verified("C2UnwarpedBox")}, BeamOrderCase{test::verified("C2WarpedDelta")}),
+    testing::Values(BeamOrderCase{test::verified("A1UnwarpedBox")}, BeamOrderCase{test::verified("A1WarpedDelta")},
+                    BeamOrderCase{test::verified("A2WarpedBox")}, BeamOrderCase{test::verified("A2UnwarpedDelta")},
+                    BeamOrderCase{test::verified("A3UnwarpedBox")}, BeamOrderCase{test::verified("B2UnwarpedBox")},
+                    BeamOrderCase{test::verified("C2WarpedBox")}, BeamOrderCase{test::verified("C2WarpedDelta")}),
     [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(BeamMap, SingleScatteringInAFoggedBox) {
@@ -101,10 +97,12 @@ class CornellFog : public testing::Test {
     [[nodiscard]] std::unique_ptr<Rendered> photons(const std::string& primitive, uint32_t passes) const {
         Overrides all = overrides;
         all.push_back("integrator.volume_photon_type=" + primitive);
-        return test::renderPhotonFile(file, {all, passes, 64});
+        return test::renderPhotonFile(file, {all, passes, 48});
     }
-    [[nodiscard]] std::unique_ptr<Rendered> paths(uint32_t passes) const {
-        return test::renderPathFile(file, {overrides, passes, 4096});
+    [[nodiscard]] std::unique_ptr<Rendered> paths(const std::string& preset, uint32_t passes, uint32_t samples) const {
+        Overrides all = overrides;
+        all.push_back("integrator.darts=" + preset);
+        return test::renderPathFile(file, {all, passes, samples});
     }
     /// Every quarter, frame and channel; `bias` relative to the value.
     static void expectSame(const Rendered& a, const Rendered& b, double bias, double largestError) {
@@ -125,22 +123,22 @@ class CornellFog : public testing::Test {
 
 TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
     const auto beams = photons("beams", 26);
-    expectSame(*beams, *paths(20), 0.02, 0.15);
+    // Plain paths are as noisy with four times as many samples.
+    expectSame(*beams, *paths("best", 20, 1024), 0.02, 0.15);
     // The same seed gives the same light paths and surface photons: only the fog's estimate differs.
     expectSame(*beams, *photons("points", 26), 0.01, 0.15);
     EXPECT_GT(beams->statistics.counter("gathered beams"), 100000u);
     EXPECT_EQ(beams->statistics.counter("stored volume photons"), 0u);
 }
 
-TEST_F(CornellFog, BeamsAgreeWithPathsAndPointsThroughAMirror) {
+TEST_F(CornellFog, BeamsAgreeWithPathsThroughAMirror) {
     overrides.emplace_back(R"(primitives.tall block.bsdf={"type": "mirror", "albedo": 0.9})");
     // A lamp that paths can hit through the mirror.
     overrides.emplace_back(
         R"(primitives.pulse={"type": "quad", "int_medium": "fog", "ext_medium": "fog", "emission": 40,
         "transform": {"position": [0.3, 1.7, 0.1], "scale": [0.5, 1, 0.5], "rotation": [180, 0, 0]}})");
     const auto beams = photons("beams", 20);
-    expectSame(*beams, *paths(16), 0.02, 0.15);
-    expectSame(*beams, *photons("points", 20), 0.01, 0.15);
+    expectSame(*beams, *paths("off", 16, 4096), 0.02, 0.15);
 }
 
 TEST(BeamMap, FramesSumToTheSteadyState) {

@@ -95,7 +95,8 @@ TEST_P(KernelBiasOf, IsWithinAFactorOfTwo) {
 }
 
 /// Small kernels: nothing to be seen, and nothing is claimed.
-TEST_P(KernelBiasOf, IsNotMoreThanNoiseWhereItIsBelow) {
+class SmallKernelBiasOf : public KernelBiasOf {};
+TEST_P(SmallKernelBiasOf, IsNotMoreThanNoise) {
     const BiasCase& c = GetParam();
     const Errors errors = errorsOf(c, 0.15 * c.radius, 16);
     EXPECT_LT(errors.bias, errors.noise);
@@ -111,18 +112,24 @@ test::Overrides with(test::Overrides overrides, const std::vector<std::string>& 
     return overrides;
 }
 
+std::string biasName(const testing::TestParamInfo<BiasCase>& tested) {
+    return tested.param.name;
+}
+const BiasCase ShrinkingPoints{"ShrinkingPoints", 1, Shrinking, 0.7},
+    PointsAtADeltaGate{"PointsAtADeltaGate", 3, Fixed, 0.3, true},
+    BeamsAtADeltaGate{"BeamsAtADeltaGate", 3, with(Fixed, {test::BeamMap}), 0.3, true};
+
 INSTANTIATE_TEST_SUITE_P(
     , KernelBiasOf,
-    testing::Values(BiasCase{"Points", 0, Fixed, 0.3}, BiasCase{"ShrinkingPoints", 1, Shrinking, 0.7},
-                    BiasCase{"ColouredPoints", 2, Fixed, 0.5},
-                    BiasCase{"GuidedPoints", 3, with(Fixed, {test::BestPreset}), 0.3},
+    testing::Values(ShrinkingPoints, BiasCase{"ColouredPoints", 2, Fixed, 0.5},
                     BiasCase{"Beams", 3, with(Fixed, {test::BeamMap}), 0.3},
                     BiasCase{"ShrinkingGuidedBeams", 1,
                              with(Shrinking, {test::BeamMap, test::BestPreset, "integrator.alpha=0.9"}), 0.4},
-                    BiasCase{"PointsAtADeltaGate", 3, Fixed, 0.3, true},
-                    BiasCase{"BeamsAtADeltaGate", 3, with(Fixed, {test::BeamMap}), 0.3, true},
+                    PointsAtADeltaGate, BeamsAtADeltaGate,
                     BiasCase{"GuidedPointsOnADeltaGate", 3, with(Fixed, {test::BestPreset}), 0.3, true}),
-    [](const testing::TestParamInfo<BiasCase>& tested) { return std::string(tested.param.name); });
+    biasName);
+INSTANTIATE_TEST_SUITE_P(, SmallKernelBiasOf, testing::Values(ShrinkingPoints, PointsAtADeltaGate, BeamsAtADeltaGate),
+                         biasName);
 
 } // namespace
 } // namespace tungsten::photon

@@ -64,54 +64,45 @@ TEST_P(GuidedOrders, MatchVerifiedValues) {
     RecordProperty("relative standard error", std::to_string(error / exact));
 }
 
-constexpr VerifiedValue A1 = test::verified("A1WarpedBox"), A1Unwarped = test::verified("A1UnwarpedBox"),
-                        A2 = test::verified("A2WarpedBox"), A2Unwarped = test::verified("A2UnwarpedBox"),
-                        A3 = test::verified("A3WarpedBox"), A3Unwarped = test::verified("A3UnwarpedBox"),
-                        B2 = test::verified("B2WarpedBox"), B2Unwarped = test::verified("B2UnwarpedBox"),
-                        B3 = test::verified("B3WarpedBox"), C2 = test::verified("C2WarpedBox"),
-                        C2Unwarped = test::verified("C2UnwarpedBox"), C3 = test::verified("C3WarpedBox"),
-                        A1Delta = test::verified("A1WarpedDelta"), A1UnwarpedDelta = test::verified("A1UnwarpedDelta"),
-                        A2Delta = test::verified("A2WarpedDelta"), A2UnwarpedDelta = test::verified("A2UnwarpedDelta"),
-                        A3Delta = test::verified("A3WarpedDelta"), C2Delta = test::verified("C2WarpedDelta");
+constexpr VerifiedValue A1Unwarped = test::verified("A1UnwarpedBox"), A2 = test::verified("A2WarpedBox"),
+                        A2Unwarped = test::verified("A2UnwarpedBox"), A3 = test::verified("A3WarpedBox"),
+                        A3Unwarped = test::verified("A3UnwarpedBox"), B2 = test::verified("B2WarpedBox"),
+                        B2Unwarped = test::verified("B2UnwarpedBox"), B3 = test::verified("B3WarpedBox"),
+                        C2 = test::verified("C2WarpedBox"), C2Unwarped = test::verified("C2UnwarpedBox"),
+                        C3 = test::verified("C3WarpedBox"), A1Delta = test::verified("A1WarpedDelta"),
+                        A1UnwarpedDelta = test::verified("A1UnwarpedDelta"), A2Delta = test::verified("A2WarpedDelta"),
+                        A2UnwarpedDelta = test::verified("A2UnwarpedDelta"), A3Delta = test::verified("A3WarpedDelta"),
+                        C2Delta = test::verified("C2WarpedDelta");
 
-/// The published sampler has no finite variance where B's forward scattering needs it most: warped B is left out.
-INSTANTIATE_TEST_SUITE_P(
-    PublishedPreset, GuidedOrders,
-    testing::Values(OrderCase{A1, Published}, OrderCase{A1Unwarped, Published}, OrderCase{A2, Published, false, 50},
-                    OrderCase{A2Unwarped, Published}, OrderCase{A3, Published}, OrderCase{A3Unwarped, Published},
-                    OrderCase{B2Unwarped, Published, false, 80}, OrderCase{C2, Published, false, 50},
-                    OrderCase{C2Unwarped, Published, false, 80}, OrderCase{A2, Published, true},
-                    OrderCase{A3, Published, true}, OrderCase{C2, Published, true},
-                    OrderCase{A1Delta, Published, true, 100}, OrderCase{A1UnwarpedDelta, Published, true, 80},
-                    OrderCase{A2UnwarpedDelta, Published, true}),
-    guidedOrderName);
-INSTANTIATE_TEST_SUITE_P(
-    BestPreset, GuidedOrders,
-    testing::Values(OrderCase{A1, Best}, OrderCase{A1Unwarped, Best}, OrderCase{A2, Best}, OrderCase{A2Unwarped, Best},
-                    OrderCase{A3, Best}, OrderCase{A3Unwarped, Best}, OrderCase{B2, Best},
-                    OrderCase{B2Unwarped, Best, false, 60}, OrderCase{B3, Best, false, 60}, OrderCase{C2, Best},
-                    OrderCase{C2Unwarped, Best, false, 60}, OrderCase{C3, Best}, OrderCase{A1, Best, true, 60},
-                    OrderCase{A2, Best, true}, OrderCase{A2Unwarped, Best, true}, OrderCase{A3, Best, true},
-                    OrderCase{C2, Best, true}, OrderCase{A1Delta, Best, true, 100},
-                    OrderCase{A1UnwarpedDelta, Best, true, 60}, OrderCase{A2UnwarpedDelta, Best, true},
-                    OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true}),
-    guidedOrderName);
+/// Every order, configuration, way to count time and kind of gate with either preset and with either primitive, not
+/// the product of them. The published sampler has no finite variance where B's forward scattering needs it most: warped
+/// B is left out. Single scattering in a warped box: guided_map_test.cpp.
+INSTANTIATE_TEST_SUITE_P(PublishedPreset, GuidedOrders,
+                         testing::Values(OrderCase{A1Unwarped, Published}, OrderCase{A2, Published, false, 50},
+                                         OrderCase{A3Unwarped, Published}, OrderCase{B2Unwarped, Published, false, 80},
+                                         OrderCase{C2, Published, false, 50}, OrderCase{A3, Published, true},
+                                         OrderCase{C2, Published, true}, OrderCase{A2UnwarpedDelta, Published, true}),
+                         guidedOrderName);
+INSTANTIATE_TEST_SUITE_P(BestPreset, GuidedOrders,
+                         testing::Values(OrderCase{A1Unwarped, Best}, OrderCase{A2, Best}, OrderCase{A3Unwarped, Best},
+                                         OrderCase{B2Unwarped, Best, false, 60}, OrderCase{B3, Best, false, 60},
+                                         OrderCase{C2Unwarped, Best, false, 60}, OrderCase{C3, Best},
+                                         OrderCase{A2Unwarped, Best, true}, OrderCase{A3, Best, true},
+                                         OrderCase{C2, Best, true}, OrderCase{A1UnwarpedDelta, Best, true, 60},
+                                         OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true}),
+                         guidedOrderName);
+/// Directions are drawn before anything knows of points or beams.
 INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
                          testing::Values(OrderCase{A2, GuidingOnly, false, 150}, OrderCase{A2, EllipticalOnly},
-                                         OrderCase{B2, EllipticalOnly, false, 60}, OrderCase{A2, Phase},
-                                         OrderCase{A2, Eda}, OrderCase{B2, Eda, false, 60}, OrderCase{A2, Ris},
-                                         OrderCase{B2, Connection, false, 100}, OrderCase{A2, IndirectView},
-                                         OrderCase{C2, IndirectView}, OrderCase{A2, PublishedIndirectView},
-                                         OrderCase{A2, Eda, true}, OrderCase{A2, Ris, true}),
+                                         OrderCase{A2, Phase}, OrderCase{B2, Eda, false, 60}, OrderCase{A2, Ris},
+                                         OrderCase{B2, Connection, false, 100}, OrderCase{C2, IndirectView},
+                                         OrderCase{A2, PublishedIndirectView}, OrderCase{A2, Eda, true}),
                          guidedOrderName);
 
 /// Control vertices lie on the gate; the rest (plain photons, those that share with them) are seen through its kernel.
 INSTANTIATE_TEST_SUITE_P(PointsAtDeltaGates, GuidedOrders,
-                         testing::Values(OrderCase{A1Delta, Best}, OrderCase{A1UnwarpedDelta, Best},
-                                         OrderCase{A2Delta, Best}, OrderCase{A2UnwarpedDelta, Best},
-                                         OrderCase{A3Delta, Best}, OrderCase{C2Delta, Best},
-                                         OrderCase{A1Delta, Published}, OrderCase{A1UnwarpedDelta, Published},
-                                         OrderCase{A2Delta, Published, false, 50},
+                         testing::Values(OrderCase{A1UnwarpedDelta, Best}, OrderCase{A2Delta, Best},
+                                         OrderCase{C2Delta, Best}, OrderCase{A1Delta, Published},
                                          OrderCase{A2UnwarpedDelta, Published}, OrderCase{A3Delta, Published},
                                          OrderCase{A2Delta, IndirectView, false, 60},
                                          OrderCase{A1UnwarpedDelta, Plain, false, 400}),

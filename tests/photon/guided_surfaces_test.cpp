@@ -50,13 +50,13 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     };
     const std::string json = room(RoomGate);
     const auto paths = renderPaths(json, {change, 16, 128});
-    const auto connected = renderPhotons(json, {with(BestPreset), 40, 1});
+    const auto connected = renderPhotons(json, {with(BestPreset), 24, 1});
     EXPECT_GT(connected->statistics.counter("surface connections"), 10000u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);
         expectSameBlocks(*connected, *paths, frame, 0.03, 0.1);
     }
-    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"surface_connections": false})"), 40, 1});
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"surface_connections": false})"), 24, 1});
     EXPECT_EQ(photons->statistics.counter("surface connections"), 0u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);
@@ -76,9 +76,9 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
         return all;
     };
     const auto paths = renderPaths(json, {metal, 16, 160});
-    const auto followed = renderPhotons(json, {with(BestPreset), 72, 1});
+    const auto followed = renderPhotons(json, {with(BestPreset), 40, 1});
     expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
-    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 72, 1});
+    const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 30, 1});
     expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
 }
 
@@ -110,9 +110,9 @@ TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     Overrides metal{R"(primitives.floor.bsdf={"type": "mirror", "albedo": 0.9})",
                     R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})"};
-    const auto paths = renderPaths(json, {metal, 16, 320});
+    const auto paths = renderPaths(json, {metal, 16, 160});
     metal.push_back(BestPreset);
-    expectSameBlocks(*renderPhotons(json, {metal, 60, 1}), *paths, 0, 0.05, 0.15);
+    expectSameBlocks(*renderPhotons(json, {metal, 36, 1}), *paths, 0, 0.05, 0.15);
 }
 
 /// Mean over the image and its standard error, from the spread over seeds.
@@ -134,6 +134,7 @@ TEST(GlossySurfaces, ShowFog) {
     const Overrides foggy{R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Ag", "roughness": 0.2})",
                           R"(primitives.block.bsdf={"type": "lambert", "albedo": 0})",
                           R"(primitives.floor.bsdf={"type": "lambert", "albedo": 0})",
+                          "camera.resolution=[16, 16]",
                           "media.air.sigma_s=0.02",
                           "integrator.min_bounces=2",
                           "integrator.max_bounces=3",
@@ -187,7 +188,7 @@ TEST(SurfaceConnections, GatherTheNearestPhotonsBesideAMirror) {
     const auto gathered = [&](const Overrides& settings) {
         Overrides all{Mirror, BestPreset, setting("photon_count", 20000)};
         all.insert(all.end(), settings.begin(), settings.end());
-        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 4, 1, seed}); });
+        return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 2, 1, seed}); });
     };
     const auto [expected, radiusError] = gathered({});
     const auto [mean, error] = gathered({"integrator.gather_radius=1e30", "integrator.gather_photon_count=20"});

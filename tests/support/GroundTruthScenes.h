@@ -1,7 +1,7 @@
 #pragma once
 // Scenes with known answers, as JSON, for the tests of every integrator.
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include "support/Quadrature.h"
 
 #include <cmath>
 #include <string>
@@ -62,8 +62,7 @@ inline double foggedBoxSingleScattering() {
     const auto radiance = [&](double t) {
         return 0.4 / (4.0 * 3.14159265358979323846) * std::exp(-0.45 * length(t)) * 2.0 / (distance(t) * distance(t));
     };
-    return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(radiance, inverse(0.8 * 3.2),
-                                                                         inverse(0.8 * 4.2), 10, 1e-10);
+    return test::integrate<61>(radiance, inverse(0.8 * 3.2), inverse(0.8 * 4.2), 10, 1e-10);
 }
 
 /// A Lambert floor (albedo 0.5) at y = 0 seen straight from above through an orthographic camera at y = 2 over (0.75,

@@ -110,6 +110,25 @@ TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
     EXPECT_FALSE(straightWay(above, above));
 }
 
+TEST(Connections, ThroughASurfaceGoThroughTheMediumBeyondIt) {
+    const test::SceneFile file(R"({
+      "media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.2, "sigma_s": 0.3, "speed_of_light": 0.5}],
+      "primitives": [{"type": "cube", "int_medium": "fog",
+                      "bsdf": {"type": "rough_dielectric", "ior": 1.5, "roughness": 0.5}, "transform": {"scale": 2}}],
+      "camera": {"resolution": 1}, "integrator": {"type": "path_tracer"}, "renderer": {}})");
+    const auto scene = loadScene(file.path()).scene;
+    const Vec3f down(0.0f, -1.0f, 0.0f);
+    const auto hit = scene->geometry->intersect({Vec3f(0.1f, 2.0f, 0.2f), down});
+    ASSERT_TRUE(hit);
+    const Vertex top(*scene, makeInteraction(*scene, *hit, down), down, TransportMode::Radiance, Region{-1, 1.0f});
+    const ConnectionEnd inside{down, 0.8f, Rgb(2.0f), {}};
+    uint64_t rays = 0;
+    const auto connection = Connector(*scene, false).connect(top, Rgb(0.5f), inside, rays);
+    ASSERT_TRUE(connection);
+    EXPECT_NEAR(connection->throughput.x, top.scattering(down).x * std::exp(-0.5f * 0.8f), 1e-5f);
+    EXPECT_NEAR(connection->time, 0.8 / 0.5, 1e-5);
+}
+
 TEST_F(Lamp, OnlySingleDirectionsCannotBeConnected) {
     EXPECT_TRUE(lampPoint().isConnectible());
     EXPECT_TRUE(floorAt(0, 0, Vec3f(0, -1, 0), TransportMode::Radiance).isConnectible());

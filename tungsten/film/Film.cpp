@@ -95,6 +95,16 @@ void Film::beginPass() {
     });
 }
 
+// Not inline: where callers round sums of doubles to these floats, GCC 12 vectorises both and leaves the rounding out.
+void Film::add(int frame, int x, int y, const Rgb& value) {
+    if (value == Rgb(0.0f)) return;
+    float* pixel = passPixelToChange(frame, x, y);
+    if (contents_.channels == 1)
+        addEvenly(*pixel, luminanceOf(value));
+    else
+        for (int c = 0; c < 3; ++c) addEvenly(pixel[c], value[c]);
+}
+
 void Film::setPassRow(size_t row, const float* values) {
     writeRow(row, Pass, values);
     touched_[row] = 1;

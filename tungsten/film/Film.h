@@ -67,14 +67,7 @@ class Film {
     /// The image of the pass in progress is zeroed; integrators add up each pixel's mean over the pass's samples.
     void beginPass();
     /// To the image of the pass in progress. Threads may add to different pixels at once.
-    void add(int frame, int x, int y, const Rgb& value) {
-        if (value == Rgb(0.0f)) return;
-        float* pixel = passPixelToChange(frame, x, y);
-        if (contents_.channels == 1)
-            addEvenly(*pixel, luminanceOf(value));
-        else
-            for (int c = 0; c < 3; ++c) addEvenly(pixel[c], value[c]);
-    }
+    void add(int frame, int x, int y, const Rgb& value);
     /// Instead of what the pass in progress has there.
     void set(int frame, int x, int y, const Rgb& value) {
         float* tile = tiles_.find(tileOf(row(frame, y), x));

@@ -11,13 +11,6 @@ namespace {
 
 constexpr double MostFrames = 1e6;
 
-/// "0.3".
-std::string numberText(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-}
-
 void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
     static const std::vector<std::string> types{"color", "depth", "normal", "albedo", "visibility", "transients"};
     const std::string type = buffer.choice(
@@ -88,7 +81,7 @@ GateRead readGate(const ObjectReader& reader, const std::string& type) {
         gate = {false, false, start, width, frames};
         if (centre >= 0.0) // below: none
             without("transient_time_center", "frame_num",
-                    "the first frame starts at start_time (" + numberText(start) + ")");
+                    "the first frame starts at start_time (" + brief(start) + ")");
     } else if (width > 0.0 && (centre >= 0.0 || transient)) {
         gate = {false, false, centre - 0.5 * width, width, 1};
     } else if (transient) {
@@ -112,9 +105,8 @@ float readVacuumSpeed(const ObjectReader& reader) {
     const double formats =
         reader.number(format, speed, {"length/time", "the same, as the format spells it", right}, range);
     if (reader.has(right) && formats != speed)
-        reader.problem(right, "is " + numberText(speed) + ", but " + format +
-                                  ", the format's spelling of the same, is " + numberText(formats) +
-                                  "; say one of them");
+        reader.problem(right, "is " + brief(speed) + ", but " + format + ", the format's spelling of the same, is " +
+                                  brief(formats) + "; say one of them");
     return float(formats);
 }
 

@@ -37,7 +37,7 @@ class Likeness {
     /// equally; returns how many those are.
     template <typename Visit>
     size_t eachAlike(size_t p, size_t first, size_t last, const Visit& visit) const {
-        constexpr float LeastCosine = 0.95f, MostSlope = 0.2f;
+        constexpr float LeastAlignment = 0.95f, MostSlope = 0.2f;
         const auto lanes = Batch::load_aligned(LaneNumbers);
         size_t count = 0;
         for (size_t q = first; q < last; q += size_t(Lanes)) {
@@ -48,7 +48,7 @@ class Likeness {
             if (!xsimd::any(alike)) continue;
             const Batch nx = load(nx_), ny = load(ny_), nz = load(nz_);
             const Batch own = dx * nx_[p] + dy * ny_[p] + dz * nz_[p], others = dx * nx + dy * ny + dz * nz;
-            alike = alike && nx * nx_[p] + ny * ny_[p] + nz * nz_[p] >= LeastCosine &&
+            alike = alike && nx * nx_[p] + ny * ny_[p] + nz * nz_[p] >= LeastAlignment &&
                     xsimd::max(own * own, others * others) <= sqr(MostSlope) * squared &&
                     load(interactions_) == interactions_[p] && load(medium_) == medium_[p];
             eachLane(alike, [&](size_t k) {

@@ -23,7 +23,6 @@ TEST_P(GuidedSliceOrders, MatchVerifiedValues) {
     const auto rendered = test::renderPhotons(test::sceneOf(value), {overrides, 40, 1, 1});
     const double error = rendered->pixelError(), exact = value.radiance;
     const bool planes = kind.kind == SliceKind::Planes, kernel = planes && value.delta;
-    if (planes && value.configuration == 'B' && !value.unwarped) GTEST_SKIP() << "hardly any path makes those seen";
     EXPECT_NEAR(rendered->mean(), exact, 4.0 * std::hypot(error, value.uncertainty) + (kernel ? 0.01 : 1e-3) * exact)
         << "standard error " << error;
     RecordProperty("relative standard error", std::to_string(error / exact));
@@ -37,9 +36,8 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, GuidedSliceOrders,
     testing::Combine(testing::ValuesIn(SliceNames),
                      testing::Values(test::verified("A3WarpedBox"), test::verified("A3UnwarpedDelta"),
-                                     test::verified("A4WarpedDelta"), test::verified("A4UnwarpedBox"),
-                                     test::verified("B3WarpedDelta"), test::verified("B3UnwarpedBox"),
-                                     test::verified("C3WarpedDelta"), test::verified("W4WarpedDelta"))),
+                                     test::verified("B3UnwarpedBox"), test::verified("C3WarpedDelta"),
+                                     test::verified("W4WarpedDelta"))),
     [](const auto& test) { return std::string(std::get<0>(test.param).type) + test::nameOf(std::get<1>(test.param)); });
 
 struct GuidedCase {
@@ -78,14 +76,12 @@ TEST_P(GuidedSlices, AgreeWithPlainSlicesAndBeams) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Fog, GuidedSlices,
-    testing::Values(GuidedCase{"WarpedBox", false, false, "0"}, GuidedCase{"WarpedBoxForward", false, false, "0.6"},
-                    GuidedCase{"WarpedDelta", false, true, "0"}, GuidedCase{"WarpedDeltaForward", false, true, "0.6"},
-                    GuidedCase{"UnwarpedBox", true, false, "0"}, GuidedCase{"UnwarpedBoxForward", true, false, "0.7"},
-                    GuidedCase{"UnwarpedDelta", true, true, "0"},
-                    GuidedCase{"UnwarpedDeltaForward", true, true, "0.7"}),
-    [](const auto& test) { return test.param.name; });
+/// The other gates: GuidedSliceOrders, which sees far smaller differences. This is for occluders, colour and two
+/// lights.
+INSTANTIATE_TEST_SUITE_P(Fog, GuidedSlices,
+                         testing::Values(GuidedCase{"WarpedBox", false, false, "0"},
+                                         GuidedCase{"UnwarpedDeltaForward", true, true, "0.7"}),
+                         [](const auto& test) { return test.param.name; });
 
 } // namespace
 } // namespace tungsten::photon

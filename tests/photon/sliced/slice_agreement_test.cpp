@@ -36,20 +36,15 @@ TEST_P(SliceAgreement, WithBeams) {
     }
 }
 
-constexpr const char* Sequence = R"("start_time": 3.9, "transient_time_width": 0.4, "frame_num": 10)";
 constexpr const char* UnwarpedSequence = R"("start_time": 0.4, "transient_time_width": 0.4, "frame_num": 10)";
 
 INSTANTIATE_TEST_SUITE_P(
     Gates, SliceAgreement,
-    testing::Values(
-        AgreementCase{"WarpedFrame", false, Sequence, Sequence, 4, 30},
-        AgreementCase{"UnwarpedFrame", true, UnwarpedSequence, UnwarpedSequence, 4, 30},
-        AgreementCase{"WarpedDelta", false,
-                      R"("transient_time_center": 5.6, "transient_time_width": 0.05, "delta_time_gate": true)",
-                      R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 50},
-        AgreementCase{"UnwarpedDelta", true,
-                      R"("transient_time_center": 2, "transient_time_width": 0.05, "delta_time_gate": true)",
-                      R"("transient_time_center": 2, "transient_time_width": 0.05)", 0, 50}),
+    testing::Values(AgreementCase{"UnwarpedFrame", true, UnwarpedSequence, UnwarpedSequence, 4, 30},
+                    AgreementCase{
+                        "WarpedDelta", false,
+                        R"("transient_time_center": 5.6, "transient_time_width": 0.05, "delta_time_gate": true)",
+                        R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 50}),
     [](const auto& test) { return test.param.name; });
 
 /// With all light at one speed straight rays may look at a choice of the records while others fold; slices have none.

@@ -10,7 +10,8 @@
 
 #include "tungsten/core/Random.h"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include "support/Quadrature.h"
+
 #include <gtest/gtest.h>
 
 namespace tungsten::photon {
@@ -65,8 +66,7 @@ TEST(Volumes, ChordsIntegrateSlices) {
                     const auto found = sliceVolume<double>(Centre, w, sight, residual, 0.0);
                     return found ? found->weight(Fog, 0.0, longFlights) : 0.0;
                 };
-                sum = boost::math::quadrature::gauss_kronrod<double, 31>::integrate(slice, std::min(atStart, atEnd),
-                                                                                    std::max(atStart, atEnd), 4, 1e-10);
+                sum = test::integrate<31>(slice, std::min(atStart, atEnd), std::max(atStart, atEnd), 4, 1e-10);
                 EXPECT_GE(std::min(atStart, atEnd), low - 1e-9);
                 EXPECT_LE(std::max(atStart, atEnd), high + 1e-9);
             }
@@ -119,9 +119,7 @@ TEST(Balls, GatesIntegrateSlices) {
         };
         double exact = 0.0;
         for (size_t i = 0; i < 2; ++i)
-            if (lit.angle[i] > 0)
-                exact += boost::math::quadrature::gauss_kronrod<double, 61>::integrate(alongRay, lit.start[i],
-                                                                                       lit.end[i], 10, 1e-11);
+            if (lit.angle[i] > 0) exact += test::integrate<61>(alongRay, lit.start[i], lit.end[i], 10, 1e-11);
         double sampled = 0.0;
         constexpr int Samples = 20000;
         for (int i = 0; i < Samples; ++i) {
@@ -195,7 +193,7 @@ TEST(Hypervolumes, LengthsAddUpAndMeetTheRay) {
 TEST(ExponentialIntegral, IsExactForEverySlope) {
     for (const double slope : {-3.0, -1e-3, -1e-9, 0.0, 1e-12, 1e-6, 0.5, 4.0}) {
         const auto f = [&](double t) { return std::exp(-0.6 * (1.3 + slope * t)); };
-        const double exact = boost::math::quadrature::gauss_kronrod<double, 31>::integrate(f, 0.2, 2.7, 8, 1e-13);
+        const double exact = test::integrate<31>(f, 0.2, 2.7, 8, 1e-13);
         EXPECT_NEAR(exponentialIntegral(0.6, 1.3, slope, 0.2, 2.7) / exact, 1.0, 1e-9) << slope;
     }
     EXPECT_NEAR(exponentialIntegral(0.6, 1.0, 2.0, 0.5, std::numeric_limits<double>::infinity()),

@@ -8,7 +8,7 @@ namespace tungsten::photon {
 namespace {
 
 /// What evaluate() sees (SegmentQuery.h).
-struct Query {
+struct BeamQuery {
     embree::Context context;
     const Scene* scene;
     const transport::Sensor* sensor;
@@ -30,7 +30,7 @@ bool mayArrive(const TimeGate& gate, const CameraSegment& segment, const PhotonB
            start + double(toBase + 2.0f * end + rounding) * segment.inverseSpeed >= gate.start;
 }
 
-void evaluate(Query& query, uint32_t index) {
+void evaluate(BeamQuery& query, uint32_t index) {
     const EmbreeBeams::Piece& piece = query.pieces[index];
     const PhotonBeam& beam = query.beams[piece.beam];
     const CameraSegment& segment = *query.segment;
@@ -71,7 +71,8 @@ BeamGather::BeamGather(const Scene& scene, const transport::Sensor& sensor, cons
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;
     const bool timed = !sensor_.gate.steadyState && !scene_.transport.cameraUnwarped;
-    Query query{{}, &scene_, &sensor_, beams_.data(), structure_.pieces().data(), &segment, &sums, radius_, timed, 0};
+    BeamQuery query{{},       &scene_, &sensor_, beams_.data(), structure_.pieces().data(),
+                    &segment, &sums,   radius_,  timed,         0};
     queryAbout<evaluate>(structure_.scene(), segment, radius_, query);
     return query.gathered;
 }

@@ -29,9 +29,9 @@ struct Ribbon {
     PixelArea area;
 };
 
-class Splatter {
+class BeamSplatter {
   public:
-    Splatter(const Scene& scene, const transport::Sensor& sensor, float radius, double scale, Film& film)
+    BeamSplatter(const Scene& scene, const transport::Sensor& sensor, float radius, double scale, Film& film)
         : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), footprint_(scene.camera), radius_(radius),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
           timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {}
@@ -202,7 +202,7 @@ class Splatter {
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                     const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
                     const PassWatch& watch) {
-    const Splatter splatter(scene, sensor, radius, scale, film);
+    const BeamSplatter splatter(scene, sensor, radius, scale, film);
     const size_t bands = ImageBand::count(scene.camera.resolution.y);
     std::vector<std::optional<Ribbon>> ribbons(beams.size());
     tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) {

@@ -11,7 +11,7 @@ namespace tungsten::photon {
 namespace {
 
 /// What evaluate() sees (SegmentQuery.h).
-struct Query {
+struct PointQuery {
     embree::Context context;
     const Scene* scene;
     const transport::Sensor* sensor;
@@ -22,7 +22,7 @@ struct Query {
     uint64_t gathered;
 };
 
-void evaluate(Query& query, uint32_t index) {
+void evaluate(PointQuery& query, uint32_t index) {
     const Photon& photon = (*query.photons)[index];
     const CameraSegment& segment = *query.segment;
     if (photon.medium != segment.medium) return;
@@ -81,7 +81,7 @@ PointGather::PointGather(const Scene& scene, const transport::Sensor& sensor, co
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (photons_.empty()) return 0;
-    Query query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &segment, &sums, 0};
+    PointQuery query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &segment, &sums, 0};
     queryAbout<evaluate>(points_->scene(), segment, points_->largestRadius(), query);
     return query.gathered;
 }

@@ -53,9 +53,9 @@ struct Meeting {
     }
 };
 
-class Splatter {
+class PointSplatter {
   public:
-    Splatter(const Scene& scene, const transport::Sensor& sensor, double scale)
+    PointSplatter(const Scene& scene, const transport::Sensor& sensor, double scale)
         : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), scale_(float(scale)),
           footprint_(scene.camera), media_(scene.media.begin(), scene.media.end()) {}
 
@@ -221,7 +221,7 @@ std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, c
 uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
                       const PassWatch& watch) {
-    const Splatter splatter(scene, sensor, scale);
+    const PointSplatter splatter(scene, sensor, scale);
     std::vector<Disc> discs(photons.size());
     tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) {
         watch.pollWithin(1024, i);

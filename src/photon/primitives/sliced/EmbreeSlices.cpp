@@ -5,7 +5,7 @@ namespace tungsten::photon {
 namespace {
 
 /// What the callback sees: its first member is the query's context, so that Embree's address of it is the query's.
-struct Query {
+struct SliceQuery {
     embree::Context context;
     EmbreeSlices::Meet meet;
     void* user;
@@ -24,7 +24,7 @@ void boundsOf(const RTCBoundsFunctionArguments* arguments) {
 
 void meetBox(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
-    const auto& query = *reinterpret_cast<const Query*>(arguments->context);
+    const auto& query = *reinterpret_cast<const SliceQuery*>(arguments->context);
     query.meet(query.user, arguments->primID);
 }
 
@@ -60,7 +60,7 @@ void EmbreeSlices::query(const CameraSegment& segment, Meet meet, void* user) co
     ray.ray.tfar = segment.length;
     ray.ray.mask = ~0u;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    Query query{{}, meet, user};
+    SliceQuery query{{}, meet, user};
     embree::queryAll(scene_, ray, query.context, nullptr);
 }
 

@@ -26,9 +26,10 @@ constexpr size_t PilotStep = 8;
 
 /// Draws on the straight rays of one sample, registers of them where a slice has such a form, else ray by ray.
 /// Functions return how many records rays met, and may run in many threads, one a band.
-class Splatter {
+class SliceSplatter {
   public:
-    Splatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale, Film& film)
+    SliceSplatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale,
+                  Film& film)
         : scene_(scene), sensor_(sensor), record_(record), estimate_(scene, sensor), scale_(scale), film_(film),
           occluders_(!scene.primitives.empty()) {}
 
@@ -240,7 +241,7 @@ std::vector<std::vector<uint32_t>> byBand(const SliceList& slices, size_t bands)
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                      const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
                      const PassWatch& watch) {
-    const Splatter splatter(scene, sensor, record, scale, film);
+    const SliceSplatter splatter(scene, sensor, record, scale, film);
     const FrameShares shares(scene, sensor.gate, records, watch);
     const SliceList slices = prepared(SliceFootprints(scene, sensor, scale), records, shares, watch);
     const size_t bands = ImageBand::count(record.height);
