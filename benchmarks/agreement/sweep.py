@@ -100,40 +100,58 @@ class Renderer:
         text = json.dumps(content, indent=1, default=lambda value: value.ravel().tolist())
         (self.folder / "scenes" / f"{name}.json").write_text(text)
 
-    def means(self, name, seed):
-        """Means of one render of a stored scene, its frames, and the processor's seconds. Throws RuntimeError with the
-        renderer's message."""
-        file = self.folder / "scenes" / f"{name}.json"
-        text = file.read_text()
-        key = hashlib.sha256(f"{self.build} {seed} {text}".encode()).hexdigest()[:24]
-        kept = self.folder / "renders" / f"{key}.npz"
-        if not kept.exists():
-            np.savez(kept.with_suffix(".part.npz"), **self._render(file, seed, key))
-            kept.with_suffix(".part.npz").replace(kept)
-        with np.load(kept) as stored:
-            for message in stored["messages"]:
-                self.messages.add((name, str(message)))
-            return stored["means"], int(stored["frames"]), float(stored["seconds"])
+    def means(self, names, seed):
+        """Of each of some stored scenes, rendered with one seed: means, frames, and the processor's seconds. What is not kept yet is
+        rendered by one process, since starting takes longer than a small render. Throws RuntimeError with the renderer's message."""
+        keys = {name: self._key(name, seed) for name in names}
+        missing = [name for name in names if not self._kept(keys[name]).exists()]
+        if missing:
+            self._render([(name, keys[name]) for name in missing], seed)
+        found = []
+        for name in names:
+            with np.load(self._kept(keys[name])) as stored:
+                self.messages.update((name, str(message)) for message in stored["messages"])
+                found.append((stored["means"], int(stored["frames"]), float(stored["seconds"])))
+        return found
 
-    def _render(self, file, seed, key):
-        image = self.folder / "renders" / f"{key}.npy"
-        statistics = image.with_suffix(".json")
-        command = [self.tungsten, "--quiet", "--allow-outside", "-t", "1", "-s", str(seed), "-d", image.parent, "-o", f"{key}.png",
-                   "-e", image.name, "--stats", statistics, file]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS)
+    def _scene(self, name):
+        return (self.folder / "scenes" / f"{name}.json").read_text()
+
+    def _key(self, name, seed):
+        return hashlib.sha256(f"{self.build} {seed} {self._scene(name)}".encode()).hexdigest()[:24]
+
+    def _kept(self, key):
+        return self.folder / "renders" / f"{key}.npz"
+
+    def _render(self, due, seed):
+        folder, files = self.folder / "renders", []
+        for name, key in due:
+            content = json.loads(self._scene(name))
+            content["renderer"] |= {"output_file": f"{key}.png", "hdr_output_file": f"{key}.npy"}
+            files.append(folder / f"{key}.scene.json")
+            files[-1].write_text(json.dumps(content))
+        command = [self.tungsten, "--quiet", "--allow-outside", "-t", "1", "-s", str(seed), "-d", folder, *files]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_SECONDS * len(due))
         if done.returncode != 0:
             raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
-        pixels = np.load(image).astype(float)
-        seconds = json.loads(statistics.read_text())["process CPU seconds"]
-        for leftover in self.folder.glob(f"renders/{key}*.*"):
-            leftover.unlink()
-        messages = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-        return {"means": means(pixels), "frames": len(pixels), "seconds": seconds, "messages": np.array(messages, str)}
+        lines, before = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()], 0.0
+        for i, (name, key) in enumerate(due):
+            pixels = np.load(folder / f"{key}.npy").astype(float)
+            until = json.loads((folder / f"{key}.npy.json").read_text())["statistics"]["process CPU seconds"]
+            # What names no scene is the first one's.
+            messages = [line for line in lines if key in line or i == 0 and not any(other in line for _, other in due)]
+            messages = [line.replace(f"{key}.scene.json", f"{name}.json") for line in messages]
+            np.savez(folder / f"{key}.part.npz", means=means(pixels), frames=len(pixels), seconds=until - before,
+                     messages=np.array(messages, str))
+            (folder / f"{key}.part.npz").replace(self._kept(key))
+            before = until
+            for ending in ("npy", "npy.json", "png", "scene.json"):
+                (folder / f"{key}.{ending}").unlink()
 
 
 def render_scene(scene, sweep, effort, renderer, pool):
     """Samples of every method: all copies together, and copies by name; with the seconds that each method took."""
-    jobs = {}
+    wanted = {}  # by seed: what is rendered with it
     for copy in sweep.copies:
         change, first = COPIES[copy]
         changed = change(scene)
@@ -142,8 +160,10 @@ def render_scene(scene, sweep, effort, renderer, pool):
                 name = f"{scene.name}-{copy}-{method.name.replace(' ', '-')}{'-coarse' if part == COARSE else ''}"
                 renderer.store(name, scene_json(changed, method, part * changed.radius, effort))
                 for seed in range(first + 1, first + SEEDS + 1):
-                    jobs[copy, method.name, part, seed - first] = pool.submit(renderer.means, name, seed)
-    return {method.name: gathered(method, scene, {key: job.result() for key, job in jobs.items() if key[1] == method.name})
+                    wanted.setdefault(seed, {})[copy, method.name, part, seed - first] = name
+    jobs = {seed: pool.submit(renderer.means, list(names.values()), seed) for seed, names in wanted.items()}
+    results = {key: result for seed, names in wanted.items() for key, result in zip(names, jobs[seed].result())}
+    return {method.name: gathered(method, scene, {key: result for key, result in results.items() if key[1] == method.name})
             for method in methods_of(scene, sweep.methods)}
 
 

@@ -64,10 +64,11 @@ def gains(curves):
 
 def study(bench, title, about, parameter, scenes):
     """The whole of it: renders, plot, tables."""
-    rows, curves, known = sweep(bench, scenes, bench.short(8, 1), bench.short(0.6, 0.2), SEEDS)
+    seeds = bench.short(SEEDS, 2)
+    rows, curves, known = sweep(bench, scenes, bench.short(8, 0.2), bench.short(0.6, 0.12), seeds)
     picture(bench, curves, parameter)
-    bench.write(title, f"{about} MSE against best paths of {bench.short(8, 1)} CPU seconds, over (reference mean)², the reference's own noise "
-                f"({min(known):.1%} to {max(known):.1%} of a pixel) taken off. The cost, lines: variance by the spread of {SEEDS} seeds, and the "
+    bench.write(title, f"{about} MSE against best paths of {bench.short(8, 0.2)} CPU seconds, over (reference mean)², the reference's own noise "
+                f"({min(known):.1%} to {max(known):.1%} of a pixel) taken off. The cost, lines: variance by the spread of {seeds} seeds, and the "
                 "squared bias where it stands out of the noise of seeds and reference; bands: the same with what seeds themselves say of their noise, least and largest. "
                 "Photons and radii are the same throughout. FLIP: of the pictures, the reference's own noise in it.", f"![MSE times CPU seconds]({bench.name}.svg)",
                 table([parameter, "gain of best over plain: points", "beams", "paths", "cheapest",

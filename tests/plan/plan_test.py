@@ -7,9 +7,14 @@ import json
 import os
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+
+from renders import render_all  # noqa: E402
 
 TUNGSTEN = os.environ.get("TUNGSTEN", str(Path(__file__).resolve().parents[2] / "build/bin/tungsten"))
 
@@ -154,18 +159,28 @@ class Plan(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
 
+    plans = {}  # by the scene's text: many scenes below are the same
+
     def plan(self, scene):
-        return json.loads(self.run_on(scene, "--explain=json").stdout)
+        text = json.dumps(scene)
+        if text not in self.plans:
+            self.plans[text] = json.loads(self.run_on(scene, "--explain=json").stdout)
+        return self.plans[text]
 
     def effect(self, effects, name):
         found = [effect for effect in effects if effect["name"] == name]
         self.assertLessEqual(len(found), 1, "effects are described once")
         return found[0] if found else None
 
-    def rendered(self, scene):
-        folder = Path(self.folder.name)
-        self.run_on(scene, "-d", str(folder), "--stats", str(folder / "stats.json"), "-s", "3")
-        return json.loads((folder / "stats.json").read_text())["effects"]
+    def rendered(self, scenes):
+        """Effects of each of the scenes, as a render leaves them with its image."""
+        films = render_all(TUNGSTEN, self.folder.name, scenes, "-s", "3")
+        return [metadata["statistics"]["effects"] for _, metadata in films]
+
+    def test_statistics_hold_the_effects_of_the_image(self):
+        scene, file = foggy(best()), Path(self.folder.name) / "stats.json"
+        self.run_on(scene, "-d", self.folder.name, "--stats", str(file), "-s", "3")
+        self.assertEqual(json.loads(file.read_text())["effects"], self.rendered([scene])[0])
 
     def test_every_effect_is_on_where_it_is_called_for_and_off_elsewhere(self):
         for name, has, element, lacks in EFFECTS:
@@ -181,20 +196,21 @@ class Plan(unittest.TestCase):
                 self.assertNotEqual(on["reason"], off["reason"])
 
     def test_what_is_off_counts_nothing(self):
-        for name, has, _, lacks in EFFECTS:
+        rendered = self.rendered([scene for _, has, _, lacks in EFFECTS for scene in (has, lacks)])
+        for (name, _, _, _), with_it, without in zip(EFFECTS, rendered[::2], rendered[1::2]):
             with self.subTest(effect=name):
-                on, off = self.effect(self.rendered(has), name), self.effect(self.rendered(lacks), name)
+                on, off = self.effect(with_it, name), self.effect(without, name)
                 if on["counters"]:
                     self.assertGreater(sum(on["counters"].values()), 0, on)
                 if off is not None:
                     self.assertEqual(sum(off["counters"].values()), 0, off)
 
     def test_every_effect_of_every_plan_that_is_off_counts_nothing(self):
-        for integrator in (PATHS, PHOTONS, best(PATHS), best(), {**PATHS, "type": "light_tracer"}):
-            for scene in (room(integrator), foggy(integrator), foggy(integrator, surface=GLOSSY)):
-                for effect in self.rendered(scene):
-                    if not effect["on"]:
-                        self.assertEqual(sum(effect["counters"].values()), 0, effect)
+        integrators = (PATHS, PHOTONS, best(PATHS), best(), {**PATHS, "type": "light_tracer"})
+        scenes = [scene for one in integrators for scene in (room(one), foggy(one), foggy(one, surface=GLOSSY))]
+        for effect in (effect for effects in self.rendered(scenes) for effect in effects):
+            if not effect["on"]:
+                self.assertEqual(sum(effect["counters"].values()), 0, effect)
 
     def test_text_and_json_say_the_same(self):
         scene = foggy(best())

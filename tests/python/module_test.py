@@ -163,9 +163,9 @@ class Render(unittest.TestCase):
 
     def test_ctrl_c_while_a_scene_is_loaded(self):
         side, mesh = 1400, self.folder / "big.obj"  # text that takes seconds to read
-        lines = [f"v {i % side} {i // side} 0\n" for i in range(side * side)]
-        lines += [f"f {i} {i + 1} {i + side + 1}\n" for i in range(1, side * side - side)]
-        mesh.write_text("".join(lines))
+        row = "".join(f"v {i} {side + i % 7} 0\n" for i in range(side))
+        faces = "".join(f"f {i} {i + 1} {i + side + 1}\n" for i in range(1000000, 1000000 + side))
+        mesh.write_text(3 * side * row + 3 * side * faces)
         scene = self.folder / "big.json"
         scene.write_text(json.dumps({**SCENE, "primitives": SCENE["primitives"] + [{"type": "mesh", "file": mesh.name}]}))
         before = darts_tungsten.render(SCENE, passes=1, seed=4).mean
@@ -196,7 +196,7 @@ class Render(unittest.TestCase):
         interrupt.join()
         with self.assertRaisesRegex(TimeoutError, "not one pass ended within 0.001 s"):
             darts_tungsten.render(SCENE, set={**endless, "renderer.spp_step": 1, "camera.resolution": [2048, 2048]}, seconds=0.001)
-        result = darts_tungsten.render(SCENE, set=endless, seconds=2)
+        result = darts_tungsten.render(SCENE, set=endless, seconds=0.8)
         self.assertEqual(result.reason, "time-out")
         self.assertGreater(result.passes, 0)
 

@@ -17,11 +17,12 @@ import numpy as np
 PROJECT = Path(__file__).resolve().parents[2]
 STUDY = PROJECT / "benchmarks/study/study.py"
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
-sys.path.insert(0, str(STUDY.parent))
+sys.path[:0] = [str(STUDY.parent), str(PROJECT / "tests/support")]
 
 import measures  # noqa: E402
 from images import read_exr, read_pfm  # noqa: E402
 from runs import call  # noqa: E402
+from study_command import study as study_command  # noqa: E402
 from study_file import load_study  # noqa: E402
 
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
@@ -43,7 +44,7 @@ class TinyStudy(unittest.TestCase):
         render(cls.folder, "reference.exr", "--spp", "2000", "-s", "1000")
         points = ["integrator.photon_count=30000", "integrator.volume_photon_count=15000"]
         cls.study = {
-            "title": "Tiny", "baseline": "paths", "seconds": 0.3, "block": 4, "bias": True,
+            "title": "Tiny", "baseline": "paths", "seconds": 0.2, "block": 4, "bias": True,
             "scenes": [{"name": "fog", "path": str(SCENE), "resolution": [SIZE, SIZE], "reference": str(cls.folder / "reference.exr"),
                         "gate": [5.45, 5.75], "set": {"points": points},
                         "published": {"source": "invented", "seconds": 1, "threads": 1, "rows": [{"method": "paths", "std": 2.0}]}}],
@@ -54,7 +55,8 @@ class TinyStudy(unittest.TestCase):
                         {"name": "two mistakes", "base": "delta", "set": ["integrator.max_bounces=-1"]}],
             "definitions": {"methods": [{"name": "delta", "may_refuse": ["integrator.delta_time_gate"],
                                          "set": ["integrator.type=path_tracer", "integrator.delta_time_gate=true"]}]}}
-        cls.first = cls.call()
+        cls.write()
+        cls.first = subprocess.run([sys.executable, STUDY, *cls.arguments()], capture_output=True, text=True)
         cls.report, cls.page = ((cls.folder / f"work/report.{kind}").read_text() for kind in ("md", "html"))
 
     @classmethod
@@ -62,13 +64,19 @@ class TinyStudy(unittest.TestCase):
         cls.scratch.cleanup()
 
     @classmethod
-    def call(cls, *options):
+    def write(cls):
         (cls.folder / "tiny.json").write_text(json.dumps(cls.study))
-        return subprocess.run([sys.executable, STUDY, cls.folder / "tiny.json", "--work", cls.folder / "work", "--tungsten",
-                               TUNGSTEN, *options], capture_output=True, text=True)
+
+    @classmethod
+    def arguments(cls):
+        return [cls.folder / "tiny.json", "--work", cls.folder / "work", "--tungsten", TUNGSTEN]
+
+    @classmethod
+    def call(cls, *options):
+        return study_command(*cls.arguments(), *options)
 
     def folder_of(self, method, seed=1):
-        return self.folder / "work/runs/fog" / method / f"0.3s-seed{seed}"
+        return self.folder / "work/runs/fog" / method / f"0.2s-seed{seed}"
 
     def test_report(self):
         self.assertEqual(self.first.returncode, 1, self.first.stderr)  # three methods fail
@@ -80,9 +88,9 @@ class TinyStudy(unittest.TestCase):
             self.assertIn(f"| {method} | 3 |", report)
         self.assertNotIn("| wrong |", report)
         self.assertIn("| moment | fog | `integrator.delta_time_gate`: plain paths meet a delta gate", report)
-        self.assertIn("fog, moment, 0.3 s, seed 1 ... skipped: `integrator.delta_time_gate`", self.first.stdout)
+        self.assertIn("fog, moment, 0.2 s, seed 1 ... skipped: `integrator.delta_time_gate`", self.first.stdout)
         self.assertNotIn("nan", report.replace("non-finite", ""))
-        for image in ("fog-pictures-1.png", "fog-gain-0.3s.png"):
+        for image in ("fog-pictures-1.png", "fog-gain-0.2s.png"):
             self.assertIn(f"({image})", report)
             self.assertEqual((self.folder / "work" / image).read_bytes()[:4], b"\x89PNG")
 
@@ -137,8 +145,7 @@ class TinyStudy(unittest.TestCase):
 
         def call(action, *options):
             file.write_text(json.dumps(study))
-            return subprocess.run([sys.executable, STUDY, file, action, "--work", work, "--tungsten", TUNGSTEN, *options],
-                                  capture_output=True, text=True)
+            return study_command(file, action, "--work", work, "--tungsten", TUNGSTEN, *options)
 
         self.assertIn("(reference_by)", call("references").stderr)
         scene["reference_by"] = "paths"
@@ -156,8 +163,7 @@ class TinyStudy(unittest.TestCase):
 
         def call(action, **scene):
             file.write_text(json.dumps({**self.study, "scenes": [{**self.study["scenes"][0], **scene}]}))
-            return subprocess.run([sys.executable, STUDY, file, action, "--tungsten", TUNGSTEN, "--methods", "paths"],
-                                  capture_output=True, text=True)
+            return study_command(file, action, "--tungsten", TUNGSTEN, "--methods", "paths")
 
         missing = call("check", reference=str(self.folder / "nowhere.exr"))
         self.assertEqual(missing.returncode, 1)
@@ -176,7 +182,7 @@ class TinyStudy(unittest.TestCase):
         film.write_text((PROJECT / "data/scenes/two-pulses/scene.json").read_text())
 
         def call(*arguments):
-            done = subprocess.run([sys.executable, STUDY, *arguments, "--tungsten", TUNGSTEN], capture_output=True, text=True)
+            done = study_command(*arguments, "--tungsten", TUNGSTEN)
             return done.returncode, done.stdout + done.stderr
 
         self.assertEqual(call("new", film)[0], 0)
@@ -186,7 +192,7 @@ class TinyStudy(unittest.TestCase):
         code, text = call("new", scene)
         self.assertEqual(code, 0, text)
         self.assertIn("references", text)
-        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "1.5"]
+        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "0.4"]
         self.assertEqual(call(file, "check")[0], 1)
         self.assertEqual(call(file, "references", *options, "--seeds", "2")[0], 0)
         self.assertEqual(call(file, "check")[0], 0)

@@ -12,6 +12,10 @@ import unittest
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(PROJECT / "tests/support"))
+
+from study_command import study  # noqa: E402
+
 STUDY = PROJECT / "benchmarks/study/study.py"
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
@@ -41,7 +45,7 @@ class Submit(unittest.TestCase):
         subprocess.run([TUNGSTEN, "--quiet", "-t", "2", "--resolution", "16x16", "-d", self.folder, "-o", "reference.png", "-e",
                         "reference.exr", "--set", "integrator.type=path_tracer", "--spp", "64", SCENE], check=True)
         (self.folder / "tiny.json").write_text(json.dumps({
-            "title": "Tiny", "baseline": "paths", "seconds": 0.2, "block": 4, "seeds": 3, "threads": 1,
+            "title": "Tiny", "baseline": "paths", "seconds": 0.1, "block": 4, "seeds": 3, "threads": 1,
             "scenes": [{"name": "fog", "path": str(SCENE), "resolution": [16, 16], "gate": [5.45, 5.75],
                         "reference": str(self.folder / "reference.exr")}],
             "methods": [{"name": "paths", "set": ["integrator.type=path_tracer"]},
@@ -52,8 +56,11 @@ class Submit(unittest.TestCase):
         self.work = self.folder / "work"
 
     def call(self, *options, code=0):
-        result = subprocess.run([sys.executable, STUDY, self.folder / "tiny.json", *options, "--work", self.work, "--tungsten",
-                                 TUNGSTEN], capture_output=True, text=True)
+        arguments = [self.folder / "tiny.json", *options, "--work", self.work, "--tungsten", TUNGSTEN]
+        if "--workers" in options:  # they inherit what this process writes to
+            result = subprocess.run([sys.executable, STUDY, *map(str, arguments)], capture_output=True, text=True)
+        else:
+            result = study(*arguments)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
