@@ -6,6 +6,7 @@
 #include "tungsten/bsdf/Bsdf.h"
 #include "tungsten/bsdf/Evenness.h"
 #include "tungsten/bsdf/Fresnel.h"
+#include "tungsten/bsdf/ShadingFrame.h"
 #include "tungsten/core/Warp.h"
 
 #include <gtest/gtest.h>
@@ -250,6 +251,47 @@ TEST(Bsdf, PlasticFollowsItsFormula) {
     const double expected = (1 - fi) * (1 - fo) / 2.25 / 3.14159265358979 * 0.5 / (1 - 0.5 * 0.59635) *
                             std::exp(-2.0 * 0.1 * (1 / 0.8 + 1 / 0.6)) * 0.6;
     EXPECT_NEAR(double(plastic.eval({}, wi, wo).x), expected, 1e-4 * expected);
+}
+
+/// Oren and Nayar's full model (1994, equations 32 to 34), towards the light and away from it.
+TEST(Bsdf, OrenNayarFollowsItsFormula) {
+    const double sigma = 0.5, s = sigma * sigma, albedo = 0.8;
+    const Bsdf bsdf("", OrenNayar{Texture(float(sigma * std::sqrt(2.0)))}, Texture(float(albedo)));
+    const double alpha = std::acos(0.6), beta = std::acos(0.8), ratio = 2.0 * beta / M_PI;
+    const Vec3f wi(0.6f, 0.0f, 0.8f);
+    for (const double cosPhi : {1.0, 0.6, 0.0, -0.6, -1.0}) {
+        const Vec3f wo(float(0.8 * cosPhi), float(0.8 * std::sqrt(1.0 - cosPhi * cosPhi)), 0.6f);
+        const double c1 = 1.0 - 0.5 * s / (s + 0.33);
+        const double c2 =
+            0.45 * s / (s + 0.09) * (cosPhi >= 0.0 ? std::sin(alpha) : std::sin(alpha) - std::pow(ratio, 3.0));
+        const double c3 = 0.125 * s / (s + 0.09) * std::pow(4.0 * alpha * beta / (M_PI * M_PI), 2.0);
+        const double direct =
+            c1 + cosPhi * c2 * std::tan(beta) + (1.0 - std::abs(cosPhi)) * c3 * std::tan(0.5 * (alpha + beta));
+        const double twice = 0.17 * s / (s + 0.13) * (1.0 - cosPhi * ratio * ratio);
+        const double expected = 0.6 * (albedo * direct + albedo * albedo * twice) / M_PI;
+        EXPECT_NEAR(double(bsdf.eval({}, wi, wo).x), expected, 1e-5 * expected) << cosPhi;
+    }
+}
+
+/// A height that rises along u and falls along v, on a surface whose tangents are right- or left-handed.
+TEST(ShadingFrame, BumpsTiltTheNormalAndKeepItsSide) {
+    auto bitmap = std::make_shared<Bitmap>();
+    bitmap->width = bitmap->height = 4;
+    bitmap->channels = 3;
+    for (int i = 0; i < 16 * 3; ++i) bitmap->hdr.push_back(0.2f * float(i / 3 % 4) + 0.1f * float(i / 12));
+    Bsdf bsdf("", Lambert{});
+    bsdf.bump = Texture(std::shared_ptr<const Bitmap>(bitmap));
+    const Vec2f uv(0.5f, 0.5f), slope(0.4f, -0.2f); // across two texels; row 0 is the top
+    const Vec3f x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+    const auto expectNormal = [&](const Frame& frame, const Vec3f& along) {
+        EXPECT_LT((frame.n - along.normalized()).length(), 1e-6f);
+        EXPECT_NEAR(frame.s.dot(frame.n), 0.0f, 1e-6f);
+    };
+    expectNormal(shadingFrame(bsdf, z, x, y, uv), Vec3f(-slope.x, -slope.y, 1));
+    expectNormal(shadingFrame(bsdf, z, y, x, uv), Vec3f(-slope.y, -slope.x, 1));
+    expectNormal(shadingFrame(bsdf, -z, x, y, uv), Vec3f(-slope.x, -slope.y, -1));
+    bsdf.bump.reset();
+    expectNormal(shadingFrame(bsdf, z, x, y, uv), z);
 }
 
 } // namespace

@@ -1,10 +1,12 @@
-// Random numbers, warps, distributions, transforms, names.
+// Random numbers, warps, distributions, transforms, names, folders.
 
 #include "support/ChiSquare.h"
 #include "support/ExpectNear.h"
+#include "support/SceneFile.h"
 
 #include "tungsten/core/Distribution.h"
 #include "tungsten/core/Errors.h"
+#include "tungsten/core/InsideFolder.h"
 #include "tungsten/core/Transform.h"
 #include "tungsten/core/Warp.h"
 
@@ -147,6 +149,20 @@ TEST(Errors, NamesNearEnough) {
     EXPECT_EQ(nearestName("xyzzy", {"homogeneous", "voxel"}), "");
     EXPECT_EQ(listOf({"a", "b", "c"}), "a, b or c");
     EXPECT_EQ((Problem{"f.json", "a[0]", "bad"}.text()), "f.json: a[0]: bad");
+}
+
+TEST(InsideFolder, IsWhatLiesInItOrBelow) {
+    const test::TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path() / "scene";
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"a.png", "sub/a.png", "sub/../a.png", "../scene/a.png", "..a.png"})
+        EXPECT_TRUE(isInside(folder / name, folder)) << name;
+    for (const char* name : {"../a.png", "sub/../../a.png", "../scene2/a.png", "..", "/etc/passwd"})
+        EXPECT_FALSE(isInside(folder / name, folder)) << name;
+    std::filesystem::create_directory_symlink(temporary.path(), folder / "link");
+    EXPECT_FALSE(isInside(folder / "link" / "a.png", folder)) << "links are followed";
+    EXPECT_TRUE(isInside("a.png", "")) << "the current folder";
+    EXPECT_FALSE(isInside("../a.png", ""));
 }
 
 } // namespace

@@ -8,8 +8,11 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstring>
 #include <sstream>
+
+#include <sys/resource.h>
 
 namespace darts {
 namespace {
@@ -139,6 +142,43 @@ TEST_F(EdaTableFile, PlacesThatCannotBeWrittenAreOnlyAWarning) {
     EXPECT_NE(table.warning, "");
     EXPECT_EQ(contents(), "x");
     EXPECT_THROW((void)loadOrBuildEdaTable(nowhere, 2.0f, 0.2f), std::invalid_argument);
+}
+
+/// While it lives, files of this process end after so many bytes, as on a full disk.
+class ShortFiles {
+  public:
+    explicit ShortFiles(rlim_t bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~ShortFiles() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    ShortFiles(const ShortFiles&) = delete;
+    ShortFiles& operator=(const ShortFiles&) = delete;
+
+  private:
+    rlimit before_{};
+    void (*handler_)(int) = std::signal(SIGXFSZ, SIG_IGN);
+};
+
+TEST_F(EdaTableFile, WhatCannotBeWrittenWholeLeavesNothing) {
+    const auto files = [&] { return std::distance(fs::directory_iterator(folder_.path()), {}); };
+    const auto loadShort = [&] {
+        const ShortFiles disk(100);
+        return load();
+    };
+    CachedEdaTable table = loadShort();
+    EXPECT_TRUE(table.built && table.table == good_);
+    EXPECT_NE(table.warning.find("cannot be written"), std::string::npos) << table.warning;
+    EXPECT_EQ(files(), 0) << "a part of the file was left";
+    write("x");
+    table = loadShort();
+    EXPECT_TRUE(table.built && table.table == good_);
+    EXPECT_EQ(contents(), "x");
+    EXPECT_EQ(files(), 1) << "a part of the file was left beside the old one";
 }
 
 TEST_F(EdaTableFile, ContentsThatAreNoTableAreRefused) {

@@ -54,10 +54,13 @@ TEST(Emitter, PhotonsCarryTheEmittersPower) {
     beam.position = Vec3f(1, 2, 3);
     beam.radius = 0.5f;
     beam.power = Rgb(7.0f);
+    InfiniteSphereEmitter sky = makeInfiniteSphere(Texture(0.5f), Frame(), true);
+    sky.sceneRadius = 3.0f;
     const std::vector<std::pair<Emitter, double>> cases{
         {withModel(PointEmitter{Vec3f(0.0f), Rgb(3.0f)}), 12.0 * 3.14159265358979},
         {withModel(spot()), 2.0 * 2.0 * 3.14159265358979 * (1.0 - 0.625)},
         {withModel(beam), 7.0},
+        {withModel(sky), 0.5 * 4.0 * 9.0 * 3.14159265358979 * 3.14159265358979},
         {quad.emitter, 5.0 * 4.0 * 3.14159265358979},
         {coneDisk.emitter, 5.0 * 3.14159265358979 * 3.14159265358979 * 0.75}};
     for (const auto& [emitter, power] : cases) {

@@ -4,16 +4,38 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Random.h"
+#include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/Film.h"
 #include "tungsten/film/ImageIo.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
+#include <functional>
 #include <sstream>
 
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace {
+
+/// What is told when something is brought to the disk: whether that is a folder. Its error number is returned.
+std::function<int(bool)> onSync;
+
+} // namespace
+
+/// Stands before the system's, also for the library under test.
+extern "C" __attribute__((visibility("default"))) int fsync(int descriptor) {
+    struct stat status {};
+    if (!onSync || ::fstat(descriptor, &status) != 0) return int(::syscall(SYS_fsync, descriptor));
+    errno = onSync(S_ISDIR(status.st_mode));
+    return errno == 0 ? 0 : -1;
+}
 
 namespace tungsten {
 namespace {
@@ -146,13 +168,15 @@ TEST(Film, NonFiniteSamplesAreCountedAndLeaveNoTrace) {
 }
 
 TEST(Film, StateRoundTripsBitForBitAndRefusesDamage) {
-    const Film film = randomFilm(4, 3);
+    Film film = randomFilm(4, 3);
+    film.countNonFinite(7);
     std::stringstream stream;
     film.write(stream);
     Film loaded(3, 2, 3);
     std::stringstream whole(stream.str());
     loaded.read(whole, "state");
     EXPECT_EQ(loaded.passes(), 4u);
+    EXPECT_EQ(loaded.nonFiniteSamples(), 7u);
     for (int frame = 0; frame < 3; ++frame) {
         EXPECT_EQ(loaded.mean(frame).pixels, film.mean(frame).pixels);
         EXPECT_EQ(loaded.standardError(frame).pixels, film.standardError(frame).pixels);
@@ -197,6 +221,24 @@ TEST(ImageIo, ExrKeepsLayersAndParts) {
     EXPECT_EQ(exrPartCount(folder.path() / "many.exr"), 3);
     EXPECT_EQ(readExr(folder.path() / "many.exr", 2).at(0, 0), Rgb(42.0f));
     EXPECT_THROW(readExr(folder.path() / "one.exr", 0, "nothing."), InputError);
+}
+
+/// As the format stores it: the attribute's name and type, a size, and the value.
+double doubleAttribute(const std::string& exr, const std::string& name) {
+    const std::string start = name + '\0' + "double" + '\0' + std::string("\x08\0\0\0", 4);
+    const size_t at = exr.find(start);
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (at != std::string::npos) std::memcpy(&value, exr.data() + at + start.size(), sizeof value);
+    return value;
+}
+
+TEST(ImageIo, AnExrSaysWhenItsFrameStartsAndEnds) {
+    const TemporaryFolder folder;
+    writeExr(folder.path() / "a.exr", {ExrPart{"", gradient(2, 2), {}, true, 1.5, 2.25}});
+    std::ifstream in(folder.path() / "a.exr", std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    EXPECT_EQ(doubleAttribute(bytes, "timeStart"), 1.5);
+    EXPECT_EQ(doubleAttribute(bytes, "timeEnd"), 2.25);
 }
 
 /// Bytes.
@@ -274,6 +316,43 @@ TEST(ImageIo, FailedWritesKeepTheOldFile) {
                  InputError);
     EXPECT_EQ(readPfm(file).pixels, gradient(2, 2).pixels);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+/// The bytes before the name, then the name: a crash leaves the old file or the new one.
+TEST(AtomicFile, IsBroughtToTheDiskBeforeAndAfterItHasItsName) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "a.txt";
+    std::vector<std::string> synced;
+    onSync = [&](bool isFolder) {
+        const std::string name = std::filesystem::exists(file) ? ", named" : ", unnamed";
+        synced.push_back((isFolder ? "folder" : "file") + name);
+        return 0;
+    };
+    writeAtomically(file, [](std::ostream& out) { out << "new"; });
+    EXPECT_EQ(synced, (std::vector<std::string>{"file, unnamed", "folder, named"}));
+    // A disk that fails then.
+    onSync = [](bool isFolder) { return isFolder ? 0 : EIO; };
+    EXPECT_THROW(writeAtomically(file, [](std::ostream& out) { out << "newer"; }), InputError);
+    onSync = {};
+    std::string content;
+    std::ifstream(file) >> content;
+    EXPECT_EQ(content, "new");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+/// However long its writer has not touched it.
+TEST(AtomicFile, IsNotRemovedWhileItIsWritten) {
+    const TemporaryFolder folder;
+    const auto file = folder.path() / "a.txt";
+    writeAtomically(file, [&](std::ostream& out) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+            std::filesystem::last_write_time(entry,
+                                             std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+        removeAbandonedFiles(folder.path());
+        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+        out << "whole";
+    });
+    EXPECT_TRUE(std::filesystem::exists(file));
 }
 
 TEST(ImageIo, FrameNamesSortAsFramesDo) {

@@ -133,9 +133,13 @@ TEST(Video, FailuresLeaveTheEarlierFile) {
     std::ofstream(folder.path() / "ffmpeg") << "#!/bin/sh\necho no such encoder >&2\nexit 1\n";
     std::filesystem::permissions(folder.path() / "ffmpeg", std::filesystem::perms::owner_all);
     const std::string failed = said();
+    // It takes all frames, and fails in the end.
+    std::ofstream(folder.path() / "ffmpeg") << "#!/bin/sh\n/bin/cat >/dev/null\necho no space >&2\nexit 1\n";
+    const std::string failedLate = said();
     ::setenv("PATH", path.c_str(), 1);
     EXPECT_NE(missing.find("film.mp4: cannot be written: that takes the program ffmpeg"), std::string::npos) << missing;
     EXPECT_NE(failed.find("ffmpeg failed: no such encoder"), std::string::npos) << failed;
+    EXPECT_NE(failedLate.find("ffmpeg failed: no space"), std::string::npos) << failedLate;
     EXPECT_EQ(contentOf(file), "earlier");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
 }

@@ -115,6 +115,16 @@ TEST(MeshHits, SmoothNormalsAreInterpolated) {
     expectNear(TestScene({mesh}).geometry.intersect(ray)->ns, {0, 0, 1}, 1e-6f);
 }
 
+TEST(MeshHits, TrianglesHaveMaterialsOfTheirOwn) {
+    TriangleMesh mesh;
+    for (const Vec3f& p : {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(1, 1, 0)}) mesh.positions.push_back(p);
+    mesh.triangles = {{{0, 1, 2}}, {{1, 3, 2}}};
+    mesh.materials = {3, 5};
+    const TestScene scene({mesh});
+    EXPECT_EQ(scene.geometry.intersect({{0.2f, 0.3f, 1}, {0, 0, -1}})->material, 3);
+    EXPECT_EQ(scene.geometry.intersect({{0.8f, 0.7f, 1}, {0, 0, -1}})->material, 5);
+}
+
 TEST(MeshHits, VertexBufferWithoutPaddingIsCopied) {
     TriangleMesh mesh = singleTriangle();
     mesh.positions.shrink_to_fit();

@@ -157,7 +157,7 @@ int walksThatGetOut(const std::vector<Shape>& walls, float c, int walks, int bou
     int out = 0;
     for (int walk = 0; walk < walks; ++walk) {
         Sampler random(7, RandomStream::Test, 0, uint64_t(walk));
-        Ray ray(Vec3f(c), randomDirection(random));
+        Ray ray{Vec3f(c), randomDirection(random)};
         for (int bounce = 0; bounce < bounces; ++bounce) {
             const auto hit = room.geometry.intersect(ray);
             if (!hit) {

@@ -23,6 +23,7 @@ import switches  # noqa: E402
 from faults import FAULTS  # noqa: E402
 
 LONGEST = 600  # seconds of one test program
+PYTHON = "/usr/bin/python3" if Path("/usr/bin/python3").exists() else sys.executable  # numpy is Debian's package of that one
 
 
 def write_if_changed(path, content):
@@ -80,7 +81,7 @@ def noticed(source, build_folder, number, target, tests):
         if done and done.returncode and not failed:
             sys.exit(f"ctest -R {tests} does not run: {done.stdout[-300:]}{done.stderr[-300:]}")
     elif target.endswith(".py"):
-        done = run([sys.executable, source / target, *tests.split()], number, build_folder)
+        done = run([PYTHON, source / target, *tests.split()], number, build_folder)
         failed = [line.split()[1] for line in (done.stderr if done else "").splitlines() if line.startswith(("FAIL: ", "ERROR: "))]
         if done and done.returncode and not failed:
             sys.exit(f"{target} does not run: {done.stderr.strip()[-300:]}")
@@ -88,6 +89,8 @@ def noticed(source, build_folder, number, target, tests):
         done = run([build_folder / "bin" / target, f"--gtest_filter={tests}", "--gtest_brief=1", "--gtest_fail_fast"], number, build_folder)
         failed = [line[13:].split(",")[0].split(" (")[0] for line in (done.stdout if done else "").splitlines()
                   if line.startswith("[  FAILED  ]")]
+        if done and " 0 tests from 0 " in done.stdout:
+            sys.exit(f"{target} has no test {tests}")
     if done and done.returncode == 0:
         return None
     return failed[0] if failed else f"{target} ({'crash' if done else 'time-out'})"

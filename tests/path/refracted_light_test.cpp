@@ -219,5 +219,25 @@ TEST(RefractedLight, AgreesWithPathsThatMeetLightsByChance) {
     }
 }
 
+/// Beside a lamp so wide that walks which scatter forward meet it nearly as often as aimed ones.
+TEST(RefractedLight, AgreesBesideAWideLamp) {
+    const std::string scene = R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 3, "sigma_a": 0.1,
+                   "phase_function": {"type": "henyey_greenstein", "g": 0.8}}],
+        "primitives": [)" + SealedBox +
+                              R"({"type": "quad", "bsdf": {"type": "null"}, "emission": 10,
+                        "transform": {"position": [0, 0, -2], "scale": 30, "rotation": [90, 0, 0]}}],
+        "camera": {"type": "pinhole", "fov": 10, "resolution": 1, "transform": {"position": [0, 0, 4],
+                   "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "path_tracer", "min_bounces": 3, "max_bounces": 16, "transient_time_center": 7,
+                       "transient_time_width": 4}})";
+    const auto plain = renderPaths(scene, {{"integrator.darts=off"}, 64, 500}),
+               aimed = renderPaths(scene, {{"integrator.darts=best"}, 64, 500});
+    EXPECT_GT(aimed->statistics.counter("ways through walls"), 0u);
+    const double error = std::hypot(plain->pixelError(), aimed->pixelError());
+    EXPECT_NEAR(aimed->mean(), plain->mean(), 4.5 * error);
+    EXPECT_LT(error, 0.02 * plain->mean()) << "the test would not see a wrong weight";
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -104,6 +104,31 @@ TEST_P(SmallKernelBiasOf, IsNotMoreThanNoise) {
     EXPECT_LT(errors.bias, errors.claimed.bound);
 }
 
+/// Fog about a lamp, seen straight and in a small mirror beside the camera: as much bias is claimed.
+TEST(KernelBiasBehindMirrors, IsThatOfTheSameViewWithoutOne) {
+    const auto claimed = [](const std::string& from, const std::string& to, const std::string& mirror) {
+        const auto rendered = test::renderPhotons(
+            R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.02, "sigma_s": 0.1}], "primitives": [)" +
+                mirror +
+                R"({"type": "point", "emission": 3, "ext_medium": "fog", "transform": {"position": [0, 0, 0]}}],
+             "camera": {"type": "pinhole", "resolution": [12, 12], "fov": 20, "medium": "fog", "reconstruction_filter": "box",
+                        "transform": {"position": )" +
+                from + R"(, "look_at": )" + to + R"(, "up": [0, 1, 0]}},
+             "integrator": {"type": "progressive_transient_photon_map", "photon_count": 5000, "max_bounces": 3,
+                            "volume_photon_type": "beams", "volume_gather_radius": 0.3, "fixed_volume_radius": true,
+                            "alpha": 1, "volume_alpha": 1, "transient_time_center": 6, "transient_time_width": 3}})",
+            {.overrides = {}, .passes = 16, .bias = true});
+        return RelativeBias::of(rendered->film, rendered->bias).estimate;
+    };
+    const double straight = claimed("[0, 0, 4]", "[0, 0, 0]", "");
+    const double mirrored =
+        claimed("[1, 0, 3]", "[0, 0, 3]", R"({"type": "cube", "bsdf": {"type": "mirror"}, "ext_medium": "fog",
+            "transform": {"position": [0, 0, 3], "rotation": [0, 45, 0], "scale": [1, 1, 0.01]}},)");
+    EXPECT_GT(straight, 0.02);
+    EXPECT_GT(mirrored, 0.5 * straight);
+    EXPECT_LT(mirrored, 2.0 * straight);
+}
+
 const test::Overrides Fixed{"integrator.alpha=1", "integrator.volume_alpha=1"},
     Shrinking{"integrator.alpha=0.5", "integrator.volume_alpha=0.5"};
 

@@ -48,6 +48,14 @@ TEST(DefaultRadius, FollowsNarrowFramesDownToATenth) {
     EXPECT_NE(radiusOf(wall(""), {width + "0.05"}).reason.find("travels in a frame"), std::string::npos);
 }
 
+TEST(DefaultRadius, IsALengthWhateverTheSpeedOfLight) {
+    const std::string width = "integrator.transient_time_width=", speed = "integrator.vacuum_speed_of_light=";
+    EXPECT_FLOAT_EQ(radiusOf(wall(""), {width + "0.1", speed + "0.5"}).radius, 0.05f);
+    EXPECT_FLOAT_EQ(radiusOf(wall(""), {width + "0.025", speed + "2"}).radius, 0.05f);
+    EXPECT_FLOAT_EQ(radiusOf(wall(R"("medium": "fog", )"), {width + "0.025", "media.fog.speed_of_light=2"}).radius,
+                    0.05f);
+}
+
 TEST(DefaultRadius, GrowsWithTheScene) {
     const std::string steady = "integrator.transient_time_width=1e9";
     for (const double scale : {1e-3, 1e3})

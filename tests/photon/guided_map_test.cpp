@@ -64,6 +64,28 @@ TEST_P(GuidedMaps, AgreeWithPathsInEveryFrame) {
     EXPECT_EQ(photons->statistics.counter("non-finite samples"), 0u);
 }
 
+/// Through a lens as wide as the gate: guided paths must also find what arrives in time at its near side alone.
+TEST(GuidedThroughALens, FindAllLightInTheGate) {
+    const Overrides lens{R"(camera.type="thinlens")",
+                         "camera.fov=0.001",
+                         "camera.focus_distance=2",
+                         "camera.aperture_size=0.5",
+                         setting("transient_time_center", 4.5),
+                         setting("transient_time_width", 0.4)};
+    for (const int order : {1, 2}) {
+        const auto mean = [&](const std::string& darts, double paths) {
+            Overrides all = lens;
+            all.push_back("integrator.darts=" + darts);
+            all.push_back(setting("photon_count", paths));
+            return renderPhotons(test::configurationA(order, false), {all, 60, 8});
+        };
+        const auto plain = mean("off", 20000), best = mean("best", 5000);
+        const double error = std::hypot(plain->pixelError(), best->pixelError());
+        EXPECT_NEAR(best->mean(), plain->mean(), 4.5 * error) << order;
+        EXPECT_LT(error, 0.15 * plain->mean()) << order << ": the test would not see a wrong value";
+    }
+}
+
 /// 10 paths cannot aim at 7 frames equally often in one pass, only over passes.
 TEST(GuidedFrames, NeedNotDivideThePaths) {
     const test::SceneFile file(test::fogOverFloor(R"("start_time": 6, "transient_time_width": 0.5, "frame_num": 7)"));

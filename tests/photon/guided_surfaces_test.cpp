@@ -128,6 +128,59 @@ std::pair<double, double> meanOverSeeds(const Render& render) {
     return {sum, std::sqrt((squares - sum * sum) / (Seeds - 1))};
 }
 
+/// A lamp so large that paths which leave smooth metal often meet it, in a mirror beside: photons bring that light
+/// already.
+TEST(GlossySurfaces, CountLampsInMirrorsOnce) {
+    const std::string json =
+        R"({"media": [{"name": "air", "type": "homogeneous", "sigma_a": 0.05, "sigma_s": 1e-5}],
+         "primitives": [{"type": "cube", "bsdf": {"type": "rough_conductor", "material": "Ag", "roughness": 0.15}, "ext_medium": "air",
+                         "transform": {"position": [0, 0, -0.5], "scale": [2, 2, 1]}},
+                        {"type": "cube", "bsdf": {"type": "mirror", "albedo": 0.9}, "ext_medium": "air",
+                         "transform": {"position": [2.5, 0, 4], "scale": [1, 4, 5]}},
+                        {"type": "sphere", "bsdf": {"type": "null"}, "ext_medium": "air", "emission": 10,
+                         "transform": {"position": [0.5, 0, 8], "scale": 4}}],
+         "camera": {"type": "pinhole", "resolution": [16, 16], "fov": 28, "medium": "air", "reconstruction_filter": "box",
+                    "transform": {"position": [-1.5, 0, 3], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+         "integrator": {"type": "progressive_transient_photon_map", "photon_count": 10000, "volume_gather_radius": 0.05,
+                        "gather_radius": 0.1, "gather_photon_count": 100000, "min_bounces": 2, "max_bounces": 3,
+                        "transient_time_center": 11, "transient_time_width": 8}})";
+    const auto [expected, pathError] = meanOverSeeds([&](uint64_t seed) {
+        return renderPaths(json, {{"integrator.darts=off"}, 4, 64, seed});
+    });
+    const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
+        return renderPhotons(json,
+                             {{R"(integrator.darts={"preset": "best", "surface_connections": false})"}, 4, 1, seed});
+    });
+    EXPECT_NEAR(mean, expected, 4.5 * std::hypot(error, pathError) + 0.02 * expected);
+    EXPECT_LT(std::hypot(error, pathError), 0.1 * expected) << "the test would not see a wrong value";
+}
+
+/// A wall of smooth metal in which four lamps show. Connections choose one of the four; reflected paths meet any.
+TEST(GlossySurfaces, ShowSeveralLamps) {
+    const auto lamp = [](const char* position) {
+        return std::string(R"({"type": "sphere", "bsdf": {"type": "null"}, "ext_medium": "air", "emission": 30,
+                               "transform": {"position": )") +
+               position + R"(, "scale": 0.5}},)";
+    };
+    const std::string json =
+        R"({"media": [{"name": "air", "type": "homogeneous", "sigma_a": 0.08, "sigma_s": 1e-5}], "primitives": [)" +
+        lamp("[1, 0.8, 1]") + lamp("[-1, 0.8, 1]") + lamp("[1, -0.8, 1]") + lamp("[-1, -0.8, 1]") +
+        R"({"type": "quad", "bsdf": {"type": "rough_conductor", "material": "Ag", "roughness": 0.3}, "ext_medium": "air",
+            "transform": {"rotation": [90, 0, 0], "scale": 6}}],
+         "camera": {"type": "pinhole", "resolution": [16, 16], "fov": 25, "medium": "air", "reconstruction_filter": "box",
+                    "transform": {"position": [0, 0, 4], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
+         "integrator": {"type": "progressive_transient_photon_map", "photon_count": 100, "volume_gather_radius": 0.05,
+                        "min_bounces": 1, "max_bounces": 2, "transient_time_center": 6, "transient_time_width": 4}})";
+    const auto [expected, pathError] = meanOverSeeds([&](uint64_t seed) {
+        return renderPaths(json, {{"integrator.darts=off"}, 4, 64, seed});
+    });
+    const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
+        return renderPhotons(json, {{BestPreset}, 8, 1, seed});
+    });
+    EXPECT_NEAR(mean, expected, 4.5 * std::hypot(error, pathError));
+    EXPECT_LT(std::hypot(error, pathError), 0.01 * expected) << "the test would not see a wrong value";
+}
+
 /// Fog on rough metal, of which every highlight path gathers a part: without it a third of the light would be missing.
 TEST(GlossySurfaces, ShowFog) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");

@@ -64,6 +64,18 @@ TEST(PhotonMap, DirectLightingAndItsArrivalTime) {
     for (int frame = 0; frame < 20; ++frame) EXPECT_EQ(rendered->mean(frame) > 0.0, frame == 15) << frame;
 }
 
+/// A lamp that fills the left half of a pixel: passes of a single camera path see it or not.
+TEST(PhotonMap, PassesHaveCameraPathsOfTheirOwn) {
+    const auto rendered = renderPhotons(R"({"primitives": [
+        {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0}, "emission": 2, "transform": {"position": [-1, 0, 0], "scale": [2, 1, 2]}}],
+        "camera": {"type": "orthographic", "orthographic_size": 1, "resolution": [1, 1], "reconstruction_filter": "box",
+                   "transform": {"position": [0, 2, 0], "look_at": [0, 0, 0], "up": [0, 0, 1]}},
+        "integrator": {"type": "progressive_transient_photon_map", "photon_count": 10, "max_bounces": 1,
+                       "start_time": 0, "transient_time_width": 10, "frame_num": 1}})",
+                                        {{}, 400, 1});
+    EXPECT_NEAR(rendered->mean(), 0.1, 4.5 * 0.1 / std::sqrt(400.0)) << "half of 2, over a gate of 10";
+}
+
 TEST(PhotonMap, DirectLightingIsOneBounce) {
     const auto mean = [](const std::string& most, const std::string& least) {
         return renderPhotons(test::litFloor(20), {{"integrator.photon_count=4000", "integrator.max_bounces=" + most,

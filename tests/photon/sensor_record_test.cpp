@@ -70,6 +70,21 @@ TEST(SensorRecord, HoldsStraightPiecesAndVisiblePoints) {
     EXPECT_NE(recordSensorPaths(*loaded.scene, {false, false}, 1, 1, {}, statistics).x, record.x) << "another sample";
 }
 
+/// Slower in vacuum, slower still in clouds and ink.
+TEST(SensorRecord, TimesGoByTheSpeedOfEachRegion) {
+    const test::SceneFile file(Bench);
+    const std::string slower = ".speed_of_light=0.25";
+    const LoadedScene loaded = loadScene(file.path(), {{},
+                                                       {"integrator.vacuum_speed_of_light=0.5", "media.fog" + slower,
+                                                        "media.haze" + slower, "media.ink" + slower}});
+    Statistics statistics;
+    const SensorRecord record = recordSensorPaths(*loaded.scene, {true, false}, 1, 0, {.points = true}, statistics);
+    ASSERT_EQ(record.points.size(), 12u);
+    for (size_t i = 0; i < 12; ++i)
+        EXPECT_NEAR(record.points[i].time, double((17.0f / 0.5f + 7.0f / 0.25f) / record.z[i]), 5e-3)
+            << "twice through fog of 2, ink of 0.5 and haze of 1; 24 in all";
+}
+
 /// What a visitor is shown, in words.
 struct Listing {
     std::vector<std::string> seen;

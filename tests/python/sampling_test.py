@@ -87,6 +87,10 @@ class Sampling(unittest.TestCase):
         D = 1 / (3 * (0.1 + 0.9 * 0.5))
         expected = -1.5 * np.log(4 * np.pi * D * s) - rho ** 2 / (4 * D * s) - 0.1 * s
         np.testing.assert_allclose(sampling.diffusion_log(rho, s, 0.1, 0.9, 0.5), expected)
+        q = 1 - (rho / s) ** 2
+        x = 0.9 * s * q ** 0.75
+        paasschens = (np.log(q) / 8 - 1.5 * np.log(4 * np.pi * s / (3 * 0.9)) - s + x + np.log1p(2.026 / x) / 2)
+        np.testing.assert_allclose(sampling.causal_log(rho, s, 0.1, 0.9), paasschens, rtol=1e-5)
         self.assertEqual(sampling.causal_log(2.0, 1.0, 0.1, 0.9), -np.inf)
 
     def test_weights_of_distances_average_to_the_transmittance(self):

@@ -5,6 +5,8 @@
 
 #include "tungsten/film/ImageIo.h"
 #include "tungsten/film/ToneMap.h"
+#include "tungsten/render/PlannedImages.h"
+#include "tungsten/render/ResultDescription.h"
 #include "tungsten/texture/Texture.h"
 
 #include <gtest/gtest.h>
@@ -230,6 +232,51 @@ TEST(Outputs, AnImageThatFailsDoesNotKeepTheOthersFromBeingWritten) {
     };
     EXPECT_THROW(session.run(), InputError);
     EXPECT_TRUE(session.has("image.pfm"));
+}
+
+TEST(Outputs, CheckpointsAreOfTheMainImagesOnly) {
+    OutputFiles outputs;
+    outputs.ldr = "a.png";
+    outputs.hdr = "b.pfm";
+    outputs.colors = {{"c.png", "d.exr"}};
+    outputs.series = {{"e.png", ""}};
+    std::vector<fs::path> files;
+    for (const PlannedImage& image : plannedImages(outputs, 3, "_checkpoint")) files.push_back(image.file);
+    EXPECT_EQ(files, (std::vector<fs::path>{"a_checkpoint.png", "b_checkpoint.pfm"}));
+    EXPECT_EQ(plannedImages(outputs, 3, "").size(), 9u) << "four, the cube with its metadata, and three frames";
+}
+
+/// Two frames of half a unit from 3 on, in a scene of centimetres where light takes two units of time for one.
+TEST(ResultDescription, EdgesAndUnitsAreThoseOfTheScene) {
+    Scene scene;
+    scene.transport.gate = {false, false, 3.0, 0.5, 2};
+    scene.transport.vacuumSpeed = 0.5f;
+    EXPECT_EQ(frameEdges(scene.transport.gate), (std::vector<double>{3.0, 3.5, 4.0}));
+    EXPECT_TRUE(frameEdgesInPicoseconds(scene).empty()) << "the scene does not say how long its unit is";
+    scene.lengthUnit = 0.01;
+    const double picoseconds = 1e12 * 0.5 * 0.01 / 299792458.0;
+    EXPECT_DOUBLE_EQ(picosecondsPerTime(scene), picoseconds);
+    const std::vector<double> edges = frameEdgesInPicoseconds(scene);
+    ASSERT_EQ(edges.size(), 3u);
+    for (size_t i = 0; i < 3; ++i) EXPECT_DOUBLE_EQ(edges[i], (3.0 + 0.5 * double(i)) * picoseconds);
+}
+
+TEST(ResultDescription, BatchMeansHaveTheUnitsOfTheMean) {
+    Film film(4, 4, 1, FilmContents{3, true, 2, 4});
+    for (const float value : {2.0f, 6.0f}) {
+        film.beginPass();
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) film.set(0, x, y, Rgb(value));
+        film.endPass(1.0);
+    }
+    Scene scene;
+    scene.transport.gate = {false, false, 3.0, 0.25, 1};
+    for (const bool integrate : {false, true}) {
+        scene.transport.integrateOverGate = integrate;
+        const float units = integrate ? 0.25f : 1.0f;
+        EXPECT_EQ(batchMeans(film, scene).values,
+                  (std::vector<float>{2 * units, 2 * units, 2 * units, 6 * units, 6 * units, 6 * units}));
+    }
 }
 
 } // namespace

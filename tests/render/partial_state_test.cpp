@@ -3,6 +3,9 @@
 #include "render/rendered_scene.h"
 
 #include "tungsten/film/ImageIo.h"
+#include "tungsten/render/PartialStateHeader.h"
+#include "tungsten/render/PartialStateReader.h"
+#include "tungsten/render/RoundPass.h"
 
 #include <sys/resource.h>
 
@@ -154,6 +157,8 @@ TEST_F(Partial, PassesThatOverlapOrMissAreNamed) {
                    {state("5-8") + ": passes 3 to 4 before its own are missing: no state holds them"});
     refusesToMerge({state("2-4")}, 1, {"passes 0 to 1 before its own are missing"});
     refusesToMerge({state("0-3"), state("0-3")}, 1, {"overlap"});
+    ASSERT_EQ(passes("4:8").exitCode, 0);
+    refusesToMerge({state("0-3"), state("4-8")}, 1, {state("4-8") + ": pass 3 before its own are missing"});
 }
 
 TEST_F(Partial, StatesOfOtherRendersAreRefused) {
@@ -224,6 +229,80 @@ TEST_F(Partial, AFullDiskLeavesNoState) {
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_NE(result.err.find(state("0-4") + ": cannot be written"), std::string::npos) << result.err;
     EXPECT_TRUE(filesOf(out()).empty());
+}
+
+/// Rows that a pass leaves dark are dark, whatever the pass before has brought there.
+TEST(PartialState, PassesOfOtherRowsAreFoldedApart) {
+    const test::SceneFile file(test::foggyBox(test::Paths));
+    const LoadedScene loaded = loadScene(file.path());
+    const fs::path state = file.path().parent_path() / "a.state";
+    const Vec2i size = loaded.scene->camera.resolution;
+    const auto made = [&] { return Film(size.x, size.y, 1, loaded.scene->film); };
+    Film one = made(), merged = made();
+    std::ofstream out(state, std::ios::binary);
+    PartialStateWriter writer(out, state.string(), PartialIdentity::of(loaded, 5, 2, {}), 0);
+    for (const auto& [row, samples] : {std::pair{3, 2u}, {7, 2u}, {7, 1u}}) {
+        one.beginPass();
+        one.set(0, 1, row, Rgb(float(row)));
+        writer.add(one, samples);
+        one.endPass(double(samples));
+    }
+    writer.finish("{}", 1.5);
+    out.close();
+    const PartialStateReader reader(state);
+    EXPECT_EQ(reader.samples(), (std::vector<uint32_t>{2, 2, 1}));
+    EXPECT_EQ(reader.cpuSeconds(), 1.5);
+    reader.fold(merged);
+    EXPECT_EQ(merged.mean(0).pixels, one.mean(0).pixels);
+    EXPECT_FLOAT_EQ(merged.mean(0).at(1, 3).x, 3.0f * 2.0f / 5.0f);
+    EXPECT_FLOAT_EQ(merged.mean(0).at(1, 7).x, 7.0f * 3.0f / 5.0f);
+    EXPECT_EQ(merged.standardError(0).pixels, one.standardError(0).pixels);
+}
+
+TEST(PartialStateHeader, KeepsWhatImagesAndMetadataNeed) {
+    for (const bool integrate : {false, true}) {
+        const auto scene = std::make_shared<Scene>();
+        scene->camera.resolution = Vec2i(7, 5);
+        scene->transport.gate = {false, false, 2.0, 0.5, 3};
+        scene->transport.vacuumSpeed = 0.5f;
+        scene->transport.integrateOverGate = integrate;
+        scene->transport.cameraUnwarped = !integrate;
+        scene->cameraRegion.speed = 0.25f;
+        scene->lengthUnit = 0.01;
+        PartialIdentity identity;
+        identity.sppStep = 4;
+        identity.scene = scene;
+        const PartialStateHeader header = PartialStateHeader::of(identity, 3);
+        EXPECT_TRUE(header.plausible());
+        EXPECT_EQ(header.firstPass, 3u);
+        const std::shared_ptr<Scene> kept = header.scene();
+        EXPECT_EQ(kept->camera.resolution, Vec2i(7, 5));
+        EXPECT_EQ(kept->transport.gate.start, 2.0);
+        EXPECT_EQ(kept->transport.gate.end(), 3.5);
+        EXPECT_EQ(kept->transport.gate.frames, 3);
+        EXPECT_EQ(kept->transport.vacuumSpeed, 0.5f);
+        EXPECT_EQ(kept->cameraRegion.speed, 0.25f);
+        EXPECT_EQ(kept->transport.integrateOverGate, integrate);
+        EXPECT_EQ(kept->transport.cameraUnwarped, !integrate);
+        EXPECT_EQ(kept->lengthUnit, 0.01);
+    }
+}
+
+/// Passes 0 to 7 of a render of 15 samples in steps of 2.
+TEST(RoundPass, PartsOfARenderHaveItsSamples) {
+    SessionOptions options;
+    options.spp = 15;
+    options.sppStep = 2;
+    EXPECT_EQ(samplesOf(options), 15u);
+    options.passes = PassRange{2, 5};
+    EXPECT_EQ(samplesOf(options), 6u);
+    options.passes = PassRange{6, 8};
+    EXPECT_EQ(samplesOf(options), 3u);
+    const RoundPass second{{2, 1.0, 2.0}, 1, 2.0}; // of a session that begins with the render's pass 6
+    const PassInfo pass = second.info(6, 2, 9);
+    EXPECT_EQ(pass.index, 7u);
+    EXPECT_EQ(pass.firstSample, 14u);
+    EXPECT_EQ(pass.seed, 9u);
 }
 
 } // namespace

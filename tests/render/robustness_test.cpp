@@ -96,6 +96,21 @@ TEST_F(Robustness, AHangupWritesWhatIsThereAndABrokenPipeEndsNothing) {
     EXPECT_TRUE(fs::exists(out() / "box.png"));
 }
 
+/// Who starts it under nohup wants it to go on.
+TEST_F(Robustness, AHangupThatIsIgnoredEndsNothing) {
+    const auto before = std::signal(SIGHUP, SIG_IGN); // handed on to the command
+    Command command({"--spp", "100000000", "-c", "1ms", "-d", out().string(), scene.path().string()});
+    std::signal(SIGHUP, before);
+    ASSERT_TRUE(command.writes(out() / "box_checkpoint.pfm"));
+    command.send(SIGHUP);
+    for (int i = 0; i < 3; ++i) {
+        fs::remove(out() / "box_checkpoint.pfm");
+        ASSERT_TRUE(command.writes(out() / "box_checkpoint.pfm")) << "it goes on";
+    }
+    command.send(SIGINT);
+    EXPECT_EQ(command.wait().exitCode, 0);
+}
+
 TEST_F(Robustness, AnInterruptBeforeTheLastSceneIsNoSuccess) {
     const SceneFile second(foggyBox(test::Paths));
     Command command({"--spp", "100000000", "-c", "1ms", scene.path().string(), second.path().string()});

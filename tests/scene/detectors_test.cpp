@@ -40,6 +40,20 @@ TEST(Detectors, AreARowOfPixels) {
     EXPECT_EQ(detectorWarnings(R"("detectors": [{"radius": 0.1}])"), "");
 }
 
+/// Their own axes, not the world's, are what positions and directions count along.
+TEST(Detectors, TurnWithTheirTransform) {
+    const SceneFile file(scene(R"("transform": {"position": [1, 0, 0], "look_at": [5, 0, 0], "up": [0, 1, 0]},
+        "detectors": [{"position": [0, 0.5, 2], "radius": 0.1}, {"direction": [0, 3, 0], "radius": 0.1},
+        {"direction": [0, 0.6, 0.8], "radius": 0.1}])"));
+    const LoadedScene loaded = loadScene(file.path());
+    const auto& row = std::get<Detectors>(loaded.scene->camera.model).row;
+    ASSERT_EQ(row.size(), 3u);
+    EXPECT_LT((row[0].position - Vec3f(3, 0.5f, 0)).length(), 1e-6f);
+    EXPECT_LT((row[0].frame.n - Vec3f(1, 0, 0)).length(), 1e-6f);
+    EXPECT_LT((row[1].frame.n - Vec3f(0, 1, 0)).length(), 1e-6f);
+    EXPECT_LT((row[2].frame.n - Vec3f(0.8f, 0.6f, 0)).length(), 1e-6f);
+}
+
 TEST(Detectors, RefuseWhatIsNone) {
     const std::vector<std::pair<std::string, std::string>> bad{
         {R"("medium": "")", "camera.detectors: expected an array of 1 to 65536"},

@@ -43,6 +43,26 @@ TEST(Interaction, BacksAreBlackBesideRefractionAndWithoutTwoSidedShading) {
     EXPECT_EQ(valueSeenFrom(-1.0f, Leaf, R"("enable_two_sided_shading": false)"), Rgb(0.0f));
 }
 
+/// What leaves on the side that the light came from is kept, at a front and at a back, whose frame is turned around.
+TEST(Interaction, ConsistencyChecksLookAtBothSidesAlike) {
+    const test::SceneFile file(R"({"primitives": [{"type": "quad", "bsdf": )" + Leaf + "}]}");
+    const LoadedScene loaded = loadScene(file.path());
+    const Vec3f up(0.0f, 1.0f, 0.0f);
+    for (const Vec3f& side : {up, -up}) {
+        const auto hit = loaded.scene->geometry->intersect({side, -side});
+        SurfaceInteraction surface = makeInteraction(*loaded.scene, hit.value(), -side);
+        EXPECT_GT(surface.frame.n.dot(side), 0.999f);
+        EXPECT_TRUE(surface.consistent(side, true));
+        EXPECT_TRUE(surface.consistent(-side, true)) << "through it";
+        // A shading normal 53 degrees off: a direction before the one and behind the other surface.
+        surface.frame = Frame(side * 0.6f + Vec3f(0.8f, 0.0f, 0.0f));
+        const Vec3f between = Vec3f(1.0f, 0.0f, 0.0f) - side * 0.2f;
+        EXPECT_FALSE(surface.consistent(between.normalized(), true));
+        EXPECT_TRUE(surface.consistent(between.normalized(), false));
+        EXPECT_TRUE(surface.consistent(side, true));
+    }
+}
+
 /// Into fog, out of it, reflected from within, and from without, where the box names nothing.
 TEST(Interaction, RegionsAreThoseOfTheSideThatAPathLeavesFrom) {
     const test::SceneFile file(

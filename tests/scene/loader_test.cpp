@@ -158,6 +158,32 @@ TEST(SceneLoader, BitmapsThatDifferInAScaleFarBelowOneAreTwo) {
     EXPECT_FLOAT_EQ(albedo(1), 1.5e-7f);
 }
 
+TEST(SceneLoader, ABitmapThatIsClampedAndOneThatIsNotAreTwo) {
+    const SceneFile file(R"({"bsdfs": [
+        {"name": "a", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "interpolate": false}},
+        {"name": "b", "type": "lambert", "albedo": {"type": "bitmap", "file": "grey.pfm", "interpolate": false,
+                                                    "clamp": true}}],
+        "primitives": [{"type": "quad", "bsdf": "a"}, {"type": "quad", "bsdf": "b"}]})");
+    Image grey(2, 1);
+    grey.pixels = {Rgb(0.25f), Rgb(0.75f)};
+    writePfm(file.path().parent_path() / "grey.pfm", grey);
+    const LoadedScene loaded = loadScene(file.path());
+    const auto beyond = [&](size_t i) { return loaded.scene->primitives[i].bsdfs[0]->albedo.rgb({1.25f, 0.5f}).x; };
+    EXPECT_FLOAT_EQ(beyond(0), 0.25f);
+    EXPECT_FLOAT_EQ(beyond(1), 0.75f);
+}
+
+TEST(SceneLoader, OrenNayarTakesRoughnessOrTheFacetsDeviation) {
+    const SceneFile file(R"({"primitives": [{"type": "quad", "bsdf": {"type": "oren_nayar", "sigma": 0.4}},
+        {"type": "quad", "bsdf": {"type": "oren_nayar", "sigma": 0.4, "roughness": 0.3}}]})");
+    const LoadedScene loaded = loadScene(file.path());
+    const auto roughness = [&](size_t i) {
+        return std::get<OrenNayar>(loaded.scene->primitives[i].bsdfs[0]->model).roughness.scalar({0, 0});
+    };
+    EXPECT_FLOAT_EQ(roughness(0), std::sqrt(2.0f) * 0.4f);
+    EXPECT_FLOAT_EQ(roughness(1), 0.3f);
+}
+
 /// Where nothing is refracted light goes on, as through a smooth interface.
 TEST(SceneLoader, RoughDielectricsWithoutContrastLetEverythingThrough) {
     for (const char* ior : {"1", "1.00001", "0.99999"}) {

@@ -259,6 +259,7 @@ TEST(Texture, ConstantsAndScaling) {
     EXPECT_TRUE(constant.isConstant());
     EXPECT_FLOAT_EQ(constant.scalar({0, 0}), 0.5f);
     expectRgb(constant.scaled({2, 1, 0}).rgb({0, 0}), {0.4f, 0.4f, 0});
+    expectRgb(constant.scaled({2, 1, 0}).scaled({0.5f, 3, 7}).rgb({0, 0}), {0.2f, 1.2f, 0});
     const FileFolder folder;
     const Texture bitmap(std::shared_ptr<const Bitmap>(loadCorners(folder, true)));
     expectRgb(bitmap.scaled({2, 3, 4}).rgb({0.25f, 0.25f}), {0, 0, 4});

@@ -47,6 +47,25 @@ INSTANTIATE_TEST_SUITE_P(
                         R"("transient_time_center": 5.6, "transient_time_width": 0.05)", 0, 50}),
     [](const auto& test) { return test.param.name; });
 
+/// Thin fog over a bright floor: light that the floor sends into the fog, and little else.
+TEST(SlicesAboveFloors, AgreeWithBeams) {
+    const std::string scene = R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.1, "sigma_s": 0.02}],
+        "primitives": [{"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.8}, "ext_medium": "fog", "transform": {"scale": 8}},
+                       {"type": "point", "emission": 4, "ext_medium": "fog", "transform": {"position": [0, 1, 0]}}],
+        "camera": {"type": "pinhole", "resolution": [2, 2], "fov": 15, "medium": "fog", "reconstruction_filter": "box",
+                   "transform": {"position": [0, 0.8, 3], "look_at": [0, 0.8, 0], "up": [0, 1, 0]}},
+        "integrator": {"type": "progressive_transient_photon_map", "min_bounces": 2, "max_bounces": 3,
+                       "include_surfaces": false, "alpha": 1, "volume_alpha": 1,
+                       "volume_gather_radius": 0.03, "transient_time_center": 5.2, )";
+    const Mean beams = meanOf(scene + R"("transient_time_width": 0.2}})", "beams", "20000", 80, 0);
+    const Mean slices =
+        meanOf(scene + R"("transient_time_width": 0.05, "delta_time_gate": true}})", "volumes", "5000", 20, 0);
+    const double error = std::hypot(slices.error[0], beams.error[0]);
+    EXPECT_NEAR(slices.value[0], beams.value[0], 4.5 * error + 0.02 * beams.value[0]);
+    EXPECT_LT(error, 0.06 * beams.value[0]) << "the test would not see a wrong value";
+}
+
 /// With all light at one speed straight rays may look at a choice of the records while others fold; slices have none.
 TEST(SlicesBesideMirrors, AgreeWithBeams) {
     std::string json = boxOfFog(true, R"("transient_time_center": 2, "transient_time_width": 0.4)");

@@ -6,6 +6,9 @@
 
 #include "tungsten/core/Warp.h"
 #include "tungsten/film/Film.h"
+#include "tungsten/scene/SceneLoader.h"
+
+#include "support/SceneFile.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +18,9 @@ namespace {
 struct SplatCase {
     const char* name;
     bool unwarped, orthographic;
-    int frames = 0; ///< 0: a delta gate
+    int frames = 0;        ///< 0: a delta gate
+    float speed = 1.0f;    ///< of light; all times are in proportion
+    bool rayByRay = false; ///< the isotropic fog has a phase function that is not drawn in registers of rays
 };
 
 /// Forward scattering, isotropic and coloured fog; a slanted camera.
@@ -25,14 +30,19 @@ Scene fogAtGate(const SplatCase& c) {
         Medium fog;
         fog.model = Homogeneous{Rgb(0.2f), i == 2 ? Rgb(0.5f, 1.0f, 2.0f) : Rgb(0.7f)};
         if (i != 1) fog.phase.model = HenyeyGreenstein{i == 0 ? 0.4f : -0.6f};
+        if (i == 1 && c.rayByRay) fog.phase.model = Rayleigh{};
+        fog.speedOfLight = c.speed;
         scene.media.push_back(fog);
     }
+    scene.cameraRegion.speed = c.speed;
     scene.emitters.push_back({"lamp", PointEmitter{Vec3f(1.0f, 2.5f, 3.5f), Rgb(3.0f, 2.0f, 1.0f)}});
     scene.transport.minBounces = 2;
     scene.transport.maxBounces = 7;
     scene.transport.cameraUnwarped = c.unwarped;
     scene.transport.gate = {false, true, 2.5, 0.0, 1};
     if (c.frames > 0) scene.transport.gate = {false, false, 1.75, 0.25, c.frames};
+    scene.transport.gate.start /= double(c.speed);
+    scene.transport.gate.frameWidth /= double(c.speed);
     if (c.orthographic) scene.camera.model = Orthographic{1.5f};
     scene.camera.resolution = {37, 21};
     const Frame frame(Vec3f(0.4f, -0.3f, 0.8f).normalized());
@@ -41,7 +51,8 @@ Scene fogAtGate(const SplatCase& c) {
 }
 transport::Sensor sensorOf(const Scene& scene) {
     if (!scene.transport.gate.delta) return scene.transport.gate;
-    return TimeGate{false, false, scene.transport.gate.start - 0.05, 0.1, 1};
+    const auto speed = double(scene.cameraRegion.speed);
+    return TimeGate{false, false, scene.transport.gate.start - 0.05 / speed, 0.1 / speed, 1};
 }
 
 std::vector<CollapsedFlights> randomRecords(const Scene& scene, int count) {
@@ -50,7 +61,7 @@ std::vector<CollapsedFlights> randomRecords(const Scene& scene, int count) {
     for (int i = 0; i < count; ++i) {
         CollapsedFlights r{};
         r.shape = FlightShape(i % 5);
-        r.time = double(2.0f * sampler.next1D());
+        r.time = double(2.0f * sampler.next1D() / scene.cameraRegion.speed);
         r.base = scene.camera.position() + warp::squareToSphere(sampler.next2D()) * (2.5f * sampler.next1D());
         for (Vec3f& direction : r.directions) direction = warp::squareToSphere(sampler.next2D());
         r.power = Rgb(sampler.next1D(), sampler.next1D(), 1.0f);
@@ -112,8 +123,9 @@ std::vector<FrameSums> gatheredByFrame(const Scene& scene, const transport::Sens
             const Vec3f origin = record.origins.empty() ? record.origin : record.origins[pixel];
             const float start = piece.start[pixel];
             FrameSums sums(frames, Vec3d(0.0));
-            gather.gather({origin + direction * start, direction, piece.end[pixel] - start, double(start), 1.0,
-                           piece.interactions[pixel], piece.medium[pixel]},
+            const double inverseSpeed = 1.0 / double(scene.cameraRegion.speed);
+            gather.gather({origin + direction * start, direction, piece.end[pixel] - start,
+                           double(start) * inverseSpeed, inverseSpeed, piece.interactions[pixel], piece.medium[pixel]},
                           sums);
             const Rgb& t = piece.throughput[pixel];
             for (size_t frame = 0; frame < frames; ++frame)
@@ -170,15 +182,17 @@ TEST_P(SliceSplat, BringsWhatGathersBring) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cameras, SliceSplat,
-                         testing::Values(SplatCase{"Warped", false, false}, SplatCase{"Unwarped", true, false},
-                                         SplatCase{"UnwarpedOrthographic", true, true},
-                                         SplatCase{"WarpedOrthographic", false, true},
-                                         SplatCase{"WarpedFrames", false, false, 5},
-                                         SplatCase{"UnwarpedFrames", true, false, 5},
-                                         SplatCase{"UnwarpedOrthographicGate", true, true, 1},
-                                         SplatCase{"WarpedOrthographicGate", false, true, 1}),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Cameras, SliceSplat,
+    testing::Values(SplatCase{"Warped", false, false}, SplatCase{"Unwarped", true, false},
+                    SplatCase{"UnwarpedOrthographic", true, true}, SplatCase{"WarpedOrthographic", false, true},
+                    SplatCase{"WarpedFrames", false, false, 5}, SplatCase{"UnwarpedFrames", true, false, 5},
+                    SplatCase{"UnwarpedOrthographicGate", true, true, 1},
+                    SplatCase{"WarpedOrthographicGate", false, true, 1}, SplatCase{"WarpedFast", false, false, 0, 2.0f},
+                    SplatCase{"UnwarpedSlowFrames", true, false, 5, 0.5f},
+                    SplatCase{"WarpedFastFrames", false, false, 5, 2.0f},
+                    SplatCase{"WarpedRayByRay", false, false, 1, 1.0f, true}),
+    [](const auto& test) { return test.param.name; });
 
 /// Alike records, the older ones much darker: drawn at random, and right on average.
 TEST(FrameShares, MakeUpForWhatTheyLeaveOut) {
@@ -209,6 +223,40 @@ TEST(FrameShares, MakeUpForWhatTheyLeaveOut) {
                 EXPECT_LT(drawn, 0.1 * n) << "frame " << frame;
             else
                 EXPECT_EQ(drawn, n) << "frame " << frame;
+        }
+}
+
+/// Light that meets a wall where it starts goes nowhere. (The wall itself lies elsewhere.)
+TEST(SliceGather, EndsFirstFlightsAtWalls) {
+    const test::SceneFile file(R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0.1, "sigma_s": 0.5}],
+        "primitives": [{"type": "sphere", "bsdf": {"type": "lambert"}, "transform": {"position": [0, 0, -90]}},
+                       {"type": "point", "emission": 1, "transform": {"position": [0, 1, 0]}}],
+        "camera": {"type": "pinhole", "medium": "fog", "resolution": 4,
+                   "transform": {"position": [0, 0, 0], "look_at": [0, 0, 1]}},
+        "integrator": {"type": "progressive_transient_photon_map", "start_time": 0, "transient_time_width": 6, "frame_num": 1}})");
+    const LoadedScene loaded = loadScene(file.path(), {});
+    const Scene& scene = *loaded.scene;
+    const transport::Sensor sensor(scene.transport.gate);
+    for (const FlightShape shape : {FlightShape::Plane, FlightShape::Volume, FlightShape::Hypervolume})
+        for (const float reach : {Infinity, 0.0f}) {
+            Sampler sampler(6, RandomStream::Test, 0, 0);
+            std::vector<CollapsedFlights> records(2000);
+            for (CollapsedFlights& r : records) {
+                r.shape = shape;
+                r.emitter = -1;
+                r.base = Vec3f(0.0f, 0.0f, 1.5f) + warp::squareToSphere(sampler.next2D());
+                for (Vec3f& direction : r.directions) direction = warp::squareToSphere(sampler.next2D());
+                r.power = Rgb(1.0f);
+                r.reach = reach;
+            }
+            const SliceGather gather(scene, sensor, records, 0.05f);
+            FrameSums sums(1, Vec3d(0.0));
+            const uint64_t met = gather.gather({Vec3f(0.0f), Vec3f(0, 0, 1), 3.0f, 0.0, 1.0, 0, 0}, sums);
+            if (reach > 0.0f)
+                EXPECT_GT(met, 50u) << int(shape);
+            else
+                EXPECT_EQ(met, 0u) << int(shape);
         }
 }
 
