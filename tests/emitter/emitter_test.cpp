@@ -214,6 +214,10 @@ TEST(Emitter, EnvironmentMapsAreImportanceSampled) {
     const auto light = sampleDirect(sky, Vec3f(0.0f), s.next2D());
     EXPECT_NEAR(light->weight.x * light->pdf, environmentRadiance(sky, light->direction).x,
                 1e-3f * light->weight.x * light->pdf);
+    for (int i = 0; i < 100; ++i) {
+        const auto drawn = sampleDirect(sky, Vec3f(0.0f), s.next2D());
+        EXPECT_NEAR(drawn->pdf, pdfDirectInfinite(sky, drawn->direction), 1e-3f * drawn->pdf);
+    }
 }
 
 TEST(Power, ConversionsOfTheFormat) {

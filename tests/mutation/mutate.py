@@ -11,6 +11,7 @@ import argparse
 import concurrent.futures
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -57,7 +58,7 @@ def copy_tree(source):
 
 def build(source, build_folder, jobs):
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    options = [f"-DTUNGSTEN_{name}=ON" for name in ("TESTS", "PYTHON", "BENCHMARKS")]
+    options = [f"-DTUNGSTEN_{name}=ON" for name in ("TESTS", "PYTHON")]
     subprocess.run(["cmake", "-S", source, "-B", build_folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", *options, *launcher],
                    stdout=subprocess.DEVNULL, check=True)
     subprocess.run(["cmake", "--build", build_folder, f"-j{jobs}"], check=True)
@@ -126,6 +127,7 @@ def main():
     parser.add_argument("--table", action="store_true", help="print rows of a table of docs/accuracy.md")
     parser.add_argument("--no-build", action="store_true", help="the build is there, with the faults as they are")
     arguments = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # else ignored by what tests interrupt, where this runs in the background
     source, build_folder = arguments.build.resolve() / "source", arguments.build.resolve() / "build"
     numbers = [number for number in arguments.only or range(len(FAULTS)) if FAULTS[number][0].startswith(arguments.folder)]
     if not arguments.no_build:

@@ -172,6 +172,7 @@ TEST(LightTracer, ShowsALaserThroughSlowGlassAndOffVarnish) {
         "camera": {"type": "pinhole", "fov": 40, "reconstruction_filter": "tent",
                    "transform": {"position": [0, 0, 4], "look_at": [0, 0, -1.5], "up": [0, 1, 0]}},
         "integrator": {"max_bounces": 10)";
+    expectAgreement(scene + "}}", {}, {128, 256});
     const std::string frames = R"(, "start_time": 20.5, "transient_time_width": 1, "frame_num": 3}})";
     expectAgreement(scene + frames, {}, {256, 512});
 }
