@@ -70,7 +70,7 @@ float Vertex::pdfReverse(const Vec3f& direction) const {
 }
 
 Ray Vertex::leave(const Vec3f& direction) const {
-    return {position(), direction, margin().beyond(direction)};
+    return margin().leave(position(), direction);
 }
 
 Region Vertex::regionTowards(const Vec3f& direction, const Region& region) const {

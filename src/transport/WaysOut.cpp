@@ -84,9 +84,9 @@ void WaysOut::look(const Start& start, const Region& region, const Aim& aim, dar
     const Vec3f toAim = aim.position - position;
     const float distance = toAim.length();
     const Vec3f direction = toAim / distance;
-    const auto boundary =
-        findExit({position, direction, start.margin.beyond(direction), aim.margin.before(direction, distance)}, region,
-                 aim, residual, rays);
+    Ray way = start.margin.leave(position, direction);
+    way.tMax = aim.margin.before(direction, distance);
+    const auto boundary = findExit(way, region, aim, residual, rays);
     if (boundary) leave(*boundary, start.position, region, aim, residual, rays);
 }
 
@@ -94,6 +94,7 @@ std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region
                                                    darts::Residual& residual, uint64_t& rays) const {
     std::optional<Boundary> hole; // the last one entered
     Region at = region;
+    float before = 0.0f; // length of the way up to the ray's origin
     for (int layer = 0; layer < tuning::MostLayers; ++layer) {
         ++rays;
         const auto hit = scene_.geometry->intersect(way);
@@ -106,7 +107,7 @@ std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region
         const Region beyond = regionBehind(scene_, *hit, way.direction, at);
         const bool outward = way.direction.dot(hit->ng) >= 0.0f;
         const float index = outward ? relativeIndex(bsdf) : 1.0f / relativeIndex(bsdf);
-        const Boundary boundary{{{hit->position, outward ? hit->ng : -hit->ng}, hit->t},
+        const Boundary boundary{{{hit->position, outward ? hit->ng : -hit->ng}, before + hit->t},
                                 index,
                                 passesStraight(bsdf),
                                 beyond,
@@ -116,7 +117,8 @@ std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region
         if (!inside || !boundary.straight) return boundary;
         if (beyond.medium != region.medium && at.medium == region.medium) hole = boundary;
         at = beyond;
-        way.tMin = hit->margin().beyond(way.direction, hit->t);
+        before += hit->t;
+        way = hit->rest(way);
     }
     return std::nullopt;
 }
@@ -161,13 +163,13 @@ void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region&
     const Body& own = bodies_[size_t(region.medium)];
     const float cosine = std::abs(way.direction.dot(boundary.exit.face.normal));
     Region beyond = boundary.beyond;
-    SurfaceMargin margin = boundary.margin;
+    Ray ahead = boundary.margin.leave(way.at(way.tMin), way.direction);
+    ahead.tMax = way.tMax - way.tMin;
     float from = way.tMin, slow = 0.0f; // length, and the time it takes as a length at the body's speed
     for (int layer = 0; layer < tuning::MostLayers && from < way.tMax; ++layer) {
         ++rays;
-        const auto hit =
-            scene_.geometry->intersect({way.origin, way.direction, margin.beyond(way.direction, from), way.tMax});
-        const float to = hit ? hit->t : residual.C, length = to - from;
+        const auto hit = scene_.geometry->intersect(ahead);
+        const float to = hit ? from + hit->t : residual.C, length = to - from;
         const Body* body = beyond.medium < 0 ? nullptr : &bodies_[size_t(beyond.medium)];
         if (body && body->reducedSigmaT * length > tuning::ThinDepth)
             residual.exit.faces[0].beyond += length * cosine * std::sqrt(own.diffusion() / body->diffusion());
@@ -176,7 +178,7 @@ void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region&
         from = to;
         if (!hit || !passesStraight(scene_.bsdfOf(*hit))) break;
         beyond = regionBehind(scene_, *hit, way.direction, beyond);
-        margin = hit->margin();
+        ahead = hit->rest(ahead);
     }
     slow += std::max(residual.C - from, 0.0f) * region.speed / beyond.speed;
     residual.exit.outerSpeed = slow / std::max(residual.C - way.tMin, 1e-20f);

@@ -85,11 +85,11 @@ TEST(LoadWatch, IsAskedWhileNormalsAreMade) {
 TEST(LoadWatch, EndsEmbreesWork) {
     const Shape mesh = grid(700);
     Counting all;
-    const SceneGeometry whole({&mesh}, all.watch);
+    const SceneGeometry whole({&mesh}, {}, all.watch);
     EXPECT_TRUE(whole.occluded({{100.3f, 1, 100.4f}, {0, -1, 0}}));
     EXPECT_GE(all.looks, 3) << "its builder asks, too";
     Counting some(2);
-    EXPECT_THROW(SceneGeometry({&mesh}, some.watch), Enough);
+    EXPECT_THROW(SceneGeometry({&mesh}, {}, some.watch), Enough);
 }
 
 TEST(LoadWatch, EndsScenes) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace tungsten {
@@ -42,12 +43,23 @@ inline Rgb expNegative(const Rgb& c) {
     return {std::exp(-c.x), std::exp(-c.y), std::exp(-c.z)};
 }
 
+/// A face of a scene's geometry; none by default.
+struct FaceIndex {
+    static constexpr uint32_t None = ~0u;
+
+    uint32_t shape = None;
+    uint32_t face = 0; ///< triangle of a mesh; else 0
+
+    [[nodiscard]] bool isSet() const { return shape != None; }
+};
+
 /// A ray in world space; `direction` has unit length, so distances along it are lengths.
 struct Ray {
     Vec3f origin;
     Vec3f direction;
     float tMin = 0.0f;
     float tMax = Infinity;
+    FaceIndex leaves{}; ///< the face it starts on, if any: others at the same place may be next
 
     [[nodiscard]] Vec3f at(float t) const { return origin + direction * t; }
 };

@@ -5,6 +5,12 @@
 
 namespace tungsten {
 
+SurfaceSample AreaEmitter::samplePoint(const Vec2f& u) const {
+    SurfaceSample point = areaSampler->sample(*shape, u);
+    point.face.shape = primitive;
+    return point;
+}
+
 float AreaEmitter::cosCone() const {
     return std::visit(Overloaded{[](const Disk& disk) { return disk.cosConeAngle; },
                                  [](const OneOf<TriangleMesh, Sphere> auto&) { return 0.0f; }},
@@ -16,7 +22,7 @@ float AreaEmitter::extent() const {
 }
 
 EmissionSample sampleEmission(const AreaEmitter& area, const Vec2f& uPosition, const Vec2f& uDirection) {
-    const SurfaceSample start = area.areaSampler->sample(*area.shape, uPosition);
+    const SurfaceSample start = area.samplePoint(uPosition);
     const float cone = area.cosCone();
     const Vec3f local = warp::squareToCosineCone(uDirection, cone);
     const Vec3f direction = Frame(start.normal).toWorld(local).normalized();
@@ -25,7 +31,7 @@ EmissionSample sampleEmission(const AreaEmitter& area, const Vec2f& uPosition, c
 }
 
 std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& receiver, const Vec2f& u) {
-    const SurfaceSample point = area.areaSampler->sample(*area.shape, u);
+    const SurfaceSample point = area.samplePoint(u);
     const Vec3f offset = point.position - receiver;
     const float distance = offset.length();
     if (!(distance > 0.0f)) return std::nullopt;

@@ -31,7 +31,7 @@ EmissionSample sampleEmission(const Emitter& emitter, const Vec2f& uPosition, co
 }
 
 SurfaceSample sampleEmissionPoint(const Emitter& emitter, const Vec2f& u) {
-    return std::visit(Overloaded{[&](const AreaEmitter& area) { return area.areaSampler->sample(*area.shape, u); },
+    return std::visit(Overloaded{[&](const AreaEmitter& area) { return area.samplePoint(u); },
                                  [&](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
                                                  InfiniteSphereEmitter> auto& other) {
                                      const EmissionSample sample = sampleEmission(other, u, Vec2f(0.5f, 0.5f));

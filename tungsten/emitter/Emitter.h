@@ -51,6 +51,8 @@ struct AreaEmitter {
     Texture radiance;
     std::shared_ptr<const AreaSampler> areaSampler;
 
+    /// A point of it, uniform by area.
+    [[nodiscard]] SurfaceSample samplePoint(const Vec2f& u) const;
     /// Cosine of the half angle of the cone about the normal that it shines into: 0 but for disks with a cone_angle.
     [[nodiscard]] float cosCone() const;
     [[nodiscard]] bool shinesAt(float cosine) const { return cosine > 0.0f && cosine >= cosCone(); }

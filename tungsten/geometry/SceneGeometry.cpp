@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tungsten {
 
@@ -112,6 +113,73 @@ void completeHit(const TriangleMesh& mesh, const Ray& ray, float b1, float b2, S
     if (length > 0.0f && std::isfinite(length)) hit.ns = shading / length;
 }
 
+/// The open interval (tMin, tMax) as the closest closed one; Embree needs tnear >= 0, and denormals may be flushed.
+RTCRay embreeRay(const Ray& ray) {
+    RTCRay out{};
+    out.org_x = ray.origin.x;
+    out.org_y = ray.origin.y;
+    out.org_z = ray.origin.z;
+    out.dir_x = ray.direction.x;
+    out.dir_y = ray.direction.y;
+    out.dir_z = ray.direction.z;
+    out.tnear = std::max(std::nextafter(ray.tMin, Infinity), std::numeric_limits<float>::min());
+    out.tfar = std::nextafter(ray.tMax, -Infinity);
+    out.mask = ~0u;
+    return out;
+}
+
+/// The face's own normal, unit, next to `position`.
+Vec3f faceNormal(const Shape& shape, uint32_t face, const Vec3f& position) {
+    return std::visit(Overloaded{[&](const TriangleMesh& mesh) { return mesh.faceNormal(face); },
+                                 [&](const Sphere& sphere) { return (position - sphere.centre).normalized(); },
+                                 [](const Disk& disk) { return disk.frame.n; }},
+                      shape);
+}
+
+// --- faces at one place
+
+/// Looks along a normal through a point for the face there that a ray meets next.
+struct CoincidentQuery {
+    static constexpr unsigned Id = 1; ///< of its rays; those of other queries have 0
+
+    embree::Context context; // first: Embree's address of it is the query's
+    const std::vector<const Shape*>* shapes;
+    const CoincidentFaces* faces;
+    Vec3f position, normal;
+    int64_t side;  ///< 1 for a ray along `normal`, -1 for one against it
+    int64_t after; ///< only faces with a later order
+    FaceIndex best{};
+    int64_t bestOrder = std::numeric_limits<int64_t>::max();
+    Vec2f barycentric{0.0f};
+
+    static CoincidentQuery& of(const void* context) {
+        return *const_cast<CoincidentQuery*>(static_cast<const CoincidentQuery*>(context));
+    }
+    void consider(const FaceIndex& at, const Vec2f& uv) {
+        const Vec3f ng = faceNormal(*(*shapes)[at.shape], at.face, position);
+        if (ng.cross(normal).length2() > CoincidentFaces::Parallel) return;
+        const int64_t order = side * faces->order(at.shape, ng.dot(normal) > 0.0f);
+        if (order <= after || order >= bestOrder) return;
+        best = at;
+        bestOrder = order;
+        barycentric = uv;
+    }
+    /// Of whatever lies within `reach` of the point.
+    void ask(RTCScene scene, float reach) {
+        RTCRayHit query{};
+        query.ray = embreeRay({position - normal * reach, normal, 0.0f, 2.0f * reach});
+        query.ray.id = Id;
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        embree::queryAll(scene, query, context, [](const RTCFilterFunctionNArguments* arguments) {
+            RTCHitN* hit = arguments->hit;
+            of(arguments->context)
+                .consider({RTCHitN_geomID(hit, 1, 0), RTCHitN_primID(hit, 1, 0)},
+                          {RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0)});
+            arguments->valid[0] = 0; // traversal goes on
+        });
+    }
+};
+
 // --- spheres and disks: Embree calls back for each candidate
 
 RTCBounds boundsAround(const Vec3f& centre, const Vec3f& extent) {
@@ -151,6 +219,10 @@ void intersectCallback(const RTCIntersectFunctionNArguments* args) {
     auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
     const float t = intersectRay(*static_cast<const Analytic*>(args->geometryUserPtr), query.ray);
     if (t < 0.0f) return;
+    if (query.ray.id == CoincidentQuery::Id) {
+        CoincidentQuery::of(args->context).consider({args->geomID, 0}, Vec2f(0.0f));
+        return;
+    }
     query.ray.tfar = t;
     query.hit.geomID = args->geomID;
     query.hit.primID = args->primID;
@@ -195,21 +267,6 @@ size_t trianglesOf(const Shape& shape) {
                       shape);
 }
 
-/// The open interval (tMin, tMax) as the closest closed one; Embree needs tnear >= 0, and denormals may be flushed.
-RTCRay embreeRay(const Ray& ray) {
-    RTCRay out{};
-    out.org_x = ray.origin.x;
-    out.org_y = ray.origin.y;
-    out.org_z = ray.origin.z;
-    out.dir_x = ray.direction.x;
-    out.dir_y = ray.direction.y;
-    out.dir_z = ray.direction.z;
-    out.tnear = std::max(std::nextafter(ray.tMin, Infinity), std::numeric_limits<float>::min());
-    out.tfar = std::nextafter(ray.tMax, -Infinity);
-    out.mask = ~0u;
-    return out;
-}
-
 /// Asked by Embree's builders, in threads of their own. That the last of them has answered before a build ends is
 /// known from Embree alone, which sanitizers do not see into: they see it by the count.
 struct BuildMonitor {
@@ -235,11 +292,13 @@ bool canBeTraced(const Ray& ray) {
 
 } // namespace
 
-SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes, const LoadWatch& watch)
-    : shapes_(shapes), device_(rtcNewDevice(nullptr)) {
+SceneGeometry::SceneGeometry(const std::vector<const Shape*>& shapes, const std::vector<bool>& opaque,
+                             const LoadWatch& watch)
+    : shapes_(shapes), coincident_(shapes, opaque, watch), device_(rtcNewDevice(nullptr)) {
     if (!device_) throw std::runtime_error("Embree: no device");
     scene_.reset(rtcNewScene(device_.get()));
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene_.get(),
+                     coincident_.any() ? RTC_SCENE_FLAG_ROBUST | embree::QueryFilterFlag : RTC_SCENE_FLAG_ROBUST);
     attachShapes(watch);
     // Embree's builders end where the monitor says false.
     BuildMonitor monitor{watch};
@@ -268,25 +327,72 @@ void SceneGeometry::attachShapes(const LoadWatch& watch) {
     }
 }
 
+void SceneGeometry::complete(const Ray& ray, const Vec2f& barycentric, SurfaceHit& hit) const {
+    std::visit(Overloaded{[&](const TriangleMesh& mesh) { completeHit(mesh, ray, barycentric.x, barycentric.y, hit); },
+                          [&](const OneOf<Sphere, Disk> auto& round) { completeHit(round, ray, hit); }},
+               *shapes_[hit.shape]);
+}
+
 std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
     if (!canBeTraced(ray)) return std::nullopt;
+    if (leavesCoincident(ray)) return intersectFromCoincident(ray);
     RTCRayHit query{};
     query.ray = embreeRay(ray);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     embree::intersect(scene_.get(), query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    SurfaceHit hit;
-    hit.t = query.ray.tfar;
-    hit.shape = query.hit.geomID;
-    hit.face = query.hit.primID;
-    std::visit(Overloaded{[&](const TriangleMesh& mesh) { completeHit(mesh, ray, query.hit.u, query.hit.v, hit); },
-                          [&](const OneOf<Sphere, Disk> auto& round) { completeHit(round, ray, hit); }},
-               *shapes_[hit.shape]);
+    std::optional<SurfaceHit> hit;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+    hit.emplace();
+    hit->t = query.ray.tfar;
+    hit->shape = query.hit.geomID;
+    hit->face = query.hit.primID;
+    complete(ray, {query.hit.u, query.hit.v}, *hit);
+    if (coincident_.any() && coincident_.reach(hit->index()) > 0.0f) takeFirst(ray, *hit);
+    return hit;
+}
+
+void SceneGeometry::takeFirst(const Ray& ray, SurfaceHit& hit) const {
+    const int64_t side = ray.direction.dot(hit.ng) > 0.0f ? 1 : -1;
+    CoincidentQuery query{{}, &shapes_, &coincident_, hit.position, hit.ng, side, std::numeric_limits<int64_t>::min()};
+    query.ask(scene_.get(), coincident_.reach(hit.index()));
+    if (!query.best.isSet() || query.bestOrder >= side * coincident_.order(hit.shape, true)) return;
+    hit.shape = query.best.shape;
+    hit.face = query.best.face;
+    complete(ray, query.barycentric, hit);
+}
+
+std::optional<SurfaceHit> SceneGeometry::intersectFromCoincident(Ray ray) const {
+    const FaceIndex left = std::exchange(ray.leaves, FaceIndex{});
+    const Vec3f normal = faceNormal(*shapes_[left.shape], left.face, ray.origin);
+    const float reach = 2.0f * coincident_.reach(left); // from a point that may be off the face
+    const int64_t side = ray.direction.dot(normal) > 0.0f ? 1 : -1;
+    CoincidentQuery query{
+        {}, &shapes_, &coincident_, ray.origin, normal, side, side * coincident_.order(left.shape, true)};
+    query.ask(scene_.get(), reach);
+    if (query.best.isSet()) {
+        SurfaceHit next;
+        next.t = 0.0f;
+        next.shape = query.best.shape;
+        next.face = query.best.face;
+        complete(ray, query.barycentric, next);
+        return next;
+    }
+    // What else lies at this place has been met before.
+    const auto met = [&](const SurfaceHit& hit) {
+        return hit.t * std::abs(ray.direction.dot(normal)) <= reach && coincident_.reach(hit.index()) > 0.0f &&
+               hit.ng.cross(normal).length2() <= CoincidentFaces::Parallel;
+    };
+    auto hit = intersect(ray);
+    while (hit && met(*hit)) {
+        ray.tMin = hit->t;
+        hit = intersect(ray);
+    }
     return hit;
 }
 
 bool SceneGeometry::occluded(const Ray& ray) const {
     if (!(ray.tMin < ray.tMax) || !canBeTraced(ray)) return false; // below 0 the end would pass for Embree's answer
+    if (leavesCoincident(ray)) return intersectFromCoincident(ray).has_value();
     RTCRay query = embreeRay(ray);
     return embree::occluded(scene_.get(), query);
 }

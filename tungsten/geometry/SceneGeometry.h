@@ -1,6 +1,7 @@
 #pragma once
 // All surfaces of a scene in one Embree structure.
 
+#include "tungsten/geometry/CoincidentFaces.h"
 #include "tungsten/geometry/Embree.h"
 #include "tungsten/geometry/Shape.h"
 
@@ -24,20 +25,31 @@ struct SurfaceHit {
     Vec2f uv;
     float error = 0.0f; ///< of the margin
 
-    [[nodiscard]] SurfaceMargin margin() const { return {ng, error}; }
+    [[nodiscard]] FaceIndex index() const { return {shape, face}; }
+    [[nodiscard]] SurfaceMargin margin() const { return {ng, error, index()}; }
     /// A ray on from here that does not meet the surface here, and does meet others that touch it here.
-    [[nodiscard]] Ray leave(const Vec3f& direction) const { return {margin().off(position, direction), direction}; }
+    [[nodiscard]] Ray leave(const Vec3f& direction) const {
+        return {margin().off(position, direction), direction, 0.0f, Infinity, index()};
+    }
+    /// The rest of the ray that met it; lengths along it count from here.
+    [[nodiscard]] Ray rest(const Ray& ray) const {
+        Ray onward = leave(ray.direction);
+        onward.tMax = ray.tMax - t;
+        return onward;
+    }
 };
 
 /// Owns the Embree scene over shapes that outlive it. Immutable; safe to query from many threads.
 class SceneGeometry {
   public:
-    /// `shapes` must stay alive and at the same address.
-    explicit SceneGeometry(const std::vector<const Shape*>& shapes, const LoadWatch& watch = {});
+    /// `shapes` must stay alive and at the same address; `opaque` as CoincidentFaces has it.
+    explicit SceneGeometry(const std::vector<const Shape*>& shapes, const std::vector<bool>& opaque = {},
+                           const LoadWatch& watch = {});
     SceneGeometry(const SceneGeometry&) = delete;
     SceneGeometry& operator=(const SceneGeometry&) = delete;
 
-    /// Closest hit in (tMin, tMax), or none.
+    /// Closest hit in (tMin, tMax), or none. Faces at one place are met one after the other, in the order of
+    /// CoincidentFaces, also from the face that the ray leaves.
     [[nodiscard]] std::optional<SurfaceHit> intersect(const Ray& ray) const;
     /// Any hit in (tMin, tMax).
     [[nodiscard]] bool occluded(const Ray& ray) const;
@@ -48,12 +60,22 @@ class SceneGeometry {
 
   private:
     void attachShapes(const LoadWatch& watch);
+    /// Everything of `hit` but shape, face and t.
+    void complete(const Ray& ray, const Vec2f& barycentric, SurfaceHit& hit) const;
+    [[nodiscard]] bool leavesCoincident(const Ray& ray) const {
+        return coincident_.any() && ray.leaves.isSet() && coincident_.reach(ray.leaves) > 0.0f;
+    }
+    /// Of all at the place that the ray met, the one that comes first.
+    void takeFirst(const Ray& ray, SurfaceHit& hit) const;
+    /// The next at the place that the ray leaves; then what lies beyond.
+    [[nodiscard]] std::optional<SurfaceHit> intersectFromCoincident(Ray ray) const;
 
     struct Release {
         void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
         void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
     };
     std::vector<const Shape*> shapes_;
+    CoincidentFaces coincident_;
     std::unique_ptr<RTCDeviceTy, Release> device_;
     std::unique_ptr<RTCSceneTy, Release> scene_;
     Vec3f boundsMin_{0, 0, 0}, boundsMax_{0, 0, 0};

@@ -34,8 +34,11 @@ SurfaceSample sampleOn(const TriangleMesh& mesh, const Distribution1D& triangles
     };
     const auto face = uint32_t(chosen.index);
     const Vec3f position = mesh.pointOn(face, b.x, b.y), normal = mesh.faceNormal(face);
-    return {position, normal, mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs),
-            roundingError(mesh, face, b.x, b.y, position, normal)};
+    return {position,
+            normal,
+            mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs),
+            roundingError(mesh, face, b.x, b.y, position, normal),
+            {FaceIndex::None, face}};
 }
 
 SurfaceSample sampleOn(const Sphere& sphere, const Vec2f& u) {

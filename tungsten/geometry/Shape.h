@@ -50,10 +50,11 @@ struct SurfaceSample {
     Vec3f normal; ///< geometric
     Vec2f uv;
     float error = 0.0f; ///< of the margin; 0: a point in space
+    FaceIndex face{};   ///< its shape is set by who knows the scene
 
-    [[nodiscard]] SurfaceMargin margin() const { return {normal, error}; }
+    [[nodiscard]] SurfaceMargin margin() const { return {normal, error, face}; }
     /// A ray from here that does not meet the surface here.
-    [[nodiscard]] Ray leave(const Vec3f& direction) const { return {position, direction, margin().beyond(direction)}; }
+    [[nodiscard]] Ray leave(const Vec3f& direction) const { return margin().leave(position, direction); }
 };
 
 /// Draws points uniformly over a shape's surface.

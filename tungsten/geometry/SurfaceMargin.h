@@ -12,6 +12,7 @@ struct TriangleMesh;
 struct SurfaceMargin {
     Vec3f normal{0.0f};
     float error = 0.0f; ///< 0: a point in space, which needs no margin
+    FaceIndex face{};   ///< what the point lies on, where that is part of a scene
 
     [[nodiscard]] bool onSurface() const { return error > 0.0f; }
     /// The length after which a ray that met, or left, the surface after `distance` is clear of it.
@@ -27,6 +28,11 @@ struct SurfaceMargin {
     [[nodiscard]] Vec3f off(const Vec3f& position, const Vec3f& direction) const {
         constexpr float Errors = 2.0f; // the sum's rounding takes up to half of one
         return position + normal * std::copysign(Errors * error, direction.dot(normal));
+    }
+
+    /// A ray from `position`, a point of the surface, that does not meet the surface there.
+    [[nodiscard]] Ray leave(const Vec3f& position, const Vec3f& direction) const {
+        return {position, direction, beyond(direction), Infinity, face};
     }
 
   private:

@@ -68,7 +68,7 @@ Region regionAt(const Scene& scene, Ray ray, const Region& atEnd) {
     while (const auto hit = scene.geometry->intersect(ray)) {
         const Primitive& primitive = scene.primitives[hit->shape];
         if (primitive.boundsMedium) return ray.direction.dot(hit->ng) > 0.0f ? primitive.inside : primitive.outside;
-        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
+        ray = hit->rest(ray);
     }
     return atEnd;
 }
@@ -76,17 +76,15 @@ Region regionAt(const Scene& scene, Ray ray, const Region& atEnd) {
 Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region region, uint64_t& rays) {
     Visibility result;
     result.transmittance = Rgb(1.0f);
-    float start = 0.0f;
     const float speed = region.speed;
-    const auto advance = [&](float to) {
-        const float length = to - start;
+    const auto advance = [&](float length) {
         if (const Medium* medium = scene.medium(region))
             result.transmittance = result.transmittance * medium->transmittance(length);
         result.time += double(length) / double(region.speed);
         result.oneSpeed = result.oneSpeed && region.speed == speed;
-        start = to;
+        distance -= length;
     };
-    constexpr int MostCrossings = 4096; // a guard against endless coincident surfaces
+    constexpr int MostCrossings = 4096; // a guard against what is no scene
     while (ray.tMin < ray.tMax) {
         ++rays;
         const auto hit = scene.geometry->intersect(ray);
@@ -99,7 +97,7 @@ Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region r
         advance(hit->t);
         result.transmittance = result.transmittance * through;
         region = regionOnSide(scene.primitives[hit->shape], ray.direction.dot(hit->ng) < 0.0f, region);
-        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
+        ray = hit->rest(ray);
     }
     advance(distance);
     return result;

@@ -52,8 +52,14 @@ ObjectReader blockOf(const ObjectReader& root, const std::string& name, const Me
 /// What can only be known once every primitive is there.
 void finishGeometry(Scene& scene, const LoadWatch& watch = {}) {
     std::vector<const Shape*> shapes;
-    for (const Primitive& primitive : scene.primitives) shapes.push_back(&primitive.shape);
-    scene.geometry = std::make_unique<SceneGeometry>(shapes, watch);
+    std::vector<bool> opaque;
+    for (const Primitive& primitive : scene.primitives) {
+        shapes.push_back(&primitive.shape);
+        const bool passes = std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(),
+                                        [](const BsdfPtr& bsdf) { return (bsdf->lobes() & lobe::Through) != 0; });
+        opaque.push_back(!passes && primitive.emitter < 0);
+    }
+    scene.geometry = std::make_unique<SceneGeometry>(shapes, opaque, watch);
     const Vec3f low = scene.geometry->boundsMin(), high = scene.geometry->boundsMax();
     const float radius = std::max((high - low).length() * 0.5f, 1e-6f);
     for (Emitter& emitter : scene.emitters) encloseScene(emitter, (low + high) * 0.5f, radius);

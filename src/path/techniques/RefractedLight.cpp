@@ -36,8 +36,7 @@ void RefractedLight::trace(const PassInfo& pass) {
                                  const double at = start + double(i) * step;
                                  return std::min(float(at - std::floor(at)), 0x1.fffffep-1f);
                              };
-                             points.push_back({lamp.area().areaSampler->sample(*lamp.area().shape,
-                                                                               {part(u, StepU), part(v, StepV)})});
+                             points.push_back({lamp.area().samplePoint({part(u, StepU), part(v, StepV)})});
                          });
     }
 }

@@ -69,7 +69,7 @@ float RefractedLight::indexTowards(int medium, const RefractedLamp& lamp) const 
         if (!hit || scene_->primitives[hit->shape].emitter == lamp.index) break;
         const float relative = relativeIndex(scene_->bsdfOf(*hit));
         index *= ray.direction.dot(hit->ng) >= 0.0f ? relative : 1.0f / relative;
-        ray.tMin = hit->margin().beyond(ray.direction, hit->t);
+        ray = hit->rest(ray);
     }
     return index;
 }

@@ -110,8 +110,8 @@ void SurfaceConnections::receive(const SendingVertex& from, const darts::TimeGat
     if (!surface.consistent(toVertex, scene_.transport.consistencyChecks) ||
         ((surface.bsdf->lobes() & lobe::Transmissive) == 0 && surface.frame.toLocal(toVertex).z * surface.wi.z <= 0.0f))
         return;
-    const Ray ray{from.vertex.position(), draw.direction, margin.beyond(draw.direction),
-                  point.hit.margin().before(draw.direction, draw.distance)};
+    Ray ray = margin.leave(from.vertex.position(), draw.direction);
+    ray.tMax = point.hit.margin().before(draw.direction, draw.distance);
     const Visibility visibility = connector_.visibility(ray, draw.distance, from.vertex.region(), rays);
     if (isBlack(visibility.transmittance)) return;
     const int interactions = point.interactions + from.bounce + 1 + visibility.crossings;
