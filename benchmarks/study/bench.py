@@ -165,7 +165,7 @@ class Bench:
         if not file.exists():
             folder.mkdir(parents=True, exist_ok=True)
             before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            wall = seconds * max(1.0, os.getloadavg()[0] / os.cpu_count())
+            wall = 4 * seconds * max(1.0, os.getloadavg()[0] / os.cpu_count())
             run_for([*command, "--timeout", f"{wall:.2f}s", "--stats", str(file), str(scene.file)])
             (folder / "cpu").write_text(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before))
         self.sample = self.sample or command + [str(scene.file)]

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 
 namespace tungsten {
@@ -51,7 +52,7 @@ std::optional<PassCosts> costsOf(KnownPasses& integrator, uint32_t rounds = 40, 
         "camera": {"type": "pinhole", "resolution": [64, 64]}, "integrator": {"type": "path_tracer"}})");
     const LoadedScene loaded = loadScene(file.path());
     return measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene),
-                         {.seed = seed, .seconds = 0.0, .rounds = rounds});
+                         {.seed = seed, .seconds = 0.0, .mostSeconds = 60.0, .rounds = rounds});
 }
 
 /// Passes that end only when they are told to.
@@ -68,12 +69,50 @@ TEST(CostPilot, PassesThatTakeTooLongAreRefused) {
     EndlessPasses integrator;
     try {
         (void)measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene),
-                            {.seconds = 0.0, .mostSeconds = 0.05});
+                            {.seconds = 0.02, .mostSeconds = 0.05});
         FAIL() << "endless passes have no price";
     } catch (const InputError& error) {
-        EXPECT_EQ(error.problems().front().message, "the passes of the pilot take more than 0.05 s; a longer --timeout "
-                                                    "lets them, fewer photons make them shorter");
+        const std::string& message = error.problems().front().message;
+        EXPECT_EQ(message.rfind("a pass takes more than ", 0), 0u) << message;
+        EXPECT_NE(message.find(" s: not even 6 small ones end within the 0.02 s that --timeout leaves each method"),
+                  std::string::npos)
+            << message;
     }
+}
+
+/// Passes of as much work, and of as much less noise, as they have samples.
+class LongPasses : public KnownPasses {
+  public:
+    uint32_t most = 0; ///< samples of a pass that has ended
+
+    void renderPass(const PassInfo& pass, Film& film, Statistics&) override {
+        pass.watch.stage("samples", pass.samples);
+        const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(pass.samples);
+        while (std::chrono::steady_clock::now() < end) pass.watch.poll(0);
+        pass.watch.poll(pass.samples);
+        most = std::max(most, pass.samples);
+        Sampler sampler(pass.seed, RandomStream::Test, pass.index, 0);
+        const double spread = std::sqrt(3.0 * variance.first / double(pass.samples));
+        for (int y = 0; y < film.height(); ++y)
+            for (int x = 0; x < film.width(); ++x)
+                film.add(0, x, y, Rgb(float(1.0 + spread * (2.0 * double(sampler.next1D()) - 1.0))));
+    }
+};
+
+TEST(CostPilot, LongPassesAreCutAndTakenToWholeOnes) {
+    const test::SceneFile file(R"({"primitives": [{"type": "point", "emission": 1}],
+        "camera": {"type": "pinhole", "resolution": [64, 64]}, "integrator": {"type": "path_tracer"}})");
+    const LoadedScene loaded = loadScene(file.path());
+    LongPasses integrator;
+    integrator.kernels = false;
+    // A whole pass takes 65 s.
+    const auto costs = measurePasses(*loaded.scene, integrator, analyseScene(*loaded.scene),
+                                     {.samplesPerPass = 65536, .seconds = 0.5, .mostSeconds = 60.0});
+    ASSERT_TRUE(costs);
+    EXPECT_GE(costs->passes, 6u);
+    EXPECT_LT(integrator.most, 200u);
+    EXPECT_NEAR(costs->variance.first, 0.04 / 65536.0, 0.004 / 65536.0);
+    EXPECT_GT(costs->wallSeconds.first, 65.0);
 }
 
 TEST(PowerLaw, SumsAreThoseOfTheirTerms) {

@@ -152,7 +152,7 @@ void declareQuestions(CLI::App& app, Options& options, OptionTexts& text) {
     app.add_flag(
         "--plan-cost", options.planCost,
         "print what errors of 10, 3, 1 and 0.3 % cost in seconds by points, beams, sliced primitives and paths, "
-        "from a pilot of each (--timeout: its DURATION, default 3s); to --stats as JSON; render nothing");
+        "from a pilot of each (--timeout: DURATION of all, default 12s); to --stats as JSON; render nothing");
     app.add_flag("--list", options.list, "list integrators and where they come from, and every type a scene can name");
     text.description =
         app.add_option("--describe", text.describe,

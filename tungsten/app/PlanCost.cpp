@@ -15,7 +15,7 @@ namespace tungsten {
 namespace {
 
 constexpr double Errors[] = {0.1, 0.03, 0.01, 0.003};
-constexpr double DefaultPilotSeconds = 3.0;
+constexpr double DefaultSeconds = 12.0; // of all methods
 
 struct Method {
     std::string name;
@@ -50,7 +50,7 @@ LoadOptions loadOptions(const Options& options, const std::vector<std::string>& 
 }
 
 void measure(Method& method, const std::filesystem::path& file, const Options& options, const Plugins& plugins,
-             const std::atomic<bool>& interrupted) {
+             double seconds, const std::atomic<bool>& interrupted) {
     try {
         const Job job = makeJob(file, loadOptions(options, method.settings), plugins);
         if (!job.plan.lacks.empty()) {
@@ -60,7 +60,8 @@ void measure(Method& method, const std::filesystem::path& file, const Options& o
         method.costs = measurePasses(*job.loaded.scene, *job.integrator, job.plan,
                                      {.seed = options.seed,
                                       .samplesPerPass = uint32_t(job.loaded.renderer.sppStep),
-                                      .seconds = options.timeoutSeconds.value_or(DefaultPilotSeconds),
+                                      .seconds = seconds,
+                                      .mostSeconds = 2.0 * seconds,
                                       .interrupted = &interrupted});
         if (!method.costs) method.refusal = "black: nothing arrived in the passes of the pilot";
     } catch (const InputError& error) {
@@ -173,7 +174,8 @@ bool planCost(const std::filesystem::path& file, const Options& options, const P
     if (options.outputs.statistics) checkWritable(*options.outputs.statistics);
     std::vector<Method> methods = methodsFor(loaded);
     try {
-        for (Method& method : methods) measure(method, file, options, plugins, interrupted);
+        const double seconds = options.timeoutSeconds.value_or(DefaultSeconds) / double(methods.size());
+        for (Method& method : methods) measure(method, file, options, plugins, seconds, interrupted);
     } catch (const PassBrokenOff&) {
         return false;
     }

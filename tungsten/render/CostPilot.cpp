@@ -1,12 +1,14 @@
 #include "tungsten/render/CostPilot.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/render/PassSizes.h"
 #include "tungsten/render/SceneFilm.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 namespace tungsten {
 
@@ -119,36 +121,137 @@ double meanOf(const std::array<double, Indices.size()>& values) {
     return sum;
 }
 
-void renderRound(Integrator& integrator, std::array<Sample, Indices.size()>& samples, bool measuresBias,
-                 const PilotOptions& options, PassMonitor& monitor, uint32_t round) {
-    for (size_t k = 0; k < samples.size(); ++k) {
-        Sample& sample = samples[k];
-        PassInfo pass{Indices[k], uint64_t(Indices[k]) * options.samplesPerPass, options.samplesPerPass,
-                      options.seed + round, measuresBias ? &sample.bias : nullptr};
-        pass.watch = PassWatch(monitor);
-        pass.watch.poll(0);
+/// Renders the pilot's passes within its time.
+class PilotPasses {
+  public:
+    PilotPasses(Integrator& integrator, const PilotOptions& options, bool measuresBias)
+        : integrator_(integrator), options_(options), measuresBias_(measuresBias),
+          sizes_(options.samplesPerPass, options.samplesPerPass, integrator.cutsLightPaths()) {}
+
+    void prepare(const EffectPlan& plan) {
+        PassMonitor monitor([&] { return stops(end()); });
+        Statistics statistics;
+        try {
+            integrator_.prepare(plan, PassWatch(monitor), statistics);
+        } catch (const PassBrokenOff&) {
+            brokenOff_ = monitor.progress();
+            throw;
+        }
+        prepared_ = wallNow();
+    }
+    /// Rounds of one pass of each index, at least as many as asked for and for as long. Throws PassBrokenOff where that
+    /// cannot be.
+    void render(const Scene& scene) {
+        while (!firstRound(scene)) sizes_.cut(brokenOff_.ofPass);
+        uint32_t round = 1;
+        try {
+            for (; round < options_.rounds || wallNow() - begin_ < options_.seconds; ++round) renderRound(round, end());
+        } catch (const PassBrokenOff&) {
+            if (round < options_.rounds || interrupted()) throw;
+        }
+    }
+    [[nodiscard]] bool interrupted() const { return options_.interrupted && options_.interrupted->load(); }
+    [[nodiscard]] const std::array<Sample, Indices.size()>& samples() const { return samples_; }
+    /// What part of a whole pass each of them is.
+    [[nodiscard]] double share() const { return sizes_.next(0.0).weight / double(options_.samplesPerPass); }
+    /// How much longer a whole pass takes. Not 1 / share(): no pass has less than one sample of each pixel. By a whole
+    /// pass that was broken off, if there was one.
+    [[nodiscard]] double longer() const {
+        const double wall = meanOf(each(samples_, [](const Sample& s) { return s.wall; }));
+        return passSecondsKnown_ ? std::clamp(passSeconds_ / std::max(wall, 1e-9), 1.0, 1.0 / share()) : 1.0 / share();
+    }
+    /// Why there are too few.
+    [[nodiscard]] std::string whyTooFew() const {
+        const std::string limit = " the " + brief(options_.seconds) + " s that --timeout leaves each method";
+        if (prepared_ == 0.0) return "preparing takes longer than" + limit + " (" + brokenOff_.stage + ")";
+        char seconds[32];
+        std::snprintf(seconds, sizeof seconds, "%.2g", passSeconds_);
+        return std::string("a pass takes ") + (passSecondsKnown_ ? "about " : "more than ") + seconds +
+               " s: not even " + std::to_string(options_.rounds * Indices.size()) + " small ones end within" + limit;
+    }
+
+  private:
+    [[nodiscard]] double end() const { return begin_ + options_.mostSeconds; }
+    [[nodiscard]] bool stops(double end) const { return interrupted() || wallNow() > end; }
+
+    /// False: the passes are to be cut.
+    bool firstRound(const Scene& scene) {
+        for (Sample& sample : samples_) {
+            sample = {};
+            sample.film = filmOf(scene);
+            if (measuresBias_) sample.bias = filmOf(scene);
+        }
+        const double part = options_.seconds / double(options_.rounds);
+        try {
+            renderRound(0, sizes_.canCut() ? std::min(wallNow() + part, end()) : end());
+            return true;
+        } catch (const PassBrokenOff&) {
+            if (stops(end()) || !sizes_.canCut()) throw;
+            return false;
+        }
+    }
+
+    void renderRound(uint32_t round, double end) {
+        const PassSize size = sizes_.next(0.0);
+        for (size_t k = 0; k < samples_.size(); ++k) {
+            PassInfo pass{Indices[k], uint64_t(Indices[k]) * size.samples, size.samples, options_.seed + round};
+            pass.bias = measuresBias_ ? &samples_[k].bias : nullptr;
+            pass.share = size.share;
+            PassMonitor monitor([&] { return stops(end); });
+            pass.watch = PassWatch(monitor);
+            passBegan_ = wallNow();
+            try {
+                pass.watch.poll(0);
+                renderPass(pass, samples_[k]);
+            } catch (const PassBrokenOff&) {
+                brokenOff_ = monitor.progress();
+                estimate();
+                throw;
+            }
+        }
+    }
+
+    /// How long a whole pass is, by the first that is broken off once it has begun in earnest: small ones are overhead.
+    void estimate() {
+        constexpr double Known = 0.01;
+        if (passSecondsKnown_) return;
+        passSecondsKnown_ = brokenOff_.ofPass >= Known && share() == 1.0;
+        passSeconds_ = std::max(passSeconds_, (wallNow() - passBegan_) / std::max(brokenOff_.ofPass, Known) / share());
+    }
+
+    void renderPass(const PassInfo& pass, Sample& sample) {
         Statistics statistics;
         sample.film.beginPass();
-        if (measuresBias) sample.bias.beginPass();
+        if (pass.bias) pass.bias->beginPass();
         const double wall = wallNow(), cpu = processCpuSeconds();
-        integrator.renderPass(pass, sample.film, statistics);
+        integrator_.renderPass(pass, sample.film, statistics);
         sample.film.endPass(1.0);
         const auto stages = statistics.stages();
         const auto bias = stages.find("bias");
         const Statistics::Stage extra = bias == stages.end() ? Statistics::Stage{} : bias->second;
-        const double share = 1.0 / double(sample.film.passes());
-        sample.wall += (wallNow() - wall - extra.wallSeconds - sample.wall) * share;
-        sample.cpu += (processCpuSeconds() - cpu - extra.cpuSeconds - sample.cpu) * share;
-        if (measuresBias) sample.bias.endPass(1.0);
+        const double part = 1.0 / double(sample.film.passes());
+        sample.wall += (wallNow() - wall - extra.wallSeconds - sample.wall) * part;
+        sample.cpu += (processCpuSeconds() - cpu - extra.cpuSeconds - sample.cpu) * part;
+        if (pass.bias) pass.bias->endPass(1.0);
     }
-}
 
-PassCosts costsOf(const std::array<Sample, Indices.size()>& samples, const Integrator& integrator, bool measuresBias,
-                  double mean) {
+    Integrator& integrator_;
+    const PilotOptions& options_;
+    bool measuresBias_;
+    PassSizes sizes_;
+    std::array<Sample, Indices.size()> samples_;
+    double begin_ = wallNow(), prepared_ = 0.0, passBegan_ = 0.0, passSeconds_ = 0.0;
+    bool passSecondsKnown_ = false;
+    PassProgress brokenOff_;
+};
+
+PassCosts costsOf(const PilotPasses& passes, const Integrator& integrator, bool measuresBias, double mean) {
     PassCosts costs;
-    const auto variance = each(samples, [&](const Sample& s) { return s.variance() / (mean * mean); });
-    const auto cpu = each(samples, [](const Sample& s) { return std::max(s.cpu, 1e-9); });
-    const auto wall = each(samples, [](const Sample& s) { return std::max(s.wall, 1e-9); });
+    const auto& samples = passes.samples();
+    const double share = passes.share(), longer = passes.longer();
+    const auto variance = each(samples, [&](const Sample& s) { return s.variance() * share / (mean * mean); });
+    const auto cpu = each(samples, [&](const Sample& s) { return std::max(s.cpu, 1e-9) * longer; });
+    const auto wall = each(samples, [&](const Sample& s) { return std::max(s.wall, 1e-9) * longer; });
     if (measuresBias) {
         // Narrower kernels of at most three dimensions bring noise, never take it.
         costs.variance = fitted(variance, 0.0, -3.0 * widthExponent(integrator));
@@ -201,32 +304,21 @@ std::optional<double> PassCosts::passesFor(double wanted) const {
 std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
                                        const PilotOptions& options) {
     const bool measuresBias = integrator.leavesBias(plan);
-    const double wall = wallNow(), cpu = processCpuSeconds();
-    const double most = std::max(options.mostSeconds, 10.0 * options.seconds);
-    const auto interrupted = [&] { return options.interrupted && options.interrupted->load(); };
-    PassMonitor monitor([&] { return interrupted() || wallNow() - wall > most; });
-    std::array<Sample, Indices.size()> samples;
+    PilotPasses passes(integrator, options, measuresBias);
     double prepareWall = 0.0, prepareCpu = 0.0;
     try {
-        Statistics preparing;
-        integrator.prepare(plan, PassWatch(monitor), preparing);
+        const double wall = wallNow(), cpu = processCpuSeconds();
+        passes.prepare(plan);
         prepareWall = wallNow() - wall;
         prepareCpu = processCpuSeconds() - cpu;
-        for (Sample& sample : samples) {
-            sample.film = filmOf(scene);
-            if (measuresBias) sample.bias = filmOf(scene);
-        }
-        const double start = wallNow();
-        for (uint32_t round = 0; round < options.rounds || wallNow() - start < options.seconds; ++round)
-            renderRound(integrator, samples, measuresBias, options, monitor, round);
+        passes.render(scene);
     } catch (const PassBrokenOff&) {
-        if (interrupted()) throw;
-        throw InputError(scene.file.string(), "the passes of the pilot take more than " + brief(most) +
-                                                  " s; a longer --timeout lets them, fewer photons make them shorter");
+        if (passes.interrupted()) throw;
+        throw InputError(scene.file.string(), passes.whyTooFew());
     }
-    const double mean = meanOf(each(samples, [](const Sample& s) { return s.film.meanValue(); }));
+    const double mean = meanOf(each(passes.samples(), [](const Sample& s) { return s.film.meanValue(); }));
     if (!(mean > 0.0)) return std::nullopt;
-    PassCosts costs = costsOf(samples, integrator, measuresBias, mean);
+    PassCosts costs = costsOf(passes, integrator, measuresBias, mean);
     costs.prepareCpuSeconds = prepareCpu;
     costs.prepareWallSeconds = prepareWall;
     return costs;

@@ -17,7 +17,7 @@ struct PowerLaw {
     [[nodiscard]] double sum(double n) const;
 };
 
-/// Passes of one method. Errors are relative to the mean pixel value, rms over pixels and frames.
+/// Whole passes of one method. Errors are relative to the mean pixel value, rms over pixels and frames.
 struct PassCosts {
     PowerLaw variance{}; ///< of the pass's image, relative to the squared mean
     PowerLaw bias{};     ///< what kernels leave in the pass's image; 0 where none or below its noise
@@ -36,16 +36,17 @@ struct PassCosts {
 struct PilotOptions {
     uint64_t seed = 0xBA5EBA11u;
     uint32_t samplesPerPass = 1;                    ///< per pixel
-    double seconds = 3.0;                           ///< passes are rendered for so long,
-    uint32_t rounds = 2;                            ///< and at least so many of each index,
-    double mostSeconds = 30.0;                      ///< which may take so long, or ten times `seconds`
+    double seconds = 3.0;                           ///< to prepare and to render passes for,
+    double mostSeconds = 6.0;                       ///< and at most
+    uint32_t rounds = 2;                            ///< so many of each index at least; 2 or more
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: PassBrokenOff
 };
 
 /// Renders passes 0, 15 and 255, again and again with other random numbers: a pass depends on nothing but its index, so
-/// that what late passes bring need not be guessed. `plan` is complete (Integrator::plan was called); the integrator
-/// is prepared here. None where all is black. Throws PassBrokenOff when it is interrupted, InputError where passes take
-/// too long.
+/// that what late passes bring need not be guessed. Passes that are too long are cut as renders cut them (PassSizes),
+/// and what they bring is taken to whole ones. `plan` is complete (Integrator::plan was called); the integrator is
+/// prepared here. None where all is black. Throws PassBrokenOff when it is interrupted, InputError where even cut
+/// passes take too long: it says how long.
 std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
                                        const PilotOptions& options);
 
