@@ -5,6 +5,7 @@
 #include "path/techniques/LightPaths.h"
 #include "path/techniques/RefractedLight.h"
 
+#include "transport/DetectorLight.h"
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
@@ -43,6 +44,15 @@ Choice refractedOf(const Scene& scene, const PathSettings& settings, const Effec
     if (!RefractedLight::helpsWith(scene))
         return {false, "no light with a simple surface is outside the bodies, or many are"};
     return {true, "paths aim from inside bodies at points of lights that refraction brings them to in time"};
+}
+
+Choice firstScatteringOf(const Scene& scene, const EffectPlan& facts, bool lasers) {
+    if (!lasers) return {true, "every light shines in more than one direction"};
+    if (!scene.camera.detectors())
+        return {false, "camera paths meet it with probability zero where it is scattered for the first time"};
+    if (facts.specularSensorPaths)
+        return {false, "mirrors and refraction show where it is scattered for the first time with probability zero"};
+    return {true, "places of detectors are connected to it"};
 }
 
 std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
@@ -86,11 +96,12 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
     plan.timeResolved = facts.timeResolved;
     plan.media = !scene.media.empty() || facts.everything;
     plan.forwardBoundaries = facts.forwardBoundaries || facts.everything;
-    const bool single = std::any_of(scene.emitters.begin(), scene.emitters.end(),
-                                    [](const Emitter& emitter) { return emitter.isDelta(); });
-    plan.firstScatteringInView = {
-        !single, single ? "camera paths meet it with probability zero where it is scattered for the first time"
-                        : "every light shines in more than one direction"};
+    plan.lasers = std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                              [](const Emitter& emitter) { return emitter.isDelta(); });
+    plan.firstScatteringInView = firstScatteringOf(scene, facts, plan.lasers);
+    const bool reaches = transport::DetectorLight::mayReach(scene, facts);
+    plan.detectorLight = {reaches, reaches ? "places of detectors are connected to lights that no ray meets"
+                                           : "no detector, or rays meet every light"};
     const std::string obstacle = guidanceObstacle(scene, settings, facts);
     const bool published = settings.policy.sampling.published;
     plan.guidance = {obstacle.empty(), !obstacle.empty() ? obstacle
@@ -122,6 +133,8 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
     };
     countArrivals(plan);
     if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
+    if (scene.camera.detectors())
+        add("lights at detectors", detectorLight, {"camera"}, {"arrivals from lights at detectors"});
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
     add("guided paths", guidance, {"integrator.darts"}, {"control vertices"});
     add("light through walls", refracted, {"integrator.darts"}, {"ways through walls"});

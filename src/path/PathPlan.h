@@ -16,6 +16,7 @@ struct PathPlan {
     void describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const;
 
     Choice firstScatteringInView; ///< of light of a single direction, which no camera path finds
+    Choice detectorLight;         ///< places of detectors are connected to lights that no ray meets
     Choice roulette;              ///< of plain paths, by throughput
     Choice guidance;              ///< walks aim at emitters inside the gate
     Choice lightVertices;         ///< walks connect to surface points that light reaches first
@@ -24,6 +25,7 @@ struct PathPlan {
     Choice entryPoints;           ///< points of lights are chosen anew where walks enter bodies
     Choice edaTable;              ///< directions come from tables of media
 
+    bool lasers = false; ///< some light starts in a single direction
     bool timeResolved = false;
     bool media = false;             ///< any: absorption alone needs free flights too, they carry the transmittance
     bool forwardBoundaries = false; ///< connections must look through index-matched surfaces

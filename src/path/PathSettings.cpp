@@ -18,15 +18,20 @@ void warnAboutUnguided(const ObjectReader& block, const EffectPlan& facts, const
     }
 }
 
-/// A camera path meets such light with probability zero; it is found from the first vertex on.
-void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene) {
+/// A camera path meets such light with probability zero; it is found from the first vertex on. Places of detectors are
+/// connected to that vertex.
+void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene, const EffectPlan& facts) {
+    const bool detectors = scene.camera.detectors() != nullptr;
+    if (detectors && !facts.specularSensorPaths) return;
     const auto laser = std::find_if(scene.emitters.begin(), scene.emitters.end(),
                                     [](const Emitter& emitter) { return emitter.isDelta(); });
     if (laser == scene.emitters.end()) return;
     const std::string name = laser->name.empty() ? "" : " of '" + laser->name + "'";
     block.diagnostics()->warnings.push_back(
         {block.diagnostics()->file, "primitives",
-         "paths miss what the camera sees of the light" + name +
+         std::string("paths miss what ") +
+             (detectors ? "detectors see, in mirrors or through refraction," : "the camera sees") + " of the light" +
+             name +
              " where it is scattered for the first time, as it shines in a single direction; photon maps "
              "show it"});
 }
@@ -64,7 +69,7 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     settings.russianRoulette = readRussianRoulette(block, facts.timeResolved);
     settings.policy = transport::readPolicy(block);
     warnAboutUnguided(block, facts, settings);
-    warnAboutSingleDirections(block, scene);
+    warnAboutSingleDirections(block, scene, facts);
     acceptPhotonSettings(block);
     return settings;
 }

@@ -28,6 +28,7 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("reflected light connections", counters.reflectedLight);
     statistics.add("ways through walls", counters.refracted);
     statistics.add("connections", counters.connections);
+    statistics.add("arrivals from lights at detectors", counters.intoDetectors);
     statistics.add("arrivals while the sensor is open", counters.arrivals);
     statistics.add("arrivals inside the gate", counters.timed);
     statistics.add("arrivals in later frames", counters.laterFrames);
@@ -95,6 +96,7 @@ void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statist
     lights_.emplace(*scene_, plan.late);
     using Emitters = TargetChoice::Emitters;
     targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late);
+    if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, plan, settings_.limits);
     if (plan_.refracted.on) {
         const StageTimer timer(statistics, "light through walls");
         refracted_.emplace().prepare(*scene_, plan.late, watch);
@@ -125,6 +127,20 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
                     : renderPlainly<false, false>(rest, film, statistics);
 }
 
+void PathTracer::lookForLights(int column, float u, PixelSink& sink, PathCounters& counters, Sampler sampler) const {
+    const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
+        ++counters.intoDetectors;
+        sink.add(radiance, time, emitter);
+    };
+    detectorLight_->sample(size_t(column), sampler, counters.shadowRays, put);
+    if (!plan_.lasers) return;
+    const auto source = targets_->sample(u, sampler, counters);
+    if (!source || source->index >= 0) return;
+    if (settings_.limits.orderCounts(source->mediumScatters))
+        detectorLight_->connect(size_t(column), *source, *source->emitter, source->start, source->interactions, sampler,
+                                counters.shadowRays, put);
+}
+
 template <typename Trace>
 void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const {
     const Camera& camera = scene_->camera;
@@ -146,6 +162,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             u -= u >= 1.0f ? 1.0f : 0.0f;
             pass.watch.pollWithin(SamplesPerPoll, s + 1);
             trace(ray, sink, counters, sampler, u);
+            if (detectorLight_)
+                lookForLights(x, u, sink, counters, {pass.seed, RandomStream::DetectorLight, sample, pixel});
         }
     };
     pass.watch.stage("camera paths", width * height);

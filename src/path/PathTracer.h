@@ -4,6 +4,7 @@
 #include "path/PathPlan.h"
 #include "path/guided/GuidedPathWalk.h"
 #include "path/techniques/RefractedLight.h"
+#include "transport/DetectorLight.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include "tungsten/render/Integrator.h"
@@ -25,6 +26,10 @@ class PathTracer : public Integrator {
     template <typename Trace>
     void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const;
 
+    /// Of one sample of a pixel: what its detector gets from lights that rays do not meet, by light that nothing has
+    /// scattered, or from where light of a single direction is scattered first.
+    void lookForLights(int column, float u, PixelSink& sink, PathCounters& counters, Sampler sampler) const;
+
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
     transport::Sensor sensor_;
@@ -34,9 +39,10 @@ class PathTracer : public Integrator {
         targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> bound_;
     PathGuides guides_;
-    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite
-    LightPaths lightPaths_;                             ///< of the pass
-    std::optional<RefractedLight> refracted_;           ///< of plain paths in sealed scenes
+    std::unique_ptr<const transport::WaysOut> waysOut_;     ///< null: media are taken for infinite
+    LightPaths lightPaths_;                                 ///< of the pass
+    std::optional<RefractedLight> refracted_;               ///< of plain paths in sealed scenes
+    std::optional<transport::DetectorLight> detectorLight_; ///< where plan_.detectorLight is on
 };
 
 } // namespace tungsten::path

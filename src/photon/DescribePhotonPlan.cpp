@@ -74,6 +74,9 @@ void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, Ef
     plan.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
     plan.describe("surface photons", surfacePhotons.on, surfacePhotons.reason, lobeUses(scene, lobe::Smooth).causes(),
                   {"stored surface photons", "photons gathered on surfaces"});
+    if (scene.camera.detectors())
+        plan.describe("lights at detectors", detectorLight.on, detectorLight.reason, {"camera"},
+                      {"arrivals from lights at detectors"});
     describeGuidance(scene, settings, plan);
     plan.describe("exact arrival culling", exactCulling.on, exactCulling.reason, {"integrator"});
 }

@@ -39,6 +39,7 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
 void PhotonIntegrator::prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) {
     plan_ = PhotonPlan::of(*scene_, settings_, plan);
     forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
+    if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, plan, transport::BounceLimits(scene_->transport));
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_, watch);
     if (plan_.edaTable.on) statistics.add("direction tables", photonPass_->guidance()->tables());
     if (plan_.framesOneByOne.on) statistics.add("frames aimed at", uint64_t(photonPass_->guidance()->frames().frames));
@@ -139,6 +140,40 @@ void PhotonIntegrator::look(GatherStructures& structures, const SensorRecords& r
                          pass.part(splatted + double(i) * each, splatted + double(i + 1) * each), film, statistics);
 }
 
+void PhotonIntegrator::lookForLights(const transport::Sensor& sensor, const PassInfo& pass, Film& film,
+                                     Statistics& statistics) const {
+    const StageTimer timer(statistics, "lights at detectors");
+    const uint32_t draws = pass.samples * tuning::DetectorDraws;
+    const double scale = 1.0 / (double(draws) * (sensor.gate.steadyState ? 1.0 : sensor.gate.frameWidth));
+    tbb::parallel_for(0, film.width(), [&](int column) {
+        pass.watch.poll(0);
+        FrameSums sums(size_t(sensor.gate.frames), Vec3d(0.0));
+        uint64_t rays = 0, arrivals = 0;
+        const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
+            const Rgb seen = radiance * sensor.weight(time);
+            ++arrivals;
+            sensor.spread(time, emitter, [&](int frame, float share) {
+                const Rgb part = seen * share;
+                sums[size_t(frame)] += Vec3d(double(part.x), double(part.y), double(part.z));
+            });
+        };
+        for (uint32_t i = 0; i < draws; ++i) {
+            const auto sample = uint32_t(pass.firstSample + i / tuning::DetectorDraws);
+            const uint64_t draw = uint64_t(column) * tuning::DetectorDraws + i % tuning::DetectorDraws;
+            Sampler sampler(pass.seed, RandomStream::DetectorLight, sample, draw);
+            detectorLight_->sample(size_t(column), sampler, rays, put);
+        }
+        for (int frame = 0; frame < sensor.gate.frames; ++frame) {
+            const Vec3d value = sums[size_t(frame)] * scale;
+            const Rgb pixel{float(value.x), float(value.y), float(value.z)};
+            if (isFinite(pixel)) film.add(frame, column, 0, pixel);
+            if (!isFinite(pixel)) statistics.add("non-finite samples", 1);
+        }
+        statistics.add("shadow rays", rays);
+        statistics.add("arrivals from lights at detectors", arrivals);
+    });
+}
+
 void PhotonIntegrator::see(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
                            const PassInfo& pass, Film& film, Statistics& statistics) const {
     if (plan_.connections.on) {
@@ -151,6 +186,7 @@ void PhotonIntegrator::see(GatherStructures& structures, const PhotonMaps& maps,
         shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,
                    pass.watch.part(0.0, SharingPart));
     }
+    if (detectorLight_) lookForLights(structures.sensor, pass.part(0.0, 0.0), film, statistics);
     const double begin = plan_.connections.on ? SharingPart : 0.0;
     if (!first) return look(structures, {}, pass.part(begin, 1.0), film, statistics);
     const double each = (1.0 - begin) / double(pass.samples);

@@ -4,6 +4,7 @@
 #include "photon/PhotonPlan.h"
 #include "photon/SensorPass.h"
 #include "photon/light/PhotonPass.h"
+#include "transport/DetectorLight.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -49,13 +50,17 @@ class PhotonIntegrator : public Integrator {
     void splat(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass, Film& film,
                Statistics& statistics) const;
 
+    /// What detectors get from lights that no ray meets.
+    void lookForLights(const transport::Sensor& sensor, const PassInfo& pass, Film& film, Statistics& statistics) const;
+
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;
     PhotonPlan plan_;
     bool forwardBoundaries_ = true; ///< connections must look through index-matched surfaces
     std::unique_ptr<PhotonPass> photonPass_;
     SensorPathRules rules_;
-    std::unique_ptr<GlossyLight> glossy_; ///< with rules_.glossy
+    std::unique_ptr<GlossyLight> glossy_;                   ///< with rules_.glossy
+    std::optional<transport::DetectorLight> detectorLight_; ///< where plan_.detectorLight is on
 };
 
 } // namespace tungsten::photon

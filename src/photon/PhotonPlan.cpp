@@ -4,6 +4,7 @@
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
+#include "transport/DetectorLight.h"
 
 namespace tungsten::photon {
 
@@ -145,6 +146,13 @@ Choice surfacePhotonsOf(const Given& given, const PhotonPlan& plan) {
                                       : "smooth surfaces are gathered"};
 }
 
+Choice detectorLightOf(const Given& given) {
+    if (!given.settings.includeSurfaces) return {false, "include_surfaces is false"};
+    const bool on = transport::DetectorLight::mayReach(given.scene, given.facts);
+    return {on, on ? "places of detectors are connected to lights that no ray meets"
+                   : "no detector, or rays meet every light"};
+}
+
 Choice exactCullingOf(const Given& given, const PhotonPlan& plan) {
     if (!given.facts.timeResolved) return {false, "steady state: every photon counts"};
     if (!plan.straightRays || plan.folds)
@@ -190,6 +198,7 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     plan.looksAgain = settings.includeSurfaces;
     plan.chooseGuidance(scene, settings, facts);
     plan.connections = connectionsOf(given, plan);
+    plan.detectorLight = detectorLightOf(given);
     plan.chooseStores(scene, settings, facts);
     return plan;
 }

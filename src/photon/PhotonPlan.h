@@ -28,6 +28,7 @@ struct PhotonPlan {
     Choice connections;     ///< guided light paths connect to visible surface points
     Choice exactCulling;    ///< what arrives outside the gate is known and not stored
     Choice edaTable;        ///< directions come from tables of media
+    Choice detectorLight;   ///< places of detectors are connected to lights that no ray meets
     Choice moreCameraPaths; ///< through a pixel than its samples
 
     std::vector<bool> lateEmitters;   ///< EffectPlan::late

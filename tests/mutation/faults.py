@@ -87,9 +87,9 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),
     ("src/path/light/LightWalk.cpp", "throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction)", "throughput_",
      [("path_tests", "LightTracer.KeepsTheFactorOfShadingNormals")]),
-    ("src/path/light/LightWalk.cpp", "time_ + (unwarped ? 0.0 : connection->time)", "time_ + connection->time",
+    ("src/path/light/LightWalk.cpp", "? scattered : time_ + connection.time", "? scattered + connection.time : time_ + connection.time",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),
-    ("src/path/light/LightWalk.cpp", "interactions_ + connection->crossings", "interactions_",
+    ("src/path/light/LightWalk.cpp", "interactions_ + connection.crossings", "interactions_",
      [("path_tests", "LightTracer.CountsBouncesAndOrdersAsThePathTracerDoes")]),
     ("src/path/light/LightWalk.cpp", "time_ = emitter.emissionTime +", "time_ = 0.0 +",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),
@@ -262,7 +262,7 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer too bright by the samples of a pass
     ("src/path/light/LightWalk.cpp", "(medium.transmittance(hit->t) / probabilityFlightExits(medium, hit->t))", "medium.transmittance(hit->t)",
      [("path_tests", "LightTracer.CountsBouncesAndOrdersAsThePathTracerDoes")]),  # light tracer: surfaces in fog too dark
-    ("src/path/light/LightWalk.cpp", "connection->throughput * float(context_.sensor.density(time))", "connection->throughput",
+    ("src/path/light/LightWalk.cpp", "connection.throughput * float(context_.sensor.density(time))", "connection.throughput",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),  # light tracer: not divided by the frame's width, response ignored
     # src/path/techniques
     ("src/path/techniques/EmitterConnections.cpp", "(weight / target.probability)", "weight",

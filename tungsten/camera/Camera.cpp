@@ -20,17 +20,12 @@ Vec2f rasterOf(const Vec3f& onPlane, const Vec2i& resolution) {
 }
 
 /// A connection to any place of any detector: one of them, all alike, then a point of its disc.
-std::optional<SensorSample> sampleDetector(const Detectors& detectors, const Vec3f& point, const Vec2f& u) {
+std::optional<SensorSample> sampleDetectors(const Detectors& detectors, const Vec3f& point, const Vec2f& u) {
     const float count = float(detectors.row.size()), scaled = u.x * count;
     const auto index = std::min(size_t(scaled), detectors.row.size() - 1);
-    const Detector& detector = detectors.row[index];
-    const Vec3f offset = detector.samplePoint({std::min(scaled - float(index), 1.0f), u.y}) - point;
-    const float distance = offset.length();
-    const Vec3f direction = offset / distance;
-    if (!(distance > 0.0f) || !detector.accepts(-direction)) return std::nullopt;
-    const float area = Pi * sqr(detector.radius), cosine = -direction.dot(detector.frame.n);
-    const float weight = count * area * cosine / (sqr(distance) * float(detector.etendue()));
-    return SensorSample{direction, distance, weight, {float(index), 0.0f}};
+    auto sample = detectors.sample(index, point, {std::min(scaled - float(index), 1.0f), u.y});
+    if (sample) sample->weight *= count;
+    return sample;
 }
 
 } // namespace
@@ -103,7 +98,7 @@ std::optional<SensorSample> Camera::sampleSensor(const Vec3f& point, const Vec2f
                                    0.5f * float(resolution.y) - local.y / step);
                 return SensorSample{-forward(), local.z * depth, depth / (sqr(step) * volume), raster - Vec2f(0.5f)};
             },
-            [&](const Detectors& detectors) { return sampleDetector(detectors, point, uLens); }},
+            [&](const Detectors& detectors) { return sampleDetectors(detectors, point, uLens); }},
         model);
 }
 

@@ -27,18 +27,6 @@ struct Orthographic {
     float size = 1.0f; ///< half the image height
 };
 
-/// A connection from a point to the sensor.
-struct SensorSample {
-    Vec3f direction; ///< from the point, unit
-    float distance;
-    /// Power scattered per steradian towards the sensor, times this, is what the point adds to the image per pixel of
-    /// area about `raster`: the density of raster positions per solid angle over distance^2 (orthographic: per area
-    /// across the rays), divided by the density of the place on the lens. Of detectors: cosine over distance^2, by
-    /// the etendue and the density of the place on which one. Visibility not included.
-    float weight;
-    Vec2f raster; ///< position in the image, in pixels; whole numbers are the centres of filters
-};
-
 /// Camera-to-world plus raster. The frame looks along +z of the transform with y up and the x axis negated
 /// (docs/scene-format.md, section 3).
 class Camera {

@@ -27,4 +27,25 @@ bool Detector::accepts(const Vec3f& towards) const {
     return local.z > 0.0f && sqr(local.x) + sqr(local.y) <= sqr(aperture);
 }
 
+std::optional<float> Detector::intersect(const Ray& ray) const {
+    if (!accepts(-ray.direction)) return std::nullopt;
+    const Vec3f offset = position - ray.origin;
+    const float length = offset.dot(frame.n) / ray.direction.dot(frame.n);
+    // The foot from the middle, not from the origin of a ray that comes from afar.
+    const Vec3f foot = ray.direction * length - offset;
+    if (!(length > ray.tMin && length < ray.tMax) || foot.length2() > sqr(radius)) return std::nullopt;
+    return length;
+}
+
+std::optional<SensorSample> Detectors::sample(size_t index, const Vec3f& point, const Vec2f& u) const {
+    const Detector& detector = row[index];
+    const Vec3f offset = detector.samplePoint(u) - point;
+    const float distance = offset.length();
+    const Vec3f direction = offset / distance;
+    if (!(distance > 0.0f) || !detector.accepts(-direction)) return std::nullopt;
+    const float area = Pi * sqr(detector.radius), cosine = -direction.dot(detector.frame.n);
+    const float weight = area * cosine / (sqr(distance) * float(detector.etendue()));
+    return SensorSample{direction, distance, weight, {float(index), 0.0f}};
+}
+
 } // namespace tungsten

@@ -37,6 +37,7 @@ enum class RandomStream : uint32_t {
     Folded = 10,
     ReflectedLight = 11,
     Highlight = 12,
+    DetectorLight = 13,
     RefractedLight = 13
 };
 

@@ -100,6 +100,8 @@ struct Emitter {
     [[nodiscard]] const AreaEmitter* surface() const;
     /// Of a surface: the index of its primitive in Scene::primitives.
     [[nodiscard]] std::optional<uint32_t> primitive() const;
+    /// Neither a surface nor the environment: a ray meets it with probability zero.
+    [[nodiscard]] bool isPointLike() const { return !isInfinite() && !surface(); }
     /// Vertices may connect to it.
     [[nodiscard]] bool isConnectable() const;
 };

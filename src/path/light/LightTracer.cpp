@@ -44,6 +44,8 @@ void readRest(const ObjectReader& block, const Scene& scene) {
         diagnostics.problems.push_back({diagnostics.file, "camera.reconstruction_filter",
                                         "light paths meet single points of the image with probability zero; use "
                                         "\"box\" or another filter that has a width"});
+    // Rays of light meet detectors.
+    if (scene.camera.detectors()) return;
     if (const Primitive* specular = firstSpecular(scene)) {
         const std::string which = specular->name.empty() ? "" : "'" + specular->name + "' and other ";
         diagnostics.warnings.push_back({diagnostics.file, "primitives",
@@ -85,9 +87,10 @@ void LightTracer::plan(EffectPlan& plan) const {
                   {"integrator.type"}, {"light paths"});
     plan.describe("emission in view", plan.surfaceEmission,
                   plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
-    if (plan.environment)
+    const bool detectors = scene_->camera.detectors() != nullptr;
+    if (plan.environment && !detectors)
         plan.lack("environment in view", "no light path starts on the way from the camera to infinity");
-    if (plan.specularSensorPaths)
+    if (plan.specularSensorPaths && !detectors)
         plan.lack("mirrors and refraction in view",
                   "connections to the camera are straight: what is seen in mirrors or through refraction is "
                   "missing; caustics are found");

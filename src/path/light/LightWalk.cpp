@@ -1,5 +1,6 @@
 #include "path/light/LightWalk.h"
 
+#include "transport/DetectorLight.h"
 #include "transport/Roulette.h"
 
 namespace tungsten::path {
@@ -24,18 +25,37 @@ bool LightWalk::emit() {
     const auto chosen = context_.emitters.sample(sampler_.next1D());
     const Emitter& emitter = scene_.emitters[chosen.index];
     time_ = emitter.emissionTime + context_.sensor.delays.sample(emitter, sampler_);
-    if (emitter.primitive()) showEmitter(emitter, chosen.probability);
+    scattered_ = time_;
+    const bool detectors = scene_.camera.detectors() != nullptr;
+    if (emitter.primitive() || (detectors && !emitter.isDelta() && !emitter.isInfinite()))
+        showEmitter(emitter, chosen.probability);
+    if (detectors && emitter.isInfinite()) showEnvironment(emitter, chosen.probability);
     const Vec2f uPosition = sampler_.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());
     power_ = emission.power / chosen.probability;
     region_ = scene_.regionOf(emitter);
     ray_ = emission.ray;
+    if (emitter.isDelta()) meetDetectors();
     return !isBlack(power_);
 }
 
 void LightWalk::showEmitter(const Emitter& emitter, float probability) {
     const SurfaceSample point = sampleEmissionPoint(emitter, sampler_.next2D());
     connect({scene_, emitter, point}, Rgb(1.0f / probability));
+}
+
+void LightWalk::showEnvironment(const Emitter& emitter, float probability) {
+    if (&emitter != &scene_.emitters[size_t(scene_.infiniteEmitters.back())] || !context_.limits.orderCounts(0, 0))
+        return;
+    const auto& row = scene_.camera.detectors()->row;
+    const auto column = std::min(size_t(sampler_.next1D() * float(row.size())), row.size() - 1);
+    const Vec2f uPlace = sampler_.next2D();
+    const Ray towards = row[column].sampleRay(uPlace, sampler_.next2D());
+    const Rgb radiance = environmentRadiance(emitter, towards.direction) * (float(row.size()) / probability);
+    const auto seen = context_.connector.visibility(towards, Infinity, scene_.cameraRegion, counters_.shadowRays);
+    if (isBlack(radiance) || isBlack(seen.transmittance)) return;
+    arriveAtSensor({float(column), 0.0f}, {radiance * seen.transmittance, seen.time, seen.crossings, seen.oneSpeed},
+                   time_);
 }
 
 bool LightWalk::crossMedium(const Medium& medium) {
@@ -70,6 +90,7 @@ bool LightWalk::scatterInMedium(const Medium& medium, float distance) {
     inARow_ = flights_; // those before have scattered here, too
     const Vec3f position = ray_.at(distance), before = ray_.direction;
     if (!arrive(position, distance)) return false;
+    scattered_ = time_;
     connect({medium, position, before, region_}, power_ * throughput_);
     ray_ = Ray{position, medium.phase.sample(before, sampler_.next2D())};
     return continueRoulette();
@@ -89,6 +110,8 @@ bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
     if (!exit->straight()) throughput_ = throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction);
     region_ = regionBeyond(surface, exit->direction, region_);
     ray_ = hit.leave(exit->direction);
+    if ((exit->lobe & lobe::Smooth) != 0) scattered_ = time_;
+    if ((exit->lobe & lobe::Specular) != 0) meetDetectors();
     return !isBlack(throughput_) && continueRoulette();
 }
 
@@ -105,11 +128,25 @@ void LightWalk::connect(const Vertex& vertex, const Rgb& power) {
     ++counters_.connections;
     const auto connection =
         context_.connector.connect(vertex, power, transport::connectionEnd(*sensor), counters_.shadowRays);
-    if (!connection || !context_.limits.renders(interactions_ + connection->crossings)) return;
-    const double time = time_ + (unwarped ? 0.0 : connection->time);
+    if (connection) arriveAtSensor(sensor->raster, *connection, time_);
+}
+
+void LightWalk::meetDetectors() {
+    const Detectors* detectors = scene_.camera.detectors();
+    if (!detectors || !context_.limits.orderCounts(mediumScatters_, inARow_)) return;
+    for (size_t column = 0; column < detectors->row.size(); ++column) {
+        const auto met = transport::meetDetector(context_.connector, detectors->row[column], ray_, region_,
+                                                 power_ * throughput_, counters_.shadowRays);
+        if (met) arriveAtSensor({float(column), 0.0f}, *met, scattered_);
+    }
+}
+
+void LightWalk::arriveAtSensor(const Vec2f& raster, const transport::Connection& connection, double scattered) {
+    if (!context_.limits.renders(interactions_ + connection.crossings)) return;
+    const double time = scene_.transport.cameraUnwarped ? scattered : time_ + connection.time;
     const int frame = context_.sensor.frameOf(time);
     if (frame < 0) return;
-    const Rgb radiance = connection->throughput * float(context_.sensor.density(time));
+    const Rgb radiance = connection.throughput * float(context_.sensor.density(time));
     if (!isFinite(radiance)) {
         ++counters_.nonFinite;
         return;
@@ -117,7 +154,7 @@ void LightWalk::connect(const Vertex& vertex, const Rgb& power) {
     if (!context_.sensor.gate.steadyState) ++counters_.timed;
     if (context_.sensor.response) ++counters_.weighed;
     if (frame > 0) ++counters_.laterFrames;
-    splats_.push_back({sensor->raster, frame, radiance});
+    splats_.push_back({raster, frame, radiance});
 }
 
 bool LightWalk::inView(const Vec2f& raster) const {

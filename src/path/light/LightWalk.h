@@ -46,7 +46,13 @@ class LightWalk {
 
     /// A point of the emitter, as the camera sees it.
     void showEmitter(const Emitter& emitter, float probability);
+    /// The environment, as a detector sees it straight.
+    void showEnvironment(const Emitter& emitter, float probability);
     void connect(const transport::Vertex& vertex, const Rgb& power);
+    /// The ray ahead, which no connection stands for, may meet detectors.
+    void meetDetectors();
+    /// What a connection brings to one place of the image. `scattered`: when camera segments began.
+    void arriveAtSensor(const Vec2f& raster, const transport::Connection& connection, double scattered);
     [[nodiscard]] bool inView(const Vec2f& raster) const;
 
     const LightWalkContext& context_;
@@ -57,9 +63,10 @@ class LightWalk {
 
     Ray ray_;
     Region region_;
-    Rgb power_{0.0f};      ///< at the start
-    Rgb throughput_{1.0f}; ///< since then
-    double time_ = 0.0;    ///< of flight, emission time included
+    Rgb power_{0.0f};        ///< at the start
+    Rgb throughput_{1.0f};   ///< since then
+    double time_ = 0.0;      ///< of flight, emission time included
+    double scattered_ = 0.0; ///< the same at the last vertex that is not specular: where camera segments begin
     int interactions_ = 0;
     int flights_ = 0; ///< distances sampled in media since the last surface
     int mediumScatters_ = 0;
