@@ -133,6 +133,9 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
     };
     countArrivals(plan);
     if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
+    if (settings.missed)
+        plan.lack("light of points by mirrors and refraction",
+                  settings.missed->description() + " is met with probability zero");
     if (scene.camera.detectors())
         add("lights at detectors", detectorLight, {"camera"}, {"arrivals from lights at detectors"});
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});

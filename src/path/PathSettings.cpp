@@ -36,6 +36,14 @@ void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene, co
              "show it"});
 }
 
+void warnAboutMissedLight(const ObjectReader& block, const MissedLight& missed) {
+    const std::string remedy = missed.emitter->isDelta()
+                                   ? "; photon maps show it"
+                                   : "; photon maps show it, and paths meet lights that have an area";
+    block.diagnostics()->warnings.push_back(
+        {block.diagnostics()->file, missed.emitter->path, "paths miss " + missed.description() + remedy});
+}
+
 } // namespace
 
 transport::BounceLimits readBounceLimits(const ObjectReader& block, const Scene& scene) {
@@ -70,6 +78,8 @@ PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     settings.policy = transport::readPolicy(block);
     warnAboutUnguided(block, facts, settings);
     warnAboutSingleDirections(block, scene, facts);
+    if (!block.describes()) settings.missed = findMissedLight(scene);
+    if (settings.missed) warnAboutMissedLight(block, *settings.missed);
     acceptPhotonSettings(block);
     return settings;
 }

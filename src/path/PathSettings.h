@@ -1,6 +1,7 @@
 #pragma once
 // Settings of the path tracer's integrator block.
 
+#include "path/MissedLight.h"
 #include "transport/BounceLimits.h"
 #include "transport/Policy.h"
 
@@ -15,6 +16,7 @@ struct PathSettings {
     transport::BounceLimits limits;
     bool russianRoulette = true;
     transport::Policy policy; ///< what is asked for; PathPlan says what is done
+    std::optional<MissedLight> missed;
 };
 
 /// What all integrators of this plugin read: max_bounces and its like are the scene's already.
