@@ -64,15 +64,6 @@ Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, c
     return region.medium < 0 && inside == cameFromInside ? current : region;
 }
 
-Region regionAt(const Scene& scene, Ray ray, const Region& atEnd) {
-    while (const auto hit = scene.geometry->intersect(ray)) {
-        const Primitive& primitive = scene.primitives[hit->shape];
-        if (primitive.boundsMedium) return ray.direction.dot(hit->ng) > 0.0f ? primitive.inside : primitive.outside;
-        ray = hit->rest(ray);
-    }
-    return atEnd;
-}
-
 Visibility traceVisibility(const Scene& scene, Ray ray, float distance, Region region, uint64_t& rays) {
     Visibility result;
     result.transmittance = Rgb(1.0f);

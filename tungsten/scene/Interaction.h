@@ -43,9 +43,6 @@ std::optional<SurfaceExit> sampleExit(const SurfaceInteraction& surface, const B
 /// from behind, and what they reflect goes back to where it came from.
 Region regionBeyond(const SurfaceInteraction& surface, const Vec3f& direction, const Region& current);
 
-/// The region at a ray's origin: that before the first surface on it that bounds a medium; `atEnd` if there is none.
-Region regionAt(const Scene& scene, Ray ray, const Region& atEnd);
-
 /// A straight connection between two points through index-matched boundaries.
 struct Visibility {
     Rgb transmittance{0.0f}; ///< 0 when blocked

@@ -1,7 +1,6 @@
 #include "tungsten/scene/LoadEmitters.h"
 
 #include "tungsten/emitter/Power.h"
-#include "tungsten/scene/Interaction.h"
 #include "tungsten/scene/LoadTimeProfile.h"
 
 namespace tungsten {
@@ -45,24 +44,6 @@ void addEmitter(LoadContext& context, const ObjectReader& reader, EmitterModel m
 /// Dark emitters are left out.
 bool shines(const ObjectReader& reader, const Rgb& strength) {
     return maxComponent(strength) > 0.0f || reader.describes();
-}
-
-/// The medium around an emitter, as a path from the camera straight to it would know it; -1 also where points on the
-/// emitter differ.
-int mediumAround(const Scene& scene, const Emitter& emitter) {
-    int medium = -1;
-    for (const float u : {0.125f, 0.375f, 0.625f, 0.875f}) {
-        const SurfaceSample point = sampleEmissionPoint(emitter, {u, 1.0f - u});
-        const Vec3f toCamera = scene.camera.position() - point.position;
-        const float distance = toCamera.length();
-        if (!(distance > 0.0f)) return scene.cameraRegion.medium;
-        Ray ray = point.leave(toCamera / distance);
-        ray.tMax = distance;
-        const int found = regionAt(scene, ray, scene.cameraRegion).medium;
-        if (u != 0.125f && found != medium) return -1;
-        medium = found;
-    }
-    return medium;
 }
 
 void readPoint(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
@@ -177,21 +158,6 @@ EmissionTimes readEmissionTimes(const ObjectReader& reader) {
     return {reader.number("emission_time", 0.0, {"time", "when its pulse starts"}, Range::measure()),
             readTimeProfile(reader, "pulse",
                             {"none", "how its power is spread over the time after emission_time, instead of a flash"})};
-}
-
-void warnAboutMediaOfEmitters(const LoadContext& context) {
-    const Scene& scene = context.scene;
-    for (size_t i = 0; i < context.emitters.size(); ++i) {
-        const Emitter& emitter = scene.emitters[i];
-        if (emitter.medium >= 0 || emitter.isInfinite()) continue;
-        const int medium = mediumAround(scene, emitter);
-        if (medium < 0) continue;
-        const std::string name = scene.media[size_t(medium)].name;
-        context.emitters[i].warn("ext_medium", "light '" + emitter.name + "' is in medium '" + name +
-                                                   "' but names no ext_medium: its photons start in vacuum, while "
-                                                   "camera paths find it in '" +
-                                                   name + "'");
-    }
 }
 
 namespace {

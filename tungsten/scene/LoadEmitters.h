@@ -21,8 +21,8 @@ struct EmissionTimes {
 EmissionTimes readEmissionTimes(const ObjectReader& reader);
 /// Default light of a scene without emitters, and the checks that need all of them.
 void finishEmitters(LoadContext& context, const ObjectReader& root);
-/// Warns about lights in a medium that they do not name; once the geometry is there.
-void warnAboutMediaOfEmitters(const LoadContext& context);
+/// Warns where the camera, a light or a surface names another medium than what it sees; once the geometry is there.
+void warnAboutMedia(const LoadContext& context, const ObjectReader& root, const ObjectReader& camera);
 /// Warns about point-like lights in the plane of a surface; once the geometry is there.
 void warnAboutLightsOnSurfaces(const LoadContext& context);
 

@@ -149,7 +149,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     throwIfProblems(*diagnostics);
 
     finishGeometry(*scene, options.watch);
-    warnAboutMediaOfEmitters(context);
+    warnAboutMedia(context, root, blocks.camera);
     warnAboutLightsOnSurfaces(context);
     warnAboutBlindDetectors(context, blocks.camera);
     std::vector<std::filesystem::path> inputs = context.resources;
