@@ -3,9 +3,9 @@ Python test, or a regular expression for ctest. The first 61 were chosen with an
 tungsten/ alone, before tests were shortened."""
 
 FAULTS = [
-    ("tungsten/render/EarliestArrival.cpp", "if (scene.transport.cameraUnwarped || camera", "if (camera",
+    ("tungsten/render/EarliestArrival.cpp", "if (scene.transport.cameraUnwarped) return 0.0;", "if (false) return 0.0;",
      [("path_tests", "TimeBounds.NarrowGatesShowTheSameFrameOfASequence")]),
-    ("tungsten/render/EarliestArrival.cpp", "- double(camera.aperture()) -", "+ double(camera.aperture()) -",
+    ("tungsten/render/EarliestArrival.cpp", "- double(camera.aperture());", "+ double(camera.aperture());",
      [("tests/plan/left_out_test.py", "")]),
     ("tungsten/render/EarliestArrival.cpp", "start + gap / double(plan.highestSpeed) - Slack * std::abs(start));", "start + gap * double(plan.highestSpeed) - Slack * std::abs(start));",
      [("tests/plan/left_out_test.py", "")]),

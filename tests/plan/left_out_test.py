@@ -205,6 +205,47 @@ class LeftOut(unittest.TestCase):
         self.assertEqual(statistics["counters"].get("rays", 0), 0)
         self.assertLess(statistics["render wall seconds"], 1)
 
+    def test_parallel_rays_and_detectors_have_a_way_of_their_own(self):
+        """The lamps are 1 and 9 before the plane of the rays; the sensor closes at 5."""
+        scene = self.scene()
+        del scene["camera"]["fov"]
+        scene["camera"] |= {"type": "orthographic", "orthographic_size": 2}
+        self.assertEqual(self.effects(scene)["late emitters left out"]["causes"], ["primitives[1]"])
+        scene["primitives"][1]["transform"]["position"] = [90, 0, 4.9]
+        self.assertFalse(self.effects(scene)["late emitters left out"]["on"], "rays start all over the plane")
+        scene["camera"] = {"type": "detectors", "medium": "fog", "detectors": [
+            {"position": [0, 0, 0], "direction": [0, 0, 1], "radius": 0.2}, {"position": [90, 0, 0], "direction": [0, 0, 1], "radius": 0.2}]}
+        self.assertFalse(self.effects(scene)["late emitters left out"]["on"], "one of them is near")
+        scene["primitives"][1]["transform"]["position"] = [45, 0, 0]
+        self.assertEqual(self.effects(scene)["late emitters left out"]["causes"], ["primitives[1]"])
+
+    def test_gates_that_leave_the_cameras_way_out_are_told(self):
+        """As those of Liu et al. do. With it some light may arrive; where the pulse itself is late, none does either way."""
+        scene = self.scene(transient_time_center=0.4, transient_time_width=0.4)
+        self.assertIn('"camera_unwarped": true', self.command(scene, "--explain").stderr)
+        self.assertEqual(self.command(scene, "--explain", "--set", "integrator.camera_unwarped=true").stderr, "")
+        for lamp in scene["primitives"][:2]:
+            lamp["emission_time"] = 7
+        said = self.command(scene, "--explain").stderr
+        self.assertIn("the image is black: no light can arrive", said)
+        self.assertNotIn("camera_unwarped", said)
+
+    def test_whatever_else_leaves_an_image_black_is_told_when_it_is_there(self):
+        """A gate after the last light; no number of bounces; nothing but lights that are not seen."""
+        def said(**fields):
+            scene = self.scene(**fields)
+            scene["media"][0]["sigma_s"] = 0
+            return self.command(scene, "-d", self.folder.name).stderr
+        self.assertEqual(said(), "")
+        late = said(transient_time_center=4000)
+        for part in ("integrator: the image is black: no path found light", "gate", "camera_unwarped"):
+            self.assertIn(part, late)
+        self.assertNotIn("camera_unwarped", said(transient_time_center=4000, camera_unwarped=True))
+        self.assertIn("no number of interactions", said(min_bounces=5, max_bounces=5))
+        steady = said(transient_time_center=-1, transient_time_width=0, max_bounces=1)  # of points, which are not seen themselves
+        self.assertIn("the image is black", steady)
+        self.assertNotIn("gate", steady)
+
     def counters(self, scene, *options):
         statistics = self.file.with_name("stats.json")
         self.command(scene, "-d", self.folder.name, "--stats", str(statistics), *options)

@@ -4,6 +4,7 @@
 #include "tungsten/app/PlanCost.h"
 #include "tungsten/app/Signals.h"
 #include "tungsten/core/Errors.h"
+#include "tungsten/render/BlackImage.h"
 #include "tungsten/render/PlanReport.h"
 #include "tungsten/render/Progress.h"
 #include "tungsten/render/RenderSession.h"
@@ -107,6 +108,8 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
     runSession(loaded, *job.integrator, job.plan, outputs, session, result);
     if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
         together(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
+    const auto black = speaks(team) && !options.passes ? blackImage(*loaded.scene, job.plan, result) : std::nullopt;
+    if (black) printWarnings({*black});
     if (!options.quiet && speaks(team)) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }

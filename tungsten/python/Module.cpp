@@ -2,6 +2,7 @@
 
 #include "tungsten/python/Result.h"
 
+#include "tungsten/render/BlackImage.h"
 #include "tungsten/render/DefaultsTaken.h"
 #include "tungsten/render/Describe.h"
 #include "tungsten/render/Progress.h"
@@ -129,6 +130,10 @@ Result render(const py::object& scene, const py::dict& set, const Limits& limits
         const py::gil_scoped_acquire gil;
         PyErr_SetString(PyExc_TimeoutError, whyNoPass(options, *session).c_str());
         throw py::error_already_set();
+    }
+    if (const auto black = blackImage(*job.loaded.scene, job.plan, *session)) {
+        const py::gil_scoped_acquire gil;
+        warn(*black);
     }
     return {job.loaded, options, std::move(session)};
 }

@@ -16,27 +16,53 @@ constexpr double Never = std::numeric_limits<double>::infinity();
 /// Rounding of positions, and of the lengths that walks add up: far more than either.
 constexpr double Slack = 1e-5;
 
-/// No less than this lies between the sensor and a point within `radius` of `centre`.
-double gapToSensor(const Scene& scene, const Vec3f& centre, float radius) {
-    const Camera& camera = scene.camera;
-    if (scene.transport.cameraUnwarped || camera.hasParallelRays()) return 0.0;
-    const Vec3f from = camera.position();
-    const Vec3d way = Vec3d(double(centre.x), double(centre.y), double(centre.z)) -
-                      Vec3d(double(from.x), double(from.y), double(from.z));
-    const double rounding = Slack * (way.length() + double(centre.length()) + double(from.length()) + double(radius));
-    const double gap = way.length() - double(radius) - double(camera.aperture()) - rounding;
-    return std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
-}
-
 Vec3f nearestIn(const Imath::Box3f& box, const Vec3f& from) {
     return {std::clamp(from.x, box.min.x, box.max.x), std::clamp(from.y, box.min.y, box.max.y),
             std::clamp(from.z, box.min.z, box.max.z)};
 }
 
-/// How far the box is from the sensor at least.
-double gapToSensor(const Scene& scene, const Imath::Box3f& box) {
+double wayBetween(const Vec3f& a, const Vec3f& b) {
+    return Vec3d(double(a.x) - double(b.x), double(a.y) - double(b.y), double(a.z) - double(b.z)).length();
+}
+
+/// Of parallel rays, which start all over a plane: how far the box is from that.
+double gapToPlane(const Transform& toWorld, const Imath::Box3f& box) {
+    const Vec3d normal = Vec3d(toWorld.x.cross(toWorld.y)).normalized();
+    double least = Never, most = -Never;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3f at((corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                       (corner & 4) != 0 ? box.max.z : box.min.z);
+        const double height = normal.dot(Vec3d(at) - Vec3d(toWorld.translation));
+        least = std::min(least, height);
+        most = std::max(most, height);
+    }
+    return std::max({least, -most, 0.0});
+}
+
+/// How far the box is at least from where sensor rays start.
+double wayToSensor(const Camera& camera, const Imath::Box3f& box) {
+    const auto wayTo = [&](const Vec3f& place) { return wayBetween(nearestIn(box, place), place); };
+    if (const Detectors* detectors = camera.detectors()) {
+        double way = Never;
+        for (const Detector& detector : detectors->row)
+            way = std::min(way, wayTo(detector.position) - double(detector.radius));
+        return way;
+    }
+    if (camera.hasParallelRays()) return gapToPlane(camera.toWorld, box);
+    return wayTo(camera.position()) - double(camera.aperture());
+}
+
+/// No less than this lies between the sensor and what is within `radius` of the box.
+double gapToSensor(const Scene& scene, const Imath::Box3f& box, double radius = 0.0) {
     if (box.isEmpty()) return Never;
-    return gapToSensor(scene, nearestIn(box, scene.camera.position()), 0.0f);
+    if (scene.transport.cameraUnwarped) return 0.0;
+    const Vec3f from = scene.camera.position();
+    const Vec3f nearest = nearestIn(box, from);
+    const double way = wayToSensor(scene.camera, box);
+    const double rounding =
+        Slack * (wayBetween(nearest, from) + double(nearest.length()) + double(from.length()) + std::abs(way) + radius);
+    const double gap = way - radius - rounding;
+    return std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
 }
 
 /// How far the box is from the emitter at least; 0 where the camera's segments, of which it may be one, do not count.
@@ -66,6 +92,13 @@ double firstPulse(const Scene& scene) {
     return first;
 }
 
+/// Of an image that is black: whether the way to the camera is what takes too long.
+std::string unwarpedHint(const Scene& scene, double end) {
+    if (scene.transport.cameraUnwarped || firstPulse(scene) > end) return "";
+    return "; times count the way to the camera: if the scene's gate leaves that out, as those of Liu et al. 2022 do, "
+           "it needs \"camera_unwarped\": true";
+}
+
 void planEmitters(const Scene& scene, const std::vector<double>& earliest, double end, EffectPlan& plan) {
     const std::string until = "the sensor closes at " + brief(end);
     Uses late;
@@ -84,8 +117,9 @@ void planEmitters(const Scene& scene, const std::vector<double>& earliest, doubl
                                         : until + ", light of " + late.names(),
                   late.causes());
     plan.describe("black image", plan.nothingArrives,
-                  plan.nothingArrives ? "no light can arrive: " + until + ", light of " + late.names()
-                                      : "some light may arrive",
+                  plan.nothingArrives
+                      ? "no light can arrive: " + until + ", light of " + late.names() + unwarpedHint(scene, end)
+                      : "some light may arrive",
                   late.causes());
 }
 
@@ -157,7 +191,8 @@ std::vector<double> earliestArrivals(const Scene& scene, const EffectPlan& plan)
     std::vector<double> earliest;
     for (const Emitter& emitter : scene.emitters) {
         const BoundingSphere sphere = boundingSphere(emitter);
-        const double gap = emitter.isInfinite() ? 0.0 : gapToSensor(scene, sphere.centre, sphere.radius);
+        const double gap =
+            emitter.isInfinite() ? 0.0 : gapToSensor(scene, Imath::Box3f(sphere.centre), double(sphere.radius));
         const double start = startOf(emitter);
         earliest.push_back(start + gap / double(plan.highestSpeed) - Slack * std::abs(start));
     }
