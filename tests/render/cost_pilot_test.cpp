@@ -64,7 +64,7 @@ class EndlessPasses : public KnownPasses {
 };
 
 TEST(CostPilot, PassesThatTakeTooLongAreRefused) {
-    const test::SceneFile file(R"({"integrator": {"type": "path_tracer"}})");
+    const test::SceneFile file(R"({"primitives": [], "integrator": {"type": "path_tracer"}})");
     const LoadedScene loaded = loadScene(file.path());
     EndlessPasses integrator;
     try {

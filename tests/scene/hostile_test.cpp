@@ -76,8 +76,9 @@ TEST(HostileScene, ADeepOrBranchingBsdfIsRefused) {
     }
     const std::string text = problemsOf(bsdfs + "]}");
     EXPECT_NE(text.find("bsdfs[8]: consists of more than 256 BSDFs"), std::string::npos) << text;
-    EXPECT_EQ(
-        problemsOf(R"({"bsdfs": [{"type": "mixed", "bsdf0": {"type": "mirror"}, "bsdf1": {"type": "lambert"}}]})"), "");
+    EXPECT_EQ(problemsOf(R"({"primitives": [],
+        "bsdfs": [{"type": "mixed", "bsdf0": {"type": "mirror"}, "bsdf1": {"type": "lambert"}}]})"),
+              "");
 }
 
 struct BadValue {

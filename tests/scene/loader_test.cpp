@@ -30,8 +30,8 @@ const char* const Fog = R"({
 })";
 
 TEST(SceneLoader, ScenesMaySayHowLongTheirUnitIs) {
-    EXPECT_DOUBLE_EQ(loadScene(SceneFile("{}").path()).scene->lengthUnit, 0.0);
-    EXPECT_DOUBLE_EQ(loadScene(SceneFile(R"({"length_unit": "mm"})").path()).scene->lengthUnit, 1e-3);
+    EXPECT_DOUBLE_EQ(loadScene(SceneFile(R"({"primitives": []})").path()).scene->lengthUnit, 0.0);
+    EXPECT_DOUBLE_EQ(loadScene(SceneFile(R"({"primitives": [], "length_unit": "mm"})").path()).scene->lengthUnit, 1e-3);
     EXPECT_NE(problemsOf(R"({"length_unit": "metre"})").find("length_unit: expected km, m, cm, mm, um, in or ft"),
               std::string::npos);
 }
@@ -124,8 +124,20 @@ TEST(SceneLoader, LightThatNeverArrivesIsAnError) {
     EXPECT_EQ(problemsOf(R"({"primitives": [{"type": "infinite_sphere", "emission": 1}]})"), "");
 }
 
+/// What another program's JSON would be without primitives: an empty white scene.
+TEST(SceneLoader, AFileWithoutPrimitivesIsNoScene) {
+    const std::string others = problemsOf(R"({"camera": {"type": "pinhole"}, "materials": [], "entities": [{}]})");
+    for (const char* part : {"scene.json: not a scene: there are no 'primitives'",
+                             "found 'camera', 'materials', 'entities'", "media, bsdfs, camera, integrator"})
+        EXPECT_NE(others.find(part), std::string::npos) << others;
+    EXPECT_NE(problemsOf("{}").find("found nothing"), std::string::npos);
+    // All else the format lets a scene leave out.
+    EXPECT_EQ(problemsOf(R"({"primitives": []})"), "");
+    EXPECT_EQ(problemsOf("{}", {"primitives=[]"}), "");
+}
+
 TEST(SceneLoader, NoLightMeansAWhiteEnvironment) {
-    const SceneFile file("{}");
+    const SceneFile file(R"({"primitives": []})");
     const LoadedScene loaded = loadScene(file.path());
     ASSERT_EQ(loaded.scene->emitters.size(), 1u);
     EXPECT_TRUE(loaded.scene->emitters[0].isInfinite());

@@ -96,6 +96,20 @@ double readLengthUnit(const ObjectReader& root) {
     return unit.empty() ? 0.0 : metres.at(unit);
 }
 
+/// A file of anything else would be an empty scene, since a scene may leave out any other block.
+void requirePrimitives(const rapidjson::Document& document, const ObjectReader& root) {
+    if (root.has("primitives")) return;
+    constexpr int MostNamed = 8;
+    std::string found;
+    int count = 0;
+    for (const auto& member : document.GetObject())
+        if (++count <= MostNamed) found += (count > 1 ? ", '" : "'") + std::string(member.name.GetString()) + "'";
+    root.problem("", "not a scene: there are no 'primitives', the array of its surfaces and light sources; found " +
+                         (count == 0 ? "nothing" : found + (count > MostNamed ? " and others" : "")) +
+                         "; a scene has them, and may have " +
+                         listOf({"media", "bsdfs", "camera", "integrator", "renderer", "film", "length_unit"}));
+}
+
 /// What loading leaves beside the scene itself.
 struct Blocks {
     RendererSettings renderer;
@@ -144,6 +158,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     LoadContext context{*scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory,
                         options.allowOutside};
     context.watch = options.watch;
+    requirePrimitives(*document, root);
     const Blocks blocks = readScene(context, root);
     checkReach(*scene, root);
     throwIfProblems(*diagnostics);
