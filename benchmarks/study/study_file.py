@@ -99,9 +99,11 @@ def _check_keys(block, known, where):
 
 def _load(path):
     try:
-        return json.loads(Path(path).read_text())
+        return json.loads(Path(path).read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError as error:
+        raise StudyError(f"{path}: not text in UTF-8: {error.reason}") from error
     except json.JSONDecodeError as error:
         raise StudyError(f"{path}: not JSON: {error}") from error
 

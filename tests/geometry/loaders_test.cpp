@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 namespace tungsten {
 namespace {
 
@@ -231,6 +233,75 @@ TEST(Gltf, BoundsCyclesAndDepthAreChecked) {
     indices[96] = 3;
     EXPECT_NE(messageOf(folder.write("b.glb", test::glb(test::gltfJson(), indices))).find("index 3"),
               std::string::npos);
+}
+
+constexpr const char* Utf8Mark = "\xEF\xBB\xBF";
+
+/// In each of the ways in which programs end lines, with and without a mark before the first.
+std::vector<std::string> variantsOf(const std::string& text) {
+    std::vector<std::string> variants;
+    for (const std::string end : {"\n", "\r\n", "\r"})
+        for (const std::string mark : {"", Utf8Mark}) {
+            std::string variant = mark;
+            for (const char c : text) variant += c == '\n' ? end : std::string(1, c);
+            variants.push_back(variant);
+        }
+    return variants;
+}
+
+/// In UTF-16, of either order, and with a mark or without.
+std::vector<std::string> wideVariantsOf(const std::string& text) {
+    std::string little, big;
+    for (const char c : text) {
+        little += {c, '\0'};
+        big += {'\0', c};
+    }
+    return {little, big, "\xFF\xFE" + little, "\xFE\xFF" + big};
+}
+
+TEST(LoadMesh, TextMayBeginWithAMarkAndEndLinesAsItLikes) {
+    const FileFolder folder;
+    const std::string obj = "v 0 0 0\n  v 1 0 0\nv 0 \\\n1 0 # a comment\n\nv 9 9 9\nf 1 2 3\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    for (const auto& [name, text] : {std::pair{"a.obj", obj}, {"a.ply", ply}}) {
+        for (const std::string& variant : variantsOf(text)) {
+            SCOPED_TRACE(testing::PrintToString(variant));
+            const TriangleMesh mesh = loadMesh(folder.write(name, variant));
+            ASSERT_EQ(mesh.triangles.size(), 1u);
+            for (const auto& [vertex, position] : {std::pair{0, Vec3f(0)}, {1, Vec3f(1, 0, 0)}, {2, Vec3f(0, 1, 0)}})
+                EXPECT_EQ(mesh.positions[mesh.triangles[0].v[vertex]], position);
+        }
+        for (const std::string& wide : wideVariantsOf(text))
+            EXPECT_NE(messageOf(folder.write(name, wide)).find("save it as UTF-8"), std::string::npos);
+    }
+}
+
+/// After a header of CR alone the body may begin with the byte that LF is.
+TEST(Ply, BodiesBeginAfterTheHeadersOwnLineEnd) {
+    const FileFolder folder;
+    for (const std::string end : {"\n", "\r\n", "\r"}) {
+        std::string text;
+        for (const std::string line :
+             {"ply", "format binary_little_endian 1.0", "element vertex 3", "property float x", "property float y",
+              "property float z", "element face 1", "property list uchar int vertex_indices", "end_header"})
+            text += line + end;
+        const float first = std::bit_cast<float>(0x3F80000Au);
+        for (const float x : {first, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}) test::append(text, x);
+        test::append(text, uint8_t(3));
+        for (const int32_t vertex : {0, 1, 2}) test::append(text, vertex);
+        EXPECT_EQ(loadMesh(folder.write("a.ply", text)).positions[0].x, first);
+    }
+}
+
+TEST(Gltf, TextMayBeginWithAMark) {
+    const FileFolder folder;
+    const std::string text = R"({"asset": {"version": "2.0"}, "nodes": [{}], "scenes": [{"nodes": [0]}], "scene": 0})";
+    EXPECT_TRUE(loadMesh(folder.write("a.gltf", text)).triangles.empty());
+    EXPECT_TRUE(loadMesh(folder.write("a.gltf", Utf8Mark + text)).triangles.empty());
+    for (const std::string& wide : wideVariantsOf(text))
+        EXPECT_NE(messageOf(folder.write("a.gltf", wide)).find("save it as UTF-8"), std::string::npos);
 }
 
 TEST(LoadMesh, MissingFilesFoldersAndUnknownTypes) {

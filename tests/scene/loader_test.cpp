@@ -124,6 +124,19 @@ TEST(SceneLoader, LightThatNeverArrivesIsAnError) {
     EXPECT_EQ(problemsOf(R"({"primitives": [{"type": "infinite_sphere", "emission": 1}]})"), "");
 }
 
+TEST(SceneLoader, TextIsUtf8WithOrWithoutAMark) {
+    const std::string scene = R"({"primitives": []})";
+    EXPECT_EQ(problemsOf("\xEF\xBB\xBF" + scene), "");
+    std::string little, big;
+    for (const char c : scene) {
+        little += {c, '\0'};
+        big += {'\0', c};
+    }
+    for (const std::string& wide : {little, big, "\xFF\xFE" + little, "\xFE\xFF" + big})
+        EXPECT_NE(problemsOf(wide).find("scene.json: text in UTF-16 or UTF-32, which is not read; save it as UTF-8"),
+                  std::string::npos);
+}
+
 /// What another program's JSON would be without primitives: an empty white scene.
 TEST(SceneLoader, AFileWithoutPrimitivesIsNoScene) {
     const std::string others = problemsOf(R"({"camera": {"type": "pinhole"}, "materials": [], "entities": [{}]})");

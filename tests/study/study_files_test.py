@@ -50,12 +50,12 @@ class Summaries(unittest.TestCase):
 
 
 class StudyFiles(unittest.TestCase):
-    def load(self, study):
+    def load(self, study, encoding="utf-8"):
         with tempfile.TemporaryDirectory() as folder:
             for scene in study["scenes"]:
                 scene.setdefault("reference", str(Path(folder) / "reference.pfm"))
             file = Path(folder) / "study.json"
-            file.write_text(json.dumps(study))
+            file.write_text(json.dumps(study), encoding=encoding)
             return load_study(file, PROJECT)
 
     def study(self, **changes):
@@ -103,6 +103,11 @@ class StudyFiles(unittest.TestCase):
                                 ({"methods": [{"name": "m", "scenes": ["c"]}]}, "not compared")):
             with self.assertRaisesRegex(StudyError, message):
                 self.load(self.study(**change))
+
+    def test_text_is_utf8_with_or_without_a_mark(self):
+        self.assertEqual(len(self.load(self.study(), "utf-8-sig").methods), 3)
+        with self.assertRaisesRegex(StudyError, "study.json: not text in UTF-8"):
+            self.load(self.study(), "utf-16")
 
     def test_missing_references_are_named(self):
         study = self.load(self.study())

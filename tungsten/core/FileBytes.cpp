@@ -40,4 +40,11 @@ std::vector<char> readFileBytes(const std::filesystem::path& file, const LoadWat
     return bytes;
 }
 
+std::string_view utf8Of(const std::vector<char>& bytes, const std::filesystem::path& file) {
+    const std::string_view text(bytes.data(), bytes.size()), start = text.substr(0, 2);
+    if (start == "\xFF\xFE" || start == "\xFE\xFF" || start.find('\0') != std::string_view::npos)
+        throw InputError(file.string(), "text in UTF-16 or UTF-32, which is not read; save it as UTF-8");
+    return text.substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+}
+
 } // namespace tungsten

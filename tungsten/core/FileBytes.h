@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace tungsten {
@@ -15,5 +16,9 @@ uint64_t requireRegularFile(const std::filesystem::path& file);
 
 /// The bytes of a regular file of up to 4 GiB; otherwise throws as above.
 std::vector<char> readFileBytes(const std::filesystem::path& file, const LoadWatch& watch = {});
+
+/// Of a file that is, or begins with, text: without the byte-order mark of UTF-8. Throws InputError for text in UTF-16
+/// or UTF-32, marked or not: its first characters have zero bytes.
+std::string_view utf8Of(const std::vector<char>& bytes, const std::filesystem::path& file);
 
 } // namespace tungsten

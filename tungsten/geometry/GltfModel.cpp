@@ -83,7 +83,7 @@ tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional
     constexpr size_t JsonStart = 20; // of .glb files: 12 bytes of header, 8 of chunk header
     const bool binary = bytes.size() >= JsonStart && std::string_view(bytes.data(), 4) == "glTF";
     if (bytes.size() > UINT32_MAX) failGltf(file, "larger than 4 GiB");
-    std::string_view json(bytes.data(), bytes.size());
+    std::string_view json = binary ? std::string_view(bytes.data(), bytes.size()) : utf8Of(bytes, file);
     if (binary) {
         uint32_t length = 0;
         std::memcpy(&length, bytes.data() + 12, sizeof(length));
@@ -99,10 +99,10 @@ tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional
     const auto size = unsigned(bytes.size());
     bool loaded = false;
     try {
-        loaded = binary
-                     ? reader.LoadBinaryFromMemory(&model, &errors, &warnings,
-                                                   reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-                     : reader.LoadASCIIFromString(&model, &errors, &warnings, bytes.data(), size, folder);
+        loaded =
+            binary ? reader.LoadBinaryFromMemory(&model, &errors, &warnings,
+                                                 reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+                   : reader.LoadASCIIFromString(&model, &errors, &warnings, json.data(), unsigned(json.size()), folder);
     } catch (const std::exception& error) {
         errors = error.what();
     }

@@ -37,7 +37,7 @@ class ObjReader {
     TriangleMesh read() {
         std::vector<char> bytes = readFileBytes(file_, watch_);
         joinContinuedLines(bytes);
-        TextCursor text({bytes.data(), bytes.size()});
+        TextCursor text(utf8Of(bytes, file_));
         while (!text.atEnd()) {
             watch_.pollEvery(++line_);
             readLine(text.nextLine());
@@ -53,8 +53,11 @@ class ObjReader {
     }
 
     static void joinContinuedLines(std::vector<char>& bytes) {
-        for (size_t i = 0; i + 1 < bytes.size(); ++i)
-            if (bytes[i] == '\\' && bytes[i + 1] == '\n') bytes[i] = bytes[i + 1] = ' ';
+        for (size_t i = 0; i + 1 < bytes.size(); ++i) {
+            if (bytes[i] != '\\' || (bytes[i + 1] != '\n' && bytes[i + 1] != '\r')) continue;
+            if (bytes[i + 1] == '\r' && i + 2 < bytes.size() && bytes[i + 2] == '\n') bytes[i + 2] = ' ';
+            bytes[i] = bytes[i + 1] = ' ';
+        }
     }
 
     void readLine(std::string_view line) {

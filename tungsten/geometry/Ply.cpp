@@ -86,7 +86,7 @@ Property readProperty(TextCursor& words, const std::filesystem::path& file) {
 Header readHeader(std::string_view text, const std::filesystem::path& file) {
     Header header;
     TextCursor lines(text);
-    if (lines.nextLine() != "ply") fail(file, "not a PLY file (it must start with 'ply')");
+    if (TextCursor(lines.nextLine()).nextWord() != "ply") fail(file, "not a PLY file (it must start with 'ply')");
     bool hasFormat = false;
     while (!lines.atEnd()) {
         TextCursor words(lines.nextLine());
@@ -272,7 +272,7 @@ void skipElement(BodyReader& body, const Element& element) {
 
 TriangleMesh loadPly(const std::filesystem::path& file, const LoadWatch& watch) {
     const std::vector<char> bytes = readFileBytes(file, watch);
-    const std::string_view text(bytes.data(), bytes.size());
+    const std::string_view text = utf8Of(bytes, file);
     const Header header = readHeader(text, file);
     BodyReader body(text.substr(header.bytes), header.encoding, file, watch);
     TriangleMesh mesh;

@@ -17,12 +17,19 @@ class TextCursor {
     [[nodiscard]] bool atEnd() const { return position_ >= text_.size(); }
     [[nodiscard]] size_t position() const { return position_; }
 
-    /// The rest of this line without its end; moves to the next line.
+    /// The rest of this line without its end (LF, CR LF, or CR); moves to the next line.
     std::string_view nextLine() {
-        const size_t end = std::min(text_.find('\n', position_), text_.size());
+        size_t end = endsInCr_ ? text_.find_first_of("\r\n", position_) : text_.find('\n', position_);
+        end = std::min(end, text_.size());
         std::string_view line = text_.substr(position_, end - position_);
+        if (const size_t cr = line.find('\r'); cr != std::string_view::npos) {
+            if (cr + 1 < line.size() || end == text_.size()) {
+                endsInCr_ = true;
+                end = position_ + cr;
+            }
+            line = line.substr(0, cr);
+        }
         position_ = std::min(end + 1, text_.size());
-        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
         return line;
     }
     /// The next word (line ends are blanks too); empty at the end.
@@ -38,6 +45,7 @@ class TextCursor {
 
     std::string_view text_;
     size_t position_ = 0;
+    bool endsInCr_ = false; ///< some line does: an LF after one is not its, and may be the first byte of numbers
 };
 
 /// The whole word as a number, or none.

@@ -198,9 +198,7 @@ std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const st
 std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file) {
     const std::vector<char> bytes = readFileBytes(file);
     if (bytes.size() > LargestScene) throw InputError(file.string(), "larger than 1 GiB: not a scene file");
-    std::string text(bytes.begin(), bytes.end());
-    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    return parseJson(text, file.string());
+    return parseJson(std::string(utf8Of(bytes, file)), file.string());
 }
 
 void applyOverride(rapidjson::Document& document, const std::string& assignment) {
