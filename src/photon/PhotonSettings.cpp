@@ -26,8 +26,9 @@ std::optional<VolumePrimitive> readPrimitive(const ObjectReader& block) {
     if (type == "auto") return std::nullopt;
     for (const NamedPrimitive& known : primitives)
         if (type == known.type) return known.primitive;
-    block.problem("volume_photon_type", type == "planes_1d" ? "'planes_1d' is not supported; supported: " + all
-                                                            : "expected " + all + ", found '" + type + "'");
+    block.problem("volume_photon_type", type == "planes_1d"
+                                            ? "'planes_1d' is not supported: use planes; supported: " + all
+                                            : "expected " + all + ", found '" + type + "'");
     return Points{};
 }
 

@@ -147,6 +147,14 @@ TEST(Transform, RotatesAboutNegatedYThenXThenZ) {
 TEST(Errors, NamesNearEnough) {
     EXPECT_EQ(nearestName("homogenous", {"homogeneous", "voxel"}), "homogeneous");
     EXPECT_EQ(nearestName("xyzzy", {"homogeneous", "voxel"}), "");
+    EXPECT_EQ(nearestName("heterogeneous", {"homogeneous", "guided_homo"}), "") << "the opposite";
+    for (const char* metal : {"TiN", "Ti", "W", "K", "Fe", "Zn"})
+        EXPECT_EQ(nearestName(metal, {"Ag", "Al", "Au", "Cr", "Cu", "Li", "VN"}), "") << metal;
+    EXPECT_EQ(nearestName("cu", {"Ag", "Al", "Au", "Cr", "Cu", "Li", "VN"}), "Cu");
+    EXPECT_EQ(nearestName("fgo", {"gas", "fog"}), "fog") << "neighbours swapped";
+    EXPECT_EQ(nearestName("SIGMA_S", {"sigma_a", "sigma_s"}), "sigma_s");
+    EXPECT_EQ(nearestName("lamert", {"lambert", "mirror"}), "lambert");
+    EXPECT_EQ(nearestName("bidirectional_path_tracer", {"path_tracer", "photon_map"}), "");
     EXPECT_EQ(listOf({"a", "b", "c"}), "a, b or c");
     EXPECT_EQ((Problem{"f.json", "a[0]", "bad"}.text()), "f.json: a[0]: bad");
 }

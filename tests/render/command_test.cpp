@@ -66,6 +66,30 @@ TEST(Command, BadUsageIsExitCodeTwo) {
     for (const Mistake& mistake : mistakes) expectMistake(mistake, BadUsage);
 }
 
+/// Mistakes of every block, with the integrator's own, and fields that nobody reads, at once.
+TEST(Command, EverythingWrongIsToldAtOnce) {
+    const SceneFile scene(foggyBox(test::Paths));
+    const std::string file = scene.path().string();
+    const CommandResult result = test::tungsten(
+        {"--set", "camera.resolutoin=8", "--set", "camera.fov=900", "--set", "integrator.max_bounces=\"x\"", "--set",
+         "integrator.enable_light_sampling=3", "--set", "integrator.max_bounce=3", file});
+    EXPECT_EQ(result.exitCode, BadInput);
+    for (const char* part :
+         {"warning: ", "camera.resolutoin: unknown field, ignored; did you mean 'resolution'?", "error: ", "camera.fov",
+          "integrator.max_bounces: expected", "integrator.enable_light_sampling: expected true or false",
+          "integrator.max_bounce: unknown field"}) {
+        const size_t at = result.err.find(part);
+        EXPECT_NE(at, std::string::npos) << part << " is not in: " << result.err;
+        const bool again = result.err.find(part, at + 1) != std::string::npos;
+        EXPECT_EQ(again, std::string(part).ends_with(": ")) << part << result.err;
+    }
+    expectMistake({{"--set", "camera.fov=900", "--set", "integrator.type=bidirectional_path_tracer", "--set",
+                    "media.fog.type=voxel", file},
+                   {"camera.fov", "media[0].type: 'voxel' is not supported: media are homogeneous",
+                    "integrator.type: 'bidirectional_path_tracer' is not supported: use path_tracer"}},
+                  BadInput);
+}
+
 TEST(Command, BadInputIsExitCodeOne) {
     const SceneFile scene(foggyBox(test::Paths));
     const std::string file = scene.path().string();

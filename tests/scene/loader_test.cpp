@@ -103,9 +103,29 @@ TEST(SceneLoader, EveryProblemIsListedWithItsPath) {
           "media[0].sigma_s", "bsdfs[0].albedo", "missing.png", "primitives[0].file", "missing.wo3",
           "primitives[0].bsdf: there is no BSDF called 'whit' above it; did you mean 'white'?",
           "primitives[0].int_medium: there is no medium called 'frog'", "did you mean 'fog'?",
-          "primitives[1].type: primitives of type 'cylinder' are not supported", "did you mean 'quad'?", "camera.fov",
-          "integrator.max_bounces", "renderer.timeout"})
+          "primitives[1].type: 'cylinder' is not supported: use a mesh; supported: ", "did you mean 'quad'?",
+          "camera.fov", "integrator.max_bounces", "renderer.timeout"})
         EXPECT_NE(text.find(expected), std::string::npos) << "missing: " << expected << "\nin:\n" << text;
+}
+
+TEST(SceneLoader, TypesOfTheFormatThatAreNotReadSayWhatToUse) {
+    const auto expect = [](const std::string& blocks, const std::string& said) {
+        const std::string text = problemsOf("{" + blocks + R"(, "primitives": [{"type": "point", "emission": 1}]})");
+        EXPECT_NE(text.find(said), std::string::npos) << said << "\n" << text;
+        EXPECT_EQ(text.find("did you mean"), std::string::npos) << text;
+    };
+    for (const std::string medium : {"voxel", "atmosphere", "exponential", "heterogeneous"})
+        expect(R"("media": [{"type": ")" + medium + "\"}]",
+               "media[0].type: '" + medium + "' is not supported: media are homogeneous");
+    expect(R"("media": [{"type": "homogeneous", "transmittance": {"type": "davis"}}])",
+           "media[0].transmittance: 'davis' is not supported: light dies away exponentially");
+    for (const std::string bsdf : {"phong", "smooth_coat", "hair", "thinsheet"})
+        expect(R"("bsdfs": [{"type": ")" + bsdf + "\"}]", "bsdfs[0].type: '" + bsdf + "' is not supported: ");
+    expect(R"("bsdfs": [{"type": "conductor", "material": "TiN"}])",
+           "bsdfs[0].material: 'TiN' is not supported: give its eta and k");
+    expect(R"("bsdfs": [{"type": "lambert", "albedo": {"type": "ies"}}])", "'ies' is not supported: use a spot");
+    expect(R"("camera": {"type": "cubemap"})", "camera.type: 'cubemap' is not supported: use six of pinhole");
+    expect(R"("bsdfs": [{"type": "conductor", "material": "Fe"}])", "expected Ag, Al, Au, Cr, Cu, Li or VN, found");
 }
 
 TEST(SceneLoader, BlocksThatAreNoObjectsAreProblems) {

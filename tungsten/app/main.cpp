@@ -30,6 +30,7 @@ namespace tungsten {
 namespace {
 
 void printErrors(const InputError& error) {
+    printWarnings(error.warnings());
     for (const Problem& problem : error.problems()) std::cerr << "error: " << problem.text() << '\n';
 }
 

@@ -17,16 +17,25 @@ std::string joined(const std::vector<Problem>& problems) {
     return text;
 }
 
+std::string inLowerCase(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+    return lower;
+}
+
+/// Letters to insert, delete, replace, or swap with their neighbour.
 size_t editDistance(std::string_view a, std::string_view b) {
-    std::vector<size_t> row(b.size() + 1);
+    std::vector<size_t> before, last, row(b.size() + 1);
     std::iota(row.begin(), row.end(), size_t(0));
     for (size_t i = 1; i <= a.size(); ++i) {
-        size_t diagonal = row[0];
+        before = std::move(last);
+        last = row;
         row[0] = i;
         for (size_t j = 1; j <= b.size(); ++j) {
-            const size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
+            row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                row[j] = std::min(row[j], before[j - 2] + 1);
         }
     }
     return row.back();
@@ -60,8 +69,8 @@ std::string Problem::text() const {
     return printable(out.empty() ? message : out + ": " + message);
 }
 
-InputError::InputError(std::vector<Problem> problems)
-    : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+InputError::InputError(std::vector<Problem> problems, std::vector<Problem> warnings)
+    : std::runtime_error(joined(problems)), problems_(std::move(problems)), warnings_(std::move(warnings)) {}
 
 InputError::InputError(std::string file, std::string message)
     : InputError(std::vector<Problem>{{std::move(file), "", std::move(message)}}) {}
@@ -69,10 +78,11 @@ InputError::InputError(std::string file, std::string message)
 std::string nearestName(std::string_view name, const std::vector<std::string>& candidates) {
     constexpr size_t LongestCompared = 64;
     if (name.size() > LongestCompared) return {};
+    const std::string lower = inLowerCase(name);
     std::string best;
-    size_t bestDistance = std::max<size_t>(2, name.size() / 3) + 1;
+    size_t bestDistance = (name.size() + 1) / 4 + 1; // of a quarter of the letters another word is made
     for (const std::string& candidate : candidates) {
-        const size_t distance = editDistance(name, candidate);
+        const size_t distance = editDistance(lower, inLowerCase(candidate));
         if (distance < bestDistance) {
             bestDistance = distance;
             best = candidate;

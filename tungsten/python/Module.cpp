@@ -198,7 +198,7 @@ void declareErrors(py::module_& module) {
     static PyObject* usageError = nullptr;
     inputError = PyErr_NewExceptionWithDoc("darts_tungsten.InputError",
                                            "A mistake in a scene or file; `problems` lists all of them as (file, path, "
-                                           "message).",
+                                           "message), `warnings` what would have been warned about.",
                                            PyExc_ValueError, nullptr);
     usageError = PyErr_NewException("darts_tungsten.UsageError", PyExc_ValueError, nullptr);
     module.attr("InputError") = py::handle(inputError);
@@ -207,11 +207,15 @@ void declareErrors(py::module_& module) {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const InputError& error) {
-            py::list problems;
-            for (const Problem& problem : error.problems())
-                problems.append(py::make_tuple(problem.file, problem.path, problem.message));
+            const auto listed = [](const std::vector<Problem>& problems) {
+                py::list list;
+                for (const Problem& problem : problems)
+                    list.append(py::make_tuple(problem.file, problem.path, problem.message));
+                return list;
+            };
             const py::object raised = py::handle(inputError)(error.what());
-            raised.attr("problems") = problems;
+            raised.attr("problems") = listed(error.problems());
+            raised.attr("warnings") = listed(error.warnings());
             PyErr_SetObject(inputError, raised.ptr());
         } catch (const UsageError& error) {
             PyErr_SetString(usageError, error.what());

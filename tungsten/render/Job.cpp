@@ -1,29 +1,45 @@
 #include "tungsten/render/Job.h"
 
+#include "tungsten/scene/FormatTypes.h"
+
 namespace tungsten {
 
 namespace {
 
-[[noreturn]] void failUnknownIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
+/// Null if there is none of the type, which is a problem.
+const IntegratorRegistry::Entry* integratorOf(const ObjectReader& block, const std::string& type,
+                                              const Plugins& plugins) {
+    const auto found = plugins.registry.entries().find(type);
+    if (found != plugins.registry.entries().end()) return &found->second;
     std::vector<std::string> types;
-    for (const auto& [type, entry] : plugins.registry.entries()) types.push_back(type);
-    std::string message = types.empty() ? "no integrator is known" : "expected " + listOf(types);
-    message += ", found '" + loaded.integratorType + "'";
-    const std::string near = nearestName(loaded.integratorType, types);
-    if (!near.empty()) message += "; did you mean '" + near + "'?";
-    message += " (plugins were looked for in";
+    for (const auto& [known, entry] : plugins.registry.entries()) types.push_back(known);
+    std::string message =
+        refusal(type, "'" + type + "'", types, unsupportedIntegrators()) + " (plugins were looked for in";
     for (size_t i = 0; i < plugins.directories.size(); ++i)
         message += (i > 0 ? ", " : " ") + plugins.directories[i].string();
-    throw InputError({{loaded.diagnostics->file, "integrator.type", message + ")"}});
+    block.problem("type", message + ")");
+    return nullptr;
 }
 
 std::unique_ptr<Integrator> makeIntegrator(const LoadedScene& loaded, const Plugins& plugins) {
-    const auto found = plugins.registry.entries().find(loaded.integratorType);
-    if (found == plugins.registry.entries().end()) failUnknownIntegrator(loaded, plugins);
-    auto integrator = found->second.factory(loaded.scene, loaded.integratorSettings);
+    const auto* entry = integratorOf(loaded.integratorSettings, loaded.integratorType, plugins);
     throwIfProblems(*loaded.diagnostics);
+    auto integrator = entry->factory(loaded.scene, loaded.integratorSettings);
     loaded.integratorSettings.warnAboutUnknown();
+    throwIfProblems(*loaded.diagnostics);
     return integrator;
+}
+
+/// The block's mistakes alone: for want of a scene, in an empty one.
+void readIntegratorAlone(const ObjectReader& block, const std::string& type, const TransportSettings& transport,
+                         const Plugins& plugins) {
+    const auto* entry = integratorOf(block, type, plugins);
+    if (!entry) return;
+    try {
+        (void)entry->factory(emptyScene(transport), block);
+        block.warnAboutUnknown();
+    } catch (const std::exception&) { // it takes no empty scene
+    }
 }
 
 void warnAboutBlackImage(const Job& job) {
@@ -36,7 +52,12 @@ void warnAboutBlackImage(const Job& job) {
 } // namespace
 
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins, bool everything) {
-    Job job{loadScene(file, options), nullptr, {}};
+    LoadOptions anyway = options;
+    anyway.readIntegrator = [&](const ObjectReader& block, const std::string& type,
+                                const TransportSettings& transport) {
+        readIntegratorAlone(block, type, transport, plugins);
+    };
+    Job job{loadScene(file, anyway), nullptr, {}};
     options.watch.poll();
     job.integrator = makeIntegrator(job.loaded, plugins);
     options.watch.poll();

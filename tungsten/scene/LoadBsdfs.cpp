@@ -1,3 +1,4 @@
+#include "tungsten/scene/FormatTypes.h"
 #include "tungsten/scene/LoadContext.h"
 
 #include <functional>
@@ -35,7 +36,8 @@ std::pair<Rgb, Rgb> readConductor(const ObjectReader& reader) {
     const Rgb eta = reader.rgb("eta", optics.first, {"none", "index of refraction, with `k`", "copper's"}, {1e-6, 1e6});
     const Rgb k = reader.rgb("k", optics.second, {"none", "extinction index, with `eta`", "copper's"}, {0.0, 1e6});
     const std::string material =
-        reader.choice("material", "Cu", conductorNames(), {"none", "metal whose `eta` and `k` are used instead"});
+        reader.choice("material", "Cu", conductorNames(), {"none", "metal whose `eta` and `k` are used instead"},
+                      unsupportedMetals());
     if (reader.has("eta") != reader.has("k"))
         reader.warn(reader.has("eta") ? "eta" : "k", "eta and k take effect only together; copper is used");
     else
@@ -175,7 +177,8 @@ BsdfPtr readBsdf(LoadContext& context, const ObjectReader& reader) {
     std::vector<std::string> types;
     for (const auto& [type, modelReader] : modelReaders()) types.push_back(type);
     if (!reader.has("type")) reader.problem("type", "a BSDF needs a type: " + listOf(types));
-    const std::string type = reader.choice("type", "lambert", types, {"none", "which BSDF", "required"});
+    const std::string type =
+        reader.choice("type", "lambert", types, {"none", "which BSDF", "required"}, unsupportedBsdfs());
     const std::string name = reader.text("name", "", NameMeaning);
     Texture albedo = readTexture(context, reader, "albedo", Texture(1.0f),
                                  {"none", "factor on the model's reflectance"}, Range::unit());

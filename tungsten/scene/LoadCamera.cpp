@@ -1,3 +1,4 @@
+#include "tungsten/scene/FormatTypes.h"
 #include "tungsten/scene/LoadContext.h"
 
 #include <algorithm>
@@ -88,7 +89,8 @@ void readDetectors(const ObjectReader& reader, Camera& camera) {
 }
 
 void readModel(const ObjectReader& root, const ObjectReader& reader, Camera& camera) {
-    const std::string type = reader.choice("type", "pinhole", cameraTypes(), {"none", "which camera"});
+    const std::string type =
+        reader.choice("type", "pinhole", cameraTypes(), {"none", "which camera"}, unsupportedCameras());
     if (type == "thinlens") {
         ThinLens lens = readThinLens(reader);
         readFocusPivot(root, reader, camera.position(), lens);

@@ -1,3 +1,4 @@
+#include "tungsten/scene/FormatTypes.h"
 #include "tungsten/scene/LoadContext.h"
 
 namespace tungsten {
@@ -33,12 +34,13 @@ void requireExponentialTransmittance(const ObjectReader& medium) {
     else if (const auto object = medium.object("transmittance", meaning))
         type = object->text("type", "", {"none", "which law"});
     if (type != "exponential")
-        medium.problem("transmittance", "only exponential transmittance is supported, found '" + type + "'");
+        medium.problem("transmittance", refusal(type, "'" + type + "'", {"exponential"}, unsupportedTransmittances()));
 }
 
 Medium readMedium(const ObjectReader& reader) {
     Medium medium;
-    const std::string type = reader.choice("type", "homogeneous", mediumTypes(), {"none", "which medium", "required"});
+    const std::string type =
+        reader.choice("type", "homogeneous", mediumTypes(), {"none", "which medium", "required"}, unsupportedMedia());
     medium.name = reader.text("name", "", NameMeaning);
     medium.path = reader.path();
     if (!reader.has("type")) reader.problem("type", "a medium needs a type: " + listOf(mediumTypes()));

@@ -1,6 +1,7 @@
 #include "tungsten/scene/LoadContext.h"
 
 #include "tungsten/core/Overloaded.h"
+#include "tungsten/scene/FormatTypes.h"
 #include "tungsten/scene/LoadEmitters.h"
 
 #include <map>
@@ -55,12 +56,6 @@ const std::map<std::string, SurfaceReader>& surfaceReaders() {
     static const std::map<std::string, SurfaceReader> readers{
         {"mesh", readMesh}, {"quad", readQuad}, {"cube", readCube}, {"sphere", readSphere}, {"disk", readDisk}};
     return readers;
-}
-
-const std::vector<std::string>& unsupportedTypes() {
-    static const std::vector<std::string> types{"cylinder", "infinite_sphere_cap", "skydome", "instances",
-                                                "curves",   "minecraft_map"};
-    return types;
 }
 
 Region regionOn(const LoadContext& context, int medium, double speed) {
@@ -153,14 +148,7 @@ void readPrimitive(LoadContext& context, const ObjectReader& reader) {
     if (surface != surfaceReaders().end()) {
         readSurface(context, reader, surface->second);
     } else if (!readPointOrInfiniteEmitter(context, reader, type)) {
-        const auto& known = unsupportedTypes();
-        const std::string near = nearestName(type, primitiveTypes());
-        if (std::find(known.begin(), known.end(), type) != known.end())
-            reader.problem("type", "primitives of type '" + type +
-                                       "' are not supported; supported: " + listOf(primitiveTypes()));
-        else
-            reader.problem("type", "expected " + listOf(primitiveTypes()) + ", found '" + type + "'" +
-                                       (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        reader.problem("type", refusal(type, "'" + type + "'", primitiveTypes(), unsupportedPrimitives()));
         return;
     }
     reader.warnAboutUnknown();

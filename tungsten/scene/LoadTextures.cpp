@@ -1,3 +1,4 @@
+#include "tungsten/scene/FormatTypes.h"
 #include "tungsten/scene/LoadContext.h"
 
 #include "tungsten/core/InsideFolder.h"
@@ -60,7 +61,8 @@ Texture readBitmapFile(LoadContext& context, const ObjectReader& owner, const st
 
 Texture readTextureObject(LoadContext& context, const ObjectReader& texture, const Texture& fallback, Range range) {
     const std::vector<std::string> types = textureTypes();
-    const std::string type = texture.choice("type", "", types, {"none", "which texture", "required"});
+    const std::string type =
+        texture.choice("type", "", types, {"none", "which texture", "required"}, unsupportedTextures());
     texture.accept({"name"});
     Texture result = fallback;
     if (type == "constant") {

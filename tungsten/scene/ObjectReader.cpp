@@ -1,6 +1,7 @@
 #include "tungsten/scene/ObjectReader.h"
 
 #include "tungsten/scene/Duration.h"
+#include "tungsten/scene/FormatTypes.h"
 #include "tungsten/scene/Json.h"
 
 #include <cmath>
@@ -157,15 +158,14 @@ std::string ObjectReader::text(const std::string& name, const std::string& fallb
 }
 
 std::string ObjectReader::choice(const std::string& name, const std::string& fallback,
-                                 const std::vector<std::string>& accepted, const Meaning& meaning) const {
+                                 const std::vector<std::string>& accepted, const Meaning& meaning,
+                                 const std::map<std::string, std::string>& instead) const {
     if (describes()) declare(name, listOf(accepted), fallback.empty() ? "none" : fallback, meaning);
     const Node* node = find(name);
     if (!node) return fallback;
     const std::string value = valueOf(node).IsString() ? valueOf(node).GetString() : "";
     if (std::find(accepted.begin(), accepted.end(), value) != accepted.end()) return value;
-    const std::string near = nearestName(value, accepted);
-    problem(name, "expected " + listOf(accepted) + ", found " + found(valueOf(node)) +
-                      (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    problem(name, refusal(value, found(valueOf(node)), accepted, instead));
     return fallback;
 }
 

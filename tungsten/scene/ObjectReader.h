@@ -58,9 +58,10 @@ class ObjectReader {
                                   Range range = {}) const;
     [[nodiscard]] bool flag(const std::string& name, bool fallback, const Meaning& meaning) const;
     [[nodiscard]] std::string text(const std::string& name, const std::string& fallback, const Meaning& meaning) const;
-    /// One of `accepted` (case-sensitive).
+    /// One of `accepted` (case-sensitive). Others that people may try have something to use `instead`.
     [[nodiscard]] std::string choice(const std::string& name, const std::string& fallback,
-                                     const std::vector<std::string>& accepted, const Meaning& meaning) const;
+                                     const std::vector<std::string>& accepted, const Meaning& meaning,
+                                     const std::map<std::string, std::string>& instead = {}) const;
     /// Three numbers, or one for all components. Every component must lie in `range`.
     [[nodiscard]] Vec3f vec3(const std::string& name, const Vec3f& fallback, const Meaning& meaning,
                              Range range = {}) const;
@@ -100,6 +101,11 @@ class ObjectReader {
     void refuseUnknown(const std::map<std::string, std::string>& hints = {}) const;
     void problem(const std::string& field, const std::string& message) const;
     void warn(const std::string& field, const std::string& message) const;
+
+    /// The same object, read afresh: nothing is known of it yet, and problems go elsewhere.
+    [[nodiscard]] ObjectReader withDiagnostics(std::shared_ptr<Diagnostics> diagnostics) const {
+        return {document_, node_, path_, std::move(diagnostics)};
+    }
 
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] std::string pathOf(const std::string& field) const;

@@ -142,8 +142,38 @@ void throwIfProblems(const Diagnostics& diagnostics) {
     std::vector<Problem> problems = diagnostics.problems;
     if (diagnostics.moreProblems > 0)
         problems.push_back({diagnostics.file, "", "and " + std::to_string(diagnostics.moreProblems) + " more"});
-    throw InputError(std::move(problems));
+    std::vector<Problem> warnings = diagnostics.warnings;
+    if (diagnostics.moreWarnings > 0)
+        warnings.push_back({diagnostics.file, "", "and " + std::to_string(diagnostics.moreWarnings) + " more"});
+    throw InputError(std::move(problems), std::move(warnings));
 }
+
+namespace {
+
+/// What the integrator says against its block, as far as it is not said yet, where there is no scene for it.
+void readIntegratorAnyway(const LoadOptions& options, const ObjectReader& root, const std::string& type,
+                          const TransportSettings& transport, Diagnostics& diagnostics) {
+    if (!options.readIntegrator) return;
+    const auto own = std::make_shared<Diagnostics>();
+    own->file = diagnostics.file;
+    const ObjectReader again = blockOf(root.withDiagnostics(own), "integrator", {"none", ""});
+    (void)readIntegratorType(again);
+    (void)readTransport(again, type);
+    options.readIntegrator(again, type, transport);
+    const auto append = [](std::vector<Problem>& all, const std::vector<Problem>& more) {
+        for (const Problem& problem : more) {
+            const bool isBlocks = problem.path == "integrator" || problem.path.starts_with("integrator.");
+            const bool isKnown = std::any_of(all.begin(), all.end(), [&](const Problem& known) {
+                return known.path == problem.path && known.message == problem.message;
+            });
+            if (isBlocks && !isKnown && all.size() < Diagnostics::MostListed) all.push_back(problem);
+        }
+    };
+    append(diagnostics.problems, own->problems);
+    append(diagnostics.warnings, own->warnings);
+}
+
+} // namespace
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
     const std::shared_ptr<rapidjson::Document> document =
@@ -161,6 +191,8 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     requirePrimitives(*document, root);
     const Blocks blocks = readScene(context, root);
     checkReach(*scene, root);
+    if (!diagnostics->problems.empty())
+        readIntegratorAnyway(options, root, blocks.integratorType, scene->transport, *diagnostics);
     throwIfProblems(*diagnostics);
 
     finishGeometry(*scene, options.watch);
@@ -192,10 +224,11 @@ RendererSettings peekRenderer(const std::filesystem::path& file, const std::vect
     }
 }
 
-std::shared_ptr<const Scene> emptyScene() {
+std::shared_ptr<const Scene> emptyScene(const TransportSettings& transport) {
     auto scene = std::make_shared<Scene>();
     LoadContext context{*scene, {}};
     readScene(context, ObjectReader::empty("", std::make_shared<Diagnostics>()));
+    scene->transport = transport;
     finishGeometry(*scene);
     return scene;
 }

@@ -6,6 +6,7 @@
 #include "tungsten/scene/Scene.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,6 +42,10 @@ struct LoadOptions {
     bool allowOutside = false;            ///< resources may lie outside that directory
     std::optional<std::string> text = {}; ///< the scene itself: the file's name is then only told in messages
     LoadWatch watch = {};                 ///< what it throws ends the loading
+    /// Reads the integrator's block, with the transport that is read from it, where a scene has problems: those of the
+    /// block, which its integrator reads once there is a scene, are then told along.
+    std::function<void(const ObjectReader& block, const std::string& type, const TransportSettings& transport)>
+        readIntegrator = {};
 };
 
 struct LoadedScene {
@@ -76,7 +81,7 @@ std::vector<DescribedKind> describeScene();
 /// The fields that every integrator's block shares, with the defaults they have for its type.
 void describeTransport(const ObjectReader& describing, const std::string& type);
 /// A scene without surfaces, lit by the default light: enough for an integrator to say what it reads.
-std::shared_ptr<const Scene> emptyScene();
+std::shared_ptr<const Scene> emptyScene(const TransportSettings& transport = {});
 
 /// Throws InputError if any problem has been recorded.
 void throwIfProblems(const Diagnostics& diagnostics);
