@@ -34,7 +34,7 @@ def render(tungsten, folder, method, seconds):
     image, stats = folder / f"{name}.exr", folder / f"{name}.json"
     subprocess.run([tungsten, "-t", "2", "-s", "1", "--timeout", f"{seconds:g}s", "--quiet", "--spp", "1000000",
                     "--set", f"integrator.darts={METHODS[method]}", "-d", folder, "-o", f"{name}.png", "-e", image.name,
-                    "--stats", stats, PROJECT / "data/scenes/two-peaks/scene.json"], check=True)
+                    "--stats", stats.name, PROJECT / "data/scenes/two-peaks/scene.json"], check=True)
     layers = read_exr(image)
     return layers[""], layers["stderr"], json.loads(stats.read_text())
 

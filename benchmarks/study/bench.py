@@ -145,8 +145,8 @@ class Bench:
         command = self.command(scene, settings, ["-s", str(seed), "--quiet", "--spp", str(passes or 10**9), "--timeout", "10h",
                                                  *options], threads)
         folder = self.folder_of(scene, command, cpu, *([again] if again > 1 else []))
-        outputs = ["-d", str(folder), "-o", "image.png", "-e", "image.exr", "--stats", str(folder / "stats.json"),
-                   "--trace", str(folder / "trace"), str(scene.file)]
+        outputs = ["-d", str(folder), "-o", "image.png", "-e", "image.exr", "--stats", "stats.json",
+                   "--trace", "trace", str(scene.file)]
         if not (folder / "done").exists():
             run_for(command + outputs, cpu, folder / "trace/trace.json")
             (folder / "done").touch()

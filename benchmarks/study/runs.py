@@ -154,8 +154,8 @@ def execute(run: Run, tungsten: Path, build: str, limit: float, accept_warnings:
     partial = run.folder.with_name(run.folder.name + ".partial")
     shutil.rmtree(partial, ignore_errors=True)
     partial.mkdir(parents=True)
-    command = [str(tungsten), "-d", str(partial), "-o", "image.png", "-e", "image.exr", "--stats",
-               str(partial / "stats.json"), *run.arguments()]
+    command = [str(tungsten), "-d", str(partial), "-o", "image.png", "-e", "image.exr", "--stats", "stats.json",
+               *run.arguments()]
     start, load = time.time(), os.getloadavg()[0]
     code, messages = call(command, limit)
     record = {"fingerprint": run.fingerprint(), "build": build, "machine": machine(), "label": run.label, "command": command,

@@ -189,10 +189,12 @@ TEST(Command, ExplainPrintsThePlanAndRendersNothing) {
 TEST(Command, ASceneRendersAndSaysWhereTheImagesAre) {
     const SceneFile scene(foggyBox(test::Paths));
     const fs::path folder = scene.path().parent_path() / "new" / "folder";
-    const CommandResult result = test::tungsten({"-d", folder.string(), "--resolution", "12x10", "--stats",
-                                                 (folder / "stats.json").string(), "-t=1", scene.path().string()});
+    const CommandResult result =
+        test::tungsten({"-d", folder.string(), "--resolution", "12x10", "--stats", "stats.json", "--html", "page.html",
+                        "--trace", "trace", "-t=1", scene.path().string()});
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    for (const char* name : {"box.png", "box.pfm", "stats.json"}) {
+    EXPECT_TRUE(fs::exists(folder / "trace" / "trace.json"));
+    for (const char* name : {"box.png", "box.pfm", "stats.json", "page.html"}) {
         EXPECT_TRUE(fs::exists(folder / name));
         EXPECT_NE(result.out.find("wrote " + (folder / name).string()), std::string::npos) << result.out;
     }
@@ -218,6 +220,25 @@ TEST(Command, APageHoldsFilmCommandAndFigures) {
     for (const char* part : {"\"frames\": 4", "\"samples per pixel\": 8", "\"value\": \"standard error", "new uPlot(",
                              "Leon Sorokin", R"('primitives.lamp.name=\u003c/script> it'\\''s')"})
         EXPECT_NE(text.find(part), std::string::npos) << part;
+}
+
+TEST(Command, APageTellsTimesInPicosecondsWhereTheSceneSaysItsUnit) {
+    const SceneFile scene(foggyBox(test::PathFrames));
+    const auto timeOf = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> all{"--quiet", "--html", "page.html", "-d", scene.path().parent_path().string()};
+        all.insert(all.end(), options.begin(), options.end());
+        all.push_back(scene.path().string());
+        EXPECT_EQ(test::tungsten(all).exitCode, 0);
+        const std::string page = contentOf(scene.path().parent_path() / "page.html");
+        const size_t at = page.find("\"width\": ", page.find("\"start\": ", page.find("\"toneMap\"")));
+        const size_t unit = page.find("\"unit\": \"", at) + 9;
+        return std::pair{std::stod(page.substr(at + 9)), page.substr(unit, page.find('"', unit) - unit)};
+    };
+    const auto plain = timeOf({});
+    EXPECT_EQ(plain.second, "");
+    const auto metres = timeOf({"--set", "length_unit=m"});
+    EXPECT_EQ(metres.second, "ps");
+    EXPECT_NEAR(metres.first / plain.first, 1e12 / 299792458.0, 1e-3);
 }
 
 TEST(Command, QuietIsQuiet) {

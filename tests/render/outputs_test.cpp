@@ -59,6 +59,15 @@ TEST(Outputs, TheCommandLineWins) {
     EXPECT_EQ(outputs.ldr, "there/mine.png") << "-d rebases -o";
     EXPECT_EQ(outputs.hdr, "there/b.pfm") << "and the scene's names";
     EXPECT_EQ(outputs.state, "there/mineState.dat");
+    for (auto* name :
+         {&overrides.ldr, &overrides.hdr, &overrides.statistics, &overrides.page, &overrides.sheet, &overrides.video})
+        *name = "x/file";
+    const OutputFiles all = resolveOutputs(settings("a.png"), "scenes/s.json", overrides);
+    for (const auto& file : {all.ldr, all.hdr, all.statistics, all.page, all.sheet, all.video})
+        EXPECT_EQ(file, "there/x/file") << "-d rebases whatever the command line names";
+    overrides.statistics = "/else/where";
+    EXPECT_EQ(resolveOutputs(settings("a.png"), "scenes/s.json", overrides).statistics, "/else/where")
+        << "but not what is absolute";
 }
 
 TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {

@@ -103,6 +103,7 @@ TEST(PassWatch, PassesAreCutIfTheFirstIsTooLong) {
 TEST(PassWatch, SamplesAreCutWhereLightPathsCanBe) {
     SessionFixture session(tinyScene("", R"("spp": 2, "spp_step": 1)"));
     session.options.timeoutSeconds = 1.0;
+    session.options.trace = session.folder() / "trace";
     session.integrator.cutsPaths = true;
     session.integrator.afterPass = [](const PassInfo& pass) {
         pass.watch.stage("endless", 8);
@@ -121,6 +122,8 @@ TEST(PassWatch, SamplesAreCutWhereLightPathsCanBe) {
     }
     EXPECT_DOUBLE_EQ(light, 2.0);
     EXPECT_EQ(samples.size(), 64u);
+    ASSERT_FALSE(result.trace.empty());
+    for (const TraceEntry& entry : result.trace) EXPECT_DOUBLE_EQ(entry.samples, double(entry.passes) / 32.0);
 }
 
 TEST(PassWatch, WhatIsThrownWithinAPassEndsTheRender) {

@@ -140,6 +140,35 @@ TEST(Override, SetsByIndexByNameAndNewFields) {
     EXPECT_STREQ((*document)["renderer"]["timeout"].GetString(), "30s");
 }
 
+TEST(Override, AStarStandsForAllElements) {
+    const JsonFile file(
+        R"({"media": [{"name": "gas"}, {"type": "x"}], "bsdfs": [], "primitives": [{"name": "*"}, {}]})");
+    const auto document = parseJsonFile(file.path());
+    applyOverride(*document, "media.*.type=guided_homo");
+    for (const int i : {0, 1}) EXPECT_STREQ((*document)["media"][i]["type"].GetString(), "guided_homo");
+    applyOverride(*document, "primitives.*.power=3"); // a name goes first
+    EXPECT_FALSE((*document)["primitives"][1].HasMember("power"));
+    for (const char* bad : {"bsdfs.*.albedo=1", "media.*.=1", "media.0.=1", "media.=1", "*.0=1"})
+        EXPECT_THROW(applyOverride(*document, bad), UsageError) << bad;
+}
+
+TEST(Override, WhatReplacesANamedObjectKeepsItsName) {
+    const JsonFile file(R"({"media": [{"name": "gas", "sigma_s": 1}], "bsdfs": [{"name": "wall", "type": "null"}],
+                            "primitives": [{"name": "lamp", "type": "point"}], "camera": {"name": "c"}})");
+    const auto document = parseJsonFile(file.path());
+    applyOverride(*document, R"(media.gas={"type": "homogeneous"})");
+    applyOverride(*document, R"(bsdfs.0={"type": "mirror"})");
+    applyOverride(*document, R"(primitives.*={"type": "quad"})");
+    applyOverride(*document, R"(bsdfs.wall.type="lambert")");
+    for (const auto& [block, name] : {std::pair{"media", "gas"}, {"bsdfs", "wall"}, {"primitives", "lamp"}})
+        EXPECT_STREQ((*document)[block][0]["name"].GetString(), name);
+    EXPECT_FALSE((*document)["media"][0].HasMember("sigma_s"));
+    applyOverride(*document, R"(media.gas={"name": "fog"})");
+    EXPECT_STREQ((*document)["media"][0]["name"].GetString(), "fog");
+    applyOverride(*document, "bsdfs.wall=3");
+    EXPECT_EQ((*document)["bsdfs"][0].GetDouble(), 3.0);
+}
+
 TEST(Override, PathsThatLeadNowhereNameTheNearest) {
     const JsonFile file(R"({"media": [{"name": "gas", "sigma_s": 1}], "integrator": {}})");
     const auto document = parseJsonFile(file.path());

@@ -94,7 +94,8 @@ void declareInputs(CLI::App& app, Options& options, OptionTexts& text) {
                    "save images and a resume state every DURATION (no unit: minutes); resume from it");
     app.add_option("-i,--input-directory", options.inputDirectory,
                    "base of the scene's resources (default: the scene's folder)");
-    app.add_option("-d,--output-directory", text.directory, "base of every output file; created if missing");
+    app.add_option("-d,--output-directory", text.directory,
+                   "base of every output: names of the scene, and relative ones of other options; created if missing");
     app.add_option("--spp", text.spp, "samples per pixel in total")
         ->check(CLI::Range(int64_t(1), int64_t(1000000000000)));
     app.add_option("--passes", text.passes,
@@ -105,7 +106,9 @@ void declareInputs(CLI::App& app, Options& options, OptionTexts& text) {
         "stop after DURATION of rendering (no unit: minutes), in the midst of a pass too, and write what is there");
     app.add_option("-s,--seed", text.seed, "seed of the random numbers (default 0xBA5EBA11)");
     app.add_option("--time-center", text.timeCentre, "centre of the time gate")->check(CLI::Number);
-    app.add_option("--set", options.overrides, "override a value of the scene: path.to.field=value (repeatable)")
+    app.add_option(
+           "--set", options.overrides,
+           "override a value of the scene: path.to.field=value, with a * for all elements of an array (repeatable)")
         ->allow_extra_args(false);
     app.add_option("--resolution", text.resolution, "WIDTHxHEIGHT in pixels");
 }

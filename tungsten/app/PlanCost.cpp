@@ -171,7 +171,8 @@ std::string costJson(const std::string& scene, const std::vector<Method>& method
 bool planCost(const std::filesystem::path& file, const Options& options, const Plugins& plugins,
               const std::atomic<bool>& interrupted) {
     const LoadedScene loaded = loadScene(file, loadOptions(options, {}));
-    if (options.outputs.statistics) checkWritable(*options.outputs.statistics);
+    const std::filesystem::path report = options.outputs.placed(options.outputs.statistics.value_or(""));
+    if (!report.empty()) checkWritable(report);
     std::vector<Method> methods = methodsFor(loaded);
     try {
         const double seconds = options.timeoutSeconds.value_or(DefaultSeconds) / double(methods.size());
@@ -181,8 +182,7 @@ bool planCost(const std::filesystem::path& file, const Options& options, const P
     }
     const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     printTable(file.string(), methods, threads);
-    if (options.outputs.statistics)
-        writeTextFile(*options.outputs.statistics, costJson(file.string(), methods, threads));
+    if (!report.empty()) writeTextFile(report, costJson(file.string(), methods, threads));
     for (const Method& method : methods)
         if (method.costs) return true;
     throw InputError(file.string(), "no method can tell what an error costs: " + methods.front().refusal);

@@ -33,7 +33,7 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.memoryLimit = options.memoryLimit;
     session.quiet = options.quiet;
     session.team = team;
-    session.trace = options.trace;
+    session.trace = options.outputs.placed(options.trace);
     session.command = options.command;
     session.interrupted = &interrupted;
     return session;

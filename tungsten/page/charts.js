@@ -76,7 +76,7 @@ function drawHistogram(host, scene, films, patch, frame, onFrame) {
   const options = {
     width: plotWidth(host), height: 250, series, bands, legend: { show: false },
     scales: { x: { time: false }, y: { range: (_, low, high) => [0, high > 0 ? 1.05 * high : 1] } },
-    axes: [axis("time since the pulse, in the scene's unit", 46), axis(scene.quantity, 66)],
+    axes: [axis(`time since the pulse, in ${scene.time.unit || "the scene's unit"}`, 46), axis(scene.quantity, 66)],
     cursor: { drag: { x: false, y: false } }, hooks: { draw: [now] },
   };
   host.plot = new uPlot(options, data, host);

@@ -86,7 +86,7 @@ function showControls() {
   const { time } = scene(), picture = state.show === "picture";
   $("frame").max = frames() - 1;
   const edge = (frame) => short(time.start + frame * time.width);
-  const from = time ? `, time ${edge(state.frame)} to ${edge(state.frame + 1)}` : "";
+  const from = time ? `, time ${edge(state.frame)} to ${edge(state.frame + 1)}${time.unit ? ` ${time.unit}` : ""}` : "";
   $("frame").value = state.frame;
   $("frame-text").value = `frame ${state.frame} of 0–${frames() - 1}${from}`;
   $("ev-text").value = `${state.ev} EV (×${short(2 ** state.ev)})`;

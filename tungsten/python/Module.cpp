@@ -93,7 +93,7 @@ SessionOptions sessionOptions(const RendererSettings& renderer, const Limits& li
 py::dict stateOf(const SessionResult& session, const SessionOptions& options) {
     py::dict state;
     state["passes"] = session.film.passes();
-    state["samples"] = session.samples;
+    state["samples"] = samplesOf(session);
     state["total_samples"] = options.spp;
     state["relative_error"] = session.film.relativeStandardError();
     return state;

@@ -119,7 +119,8 @@ void declareResult(py::module_& module) {
         .def_property_readonly("metadata", parsed, "a dict: what a result file says about itself")
         .def_property_readonly("passes", [](const Result& r) { return r.session().film.passes(); })
         .def_property_readonly(
-            "samples", [](const Result& r) { return r.session().samples; }, "per pixel")
+            "samples", [](const Result& r) { return samplesOf(r.session()); },
+            "per pixel; a fraction where passes were cut")
         .def_property_readonly(
             "seconds", [](const Result& r) { return r.session().renderSeconds; }, "of passes")
         .def_property_readonly(
@@ -133,6 +134,11 @@ void declareResult(py::module_& module) {
         .def("write", &Result::write, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
              "Writes .exr, .npz, .h5, .pfm, .npy or .png and what goes beside them; returns the names.")
         .def("__repr__", textOf);
+}
+
+py::object samplesOf(const SessionResult& session) {
+    const double taken = session.film.totalWeight();
+    return taken == double(session.samples) ? py::object(py::int_(session.samples)) : py::object(py::float_(taken));
 }
 
 } // namespace tungsten::python

@@ -35,4 +35,7 @@ class Result {
 
 void declareResult(pybind11::module_& module);
 
+/// Per pixel: a whole number, or a fraction where passes were cut.
+pybind11::object samplesOf(const SessionResult& session);
+
 } // namespace tungsten::python

@@ -84,9 +84,12 @@ void describeScene(JsonWriter& json, const LoadedScene& loaded, const SessionRes
     json.field("quantity", quantityText(scene));
     json.field("reference", Nothing);
     if (gate.frames > 1) {
+        const double picoseconds = picosecondsPerTime(scene);
+        const double unit = picoseconds > 0.0 ? picoseconds : 1.0;
         json.beginObject("time");
-        json.field("start", gate.start);
-        json.field("width", gate.frameWidth);
+        json.field("start", gate.start * unit);
+        json.field("width", gate.frameWidth * unit);
+        json.field("unit", picoseconds > 0.0 ? "ps" : "");
         json.endObject();
     }
     describeFilm(json, loaded.integratorType, code);

@@ -126,9 +126,6 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
     // -d rebases every name; otherwise relative names are below the scene's output directory.
     const fs::path base =
         overrides.directory ? *overrides.directory : sceneFile.parent_path() / renderer.outputDirectory;
-    const auto commandLine = [&](const fs::path& file) {
-        return overrides.directory ? *overrides.directory / file : file;
-    };
     const fs::path top = overrides.directory ? *overrides.directory : sceneFile.parent_path();
     const auto rebase = [&](const std::string& name, const std::string& field) {
         const fs::path file = name.empty() ? fs::path() : (base / name).lexically_normal();
@@ -136,12 +133,12 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
         return file;
     };
     OutputFiles outputs;
-    outputs.ldr = overrides.ldr ? commandLine(*overrides.ldr) : rebase(renderer.outputFile, "output_file");
-    outputs.hdr = overrides.hdr ? commandLine(*overrides.hdr) : rebase(renderer.hdrOutputFile, "hdr_output_file");
-    if (overrides.statistics) outputs.statistics = *overrides.statistics;
-    if (overrides.page) outputs.page = *overrides.page;
-    if (overrides.sheet) outputs.sheet = commandLine(*overrides.sheet);
-    if (overrides.video) outputs.video = commandLine(*overrides.video);
+    outputs.ldr = overrides.ldr ? overrides.placed(*overrides.ldr) : rebase(renderer.outputFile, "output_file");
+    outputs.hdr = overrides.hdr ? overrides.placed(*overrides.hdr) : rebase(renderer.hdrOutputFile, "hdr_output_file");
+    if (overrides.statistics) outputs.statistics = overrides.placed(*overrides.statistics);
+    if (overrides.page) outputs.page = overrides.placed(*overrides.page);
+    if (overrides.sheet) outputs.sheet = overrides.placed(*overrides.sheet);
+    if (overrides.video) outputs.video = overrides.placed(*overrides.video);
     outputs.frames = !overrides.noFrames;
     outputs.exposure = overrides.exposure ? overrides.exposure : renderer.exposure;
     if (outputs.ldr.empty()) outputs.ldr = rebase("TungstenRender.png", "output_file");

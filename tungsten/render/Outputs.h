@@ -35,6 +35,11 @@ struct OutputOverrides {
     std::optional<ExposureChoice> exposure;
     bool noFrames = false;
     bool allowOutside = false; ///< a scene's names may lead out of the output folder
+
+    /// What the command line calls a file or folder: relative names are below `directory`, if there is one.
+    [[nodiscard]] std::filesystem::path placed(const std::filesystem::path& file) const {
+        return directory && !file.empty() ? *directory / file : file;
+    }
 };
 
 /// File names of a scene: the renderer block's, resolved against its output directory, unless the command line says

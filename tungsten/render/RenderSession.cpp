@@ -130,12 +130,12 @@ class Session {
         }
         result_.renderSeconds = secondsSince(start_);
         shared_.gather(); // what a broken round has left
-        trace_.end(result_.film, result_.bias, result_.samples);
+        trace_.end(result_.film, result_.bias);
         result_.trace = trace_.entries();
     }
 
     void show(bool last) {
-        trace_.record(result_.film, result_.bias, result_.samples, shared_.isWhole());
+        trace_.record(result_.film, result_.bias, shared_.isWhole());
         if (last || reporter_.due()) reporter_.show(state(), last);
         if (!last && shared_.isWhole()) files_.checkpointIfDue(); // else in a round that gathers it
     }

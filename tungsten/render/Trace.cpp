@@ -34,23 +34,23 @@ bool Trace::due() const {
     return !folder_.empty() && !failure_ && wallNow() - wallStart_ >= next_;
 }
 
-void Trace::record(const Film& film, const Film& bias, uint64_t samples, bool whole) {
+void Trace::record(const Film& film, const Film& bias, bool whole) {
     if (folder_.empty()) return;
     const bool writes = whole && due();
     wall_ = wallNow();
     cpu_ = processCpuSeconds();
     written_ = false;
-    if (writes) attempt(film, bias, samples);
+    if (writes) attempt(film, bias);
 }
 
-void Trace::end(const Film& film, const Film& bias, uint64_t samples) {
-    if (!written_ && !failure_) attempt(film, bias, samples);
+void Trace::end(const Film& film, const Film& bias) {
+    if (!written_ && !failure_) attempt(film, bias);
 }
 
 /// The render is worth more than its trace.
-void Trace::attempt(const Film& film, const Film& bias, uint64_t samples) {
+void Trace::attempt(const Film& film, const Film& bias) {
     try {
-        write(film, bias, samples);
+        write(film, bias);
     } catch (const InputError&) {
         failure_ = std::current_exception();
     }
@@ -60,12 +60,12 @@ void Trace::requireWritten() const {
     if (failure_) std::rethrow_exception(failure_);
 }
 
-void Trace::write(const Film& film, const Film& bias, uint64_t samples) {
+void Trace::write(const Film& film, const Film& bias) {
     const double wallSeconds = wall_ - wallStart_, cpuSeconds = cpu_ - cpuStart_;
     const std::string number = std::to_string(film.passes());
     const std::string name = std::string(6 - std::min<size_t>(number.size(), 6), '0') + number + ".npy";
-    TraceEntry entry{film.passes(), samples,        wallSeconds,      cpuSeconds, film.relativeStandardError(),
-                     {0.0, 0.0},    "mean-" + name, "stderr-" + name, ""};
+    TraceEntry entry{film.passes(), film.totalWeight(), wallSeconds,      cpuSeconds, film.relativeStandardError(),
+                     {0.0, 0.0},    "mean-" + name,     "stderr-" + name, ""};
     std::vector<Image> means, errors, biases;
     for (int frame = 0; frame < film.frames(); ++frame) {
         means.push_back(inOutputUnits(film.mean(frame), scene_, 1));

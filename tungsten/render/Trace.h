@@ -13,7 +13,7 @@ namespace tungsten {
 /// A render at one moment.
 struct TraceEntry {
     uint32_t passes = 0;
-    uint64_t samples = 0;                       ///< per pixel, resumed ones included
+    double samples = 0.0; ///< per pixel, resumed ones included; parts of them where passes were cut
     double wallSeconds = 0.0, cpuSeconds = 0.0; ///< of this run's passes, the trace's own left out
     double relativeError = 0.0;                 ///< relative standard error; NaN: unknown
     RelativeBias relativeBias{0.0, 0.0};        ///< where the film's bias is estimated
@@ -36,9 +36,9 @@ class Trace {
     /// After a pass. Where a file cannot be written the trace ends, and requireWritten() tells.
     /// `bias`: of the film, without frames where none is estimated.
     /// `whole`: the film is; else nothing is written yet.
-    void record(const Film& film, const Film& bias, uint64_t samples, bool whole = true);
+    void record(const Film& film, const Film& bias, bool whole = true);
     /// After the last pass, or one that was broken off: the film as it was at the last `record`, if that wrote nothing.
-    void end(const Film& film, const Film& bias, uint64_t samples);
+    void end(const Film& film, const Film& bias);
     [[nodiscard]] const std::vector<TraceEntry>& entries() const { return entries_; }
     /// Throws the InputError of the file that could not be.
     void requireWritten() const;
@@ -46,8 +46,8 @@ class Trace {
     [[nodiscard]] static std::filesystem::path listIn(const std::filesystem::path& folder);
 
   private:
-    void attempt(const Film& film, const Film& bias, uint64_t samples);
-    void write(const Film& film, const Film& bias, uint64_t samples);
+    void attempt(const Film& film, const Film& bias);
+    void write(const Film& film, const Film& bias);
     void writeList() const;
 
     std::filesystem::path folder_;

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cstring>
 #include <locale>
+#include <optional>
 #include <sstream>
 
 namespace tungsten {
@@ -181,6 +182,61 @@ rapidjson::Value parseValue(const std::string& text, rapidjson::Document::Alloca
     return value;
 }
 
+/// Puts a value where a path leads.
+struct Override {
+    rapidjson::Document& document;
+    const std::string& assignment; ///< for messages
+    const rapidjson::Value& value;
+
+    /// From `place` on; no path: there.
+    void at(rapidjson::Value& place, const std::optional<std::string>& path) const {
+        if (!path) return put(place);
+        place.IsArray() ? intoArray(place, *path) : intoObject(place, *path);
+    }
+
+  private:
+    /// What follows a path's first `step` characters and a dot.
+    static std::optional<std::string> behind(const std::string& path, size_t step) {
+        return step < path.size() ? std::optional(path.substr(step + 1)) : std::nullopt;
+    }
+
+    void intoArray(rapidjson::Value& array, const std::string& path) const {
+        std::string consumed;
+        if (rapidjson::Value* next = namedWithDots(array, path, consumed))
+            return at(*next, behind(path, consumed.size()));
+        const std::string step = path.substr(0, path.find('.'));
+        if (step != "*" || array.Empty()) failOverride(assignment, step, array, {});
+        for (auto& each : array.GetArray()) at(each, behind(path, step.size()));
+    }
+
+    void intoObject(rapidjson::Value& object, const std::string& path) const {
+        const size_t dot = path.find('.');
+        const std::string step = path.substr(0, dot);
+        if (!object.IsObject() || step.empty()) failOverride(assignment, step, object, {});
+        if (!object.HasMember(step.c_str())) {
+            // A whole block may be new, and of other paths the last step: a field the scene leaves at its default.
+            const bool isRoot = &object == &document;
+            if (isRoot && std::find(Blocks.begin(), Blocks.end(), step) == Blocks.end())
+                failOverride(assignment, step, object, Blocks);
+            if (dot != std::string::npos && !isRoot) failOverride(assignment, step, object, {});
+            auto& allocator = document.GetAllocator();
+            object.AddMember(rapidjson::Value(step.c_str(), rapidjson::SizeType(step.size()), allocator),
+                             rapidjson::Value(rapidjson::kObjectType), allocator);
+        }
+        at(object[step.c_str()], behind(path, step.size()));
+    }
+
+    /// What replaces an object that the rest of the scene calls by its name keeps that, unless it has one of its own.
+    void put(rapidjson::Value& place) const {
+        auto& allocator = document.GetAllocator();
+        rapidjson::Value name;
+        if (place.IsObject() && place.HasMember("name") && place["name"].IsString()) name.Swap(place["name"]);
+        place.CopyFrom(value, allocator);
+        if (name.IsString() && place.IsObject() && !place.HasMember("name"))
+            place.AddMember(rapidjson::Value("name", allocator), name, allocator);
+    }
+};
+
 } // namespace
 
 std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const std::string& file) {
@@ -207,35 +263,8 @@ void applyOverride(rapidjson::Document& document, const std::string& assignment)
         throw UsageError("--set " + assignment + ": expected path.to.field=value");
     if (assignment.find('\0') != std::string::npos)
         throw UsageError("--set: a zero byte is part of no path and no value");
-    auto& allocator = document.GetAllocator();
-    std::string rest = assignment.substr(0, equals);
-    rapidjson::Value* at = &document;
-    while (true) {
-        if (at->IsArray()) {
-            std::string consumed;
-            rapidjson::Value* next = namedWithDots(*at, rest, consumed);
-            if (!next) failOverride(assignment, rest.substr(0, rest.find('.')), *at, {});
-            at = next;
-            if (consumed.size() == rest.size()) break;
-            rest.erase(0, consumed.size() + 1);
-            continue;
-        }
-        const size_t dot = rest.find('.');
-        const std::string step = rest.substr(0, dot);
-        if (!at->IsObject() || step.empty()) failOverride(assignment, step, *at, {});
-        if (!at->HasMember(step.c_str())) {
-            // A whole block may be new, and of other paths the last step: a field the scene leaves at its default.
-            if (at == &document && std::find(Blocks.begin(), Blocks.end(), step) == Blocks.end())
-                failOverride(assignment, step, *at, Blocks);
-            if (dot != std::string::npos && at != &document) failOverride(assignment, step, *at, {});
-            rapidjson::Value name(step.c_str(), rapidjson::SizeType(step.size()), allocator);
-            at->AddMember(name, rapidjson::Value(rapidjson::kObjectType), allocator);
-        }
-        at = &(*at)[step.c_str()];
-        if (dot == std::string::npos) break;
-        rest.erase(0, dot + 1);
-    }
-    *at = parseValue(assignment.substr(equals + 1), allocator);
+    const rapidjson::Value value = parseValue(assignment.substr(equals + 1), document.GetAllocator());
+    Override{document, assignment, value}.at(document, assignment.substr(0, equals));
 }
 
 } // namespace tungsten

@@ -25,7 +25,8 @@ inline const ObjectReader::Node* nodeOf(const rapidjson::Value& value) {
 std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const std::string& file);
 std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file);
 
-/// Applies "path.to.field=value" to the document: array elements by index or by `name`. The value is JSON, or else a
+/// Applies "path.to.field=value" to the document: array elements by index, by `name`, or all of them by `*`. An
+/// object in the place of one that has a name keeps it unless it has one of its own. The value is JSON, or else a
 /// string. Throws UsageError, naming the nearest member, when the path leads nowhere.
 void applyOverride(rapidjson::Document& document, const std::string& assignment);
 
