@@ -18,4 +18,5 @@ if(TUNGSTEN_PYTHON) # a module is for one version of Python
   math(EXPR next "${minor} + 1")
   set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-numpy")
 endif()
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION share/doc/darts-tungsten)
 include(CPack)

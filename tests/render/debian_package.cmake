@@ -29,6 +29,13 @@ if(NOT EXISTS ${WORK}/out/film.npz)
   message(FATAL_ERROR "the package's command did not render")
 endif()
 
+# What others have written of it is named (tests/structure/notices.py).
+file(READ ${usr}/share/doc/darts-tungsten/copyright notices)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../../scripts/copyright expected)
+if(NOT notices STREQUAL expected)
+  message(FATAL_ERROR "the package's notices are not those of scripts/copyright:\n${notices}")
+endif()
+
 # Every option of --help is in the manual and completes.
 file(READ ${usr}/share/man/man1/tungsten.1 manual)
 string(REPLACE "\\-" "-" manual "${manual}")
