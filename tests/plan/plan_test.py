@@ -42,6 +42,11 @@ def room(integrator=None, surface=None, medium=None, **changes):
         scene["media"][0].update(medium)
         scene["camera"]["medium"] = "fog"
         scene["primitives"][1]["ext_medium"] = "fog"
+    return edited(scene, changes)
+
+
+def edited(scene, changes):
+    """With fields by path."""
     for path, value in changes.items():
         at = scene
         *parts, last = path.split("__")
@@ -76,6 +81,19 @@ def sealed(wall):
     scene = room(best(PATHS), surface={"bsdf": wall, "int_medium": "fog"}, media__0__sigma_s=2)
     scene["primitives"][0] = DARK_LAMP
     return scene
+
+
+def tissue(end=2000, side=20, absorption=0.01, **changes):
+    """Millimetres and picoseconds: a cube of tissue with a fibre beside it, until `end`."""
+    scene = {"media": [{"name": "tissue", "type": "homogeneous", "sigma_s": 10, "sigma_a": absorption, "speed_of_light": 0.214137,
+                        "phase_function": {"type": "henyey_greenstein", "g": 0.9}}],
+             "primitives": [{"name": "body", "type": "cube", "bsdf": {"type": "forward"}, "int_medium": "tissue", "transform": {"scale": side}},
+                            {"name": "fibre", "type": "point", "emission": 1, "transform": {"position": [0, side / 2 + 0.01, 0]}}],
+             "camera": {"resolution": [4, 4], "transform": {"position": [0, side, 0], "look_at": [0, 0, 0], "up": [1, 0, 0]}},
+             "integrator": {"type": "path_tracer", "max_bounces": 100000, "vacuum_speed_of_light": 0.299792, "start_time": 0,
+                            "transient_time_width": end / 4, "frame_num": 4},
+             "renderer": {"spp": 1}}
+    return edited(scene, changes)
 
 
 # effect, a scene that has it, an element behind it, a scene that lacks it
@@ -116,6 +134,8 @@ EFFECTS = [
     ("surfaces in time", room(), "primitives", foggy({**PATHS, "transient_time_width": 0.2, "transient_time_center": 2.5},
                                                      primitives__0__transform={"position": [0, -9, 0]})),
     ("media in time", foggy(), "media[0]", room(surface=FAR_FOG)),
+    ("late light cut by max_bounces", tissue(), "media[0].max_bounces", tissue(media__0__max_bounces=4400)),
+    ("late light cut by max_bounces", tissue(media__0__max_bounces=4400, integrator__max_bounces=200), "integrator.max_bounces", room()),
     ("guided paths", foggy(best(PATHS)), "integrator.darts", room(best(PATHS), surface=FAR_FOG)),
     ("volume photon points", foggy(PHOTONS), "integrator.volume_photon_type", room(PHOTONS, surface=FAR_FOG)),
     ("frames one by one", foggy(best(FRAMED, single_frames=True)), "integrator.darts", foggy(best(FRAMED))),
@@ -194,6 +214,22 @@ class Plan(unittest.TestCase):
                 self.assertFalse(off["on"], off)
                 self.assertEqual(off["causes"], [])
                 self.assertNotEqual(on["reason"], off["reason"])
+
+    def test_light_that_bounces_cut_is_told_where_there_is_any(self):
+        """By the mean number of scatterings, sigma_s c t: 10 * 0.214137 * 478 = 1024. What leaks away or is absorbed before is not missed."""
+        def warning(**changes):
+            return self.run_on(tissue(**changes), "--explain").stderr
+        told = warning(side=200)
+        for part in ("media[0].max_bounces: late light cut by max_bounces", "'tissue'", "1024 of the medium"):
+            self.assertIn(part, told)
+        after, latest = (float(number) for number in re.search(r"after about (\S+) .* some (\S+) times", told).groups())
+        outside = 100.01 / 0.299792  # from the fibre into the body, and from there on to the camera
+        self.assertAlmostEqual(after, outside + 1024 / 2.14137, delta=0.5)
+        self.assertAlmostEqual(latest, 2.14137 * (2000 - outside), delta=2)
+        self.assertEqual(warning(side=200, media__0__max_bounces=4400), "")
+        self.assertEqual(warning(end=470), "", "none arrives that late")
+        self.assertEqual(warning(side=2), "", "what is left after 478 ps is e^-92 of it")
+        self.assertEqual(warning(side=200, absorption=0.2), "", "absorbed: e^-20")
 
     def test_what_is_off_counts_nothing(self):
         rendered = self.rendered([scene for _, has, _, lacks in EFFECTS for scene in (has, lacks)])

@@ -1,5 +1,6 @@
 #include "tungsten/render/EffectPlan.h"
 
+#include "tungsten/render/BounceCuts.h"
 #include "tungsten/render/SceneUses.h"
 #include "tungsten/scene/Field.h"
 
@@ -177,6 +178,7 @@ EffectPlan analyseScene(const Scene& scene, bool everything) {
     planMedia(scene, plan);
     planSurfaces(scene, plan);
     planSpeeds(scene, plan);
+    planBounceCuts(scene, plan);
     planEmission(scene, plan);
     planTextures(scene, plan);
     return plan;

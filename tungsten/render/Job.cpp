@@ -1,5 +1,6 @@
 #include "tungsten/render/Job.h"
 
+#include "tungsten/render/BounceCuts.h"
 #include "tungsten/scene/FormatTypes.h"
 
 namespace tungsten {
@@ -42,11 +43,16 @@ void readIntegratorAlone(const ObjectReader& block, const std::string& type, con
     }
 }
 
-void warnAboutBlackImage(const Job& job) {
-    for (const Effect& effect : job.plan.effects)
-        if (effect.name == "black image")
-            job.loaded.diagnostics->warnings.push_back(
-                {job.loaded.diagnostics->file, "integrator", "the image is black: " + effect.reason});
+/// Of effects that take light away.
+void warnAboutEffects(const Job& job) {
+    Diagnostics& diagnostics = *job.loaded.diagnostics;
+    for (const Effect& effect : job.plan.effects) {
+        if (effect.on && effect.name == "black image")
+            diagnostics.warnings.push_back({diagnostics.file, "integrator", "the image is black: " + effect.reason});
+        if (effect.on && effect.name == LightCut && !job.plan.nothingArrives)
+            diagnostics.warnings.push_back(
+                {diagnostics.file, effect.causes.front(), effect.name + ": " + effect.reason});
+    }
 }
 
 } // namespace
@@ -63,7 +69,7 @@ Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const
     options.watch.poll();
     job.plan = analyseScene(*job.loaded.scene, everything);
     job.integrator->plan(job.plan);
-    if (job.plan.nothingArrives) warnAboutBlackImage(job);
+    warnAboutEffects(job);
     return job;
 }
 
