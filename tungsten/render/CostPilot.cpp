@@ -82,30 +82,63 @@ std::optional<PowerLaw> biasVariance(const std::array<Sample, Indices.size()>& s
     return PowerLaw{scale, passes.exponent};
 }
 
-/// Every sample's bias image over the square of its kernels' width is that of the first pass, with noise: their mean by
-/// inverse variances. 0 where that does not rise above its own noise.
+/// Products of the samples' bias images, summed over their pixels and frames, per value.
+using BiasProducts = std::array<std::array<double, Indices.size()>, Indices.size()>;
+
+BiasProducts biasProducts(const std::array<Sample, Indices.size()>& samples) {
+    BiasProducts products{};
+    const Film& first = samples[0].bias;
+    const double share = 1.0 / (3.0 * double(first.frames()) * double(first.width()) * double(first.height()));
+    for (int frame = 0; frame < first.frames(); ++frame) {
+        std::array<Image, Indices.size()> images;
+        for (size_t k = 0; k < samples.size(); ++k) images[k] = samples[k].bias.mean(frame);
+        for (size_t i = 0; i < images[0].pixels.size(); ++i)
+            for (size_t k = 0; k < samples.size(); ++k)
+                for (size_t l = 0; l < samples.size(); ++l)
+                    products[k][l] += double(images[k].pixels[i].dot(images[l].pixels[i])) * share;
+    }
+    return products;
+}
+
+/// The samples' bias images are one image times a power of their kernels' width, with noise.
+struct BiasFit {
+    double square; ///< of that image, noise included
+    double noise;
+    [[nodiscard]] double likelihood() const { return square / noise; }
+};
+
+BiasFit fitBias(const BiasProducts& products, const PowerLaw& variances, double exponent) {
+    std::array<double, Indices.size()> weights{};
+    double sum = 0.0, square = 0.0;
+    for (size_t k = 0; k < weights.size(); ++k) {
+        const double factor = std::pow(double(Indices[k]) + 1.0, exponent), variance = variances.at(Indices[k]);
+        weights[k] = factor / variance;
+        sum += factor * factor / variance;
+    }
+    for (size_t k = 0; k < weights.size(); ++k)
+        for (size_t l = 0; l < weights.size(); ++l) square += weights[k] * weights[l] * products[k][l];
+    return {square / (sum * sum), 1.0 / sum};
+}
+
+/// 0 where it does not rise above its own noise. Smooth light's falls with the square of the width, that of its edges
+/// more slowly: the power is what the samples say.
 PowerLaw biasLaw(const std::array<Sample, Indices.size()>& samples, const PowerLaw& passes,
                  const Integrator& integrator) {
+    constexpr int Powers = 20;
     const std::optional<PowerLaw> variances = biasVariance(samples, passes);
     if (!variances) return {};
-    const auto squaredWidth = [&](size_t k) { return std::pow(integrator.kernelWidth(Indices[k]), 2.0); };
-    const Film& first = samples[0].bias;
-    std::vector<Vec3d> sums(size_t(first.frames()) * size_t(first.width()) * size_t(first.height()), Vec3d(0.0));
-    double weights = 0.0;
-    for (size_t k = 0; k < samples.size(); ++k) {
-        const Film& bias = samples[k].bias;
-        const double variance = variances->at(Indices[k]), width = squaredWidth(k);
-        size_t i = 0;
-        for (int frame = 0; frame < bias.frames(); ++frame)
-            for (const Rgb& pixel : bias.mean(frame).pixels)
-                sums[i++] += Vec3d(double(pixel.x), double(pixel.y), double(pixel.z)) * (width / variance);
-        weights += width * width / variance;
+    const BiasProducts products = biasProducts(samples);
+    const double squared = 2.0 * widthExponent(integrator);
+    double exponent = squared;
+    for (int i = 0; i < Powers; ++i) {
+        const double other = squared * double(i) / Powers;
+        if (fitBias(products, *variances, other).likelihood() > fitBias(products, *variances, exponent).likelihood())
+            exponent = other;
     }
-    double square = 0.0;
-    for (const Vec3d& sum : sums) square += sum.dot(sum) / (3.0 * double(sums.size()) * weights * weights);
-    const double noise = 1.0 / weights, more = std::max(square - noise, 0.0);
-    const double doubt = (squaredBoundFactor(samples) - 1.0) * std::sqrt(noise * (noise + 2.0 * more));
-    return more > doubt ? PowerLaw{std::sqrt(more - 0.5 * doubt), 2.0 * widthExponent(integrator)} : PowerLaw{};
+    const BiasFit fit = fitBias(products, *variances, exponent);
+    const double more = std::max(fit.square - fit.noise, 0.0);
+    const double doubt = (squaredBoundFactor(samples) - 1.0) * std::sqrt(fit.noise * (fit.noise + 2.0 * more));
+    return more > doubt ? PowerLaw{std::sqrt(more - 0.5 * doubt), exponent} : PowerLaw{};
 }
 
 template <typename Of>
@@ -194,7 +227,9 @@ class PilotPasses {
     void renderRound(uint32_t round, double end) {
         const PassSize size = sizes_.next(0.0);
         for (size_t k = 0; k < samples_.size(); ++k) {
-            PassInfo pass{Indices[k], uint64_t(Indices[k]) * size.samples, size.samples, options_.seed + round};
+            // So many cut passes make the whole ones that come before.
+            const auto index = uint32_t(std::llround(double(Indices[k]) / size.share));
+            PassInfo pass{index, uint64_t(index) * size.samples, size.samples, options_.seed + round};
             pass.bias = measuresBias_ ? &samples_[k].bias : nullptr;
             pass.share = size.share;
             PassMonitor monitor([&] { return stops(end); });
