@@ -98,7 +98,7 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
         "volume_photon_count", 1000000, {"none", "the most photons or beams kept in media"}, {1, MostPhotons}));
     settings.gatherCount = uint32_t(
         block.integer("gather_photon_count", 20,
-                      {"none", "nearest photons that a point on a surface gathers, within gather_radius"}, {1, 1e9}));
+                      {"none", "nearest photons on a surface that give the radius, within gather_radius"}, {2, 1e9}));
     settings.gatherRadius = float(
         block.number("gather_radius", Unbounded,
                      {"length", "largest distance of photons gathered on a surface", "unbounded"}, Range::positive()));

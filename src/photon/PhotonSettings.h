@@ -20,7 +20,7 @@ struct PhotonSettings : KernelSettings {
     std::string primitiveReason;          ///< of its choice, where the scene leaves it open
     uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
     uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store, points or beams
-    uint32_t gatherCount = 20;            ///< nearest surface photons used
+    uint32_t gatherCount = 20;            ///< nearest surface photons, the last of which gives the radius; at least 2
     std::string radiusReason;             ///< of volumeRadius, where the scene leaves it open
     float gatherRadius = 1e30f;           ///< largest distance of a gathered surface photon
     double temporalRadius = 0.0;          ///< half-width of a delta gate's temporal kernel in the first pass

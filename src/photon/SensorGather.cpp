@@ -82,14 +82,19 @@ void SensorGather::addEmission(const SensorState& state, const SurfaceInteractio
 
 void SensorGather::gatherSurface(const SensorState& state, const SurfaceInteraction& surface) {
     const auto& photons = structures_.surfacePhotons.records;
+    auto& neighbours = workspace_.neighbours;
     const float squaredRadius =
         sqr(structures_.kernel) * structures_.surfaces->find(surface.hit.position, structures_.surfaceRadius,
-                                                             structures_.gatherCount, workspace_.neighbours);
+                                                             structures_.gatherCount, neighbours);
     if (!(squaredRadius > 0.0f)) return;
-    counters_.gathered += workspace_.neighbours.size();
+    // The k-th has set the radius and lies on it: (k - 1) / (pi r^2) is right on average, k / (pi r^2) is k / (k - 1)
+    // times that. Where there are fewer the radius is a fixed one.
+    if (neighbours.size() == structures_.gatherCount)
+        neighbours.erase(std::max_element(neighbours.begin(), neighbours.end()));
+    counters_.gathered += neighbours.size();
     const float scale = structures_.surfacePhotons.scale() * InvPi / squaredRadius;
     const BsdfQuery query = surface.query(TransportMode::Radiance, lobe::Smooth);
-    for (const auto& neighbour : workspace_.neighbours) {
+    for (const auto& neighbour : neighbours) {
         if (structures_.kernel < 1.0f && neighbour.squaredDistance > squaredRadius) continue;
         const Photon& photon = photons[neighbour.index];
         if (isBlack(photon.power) || !rendered(state.interactions + photon.bounce)) continue; // densityPhotons

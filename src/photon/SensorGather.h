@@ -42,8 +42,8 @@ class SensorGather {
     template <typename Look>
     void gatherVolume(const SensorState& state, const std::optional<SurfaceHit>& hit, const Look& look);
     void addVolume(const Rgb& scale, uint64_t gathered);
-    /// Density estimate with a constant kernel over the k nearest photons (docs/scene-format.md, section 10.4), or over
-    /// those of them that a narrower kernel holds.
+    /// Density estimate with a constant kernel over the photons nearer than the k-th (docs/scene-format.md, section
+    /// 10.4), or over those of them that a narrower kernel holds.
     void gatherSurface(const SensorState& state, const SurfaceInteraction& surface);
     void addEmission(const SensorState& state, const SurfaceInteraction& surface, float weight);
     /// `time` is that of its record: photons and connections were delayed.
