@@ -121,12 +121,13 @@ void lanes(benchmark::State& state, FlightShape shape, bool shared, Gate gate) {
         for (const ImageSlice& slice : slices)
             for (size_t i = 0; i < Rays; i += size_t(Lanes)) {
                 const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
-                const LaneRays rays{Lanes3(-slice.record.flights->base),
-                                    {load(x), load(y), load(z)},
-                                    Batch(0.0f),
-                                    Batch(10.0f),
-                                    Batch(0.0f) < 1.0f,
-                                    load(rotation)};
+                const LaneRays asCast{Lanes3(-slice.record.flights->base),
+                                      {load(x), load(y), load(z)},
+                                      Batch(0.0f),
+                                      Batch(10.0f),
+                                      Batch(0.0f) < 1.0f,
+                                      load(rotation)};
+                const LaneRays rays = asCast.fromFeet(slice.record.common, slice.record.warped);
                 Batch sum(0.0f);
                 const auto emit = [&](int, const LaneReach& reach) {
                     sum += xsimd::select(reach.met, reach.weight(slice.record.sigmaT.x, rays.start), Batch(0.0f));

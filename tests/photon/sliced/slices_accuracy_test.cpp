@@ -193,7 +193,7 @@ TEST(SlicesAccuracy, Balls) {
         const auto reach = lit.sample(u);
         const size_t chosen = u * lit.angles() < lit.angle[0] ? 0 : 1;
         const Exact turned = u * Exact(lit.angles()) - (chosen == 1 ? lit.angle[0] : 0.0);
-        drawn.add(double(exact.angle(reach.alongRay) - exact.angle(lit.start[chosen])), turned,
+        drawn.add(double(exact.angle(reach.alongRay) - exact.angle(exact.foot + lit.start[chosen])), turned,
                   1 + Exact(sight.origin.length()) / h);
         const auto fog = fogFor(one);
         const Exact value =

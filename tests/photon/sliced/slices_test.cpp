@@ -113,9 +113,9 @@ TEST(Balls, GatesIntegrateSlices) {
         const double h = lit.view.distanceFromRay;
         if (!(lit.angles() > 0)) continue;
         ++met;
-        const auto alongRay = [&](double t) {
-            const double d = std::hypot(h, t - lit.view.toFoot);
-            return Fog.sigmaS * std::exp(-Fog.sigmaT * (d + t)) / (d * d);
+        const auto alongRay = [&](double fromFoot) {
+            const double d = std::hypot(h, fromFoot);
+            return Fog.sigmaS * std::exp(-Fog.sigmaT * (d + lit.view.toFoot + fromFoot)) / (d * d);
         };
         double exact = 0.0;
         for (size_t i = 0; i < 2; ++i)

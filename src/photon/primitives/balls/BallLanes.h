@@ -28,7 +28,7 @@ inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const Bal
                        const SharedPathLanes& path, const Batch& scattered) {
     if (!record.weighsPlaces()) return ballShare(record, rays, path.last, path.t3, scattered);
     const float before = record.flights->lengths[0] + record.flights->lengths[1];
-    const Batch soon(record.times.start(0) + before), late(record.times.start(1) + before);
+    const Batch soon = record.times.start(0) - rays.lag + before, late = record.times.start(1) - rays.lag + before;
     return ballShareInGate(lit, Batch(record.pdfs), scattered * placedByVolume(record, rays, path, soon, late));
 }
 
@@ -49,9 +49,9 @@ class BallSliceLanes {
                     emit(frame, LaneReach{met, along, length + along, factor(record, rays, length, along, jacobian)});
             };
             if (record.warped) {
-                const Lanes3 d = rays.direction * s + rays.toOrigin;
-                const Batch along = view.turn(s);
-                add(s - along, along, xsimd::select(s > view.distanceFromOrigin, 0.5f * d.dot(d), Batch(0.0f)));
+                const Batch beyond = xsimd::max(s - view.foot, Batch(1e-30f)), h = view.distanceFromRay;
+                const Batch jacobian = 0.5f * (beyond * beyond + h * h);
+                add(jacobian / beyond, view.foot + view.turn(s), jacobian);
             } else {
                 const Batch half = xsimd::select(s > view.distanceFromRay, view.halfChord(s), Batch(0.0f));
                 add(s, view.foot - half, s * half);
@@ -82,8 +82,7 @@ class BallGateLanes {
         const FrameRange range = view.frames(record, rays);
         for (int frame = range.first; frame <= range.last; ++frame) {
             if (record.times.factor(frame) == 0.0f) continue;
-            const Batch soon(record.times.start(frame)), late(record.times.start(frame + 1));
-            if (!(record.times.start(frame + 1) > 0.0f)) continue;
+            const Batch soon = record.times.start(frame) - rays.lag, late = record.times.start(frame + 1) - rays.lag;
             draw(record, rays, BallGateView(rays, soon, late, record.warped), frame, emit);
         }
     }

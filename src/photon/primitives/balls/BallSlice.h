@@ -30,10 +30,13 @@ struct BallView {
         : offset(centre - sight.origin), toFoot(offset.dot(sight.direction)),
           distanceFromRay(offset.cross(sight.direction).length()), distanceFromOrigin(offset.length()) {}
 
-    /// Where a warped path of this length from the centre over the ray to its origin turns; 0 if there is none.
+    /// What a warped path of this length is longer than the way straight back from the foot.
+    [[nodiscard]] Real beyondFoot(Real residual) const { return residual - toFoot; }
+    /// Where a warped path of this length from the centre over the ray to its origin turns, from the foot: however far
+    /// the origin, only beyondFoot() is a difference. Minus infinity where the path is too short for any point.
     [[nodiscard]] Real turn(Real residual) const {
-        if (!(residual > distanceFromOrigin)) return 0;
-        return (residual - distanceFromOrigin) * (residual + distanceFromOrigin) / (2 * (residual - toFoot));
+        const Real beyond = beyondFoot(residual), h = distanceFromRay;
+        return beyond > 0 ? (beyond - h) * (1 + h / beyond) / 2 : -std::numeric_limits<Real>::infinity();
     }
     /// Half the part of the ray inside a sphere about the centre; 0 outside.
     [[nodiscard]] Real halfChord(Real radius) const {
@@ -63,9 +66,9 @@ BallSlice<Real> sliceBall(const Vector<Real>& centre, const SightLine<Real>& sig
         if (jacobian > 0 && sight.holds(t)) slice.reaches[size_t(slice.count++)] = {length, t, jacobian};
     };
     if (sight.warped) {
-        if (!(residual > view.distanceFromOrigin)) return slice;
-        const Real t = view.turn(residual);
-        add(residual - t, t, (sight.direction * residual - view.offset).length2() / 2);
+        const Real beyond = view.beyondFoot(residual), h = view.distanceFromRay;
+        const Real jacobian = (beyond * beyond + h * h) / 2;
+        if (beyond > 0) add(jacobian / beyond, view.toFoot + view.turn(residual), jacobian);
     } else {
         const Real half = view.halfChord(residual);
         if (!(half > 0)) return slice;
@@ -78,7 +81,7 @@ BallSlice<Real> sliceBall(const Vector<Real>& centre, const SightLine<Real>& sig
 template <typename Real>
 struct BallGate {
     BallView<Real> view;
-    std::array<Real, 2> start{}, end{}; ///< along the ray
+    std::array<Real, 2> start{}, end{}; ///< along the ray, from the foot
     std::array<Real, 2> angle{};        ///< seen from the centre; 0 for an empty interval
 
     [[nodiscard]] Real angles() const { return angle[0] + angle[1]; }
@@ -87,10 +90,9 @@ struct BallGate {
         Real turned = u * angles();
         const size_t chosen = turned < angle[0] ? 0 : 1;
         if (chosen == 1) turned -= angle[0];
-        const Real h = view.distanceFromRay, from = start[chosen] - view.toFoot, slope = std::tan(turned);
-        Real foot = h * (from + h * slope) / (h - from * slope);
-        foot = std::clamp(foot, from, end[chosen] - view.toFoot);
-        return {std::hypot(h, foot), view.toFoot + foot, 0};
+        const Real h = view.distanceFromRay, from = start[chosen], slope = std::tan(turned);
+        const Real ahead = std::clamp(h * (from + h * slope) / (h - from * slope), from, end[chosen]);
+        return {std::hypot(h, ahead), view.toFoot + ahead, 0};
     }
     /// (13) without power, both phase functions and the gate's width, at a sample: sigma_s E T angles / h.
     [[nodiscard]] Real weight(const BallReach<Real>& reach, const Coefficients<Real>& medium, Real before = 0,
@@ -107,10 +109,9 @@ BallGate<Real> gateBall(const Vector<Real>& centre, const SightLine<Real>& sight
     const Real h = view.distanceFromRay;
     if (!(h > 0)) return lit;
     const auto add = [&](size_t i, Real from, Real to) {
-        lit.start[i] = std::max(from, sight.start);
-        lit.end[i] = std::min(to, sight.end);
-        if (!(lit.start[i] < lit.end[i])) return;
-        const Real a = lit.start[i] - view.toFoot, b = lit.end[i] - view.toFoot;
+        const Real a = lit.start[i] = std::max(from, sight.start - view.toFoot);
+        const Real b = lit.end[i] = std::min(to, sight.end - view.toFoot);
+        if (!(a < b)) return;
         lit.angle[i] = std::isinf(b) ? std::atan2(h, a) : std::atan2(h * (b - a), h * h + a * b);
     };
     if (sight.warped) {
@@ -119,10 +120,10 @@ BallGate<Real> gateBall(const Vector<Real>& centre, const SightLine<Real>& sight
         const Real outer = std::isinf(gate.most) ? gate.most : view.halfChord(gate.most);
         const Real inner = view.halfChord(std::max(gate.least, Real(0)));
         if (inner > 0) {
-            add(0, view.toFoot - outer, view.toFoot - inner);
-            add(1, view.toFoot + inner, view.toFoot + outer);
+            add(0, -outer, -inner);
+            add(1, inner, outer);
         } else {
-            add(0, view.toFoot - outer, view.toFoot + outer);
+            add(0, -outer, outer);
         }
     }
     return lit;

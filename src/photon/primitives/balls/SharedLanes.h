@@ -29,20 +29,21 @@ inline Batch flightPdfs(const LaneRecord& record, const Batch& t1, const Batch& 
 
 /// A ball's centre as a register of rays sees it.
 struct BallViewLanes {
-    Batch foot, distanceFromRay, distanceFromOrigin;
+    Batch foot, distanceFromRay;
 
     explicit BallViewLanes(const LaneRays& rays)
-        : foot(-rays.toOrigin.dot(rays.direction)), distanceFromRay(rays.distance()),
-          distanceFromOrigin(rays.originDistance()) {}
+        : foot(-rays.toOrigin.dot(rays.direction)), distanceFromRay(rays.distance()) {}
+    /// BallView::turn.
     [[nodiscard]] Batch turn(const Batch& s) const {
-        return xsimd::select(s > distanceFromOrigin,
-                             (s - distanceFromOrigin) * (s + distanceFromOrigin) / (2.0f * (s - foot)), Batch(0.0f));
+        // Before any way that light can take it lies far behind.
+        const Batch beyond = xsimd::max(s - foot, Batch(1e-30f)), h = distanceFromRay;
+        return 0.5f * (beyond - h) * (1.0f + h / beyond);
     }
     [[nodiscard]] Batch halfChord(const Batch& radius) const {
         return xsimd::sqrt(xsimd::max((radius - distanceFromRay) * (radius + distanceFromRay), Batch(0.0f)));
     }
     [[nodiscard]] FrameRange frames(const LaneRecord& record, const LaneRays& rays) const {
-        return framesOf(record.times, rays.seen, record.warped ? distanceFromOrigin : distanceFromRay, Batch(Infinity));
+        return framesOf(record.times, rays.seen, rays.soonest(record.warped), Batch(Infinity));
     }
 };
 
@@ -58,7 +59,7 @@ struct BallGateView {
     /// `soon`, `late`: path lengths left at the centre.
     BallGateView(const LaneRays& rays, const Batch& soon, const Batch& late, bool warped) : view(rays) {
         if (warped) {
-            one = clipped(rays, view.turn(soon) - view.foot, view.turn(late) - view.foot);
+            one = clipped(rays, view.turn(soon), view.turn(late));
             return;
         }
         const Batch inner = view.halfChord(xsimd::max(soon, Batch(0.0f)));

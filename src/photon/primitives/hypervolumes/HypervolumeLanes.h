@@ -26,8 +26,7 @@ class HypervolumeLanes {
         }
         chord.slope[3] = -record.warp() - chord.slope[0] - chord.slope[1] - chord.slope[2];
         const Batch factor = record.towardsCamera(Lanes3(last), rays) * (1.0f / edges_.determinant);
-        const Batch least = record.warped ? rays.originDistance() : rays.distance();
-        const FrameRange range = framesOf(record.times, rays.seen, least, Batch(Infinity));
+        const FrameRange range = framesOf(record.times, rays.seen, rays.soonest(record.warped), Batch(Infinity));
         for (int frame = range.first; frame <= range.last; ++frame) {
             if (record.times.factor(frame) == 0.0f) continue;
             const Batch s = record.residual(rays, frame);
@@ -36,7 +35,7 @@ class HypervolumeLanes {
             chord.start = rays.start;
             chord.end = rays.end;
             chord.keepFlights(record.reach);
-            const LaneMask met = rays.seen && s > 0.0f && chord.holds();
+            const LaneMask met = rays.seen && chord.holds();
             if (xsimd::any(met)) emit(frame, chord.reach(record, met, factor, record.random(1, rays, frame)));
         }
     }

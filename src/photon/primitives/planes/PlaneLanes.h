@@ -18,7 +18,7 @@ class PlaneLanes {
         const LaneMask met = rays.seen && jacobian > LeastLaneDeterminant && t1 >= 0.0f && t1 < record.reach &&
                              t2 >= 0.0f && t >= rays.start && t < rays.end;
         if (!xsimd::any(met)) return;
-        const Batch arrival = t1 + t2 + record.warp() * t;
+        const Batch arrival = t1 + t2 + record.warp() * t + rays.lag;
         LaneReach reach{met,
                         t,
                         t1 + t2 + t,

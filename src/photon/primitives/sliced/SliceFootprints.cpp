@@ -15,9 +15,10 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
                                                    std::span<const float> shares) const {
     const Medium& medium = scene_.media[size_t(flights.medium)];
     const auto speed = double(medium.speedOfLight);
-    LaneTimes times = timesOf(flights, speed);
+    const float common = gate_.steadyState || !warped_ ? 0.0f : (scene_.camera.position() - flights.base).length();
+    LaneTimes times = timesOf(flights, speed, double(common));
     times.shares = shares;
-    const float length = std::min(times.start(times.frames), visibleReach(medium));
+    const float length = std::min(times.start(times.frames) + common, visibleReach(medium));
     if (!(length > 0.0f)) return std::nullopt;
     const auto area = areaOf(flights, length);
     if (!area) return std::nullopt;
@@ -30,6 +31,7 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
                       medium.sigmaT(),
                       medium.isGrey(),
                       warped_,
+                      common,
                       medium.phase.g(),
                       occluders ? flights.reach : Infinity,
                       occluders || flights.shared,
@@ -51,11 +53,11 @@ bool SliceFootprints::atLengths(const CollapsedFlights& flights) const {
     return delta_ && !flights.blurredInTime();
 }
 
-LaneTimes SliceFootprints::timesOf(const CollapsedFlights& flights, double speed) const {
+LaneTimes SliceFootprints::timesOf(const CollapsedFlights& flights, double speed, double common) const {
     if (gate_.steadyState) return {0.0f, std::numeric_limits<float>::max(), 1};
     if (delta_ && !flights.blurredInTime())
-        return {float((scene_.transport.gate.start - flights.time) * speed), 0.0f, 1};
-    return {float((gate_.start - flights.time) * speed), float(gate_.frameWidth * speed), gate_.frames};
+        return {float((scene_.transport.gate.start - flights.time) * speed - common), 0.0f, 1};
+    return {float((gate_.start - flights.time) * speed - common), float(gate_.frameWidth * speed), gate_.frames};
 }
 
 SliceKernel SliceFootprints::kernelOf(const CollapsedFlights& flights) const {

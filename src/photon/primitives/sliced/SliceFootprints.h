@@ -40,7 +40,7 @@ class SliceFootprints {
   private:
     /// The gate is met at one length of each frame, or at the delta gate; otherwise inside frames.
     [[nodiscard]] bool atLengths(const CollapsedFlights& flights) const;
-    [[nodiscard]] LaneTimes timesOf(const CollapsedFlights& flights, double speed) const;
+    [[nodiscard]] LaneTimes timesOf(const CollapsedFlights& flights, double speed, double common) const;
     [[nodiscard]] SliceKernel kernelOf(const CollapsedFlights& flights) const;
     [[nodiscard]] std::optional<PixelArea> areaOf(const CollapsedFlights& flights, float length) const;
 

@@ -68,7 +68,7 @@ struct DualTriple {
 /// Below it a float determinant is rounding (LeastDeterminant).
 inline constexpr float LeastLaneDeterminant = 1e-4f;
 
-/// A gate as path lengths left at a record's base.
+/// A gate as path lengths left at a record's base, less one that its rays have in common (LaneRays::lag).
 struct LaneTimes {
     float first = 0.0f, width = 0.0f; ///< start and length of frame 0; width 0: at one length
     int frames = 1;
@@ -80,17 +80,35 @@ struct LaneTimes {
 
 /// A register of rays, relative to a record's base.
 struct LaneRays {
-    Lanes3 toOrigin, direction; ///< toOrigin: from the base
+    Lanes3 toOrigin, direction; ///< toOrigin: from the base to any point of the ray, from which lengths along it count
     Batch start, end;           ///< the piece that is looked at
     LaneMask seen;              ///< rays that have it
     Batch rotation;             ///< of random numbers
+    /// What is left of a time at such a point is that of LaneTimes less this: how far the point lies along the ray,
+    /// less the length that LaneTimes lack. 0 where the ray's length does not count.
+    Batch lag = Batch(0.0f);
 
-    /// Of the base from the ray's line, and from its origin.
+    /// The same rays from their points next to the base, when they come from far away: what is small beside the
+    /// distance of the camera would be lost in it. `common`: that of the base, which LaneTimes lack.
+    [[nodiscard]] LaneRays fromFeet(float common, bool warped) const {
+        const Batch foot = -toOrigin.dot(direction);
+        LaneRays rays{toOrigin + direction * foot, direction, start - foot, end - foot, seen, rotation};
+        if (warped) rays.lag = foot - common;
+        return rays;
+    }
+    /// Of the base from the ray's line.
     [[nodiscard]] Batch distance() const {
         const Lanes3 off = toOrigin.cross(direction);
         return xsimd::sqrt(off.dot(off));
     }
-    [[nodiscard]] Batch originDistance() const { return xsimd::sqrt(toOrigin.dot(toOrigin)); }
+    /// Least way from the base over the ray's piece back along it.
+    [[nodiscard]] Batch leastWay() const {
+        const Batch h = distance(), foot = -toOrigin.dot(direction), ahead = start - foot;
+        const Batch way = xsimd::sqrt(h * h + ahead * ahead);
+        return foot + xsimd::select(ahead < 0.0f, h * h / (way - ahead), way + ahead);
+    }
+    /// The same in LaneTimes.
+    [[nodiscard]] Batch soonest(bool warped) const { return warped ? leastWay() + lag : distance(); }
 };
 
 /// A record for registers of rays, in a medium with Henyey-Greenstein scattering.
@@ -99,7 +117,8 @@ struct LaneRecord {
     LaneTimes times;
     Rgb sigmaT;
     bool grey;
-    bool warped; ///< the ray's length counts in times
+    bool warped;  ///< the ray's length counts in times
+    float common; ///< what `times` lack: how far the camera is from the base, about
     float g;
     float reach;      ///< of the first flight, if something can be in the way
     bool drawsPoints; ///< on chords: something can be in the way, or balls share the path
@@ -116,8 +135,8 @@ struct LaneRecord {
     }
     /// Path length left at the base: a random one of the frame's, or the only one.
     [[nodiscard]] Batch residual(const LaneRays& rays, int frame) const {
-        if (times.width == 0.0f) return Batch(times.first);
-        return times.start(frame) + random(0, rays, frame) * times.width;
+        if (times.width == 0.0f) return times.first - rays.lag;
+        return times.start(frame) - rays.lag + random(0, rays, frame) * times.width;
     }
     /// Phase function from the last flight to the camera.
     [[nodiscard]] Batch towardsCamera(const Lanes3& last, const LaneRays& rays) const {

@@ -129,7 +129,9 @@ class SliceSplatter {
         if (piece.mixed)
             seen = piece.select(seen, i, flights.medium, scene_.transport.minBounces - before,
                                 scene_.transport.maxBounces - 1 - before);
-        return {toOrigin, {load(band.x), load(band.y), load(band.z)}, start, end, seen, load(rays.rotation)};
+        const LaneRays asCast{toOrigin,           {load(band.x), load(band.y), load(band.z)}, start, end, seen,
+                              load(rays.rotation)};
+        return asCast.fromFeet(slice.record.common, slice.record.warped);
     }
 
     /// Into the band's sums. The throughput holds the way to the piece.

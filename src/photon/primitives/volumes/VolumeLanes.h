@@ -16,7 +16,7 @@ inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const B
 inline Batch volumeShareInGate(const LaneRecord& record, const LaneRays& rays, const LaneReach& reach) {
     const auto& [t1, t2, t3, none] = reach.lengths;
     const auto& w = record.flights->directions;
-    const Batch soon(record.times.start(0)), late(record.times.start(1)), before = t1 + t2;
+    const Batch soon = record.times.start(0) - rays.lag, late = record.times.start(1) - rays.lag, before = t1 + t2;
     LaneRays fromCentre = rays;
     fromCentre.toOrigin = rays.toOrigin - (Lanes3(w[0]) * t1 + Lanes3(w[1]) * t2);
     const BallGateView lit(fromCentre, soon - before, late - before, record.warped);
@@ -42,10 +42,10 @@ class VolumeSliceLanes {
             const Batch s = record.residual(rays, frame);
             const Batch t1 = line.lengths.length(0, s), t2 = line.lengths.length(1, s), t3 = line.lengths.length(2, s);
             const Batch along = line.lengths.length(3, s);
-            LaneMask met = seen && s > 0.0f && t1 >= 0.0f && t1 < record.reach && t2 >= 0.0f && t3 >= 0.0f &&
-                           along >= rays.start && along < rays.end;
+            LaneMask met = seen && t1 >= 0.0f && t1 < record.reach && t2 >= 0.0f && t3 >= 0.0f && along >= rays.start &&
+                           along < rays.end;
             if (!xsimd::any(met)) continue;
-            if (record.warped) met = met && closes(record, rays, s, {t1, t2, t3}, along);
+            if (record.warped) met = met && closes(record, rays, {t1, t2, t3}, along);
             emit(frame,
                  LaneReach{
                      met, along, t1 + t2 + t3 + along, factor(record, rays, line.jacobian, t1, t2, t3), {t1, t2, t3}});
@@ -89,21 +89,23 @@ class VolumeSliceLanes {
                                            const LaneMask& seen) {
         if (record.times.frames == 1) return {0, 0};
         auto part = line.lengths;
-        part.start = Batch(std::max(record.times.first, 0.0f));
-        part.end = Batch(record.times.start(record.times.frames));
+        part.start = record.times.first - rays.lag;
+        part.end = record.times.start(record.times.frames) - rays.lag;
         for (size_t i = 0; i < 3; ++i) part.keepPositive(part.offset[i], part.slope[i]);
         part.keep(part.offset[3], part.slope[3], rays.start, rays.end);
         const LaneMask met = seen && part.holds();
-        return xsimd::any(met) ? framesOf(record.times, met, part.start, part.end) : FrameRange{0, -1};
+        return xsimd::any(met) ? framesOf(record.times, met, part.start + rays.lag, part.end + rays.lag)
+                               : FrameRange{0, -1};
     }
     /// Near-singular systems lose their solution in rounding.
-    [[nodiscard]] static LaneMask closes(const LaneRecord& record, const LaneRays& rays, const Batch& s,
-                                         const std::array<Batch, 3>& t, const Batch& along) {
+    [[nodiscard]] static LaneMask closes(const LaneRecord& record, const LaneRays& rays, const std::array<Batch, 3>& t,
+                                         const Batch& along) {
         constexpr float Accuracy = 1e-4f;
         const auto& w = record.flights->directions;
         const Lanes3 miss =
             Lanes3(w[0]) * t[0] + Lanes3(w[1]) * t[1] + Lanes3(w[2]) * t[2] - rays.toOrigin - rays.direction * along;
-        return miss.dot(miss) <= Accuracy * Accuracy * s * s;
+        const Batch most = Accuracy * (t[0] + t[1] + t[2] + xsimd::abs(along));
+        return miss.dot(miss) <= most * most;
     }
     /// (7), and the share of (16).
     [[nodiscard]] static Batch factor(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian,
@@ -139,11 +141,11 @@ class VolumeChordLanes {
             record.towardsCamera(Lanes3(record.flights->directions[2]), rays) * (1.0f / edges_.determinant);
         const auto& w = record.flights->directions;
         const Batch slices = volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), Lanes3(w[2]), rays.direction, record.warped);
-        const FrameRange range = framesOf(record.times, met, xsimd::min(a, b), xsimd::max(a, b));
+        const FrameRange range = framesOf(record.times, met, xsimd::min(a, b) + rays.lag, xsimd::max(a, b) + rays.lag);
         for (int frame = range.first; frame <= range.last; ++frame) {
             if (record.times.factor(frame) == 0.0f) continue;
             ChordLanes<3> part = chord;
-            part.keep(p, q, Batch(record.times.start(frame)), Batch(record.times.start(frame + 1)));
+            part.keep(p, q, record.times.start(frame) - rays.lag, record.times.start(frame + 1) - rays.lag);
             const LaneMask here = met && part.holds();
             if (!xsimd::any(here)) continue;
             LaneReach reach = part.reach(record, here, factor, record.random(0, rays, frame));
