@@ -149,7 +149,7 @@ TEST(KernelsAccuracy, Registers) {
 /// What records bring to a frame, by which they are drawn at random.
 TEST(KernelsAccuracy, LightOfRecords) {
     LargestError light("slice_light");
-    const Scene scene = test::fogScene();
+    Scene scene = test::fogScene();
     const Exact sigma(meanComponent(scene.media[0].sigmaT()));
     for (uint64_t i = 0; i < 1500; ++i) {
         Sampler s(95, RandomStream::Test, 0, i);
@@ -164,10 +164,11 @@ TEST(KernelsAccuracy, LightOfRecords) {
                     left = Exact(time) - record.time;
         const Vec3f away = scene.camera.position() - record.base;
         const Exact way = sqrt(product(exactly(away), exactly(away))), legs = left > way ? Exact(left - way) : Exact(0);
-        const Exact bright = power * exp(-sigma * left);
-        const Exact exact =
-            record.shape == FlightShape::Ball ? Exact(bright / (1 + sigma * sigma * legs * legs)) : bright;
-        light.add(double(sliceLight(scene, record, time)), exact, exact * (1 + sigma * left));
+        const bool inFog = i % 4 < 2; // the camera
+        scene.cameraRegion.medium = inFog ? 0 : -1;
+        Exact exact = log(power) - sigma * (inFog ? left : legs);
+        if (record.shape == FlightShape::Ball) exact -= log(1 + sigma * sigma * legs * legs);
+        light.add(logSliceLight(scene, record, time), exact, 1 + sigma * left);
     }
     EXPECT_TRUE(light.within(3.2e-7));
 }

@@ -12,7 +12,8 @@ namespace tungsten::photon {
 
 /// A record is seen in all frames from some time on, but fades: where it is much darker than what others of its shape
 /// bring to a frame on average, it is drawn at random, as often as it is bright, and weighs more. A film then costs
-/// what its light calls for.
+/// what its light calls for. How bright it is is a guess (logSliceLight): a part of the choice is even over all that
+/// can arrive, so that nothing is left out for good and no weight is above 1 / tuning::EvenInFrames.
 class FrameShares {
   public:
     FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records,
@@ -25,6 +26,8 @@ class FrameShares {
 
   private:
     void chooseAmong(FlightShape shape, const std::vector<CollapsedFlights>& records);
+    /// Probability of what is so bright among others of this mean.
+    [[nodiscard]] static double shareOf(double light, double mean);
 
     size_t frames_;
     std::vector<float> factors_; ///< of all frames of every record

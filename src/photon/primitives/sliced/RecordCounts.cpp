@@ -4,44 +4,52 @@
 
 namespace tungsten::photon {
 
+double lengthToSpare(const Scene& scene, const CollapsedFlights& record, double time) {
+    const double left = (time - record.time) * double(scene.media[size_t(record.medium)].speedOfLight);
+    if (scene.transport.cameraUnwarped || scene.camera.hasParallelRays()) return left;
+    return left - double((scene.camera.position() - record.base).length());
+}
+
 /// Balls that share their paths with volumes fade below a mean free path (docs/photon-primitives.md, eq. 16).
-float sliceLight(const Scene& scene, const CollapsedFlights& record, double time) {
+double logSliceLight(const Scene& scene, const CollapsedFlights& record, double time) {
     const Medium& medium = scene.media[size_t(record.medium)];
     // A ball on a light holds no light yet.
     const Rgb held =
         record.emitter >= 0 ? record.power * emitterPower(scene.emitters[size_t(record.emitter)]) : record.power;
-    const float sigmaT = std::max(meanComponent(medium.sigmaT()), 1e-20f), power = meanComponent(held);
-    const auto left = float(std::max((time - record.time) * double(medium.speedOfLight), 0.0));
-    const float bright = power * std::exp(-sigmaT * left);
-    if (record.shape != FlightShape::Ball) return bright;
-    float legs = left;
-    if (!scene.transport.cameraUnwarped && !scene.camera.hasParallelRays())
-        legs = std::max(left - (scene.camera.position() - record.base).length(), 0.0f);
-    return bright / (1.0f + sqr(sigmaT * legs));
+    const double spare = std::max(lengthToSpare(scene, record, time), 0.0);
+    const double left = std::max((time - record.time) * double(medium.speedOfLight), 0.0);
+    const double inFog = scene.cameraRegion.medium == record.medium ? left : spare;
+    const auto sigmaT = double(meanComponent(medium.sigmaT()));
+    const double log = std::log(std::max(double(meanComponent(held)), 1e-300)) - sigmaT * inFog;
+    return record.shape == FlightShape::Ball ? log - std::log1p(sigmaT * spare * sigmaT * spare) : log;
 }
 
 RecordCounts::RecordCounts(const Scene& scene, const TimeGate& gate) : scene_(scene), gate_(gate) {}
 
 void RecordCounts::measure(std::span<const CollapsedFlights> records, const SliceClasses& classes) {
-    std::array<double, Groups> sums{}, counts{};
+    std::array<double, Groups> tops, sums{}, counts{};
+    tops.fill(-std::numeric_limits<double>::infinity());
+    for (const CollapsedFlights& record : records)
+        tops[group(record)] = std::max(tops[group(record)], logLightOf(record));
     for (const CollapsedFlights& record : records) {
-        sums[group(record)] += double(lightOf(record));
+        sums[group(record)] += std::exp(logLightOf(record) - tops[group(record)]);
         counts[group(record)] += double(classes.shareOf(record));
     }
     for (size_t i = 0; i < Groups; ++i)
-        if (counts[i] > 0.0) lightOfOne_[i] = sums[i] / counts[i];
+        if (counts[i] > 0.0) logLightOfOne_[i] = tops[i] + std::log(sums[i] / counts[i]);
 }
 
 float RecordCounts::expected(const CollapsedFlights& record) const {
-    const double one = lightOfOne_[group(record)];
-    if (!(one > 0.0)) return 1.0f;
-    return std::clamp(float(double(lightOf(record)) / one), tuning::LeastPerBase, tuning::MostPerBase);
+    const auto& one = logLightOfOne_[group(record)];
+    if (!one) return 1.0f;
+    const double most = std::log(double(tuning::MostPerBase));
+    return std::max(float(std::exp(std::min(logLightOf(record) - *one, most))), tuning::LeastPerBase);
 }
 
-float RecordCounts::lightOf(const CollapsedFlights& record) const {
+double RecordCounts::logLightOf(const CollapsedFlights& record) const {
     const double soonest =
         scene_.transport.gate.delta && !record.blurredInTime() ? scene_.transport.gate.start : gate_.start;
-    return sliceLight(scene_, record, soonest);
+    return logSliceLight(scene_, record, soonest);
 }
 
 } // namespace tungsten::photon

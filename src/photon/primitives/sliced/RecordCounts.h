@@ -5,16 +5,25 @@
 
 #include "tungsten/scene/Scene.h"
 
+#include <optional>
 #include <span>
 
 namespace tungsten::photon {
 
-/// Radiance at a time that a record adds to a ray, about, without what all of its shape share: the power that gets
-/// there, a ball's spread over its sphere. 0 where it cannot be seen yet.
-float sliceLight(const Scene& scene, const CollapsedFlights& record, double time);
+/// Path length that is left at a time beyond the straight way from a record's base to the camera, at the speed of its
+/// medium; where the camera's leg does not count, or is not known, all that is left. Below 0 nothing shows, but for
+/// other speeds on the way.
+double lengthToSpare(const Scene& scene, const CollapsedFlights& record, double time);
+
+/// Logarithm of the radiance at a time that a record adds to a ray, about, without what all of its shape share: the
+/// power that gets there, a ball's spread over its sphere. A guess, since how much of the way lies in the medium
+/// depends on where it leaves: the camera's straight leg does not where the camera is elsewhere. Finite: what is chosen
+/// by it needs no number of its own for what is too dark for a float.
+double logSliceLight(const Scene& scene, const CollapsedFlights& record, double time);
 
 /// By the base alone, never by lengths that a record integrates over: their expectation is the same for any number
-/// above 0. Where a record is brighter there are more of them, so that all are about equally bright in the image.
+/// above 0. Where a record is brighter there are more of them, so that all are about equally bright in the image; but
+/// never so few that one weighs more than 1 / tuning::LeastPerBase.
 class RecordCounts {
   public:
     /// `gate`: the pass's. Every base that counts leaves one record, until measure() has been called.
@@ -27,7 +36,7 @@ class RecordCounts {
     [[nodiscard]] float expected(const CollapsedFlights& record) const;
 
   private:
-    [[nodiscard]] float lightOf(const CollapsedFlights& record) const;
+    [[nodiscard]] double logLightOf(const CollapsedFlights& record) const;
 
     const Scene& scene_;
     TimeGate gate_;
@@ -37,7 +46,7 @@ class RecordCounts {
         return record.shape == FlightShape::Ball && record.shared ? Groups - 1 : size_t(record.shape);
     }
 
-    std::array<double, Groups> lightOfOne_{}; ///< of what leaves one record, by group
+    std::array<std::optional<double>, Groups> logLightOfOne_{}; ///< of what leaves one record, by group
 };
 
 } // namespace tungsten::photon
