@@ -127,7 +127,7 @@ void lanes(benchmark::State& state, FlightShape shape, bool shared, Gate gate) {
                                       Batch(10.0f),
                                       Batch(0.0f) < 1.0f,
                                       load(rotation)};
-                const LaneRays rays = asCast.fromFeet(slice.record.common, slice.record.warped);
+                const LaneRays rays = slice.record.placed(asCast);
                 Batch sum(0.0f);
                 const auto emit = [&](int, const LaneReach& reach) {
                     sum += xsimd::select(reach.met, reach.weight(slice.record.sigmaT.x, rays.start), Batch(0.0f));

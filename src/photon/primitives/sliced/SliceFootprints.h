@@ -38,6 +38,8 @@ class SliceFootprints {
                                                     std::span<const float> shares) const;
 
   private:
+    /// The camera is so far that its distance would take digits from what counts.
+    [[nodiscard]] bool farAway(const CollapsedFlights& flights, double speed) const;
     /// The gate is met at one length of each frame, or at the delta gate; otherwise inside frames.
     [[nodiscard]] bool atLengths(const CollapsedFlights& flights) const;
     [[nodiscard]] LaneTimes timesOf(const CollapsedFlights& flights, double speed, double common) const;

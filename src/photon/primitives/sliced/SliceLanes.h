@@ -118,7 +118,8 @@ struct LaneRecord {
     Rgb sigmaT;
     bool grey;
     bool warped;  ///< the ray's length counts in times
-    float common; ///< what `times` lack: how far the camera is from the base, about
+    bool far;     ///< the camera is, beside what is left of times: rays are looked at from their feet
+    float common; ///< what `times` lack: how far the camera is from the base, about, if that is far
     float g;
     float reach;      ///< of the first flight, if something can be in the way
     bool drawsPoints; ///< on chords: something can be in the way, or balls share the path
@@ -127,6 +128,10 @@ struct LaneRecord {
     bool isotropic;   ///< a ball on a light that shines alike everywhere
 
     [[nodiscard]] float warp() const { return warped ? 1.0f : 0.0f; }
+    /// Rays from where they begin, with the lengths that `times` go with.
+    [[nodiscard]] LaneRays placed(const LaneRays& asCast) const {
+        return far ? asCast.fromFeet(common, warped) : asCast;
+    }
     [[nodiscard]] bool weighsPlaces() const { return times.frames == 1 && times.width > 0.0f; }
     /// In [0, 1): SliceMeeting::random.
     [[nodiscard]] Batch random(size_t which, const LaneRays& rays, int frame) const {

@@ -131,7 +131,7 @@ class SliceSplatter {
                                 scene_.transport.maxBounces - 1 - before);
         const LaneRays asCast{toOrigin,           {load(band.x), load(band.y), load(band.z)}, start, end, seen,
                               load(rays.rotation)};
-        return asCast.fromFeet(slice.record.common, slice.record.warped);
+        return slice.record.placed(asCast);
     }
 
     /// Into the band's sums. The throughput holds the way to the piece.
