@@ -1,5 +1,5 @@
 # Makes the Debian package, and uses what it holds from another folder: renders, imports, shows the manual, completes.
-#   cmake -DHOST_BUILD=... -DSCENE=... -DWORK=... [-DPYTHON=...] -P debian_package.cmake
+#   cmake -DHOST_BUILD=... -DSCENE=... -DWORK=... -DRUN_PATHS=... [-DPYTHON=...] -P debian_package.cmake
 
 include(${CMAKE_CURRENT_LIST_DIR}/../support/run.cmake)
 
@@ -18,6 +18,7 @@ foreach(needed libembree libtbb libopenexr libhdf5 libc6)
 endforeach()
 run(dpkg-deb --extract ${package} ${WORK}/root)
 set(usr ${WORK}/root/usr)
+run(python3 ${RUN_PATHS} ${usr})
 run(${usr}/bin/tungsten --list)
 foreach(plugin path photon)
   if(NOT output MATCHES "${usr}/lib/tungsten/libtungsten-${plugin}.so")
