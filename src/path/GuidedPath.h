@@ -42,6 +42,7 @@ struct GuidedContext {
     const ArrivalBound& bound;
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite
     bool forwardBoundaries;            ///< connections must look through index-matched surfaces
+    const PassWatch& watch;
 };
 
 /// The vertex at which the present straight way starts, as the densities of what may be found along it need it.

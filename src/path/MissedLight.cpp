@@ -42,19 +42,28 @@ class MissedLightSearch {
         if (surfaces_.empty() || std::none_of(scene_.emitters.begin(), scene_.emitters.end(),
                                               [](const Emitter& emitter) { return emitter.isPointLike(); }))
             return {};
-        for (uint32_t i = 0; i < SearchPaths; ++i) {
-            Sampler sampler(0, RandomStream::Pilot, i, 0);
-            PathCounters counters;
-            const auto from = targets_.sample(sampler.next1D(), sampler, counters);
-            if (!from || !from->emitter->isPointLike()) continue;
-            const auto direction = directionFrom(*from, i, sampler);
-            if (!direction || isBlack(from->intensity(*direction))) continue;
-            if (const auto found = follow(*from, *direction, sampler)) return found;
+        uint32_t polls = 0; // paths between mirrors may be endless
+        PassMonitor monitor([&] { return ++polls > SearchPaths; });
+        try {
+            return search(PassWatch(monitor));
+        } catch (const PassBrokenOff&) {
+            return {};
         }
-        return {};
     }
 
   private:
+    [[nodiscard]] std::optional<MissedLight> search(const PassWatch& watch) const {
+        PathCounters counters;
+        for (uint32_t i = 0; i < SearchPaths; ++i) {
+            Sampler sampler(0, RandomStream::Pilot, i, 0);
+            const auto from = targets_.sample(sampler.next1D(), sampler, watch, counters);
+            if (!from || !from->emitter->isPointLike()) continue;
+            const auto direction = directionFrom(*from, i, sampler);
+            if (!direction || isBlack(from->intensity(*direction))) continue;
+            if (const auto found = follow(*from, *direction, sampler, watch, counters)) return found;
+        }
+        return {};
+    }
     /// By turns as light starts (after a scattering: evenly), and towards a surface that mirrors or refracts.
     [[nodiscard]] std::optional<Vec3f> directionFrom(const PathTarget& from, uint32_t path, Sampler& sampler) const {
         if (path % 2 == 1) {
@@ -68,14 +77,15 @@ class MissedLightSearch {
     }
 
     /// Along specular and forward lobes to the next vertex that scatters.
-    [[nodiscard]] std::optional<MissedLight> follow(const PathTarget& from, const Vec3f& direction,
-                                                    Sampler& sampler) const {
+    [[nodiscard]] std::optional<MissedLight> follow(const PathTarget& from, const Vec3f& direction, Sampler& sampler,
+                                                    const PassWatch& watch, PathCounters& counters) const {
         Ray ray = from.vertex.leave(direction);
         Region region = from.vertex.regionTowards(direction);
         double time = from.start;
         std::optional<MissedLight> way;
         // What scatters is an interaction, too.
         for (int met = from.interactions; met + 1 < scene_.transport.maxBounces; ++met) {
+            counters.step(watch);
             const Medium* medium = scene_.medium(region);
             FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
             if (medium) flight = sampleFlight(*medium, Infinity, sampler);

@@ -23,7 +23,8 @@ TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vec
     for (size_t i = 0; any() && i < radii_.size(); ++i) count_ += probability(i) > 0.0f ? 1 : 0;
 }
 
-std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCounters& counters) const {
+std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, const PassWatch& watch,
+                                               PathCounters& counters) const {
     if (!any()) return std::nullopt;
     const auto chosen = distribution_.sample(u);
     const Emitter& emitter = scene_.emitters[chosen.index];
@@ -32,7 +33,7 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, PathCo
     const transport::Vertex point(scene_, emitter, sampleEmissionPoint(emitter, uPosition));
     PathTarget target{{point, Rgb(1.0f / probability)}, &emitter, int(chosen.index), probability, emitter.emissionTime};
     if (emitter.isDelta())
-        return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, counters);
+        return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, watch, counters);
     target.reach = radii_[chosen.index];
     return target;
 }
@@ -55,11 +56,13 @@ struct TargetChoice::Laser {
 };
 
 std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const EmissionSample& emission,
-                                                     Sampler& sampler, PathCounters& counters) const {
+                                                     Sampler& sampler, const PassWatch& watch,
+                                                     PathCounters& counters) const {
     target.index = -1;
     target.power = emission.power / target.probability;
     Laser laser{emission.ray, scene_.regionOf(*target.emitter)};
     while (target.interactions + 1 < scene_.transport.maxBounces && !isBlack(target.power)) {
+        counters.step(watch);
         const Medium* medium = scene_.medium(laser.region);
         FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
         if (medium) flight = sampleFlight(*medium, Infinity, sampler);

@@ -38,7 +38,8 @@ class TargetChoice {
     [[nodiscard]] bool any() const { return distribution_.total() > 0.0; }
     [[nodiscard]] float probability(size_t emitter) const { return distribution_.probability(emitter); }
     /// `u` chooses the emitter. None when light that starts in a single direction is absorbed or escapes.
-    [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, PathCounters& counters) const;
+    [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const PassWatch& watch,
+                                                   PathCounters& counters) const;
     /// The emitter has more than one point to choose.
     [[nodiscard]] static bool hasOthers(const Emitter& emitter);
     /// Another point of the target's emitter, drawn as it was. None if there is no other, or for virtual sources.
@@ -48,7 +49,7 @@ class TargetChoice {
     struct Laser;
     enum class Meeting { Scattered, WentOn, Absorbed };
     std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, Sampler& sampler,
-                                           PathCounters& counters) const;
+                                           const PassWatch& watch, PathCounters& counters) const;
     Meeting meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const;
 
     const Scene& scene_;

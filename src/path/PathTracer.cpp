@@ -127,14 +127,15 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
                     : renderPlainly<false, false>(rest, film, statistics);
 }
 
-void PathTracer::lookForLights(int column, float u, PixelSink& sink, PathCounters& counters, Sampler sampler) const {
+void PathTracer::lookForLights(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
+                               Sampler sampler) const {
     const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
         ++counters.intoDetectors;
         sink.add(radiance, time, emitter);
     };
-    detectorLight_->sample(size_t(column), sampler, counters.shadowRays, put);
+    detectorLight_->sample(size_t(column), sampler, watch, counters.shadowRays, put);
     if (!plan_.lasers) return;
-    const auto source = targets_->sample(u, sampler, counters);
+    const auto source = targets_->sample(u, sampler, watch, counters);
     if (!source || source->index >= 0) return;
     if (settings_.limits.orderCounts(source->mediumScatters))
         detectorLight_->connect(size_t(column), *source, *source->emitter, source->start, source->interactions, sampler,
@@ -163,7 +164,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             pass.watch.pollWithin(SamplesPerPoll, s + 1);
             trace(ray, sink, counters, sampler, u);
             if (detectorLight_)
-                lookForLights(x, u, sink, counters, {pass.seed, RandomStream::DetectorLight, sample, pixel});
+                lookForLights(x, u, sink, pass.watch, counters,
+                              {pass.seed, RandomStream::DetectorLight, sample, pixel});
         }
     };
     pass.watch.stage("camera paths", width * height);
@@ -180,13 +182,14 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
     const WalkContext context{
-        *scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries};
+        *scene_,   settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries,
+        pass.watch};
     const bool lasers = targets_->any();
     renderTiles(
         pass, film, statistics,
         [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
             std::optional<PathTarget> source;
-            if (lasers) source = targets_->sample(u, sampler, counters);
+            if (lasers) source = targets_->sample(u, sampler, pass.watch, counters);
             PathWalk<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr).run(ray);
         });
 }
@@ -194,10 +197,11 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
     const TargetChoice* targets = plan_.entryPoints.on ? &*targets_ : nullptr;
     const GuidedContext context{
-        *scene_, settings_, sensor_, guides_, targets, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries};
+        *scene_,   settings_, sensor_, guides_, targets, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
+        pass.watch};
     renderTiles(pass, film, statistics,
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
-                    const std::optional<PathTarget> target = targets_->sample(u, sampler, counters);
+                    const std::optional<PathTarget> target = targets_->sample(u, sampler, pass.watch, counters);
                     if (target) GuidedPathWalk(context, sink, counters, sampler).run(ray, *target);
                 });
 }

@@ -161,7 +161,7 @@ void PhotonIntegrator::lookForLights(const transport::Sensor& sensor, const Pass
             const auto sample = uint32_t(pass.firstSample + i / tuning::DetectorDraws);
             const uint64_t draw = uint64_t(column) * tuning::DetectorDraws + i % tuning::DetectorDraws;
             Sampler sampler(pass.seed, RandomStream::DetectorLight, sample, draw);
-            detectorLight_->sample(size_t(column), sampler, rays, put);
+            detectorLight_->sample(size_t(column), sampler, pass.watch, rays, put);
         }
         for (int frame = 0; frame < sensor.gate.frames; ++frame) {
             const Vec3d value = sums[size_t(frame)] * scale;

@@ -32,7 +32,8 @@ DetectorLight::DetectorLight(const Scene& scene, const EffectPlan& facts, const 
     : scene_(scene), limits_(limits), connector_(scene, facts.forwardBoundaries || facts.everything),
       emitters_(pointLikeEmitters(scene, facts)), specular_(facts.specularSensorPaths) {}
 
-void DetectorLight::sample(size_t column, Sampler& sampler, uint64_t& rays, const Put& put) const {
+void DetectorLight::sample(size_t column, Sampler& sampler, const PassWatch& watch, uint64_t& rays,
+                           const Put& put) const {
     if (!limits_.orderCounts(0)) return;
     const auto chosen = emitters_.sample(sampler.next1D());
     const Emitter& emitter = scene_.emitters[chosen.index];
@@ -45,7 +46,9 @@ void DetectorLight::sample(size_t column, Sampler& sampler, uint64_t& rays, cons
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
     Ballistic light{emission.ray, scene_.regionOf(emitter), emission.power / chosen.probability, emitter.emissionTime};
     if (emitter.isDelta()) meet(column, light, emitter, rays, put);
+    StepCounters counters;
     while (specular_ && limits_.mayGoOn(light.interactions + 1) && !isBlack(light.power)) {
+        counters.step(watch);
         const auto lobe = goOn(light, sampler, rays);
         if (!lobe) return;
         // What passes straight has been looked for from before.

@@ -5,6 +5,7 @@
 #include "transport/BounceLimits.h"
 #include "transport/Connection.h"
 #include "transport/GateBounds.h"
+#include "transport/StepCounters.h"
 
 #include <functional>
 
@@ -25,8 +26,9 @@ class DetectorLight {
 
     /// The scene has detectors, and such lights.
     [[nodiscard]] static bool mayReach(const Scene& scene, const EffectPlan& facts);
-    /// One sample of what the detector in `column` gets. Adds the rays traced to `rays`.
-    void sample(size_t column, Sampler& sampler, uint64_t& rays, const Put& put) const;
+    /// One sample of what the detector in `column` gets. Adds the rays traced to `rays`. Throws PassBrokenOff where the
+    /// watch does.
+    void sample(size_t column, Sampler& sampler, const PassWatch& watch, uint64_t& rays, const Put& put) const;
     /// The same of the end of a path from a light, `time` after 0 and so many interactions.
     void connect(size_t column, const PathEnd& end, const Emitter& emitter, double time, int interactions,
                  Sampler& sampler, uint64_t& rays, const Put& put) const;

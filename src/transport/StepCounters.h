@@ -4,6 +4,7 @@
 #include "tungsten/bsdf/Bsdf.h"
 #include "tungsten/medium/Medium.h"
 #include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/PassWatch.h"
 #include "tungsten/render/Statistics.h"
 
 namespace tungsten::transport {
@@ -13,6 +14,8 @@ struct StepCounters {
     uint64_t absorbing = 0;                                               ///< flights through media that only absorb
     uint64_t surfaceEvents = 0;                                           ///< surfaces met
     uint64_t scattered = 0, mirrored = 0, refracted = 0, straight = 0;    ///< and left by these lobes
+
+    uint64_t steps = 0; ///< of walks of this worker
 
     StepCounters& operator+=(const StepCounters& other) {
         mediumEvents += other.mediumEvents;
@@ -24,7 +27,13 @@ struct StepCounters {
         mirrored += other.mirrored;
         refracted += other.refracted;
         straight += other.straight;
+        steps += other.steps;
         return *this;
+    }
+    /// A walk goes on: paths may have millions of vertices, and a pass must not wait for their ends to be broken off.
+    void step(const PassWatch& watch) {
+        constexpr uint64_t StepsPerPoll = 64; // some microseconds each; guided ones tens of them
+        watch.pollWithin(StepsPerPoll, ++steps);
     }
     void scatter(const Medium& medium) {
         ++mediumEvents;

@@ -151,6 +151,53 @@ TEST_P(BreakOff, ThePassEndsSoonAfterTheStop) {
     }
 }
 
+/// A closed room, a pixel and two samples; `walls` and `light` are a bsdf and a primitive.
+std::string closedRoom(const std::string& walls, const std::string& light, const std::string& integrator,
+                       const std::string& beside = "") {
+    return R"({"bsdfs": [{"name": "walls", )" + walls + R"(}], "media": [{"name": "cloud", "type": "homogeneous",
+        "sigma_s": 2, "sigma_a": 0}], "primitives": [{"type": "sphere", "bsdf": "walls", "transform": {"scale": 2}}, )" +
+           light + beside +
+           R"(], "camera": {"type": "pinhole", "resolution": [1, 1], "fov": 10, "transform": {"position":
+        [0, 0, 1], "look_at": [0.3, 0.2, 0]}}, "integrator": {"max_bounces": 20000, "enable_rr": false,
+        "photon_count": 4, "volume_photon_count": 200000, "gather_radius": 0.3, )" +
+           integrator + R"(}, "renderer": {"spp": 2, "spp_step": 2}})";
+}
+
+TEST(BreakOffLongPaths, TheyArePolledOnTheirWay) {
+    const std::string white = R"("type": "lambert", "albedo": 1)", mirror = R"("type": "mirror", "albedo": 1)";
+    const std::string lamp = R"({"type": "point", "emission": 8, "transform": {"position": [0.3, 0.6, 0.2]}})";
+    const std::string inCloud =
+        R"({"type": "point", "emission": 8, "ext_medium": "cloud", "transform": {"position": [0.3, 0.6, 0.2]}})";
+    const std::string laser = R"({"type": "collimated", "power": 1, "transform": {"position": [-1.5, 0, 0],
+        "look_at": [-1.2, 1, 0], "up": [0, 0, 1]}})"; // stays in the plane z = 0
+    // All that the camera sees.
+    const std::string black = R"(, {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0}, "transform": {"position":
+        [0.1, 0.07, 0.7], "rotation": [90, 0, 0], "scale": 0.5}})";
+    const std::string ever = R"(, "start_time": 0, "transient_time_width": 1e6, "frame_num": 1)";
+    const std::string paths = R"("type": "path_tracer")", light = R"("type": "light_tracer")";
+    const std::string maps = R"("type": "progressive_transient_photon_map")" + ever;
+    const std::string best = R"(, "darts": "best")";
+    const std::vector<std::pair<const char*, std::string>> scenes{
+        {"plain", closedRoom(white, lamp, paths)},
+        {"plain, in fog", closedRoom(white, inCloud, paths)},
+        {"guided", closedRoom(white, lamp, paths + best + ever)},
+        {"a laser's way", closedRoom(mirror, laser, paths, black)},
+        {"light", closedRoom(white, lamp, light)},
+        {"light, in fog", closedRoom(white, inCloud, light)},
+        {"photons", closedRoom(white, lamp, maps)},
+        {"photons in fog", closedRoom(white, inCloud, maps)},
+        {"guided photons", closedRoom(white, lamp, maps + best)},
+        {"sensor paths", closedRoom(mirror, lamp, maps)},
+    };
+    for (const auto& [name, scene] : scenes) {
+        Render render(scene);
+        ASSERT_TRUE(render.pass()) << name;
+        // Two paths or more of 20 000 steps; a poll every 64.
+        EXPECT_GT(render.polls(), 600u) << name;
+        EXPECT_FALSE(render.pass(render.polls() / 2)) << name;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, BreakOff, testing::ValuesIn(BreakOffCases), [](const auto& test) {
     std::string name = test.param.name;
     std::replace(name.begin(), name.end(), ' ', '_');

@@ -30,6 +30,7 @@ void GuidedPathWalk::run(const Ray& ray, PathTarget target) {
 
 void GuidedPathWalk::goOn() {
     while (path_.state.interactions < scene_.transport.maxBounces) {
+        path_.state.counters.step(context_.watch);
         const Medium* medium = scene_.medium(path_.state.region);
         if (!medium || !medium->scatters()) {
             if (!crossEmpty()) return;

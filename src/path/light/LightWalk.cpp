@@ -11,6 +11,7 @@ void LightWalk::run() {
     if (!emit()) return;
     // The last vertex needs no way on.
     while (context_.limits.mayGoOn(interactions_ + 1)) {
+        counters_.step(context_.watch);
         if (const Medium* medium = scene_.medium(region_)) {
             if (!crossMedium(*medium)) return;
             continue;

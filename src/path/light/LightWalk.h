@@ -19,6 +19,7 @@ struct LightWalkContext {
     const Distribution1D& emitters;
     transport::Connector connector;
     bool russianRoulette;
+    const PassWatch& watch;
 };
 
 /// What happened, counted by one worker.

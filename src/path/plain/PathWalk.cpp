@@ -20,6 +20,7 @@ void PathWalk<TimeResolved, Media>::run(Ray ray) {
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::goOn() {
     while (path_.interactions < scene_.transport.maxBounces) {
+        path_.counters.step(watch_);
         if constexpr (Media) {
             if (const Medium* medium = scene_.medium(path_.region)) {
                 if (!crossMedium(*medium)) return;

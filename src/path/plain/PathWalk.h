@@ -19,6 +19,7 @@ struct WalkContext {
     const ArrivalBound& bound;
     const RefractedLight* refracted; ///< of scenes whose bodies are all sealed, or null
     bool forwardBoundaries;          ///< connections must look through index-matched surfaces
+    const PassWatch& watch;
 };
 
 /// Traces one camera path and adds what it finds to the sink; light that starts in a single direction is found through
@@ -31,7 +32,7 @@ class PathWalk {
              const PathTarget* source)
         : path_(context.scene, sink, counters, sampler), scene_(context.scene), settings_(context.settings),
           lights_(context.lights), bound_(context.bound), connector_(context.scene, context.forwardBoundaries),
-          source_(source), refracted_(context.refracted) {}
+          source_(source), refracted_(context.refracted), watch_(context.watch) {}
 
     void run(Ray ray);
 
@@ -95,6 +96,7 @@ class PathWalk {
     transport::Connector connector_;
     const PathTarget* source_;
     const RefractedLight* refracted_;
+    const PassWatch& watch_;
     std::optional<SealedVertex> sealed_; ///< the ray's origin, if it is a vertex of a sealed body
     std::optional<WayOut> wayOut_;
     int aimedAt_ = -1;            ///< the emitter, of a walk that follows a drawn way out

@@ -31,6 +31,7 @@ void GuidedPhotonWalk::run() {
 
 void GuidedPhotonWalk::goOn() {
     while (path_.mayBounce()) {
+        path_.counters.step(path_.context.watch);
         const darts::Guide* guide = guidance_.guide(path_.region);
         if (guide) {
             if (!crossMedium(*scene_.medium(path_.region), *guide)) return;

@@ -39,6 +39,7 @@ struct WalkContext {
     const RecordCounts* recordCounts = nullptr; ///< of guided paths
     const FirstUsefulness* first = nullptr;     ///< likewise: in bodies that light must leave
     FirstUsefulness* measured = nullptr;        ///< of pilot paths, which end at their first vertex there
+    PassWatch watch{};
 };
 
 struct LightPath {

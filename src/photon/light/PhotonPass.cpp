@@ -129,13 +129,15 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     return settings;
 }
 
-WalkContext PhotonPass::contextOf(const PhotonSettings& settings, const FirstUsefulness* first) const {
+WalkContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& settings,
+                                  const FirstUsefulness* first) const {
     return {.scene = scene_,
             .settings = settings,
             .culling = culling_,
             .frameCullings = frameCullings_,
             .emitters = emitters_,
-            .first = first};
+            .first = first,
+            .watch = pass.watch};
 }
 
 void PhotonPass::tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
@@ -178,7 +180,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
     const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
 
-    WalkContext context = contextOf(settings, usefulAtFirst.get());
+    WalkContext context = contextOf(pass, settings, usefulAtFirst.get());
     context.frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     context.connects = connections != nullptr;
     context.densityPhotons = densityPhotons_;

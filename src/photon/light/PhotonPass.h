@@ -46,7 +46,8 @@ class PhotonPass {
     /// Of its part of a whole pass, and with its kernels.
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// What every walk is told; nothing is stored and nothing connected to.
-    [[nodiscard]] WalkContext contextOf(const PhotonSettings& settings, const FirstUsefulness* first) const;
+    [[nodiscard]] WalkContext contextOf(const PassInfo& pass, const PhotonSettings& settings,
+                                        const FirstUsefulness* first) const;
 
     // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
     // for.

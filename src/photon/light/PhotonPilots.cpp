@@ -31,7 +31,7 @@ std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pas
     if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
     auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
-    WalkContext context = contextOf(settings, nullptr);
+    WalkContext context = contextOf(pass, settings, nullptr);
     context.measured = first.get();
     tracePilots(context, *guidance_, pass, paths, statistics);
     return first;
@@ -41,7 +41,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
                                        const FirstUsefulness* first, SurfaceConnections& connections,
                                        Statistics& statistics) const {
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-    WalkContext context = contextOf(settings, first);
+    WalkContext context = contextOf(pass, settings, first);
     context.storeVolume = storeVolume_;
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<TracedPaths> pilots(paths, TracedPaths(settings_.primitive));
@@ -77,7 +77,7 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
         else {
             auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
             const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-            WalkContext context = contextOf(settings, first);
+            WalkContext context = contextOf(pass, settings, first);
             context.storeVolume = true;
             context.recordCounts = counts.get();
             const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);

@@ -9,6 +9,7 @@ void PhotonWalk::run() {
 
 void PhotonWalk::goOn() {
     while (path_.mayBounce()) {
+        path_.counters.step(path_.context.watch);
         ++path_.counters.rays;
         const auto hit = scene_.geometry->intersect(path_.ray);
         if (const Medium* medium = scene_.medium(path_.region)) {

@@ -77,9 +77,10 @@ std::optional<SurfaceInteraction> visitLeg(const Scene& scene, SensorState& stat
 /// Follows the path from `state`, leg by leg.
 template <typename Visitor>
 SensorSteps followSensorPath(const Scene& scene, SensorState state, const SensorPathRules& rules, Sampler& sampler,
-                             Visitor&& visitor) {
+                             Visitor&& visitor, const PassWatch& watch = {}) {
     SensorSteps steps;
     while (state.interactions < scene.transport.maxBounces) {
+        steps.step(watch);
         ++steps.rays;
         const auto hit = scene.geometry->intersect(state.ray);
         if (const Medium* medium = scene.medium(state.region)) steps.fly(*medium);
