@@ -251,6 +251,10 @@ TEST_F(Robustness, WhatDoesNotFitIntoMemoryIsRefusedWithTheFigure) {
     refuses({"--resolution", "65536x65536"}, BadInput, {"needs about 486 GiB", "65536x65536"});
     refuses({"--set", R"(integrator={"type": "photon_map", "photon_count": 1000000000})", "--memory-limit", "1G"},
             BadInput, {"needs about", "44.7 GiB for the integrator"});
+    std::ofstream(folder() / "m.obj") << std::string(8192, '\n');
+    fs::resize_file(folder() / "m.obj", uintmax_t(1) << 30);
+    refuses({"--set", R"(primitives=[{"type": "mesh", "file": "m.obj"}])", "--memory-limit", "256M"}, BadInput,
+            {"m.obj: has 1 GiB, more than the ", " of memory", "--memory-limit"});
     EXPECT_EQ(render({"--memory-limit", "2GiB"}).exitCode, 0);
     refuses({"--memory-limit", "many"}, BadUsage, {"--memory-limit many", "512M"});
 }

@@ -22,6 +22,12 @@ struct LoadWatch::State {
 LoadWatch::LoadWatch(std::function<void()> look, std::chrono::milliseconds between)
     : state_(std::make_shared<State>(std::move(look), between)) {}
 
+LoadWatch LoadWatch::telling(Reading reading) const {
+    LoadWatch other = *this;
+    other.reading_ = std::make_shared<const Reading>(std::move(reading));
+    return other;
+}
+
 bool LoadWatch::goesOn() const noexcept {
     if (!state_ || state_->failed) return !state_;
     if (std::this_thread::get_id() != state_->thread) return true;

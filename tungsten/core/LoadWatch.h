@@ -1,10 +1,12 @@
 #pragma once
-// Scenes that take long to load: whoever waits for one is asked, on the way, whether to go on.
+// Scenes that take long to load: whoever waits for one is asked, on the way, whether to go on, and told what is read.
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <thread>
 
 namespace tungsten {
@@ -28,9 +30,18 @@ class LoadWatch {
     /// then does.
     [[nodiscard]] bool goesOn() const noexcept;
 
+    using Reading = std::function<void(const std::filesystem::path& file, std::string_view bytes)>;
+    /// The same, which also tells of every file that is read for the scene.
+    [[nodiscard]] LoadWatch telling(Reading reading) const;
+    /// By whoever reads one.
+    void read(const std::filesystem::path& file, std::string_view bytes) const {
+        if (reading_) (*reading_)(file, bytes);
+    }
+
   private:
     struct State;
     std::shared_ptr<State> state_;
+    std::shared_ptr<const Reading> reading_;
 };
 
 } // namespace tungsten

@@ -191,7 +191,7 @@ TriangleMesh mergeScene(const tinygltf::Model& model, const std::filesystem::pat
 
 TriangleMesh loadGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within,
                       const LoadWatch& watch) {
-    const tinygltf::Model model = parseGltf(file, within);
+    const tinygltf::Model model = parseGltf(file, within, watch);
     for (const std::string& extension : model.extensionsRequired)
         if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression")
             failGltf(file, "needs the glTF extension " + extension + ", which is not supported");

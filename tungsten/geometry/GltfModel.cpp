@@ -40,12 +40,32 @@ bool isImage(const std::string& name) {
            extension == ".webp";
 }
 
-using Folder = std::optional<std::filesystem::path>;
+bool isBinary(std::string_view bytes) {
+    return bytes.starts_with("glTF");
+}
 
-/// Buffers only: images are neither read nor decoded. `within` must outlive the callbacks.
-tinygltf::FsCallbacks fileAccess(const Folder& within) {
+/// By its start: binary files tell their length there, others are texts.
+void requireGltf(std::string_view start, uint64_t size, const std::filesystem::path& file) {
+    constexpr size_t LengthAt = 8;
+    if (!isBinary(start)) return requireText(file, start, size);
+    uint32_t length = 0;
+    if (start.size() < LengthAt + sizeof length) return;
+    std::memcpy(&length, start.data() + LengthAt, sizeof length);
+    constexpr uint64_t Padding = 4096;
+    if (size > uint64_t(length) + Padding)
+        failGltf(file, "has " + std::to_string(size) + " bytes; its header says " + std::to_string(length));
+}
+
+/// Where buffers may lie, and who is told of them.
+struct BufferAccess {
+    const std::optional<std::filesystem::path>& within;
+    const LoadWatch& watch;
+};
+
+/// Buffers only: images are neither read nor decoded. `buffers` must outlive the callbacks.
+tinygltf::FsCallbacks fileAccess(BufferAccess& buffers) {
     tinygltf::FsCallbacks access{};
-    access.user_data = const_cast<Folder*>(&within);
+    access.user_data = &buffers;
     access.FileExists = [](const std::string& name, void*) {
         std::error_code error;
         return !isImage(name) && std::filesystem::is_regular_file(name, error);
@@ -54,10 +74,10 @@ tinygltf::FsCallbacks fileAccess(const Folder& within) {
     access.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* message, const std::string& name,
                               void* data) {
         try {
-            const Folder& folder = *static_cast<const Folder*>(data);
-            if (folder && !isInside(name, *folder))
+            const BufferAccess& own = *static_cast<const BufferAccess*>(data);
+            if (own.within && !isInside(name, *own.within))
                 throw InputError(name, "lies outside the scene's folder; --allow-outside lets a scene read it");
-            const std::vector<char> bytes = readFileBytes(name);
+            const std::vector<char> bytes = readFileBytes(name, own.watch);
             out->assign(bytes.begin(), bytes.end());
             return true;
         } catch (const InputError& error) {
@@ -78,10 +98,12 @@ void failGltf(const std::filesystem::path& file, const std::string& message) {
     throw InputError(file.string(), message);
 }
 
-tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within) {
-    const std::vector<char> bytes = readFileBytes(file);
+tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within,
+                          const LoadWatch& watch) {
+    const std::vector<char> bytes =
+        readFileBytes(file, watch, [&](std::string_view start, uint64_t size) { requireGltf(start, size, file); });
     constexpr size_t JsonStart = 20; // of .glb files: 12 bytes of header, 8 of chunk header
-    const bool binary = bytes.size() >= JsonStart && std::string_view(bytes.data(), 4) == "glTF";
+    const bool binary = bytes.size() >= JsonStart && isBinary({bytes.data(), bytes.size()});
     if (bytes.size() > UINT32_MAX) failGltf(file, "larger than 4 GiB");
     std::string_view json = binary ? std::string_view(bytes.data(), bytes.size()) : utf8Of(bytes, file);
     if (binary) {
@@ -91,7 +113,8 @@ tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional
     }
     requireShallowJson(json, file);
     tinygltf::TinyGLTF reader;
-    reader.SetFsCallbacks(fileAccess(within));
+    BufferAccess buffers{within, watch};
+    reader.SetFsCallbacks(fileAccess(buffers));
     reader.SetImageLoader(ignoreImage, nullptr);
     tinygltf::Model model;
     std::string errors, warnings;

@@ -22,7 +22,8 @@ namespace tungsten {
 
 /// Parses .gltf or .glb, with its buffers; images are neither read nor decoded. Buffers in files of their own
 /// must lie `within` that folder, if there is one. Throws InputError.
-tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within);
+tinygltf::Model parseGltf(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within,
+                          const LoadWatch& watch);
 
 /// The elements of an accessor, checked to lie inside its buffer.
 class AccessorView {

@@ -35,7 +35,8 @@ class ObjReader {
     ObjReader(const std::filesystem::path& file, const LoadWatch& watch) : file_(file), watch_(watch) {}
 
     TriangleMesh read() {
-        std::vector<char> bytes = readFileBytes(file_, watch_);
+        std::vector<char> bytes = readFileBytes(
+            file_, watch_, [&](std::string_view start, uint64_t size) { requireText(file_, start, size); });
         joinContinuedLines(bytes);
         TextCursor text(utf8Of(bytes, file_));
         while (!text.atEnd()) {

@@ -83,10 +83,15 @@ Property readProperty(TextCursor& words, const std::filesystem::path& file) {
     return property;
 }
 
+void requirePly(std::string_view text, const std::filesystem::path& file) {
+    if (TextCursor(TextCursor(utf8Of(text, file)).nextLine()).nextWord() != "ply")
+        fail(file, "not a PLY file (it must start with 'ply')");
+}
+
 Header readHeader(std::string_view text, const std::filesystem::path& file) {
     Header header;
     TextCursor lines(text);
-    if (TextCursor(lines.nextLine()).nextWord() != "ply") fail(file, "not a PLY file (it must start with 'ply')");
+    (void)lines.nextLine(); // "ply"
     bool hasFormat = false;
     while (!lines.atEnd()) {
         TextCursor words(lines.nextLine());
@@ -271,7 +276,8 @@ void skipElement(BodyReader& body, const Element& element) {
 } // namespace
 
 TriangleMesh loadPly(const std::filesystem::path& file, const LoadWatch& watch) {
-    const std::vector<char> bytes = readFileBytes(file, watch);
+    const std::vector<char> bytes =
+        readFileBytes(file, watch, [&](std::string_view start, uint64_t) { requirePly(start, file); });
     const std::string_view text = utf8Of(bytes, file);
     const Header header = readHeader(text, file);
     BodyReader body(text.substr(header.bytes), header.encoding, file, watch);

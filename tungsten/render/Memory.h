@@ -1,16 +1,9 @@
 #pragma once
 // Memory: what there is, and refusing what does not fit before it is asked for.
 
-#include <cstdint>
-#include <string>
+#include "tungsten/core/AvailableMemory.h"
 
 namespace tungsten {
-
-/// Bytes that this process can still take: of the machine's memory, and of its control group's limit.
-double availableMemoryBytes();
-
-/// "1.5 GiB".
-std::string memoryText(double bytes);
 
 struct LoadedScene;
 

@@ -107,14 +107,7 @@ PartialStateHeader readHeader(std::istream& in, const fs::path& file) {
 
 PartialIdentity PartialIdentity::of(const LoadedScene& loaded, uint64_t seed, int64_t sppStep,
                                     const std::optional<ExposureChoice>& exposure) {
-    Hash hash;
-    hash.add(std::to_string(loaded.textHash));
-    for (const fs::path& input : loaded.inputs) {
-        if (input == loaded.scene->file) continue; // its text is in the hash
-        const std::vector<char> bytes = readFileBytes(input);
-        hash.addBytes(bytes.data(), bytes.size());
-    }
-    return {hash.value(), seed, sppStep, loaded.scene, loaded.integratorType, loaded.text, exposure};
+    return {loaded.hash, seed, sppStep, loaded.scene, loaded.integratorType, loaded.text, exposure};
 }
 
 struct PartialStateWriter::Implementation {

@@ -20,7 +20,7 @@ struct PassRange {
 
 /// What partial states of one render agree in, and what their images need of the scene.
 struct PartialIdentity {
-    uint64_t content = 0; ///< of the scene without its renderer block, overrides included, and the files that it names
+    uint64_t content = 0; ///< LoadedScene::hash
     uint64_t seed = 0;
     int64_t sppStep = 0;
     std::shared_ptr<const Scene> scene; ///< its file, resolution, detectors, film, transport, units, tone map are kept

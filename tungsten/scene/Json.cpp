@@ -251,9 +251,11 @@ std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const st
     return document;
 }
 
-std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file) {
-    const std::vector<char> bytes = readFileBytes(file);
-    if (bytes.size() > LargestScene) throw InputError(file.string(), "larger than 1 GiB: not a scene file");
+std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file, const LoadWatch& watch) {
+    const std::vector<char> bytes = readFileBytes(file, watch, [&](std::string_view start, uint64_t size) {
+        if (size > LargestScene) throw InputError(file.string(), "larger than 1 GiB: not a scene file");
+        requireText(file, start, size);
+    });
     return parseJson(std::string(utf8Of(bytes, file)), file.string());
 }
 

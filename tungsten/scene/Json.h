@@ -3,6 +3,8 @@
 
 #include "tungsten/scene/ObjectReader.h"
 
+#include "tungsten/core/LoadWatch.h"
+
 #include <rapidjson/document.h>
 
 #include <filesystem>
@@ -23,7 +25,7 @@ inline const ObjectReader::Node* nodeOf(const rapidjson::Value& value) {
 /// Parses the format's grammar: JSON with comments, trailing commas, NaN and Inf, an optional byte-order mark. Throws
 /// InputError with line and column, in the name of `file`.
 std::shared_ptr<rapidjson::Document> parseJson(const std::string& text, const std::string& file);
-std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file);
+std::shared_ptr<rapidjson::Document> parseJsonFile(const std::filesystem::path& file, const LoadWatch& watch = {});
 
 /// Applies "path.to.field=value" to the document: array elements by index, by `name`, or all of them by `*`. An
 /// object in the place of one that has a name keeps it unless it has one of its own. The value is JSON, or else a

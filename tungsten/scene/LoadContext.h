@@ -20,11 +20,10 @@ struct LoadContext {
     std::map<std::string, BsdfPtr> bsdfs = {};                         ///< by name; the first definition wins
     std::map<std::string, int> media = {};                             ///< by name
     std::map<std::string, std::shared_ptr<const Bitmap>> bitmaps = {}; ///< by file and lookup settings
-    std::vector<std::filesystem::path> resources = {};                 ///< every file read, for the hash
     std::vector<ObjectReader> emitters = {};                           ///< the objects of the scene's emitters
     LoadWatch watch = {};                                              ///< polled by what takes long
 
-    /// Resolves against the scene's (or the input) directory and remembers the file. Throws InputError if it lies
+    /// Resolves against the scene's (or the input) directory. Throws InputError if it lies
     /// outside and must not.
     std::filesystem::path resource(const std::string& name);
     /// Where files that resources name must lie; none: anywhere.

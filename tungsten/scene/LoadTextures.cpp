@@ -18,7 +18,7 @@ std::shared_ptr<const Bitmap> cachedBitmap(LoadContext& context, const std::stri
     auto& entry = context.bitmaps[key];
     if (entry) return entry;
     context.watch.poll();
-    const std::shared_ptr<Bitmap> bitmap = loadBitmap(path);
+    const std::shared_ptr<Bitmap> bitmap = loadBitmap(path, context.watch);
     bitmap->gammaCorrect = gammaCorrect;
     bitmap->interpolate = interpolate;
     bitmap->clamp = clamp;
@@ -110,7 +110,6 @@ std::filesystem::path LoadContext::resource(const std::string& name) {
     if (!allowOutside && !isInside(path, resourceDirectory))
         throw InputError(path.string(), "lies outside the scene's folder (-i chooses another); if you trust the scene, "
                                         "--allow-outside lets it read any file");
-    resources.push_back(path);
     return path;
 }
 

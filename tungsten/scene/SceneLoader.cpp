@@ -9,6 +9,7 @@
 #include <rapidjson/writer.h>
 
 #include <map>
+#include <set>
 
 namespace tungsten {
 
@@ -24,8 +25,7 @@ std::string textOf(const rapidjson::Value& value) {
     return buffer.GetString();
 }
 
-uint64_t hashText(const rapidjson::Document& document) {
-    Hash hash;
+uint64_t hashOf(const rapidjson::Document& document, Hash hash) {
     for (const auto& member : document.GetObject()) {
         if (std::string_view(member.name.GetString()) == "renderer") continue;
         hash.add(std::string(member.name.GetString()) + textOf(member.value));
@@ -33,16 +33,18 @@ uint64_t hashText(const rapidjson::Document& document) {
     return hash.value();
 }
 
-uint64_t hashScene(uint64_t text, const std::vector<std::filesystem::path>& resources) {
-    Hash hash;
-    hash.add(std::to_string(text));
-    for (const auto& file : resources) {
-        std::error_code error;
-        hash.add(file.string() + std::to_string(std::filesystem::file_size(file, error)) +
-                 std::to_string(std::filesystem::last_write_time(file, error).time_since_epoch().count()));
+/// Files that a scene names, and those that these name, as they were when they were read.
+struct FilesRead {
+    std::vector<std::filesystem::path> files; ///< each once
+    std::set<std::filesystem::path> known;
+    Hash hash; ///< of their bytes, in the order in which they were read: not of their names
+
+    void add(const std::filesystem::path& file, std::string_view bytes) {
+        if (known.insert(file).second) files.push_back(file);
+        hash.add(std::to_string(bytes.size()));
+        hash.addMany(bytes.data(), bytes.size());
     }
-    return hash.value();
-}
+};
 
 ObjectReader blockOf(const ObjectReader& root, const std::string& name, const Meaning& meaning) {
     const auto block = root.object(name, meaning);
@@ -177,7 +179,7 @@ void readIntegratorAnyway(const LoadOptions& options, const ObjectReader& root, 
 
 LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
     const std::shared_ptr<rapidjson::Document> document =
-        options.text ? parseJson(*options.text, file.string()) : parseJsonFile(file);
+        options.text ? parseJson(*options.text, file.string()) : parseJsonFile(file, options.watch);
     for (const std::string& assignment : options.overrides) applyOverride(*document, assignment);
 
     auto diagnostics = std::make_shared<Diagnostics>();
@@ -187,7 +189,9 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     scene->file = file;
     LoadContext context{*scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory,
                         options.allowOutside};
-    context.watch = options.watch;
+    FilesRead read;
+    context.watch = options.watch.telling(
+        [&read](const std::filesystem::path& resource, std::string_view bytes) { read.add(resource, bytes); });
     requirePrimitives(*document, root);
     const Blocks blocks = readScene(context, root);
     checkReach(*scene, root);
@@ -199,18 +203,10 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     warnAboutMedia(context, root, blocks.camera);
     warnAboutLightsOnSurfaces(context);
     warnAboutBlindDetectors(context, blocks.camera);
-    std::vector<std::filesystem::path> inputs = context.resources;
-    const uint64_t text = hashText(*document);
+    std::vector<std::filesystem::path> inputs = std::move(read.files);
     if (!options.text) inputs.insert(inputs.begin(), file);
-    return {scene,
-            blocks.renderer,
-            blocks.integratorType,
-            blocks.integrator,
-            diagnostics,
-            std::move(inputs),
-            hashScene(text, context.resources),
-            text,
-            textOf(*document)};
+    return {scene,       blocks.renderer,   blocks.integratorType,        blocks.integrator,
+            diagnostics, std::move(inputs), hashOf(*document, read.hash), textOf(*document)};
 }
 
 RendererSettings peekRenderer(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

@@ -55,10 +55,10 @@ struct LoadedScene {
     ObjectReader integratorSettings; ///< the integrator block, for its plugin; warns about fields nobody reads
     std::shared_ptr<Diagnostics> diagnostics;
     std::vector<std::filesystem::path> inputs; ///< every file that was read, the scene's own first
-    uint64_t hash =
-        0; ///< of the scene without its renderer block, overrides included, with the sizes and times of resources
-    uint64_t textHash = 0; ///< the same without resources
-    std::string text;      ///< of the scene, overrides included: JSON in one line
+    /// Of the scene without its renderer block, overrides included, and of the contents of all files that it names and
+    /// that these name (buffers of glTF files); where they lie does not matter.
+    uint64_t hash = 0;
+    std::string text; ///< of the scene, overrides included: JSON in one line
 };
 
 /// The renderer block alone, with overrides; defaults where the file or the block cannot be read.

@@ -72,24 +72,32 @@ const stbi_io_callbacks& streamCallbacks() {
     return callbacks;
 }
 
+std::string whyStbFailed() {
+    return stbi_failure_reason() ? stbi_failure_reason() : "corrupt";
+}
+
+InputError notReadable(const std::filesystem::path& file) {
+    return {file.string(),
+            "not a readable image: " + whyStbFailed() + "; accepted: png, jpg, tga, bmp, gif, psd, hdr, pfm and exr"};
+}
+
 void loadThroughStb(std::string_view bytes, const std::filesystem::path& file, Bitmap& bitmap) {
     const auto fail = [&](const std::string& why) -> InputError {
         return {file.string(), "not a readable image: " + why};
     };
-    const auto reason = [] { return std::string(stbi_failure_reason() ? stbi_failure_reason() : "corrupt"); };
     const stbi_io_callbacks& callbacks = streamCallbacks();
     if (isPng(bytes)) requireSanePngChunks(bytes, file);
     if (isJpeg(bytes)) requireSaneJpegTables(bytes, file);
     ByteStream header{bytes};
     if (!stbi_info_from_callbacks(&callbacks, &header, &bitmap.width, &bitmap.height, &bitmap.channels))
-        throw fail(reason() + "; accepted: png, jpg, tga, bmp, gif, psd, hdr, pfm and exr");
+        throw notReadable(file);
     requirePlausibleSize(bitmap.width, bitmap.height, bytes, file);
     if (isRadiance(bytes)) requireSaneRadianceRuns(bytes, bitmap.width, bitmap.height, file);
     const size_t texels = size_t(bitmap.width) * size_t(bitmap.height);
     ByteStream probe{bytes}, stream{bytes};
     int width = 0, height = 0, channels = 0;
     const auto requireComplete = [&](const void* pixels) {
-        if (!pixels) throw fail(reason());
+        if (!pixels) throw fail(whyStbFailed());
         if (stream.ranOut || width != bitmap.width || height != bitmap.height) throw fail("truncated");
     };
     if (stbi_is_hdr_from_callbacks(&callbacks, &probe)) {
@@ -134,18 +142,42 @@ void fillPlaceholder(Bitmap& bitmap) {
     bitmap.ldr = {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255};
 }
 
+bool isPlaceholder(std::string_view bytes) {
+    return bytes.starts_with("version https://git-lfs.github.com/spec/");
+}
+
+bool isPfm(std::string_view bytes) {
+    return bytes.starts_with("PF\n") || bytes.starts_with("Pf\n") || bytes.starts_with("PF\r") ||
+           bytes.starts_with("Pf\r");
+}
+
+bool isExr(std::string_view bytes) {
+    return bytes.starts_with("\x76\x2f\x31\x01");
+}
+
+/// By its start; images of the other types tell their sizes there, too.
+void requireImage(const std::filesystem::path& file, std::string_view start, uint64_t size) {
+    constexpr uint64_t LargestImage = uint64_t(1) << 31; // of the most texels that are read, four floats each
+    if (size > LargestImage) throw InputError(file.string(), "larger than 2 GiB: more than the largest image has");
+    if (isPlaceholder(start) || isPfm(start) || isExr(start) || isPng(start) || isJpeg(start) || isRadiance(start))
+        return;
+    ByteStream header{start};
+    int width = 0, height = 0, channels = 0;
+    if (!stbi_info_from_callbacks(&streamCallbacks(), &header, &width, &height, &channels)) throw notReadable(file);
+}
+
 } // namespace
 
-std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file) {
-    const std::vector<char> content = readFileBytes(file);
+std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file, const LoadWatch& watch) {
+    const std::vector<char> content =
+        readFileBytes(file, watch, [&](std::string_view start, uint64_t size) { requireImage(file, start, size); });
     const std::string_view bytes(content.data(), content.size());
     auto bitmap = std::make_shared<Bitmap>();
-    if (bytes.starts_with("version https://git-lfs.github.com/spec/")) {
+    if (isPlaceholder(bytes)) {
         fillPlaceholder(*bitmap);
-    } else if (bytes.starts_with("PF\n") || bytes.starts_with("Pf\n") || bytes.starts_with("PF\r") ||
-               bytes.starts_with("Pf\r")) {
+    } else if (isPfm(bytes)) {
         copyImage(readPfm(file), *bitmap);
-    } else if (bytes.starts_with("\x76\x2f\x31\x01")) {
+    } else if (isExr(bytes)) {
         requirePlausibleExr(bytes, file);
         copyImage(readExr(file), *bitmap);
     } else {

@@ -2,6 +2,7 @@
 // Textures: constant, checker, bitmap. A texture is fetched as a colour (albedo, emission) or as a scalar (roughness,
 // ratio, alpha).
 
+#include "tungsten/core/LoadWatch.h"
 #include "tungsten/core/Types.h"
 
 #include <cstdint>
@@ -43,7 +44,7 @@ class Bitmap {
 /// Reads png, jpg, tga, bmp, gif, psd, hdr (stb), pfm, exr, told apart by their content. Throws InputError for a
 /// missing, corrupt or truncated file, or one whose size is absurd. Infinite HDR values become the largest half float,
 /// NaN becomes 0.
-std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file);
+std::shared_ptr<Bitmap> loadBitmap(const std::filesystem::path& file, const LoadWatch& watch = {});
 
 // Models answer what Texture asks, before its factor.
 
