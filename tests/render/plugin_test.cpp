@@ -9,6 +9,7 @@
 
 #include <cstdlib>
 
+#include <dlfcn.h>
 #include <sys/stat.h>
 
 namespace tungsten {
@@ -133,6 +134,26 @@ TEST(Plugin, DirectoriesComeFromTheVariableAndTheExecutable) {
     EXPECT_EQ(directories[1], "/second");
     EXPECT_EQ(directories[2], fs::read_symlink("/proc/self/exe").parent_path());
     EXPECT_EQ(directories[3].filename(), "tungsten");
+}
+
+/// A library whose file is gone does not know where it lay.
+TEST(Plugin, NoneIsSoughtInTheCurrentFolder) {
+    using Directories = std::vector<fs::path> (*)();
+    const test::TemporaryFolder folder;
+    const fs::path copy = folder.path() / "libhost.so";
+    fs::copy_file(test::binaryFolder() / "libtungsten.so", copy);
+    void* const library = dlopen(copy.c_str(), RTLD_NOW | RTLD_LOCAL);
+    ASSERT_NE(library, nullptr) << dlerror();
+    const auto directories = reinterpret_cast<Directories>(dlsym(library, "_ZN8tungsten17pluginDirectoriesB5cxx11Ev"));
+    ASSERT_NE(directories, nullptr) << dlerror();
+    const auto holds = [](const std::vector<fs::path>& all, const fs::path& one) {
+        return std::find(all.begin(), all.end(), one) != all.end();
+    };
+    EXPECT_TRUE(holds(directories(), fs::canonical(folder.path())));
+    fs::remove(copy);
+    for (const fs::path& directory : directories()) EXPECT_TRUE(directory.is_absolute()) << directory;
+    EXPECT_TRUE(holds(directories(), test::binaryFolder())) << "the executable's";
+    dlclose(library);
 }
 
 } // namespace

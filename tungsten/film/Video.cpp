@@ -25,12 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty: none.
+/// Empty: none. Programs of the current folder, which may be a scene's, are not run.
 fs::path ffmpegOnPath() {
     const char* const path = std::getenv("PATH");
     std::istringstream folders(path ? path : "");
     for (std::string folder; std::getline(folders, folder, ':');) {
-        const fs::path program = fs::path(folder.empty() ? "." : folder) / "ffmpeg";
+        const fs::path program = fs::path(folder) / "ffmpeg";
+        if (!program.is_absolute()) continue;
         std::error_code error;
         if (fs::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0) return program;
     }

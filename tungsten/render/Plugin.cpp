@@ -66,7 +66,7 @@ void loadPlugin(const std::filesystem::path& file, IntegratorRegistry& registry)
     descriptor->registerIntegrators(registry);
 }
 
-/// The file of the library that this is in, which may have been loaded by any program.
+/// The file of the library that this is in, which may have been loaded by any program; empty if the file is gone.
 std::filesystem::path hostLibrary() {
     Dl_info information{};
     std::error_code error;
@@ -111,13 +111,15 @@ std::vector<std::filesystem::path> pluginDirectories() {
         }
     }
     const auto add = [&](const std::filesystem::path& directory) {
-        if (std::find(directories.begin(), directories.end(), directory) == directories.end())
+        if (directory.is_absolute() &&
+            std::find(directories.begin(), directories.end(), directory) == directories.end())
             directories.push_back(directory);
     };
     std::error_code error;
     const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe", error);
     if (!error) add(executable.parent_path());
     const std::filesystem::path library = hostLibrary();
+    if (library.empty()) return directories;
     add(library.parent_path());
     add(library.parent_path() / "tungsten");
     return directories;
