@@ -1,5 +1,6 @@
 #include "tungsten/app/Merge.h"
 
+#include "tungsten/app/OptionValues.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/ImageIo.h"
@@ -51,6 +52,7 @@ bool parse(int argc, const char* const* argv, MergeOptions& options) {
         app.exit(error, std::cout, std::cerr);
         return false;
     }
+    requireNoEmptyValues(app);
     if (!options.exposure.empty()) {
         options.outputs.exposure = ExposureChoice::read(options.exposure);
         if (!options.outputs.exposure)

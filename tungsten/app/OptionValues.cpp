@@ -3,18 +3,28 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/scene/Duration.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 namespace tungsten {
 
+void requireNoEmptyValues(const CLI::App& app) {
+    for (const CLI::Option* const option : app.get_options()) {
+        if (option->get_items_expected_min() == 0) continue;
+        for (const std::string& value : option->results())
+            if (value.empty()) throw UsageError(option->get_name() + ": is empty; give it a value or leave it out");
+    }
+}
+
 double durationOption(const std::string& option, const std::string& text) {
     const auto seconds = parseDuration(text);
-    if (!seconds)
+    if (!seconds || !(*seconds > 0.0))
         throw UsageError(option + " " + text +
-                         ": expected a duration such as 90s, 5m, \"1h 30m\"; no unit means minutes");
-    return std::max(*seconds, 0.0);
+                         ": expected a duration above 0 such as 90s, 5m, \"1h 30m\"; no unit means minutes");
+    return *seconds;
 }
 
 std::string resolutionOverride(const std::string& text) {

@@ -6,9 +6,17 @@
 #include <cstdint>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace tungsten {
 
-/// Seconds, of "90s", "5m", "1h 30m" or minutes.
+/// Throws UsageError for an option that was given an empty text, such as that of a variable that is not set; flags and
+/// options that may go without a value have none.
+void requireNoEmptyValues(const CLI::App& app);
+
+/// Seconds, above 0, of "90s", "5m", "1h 30m" or minutes.
 double durationOption(const std::string& option, const std::string& text);
 /// "WxH" as a scene override.
 std::string resolutionOverride(const std::string& text);

@@ -242,6 +242,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
                  "tungsten"};
     declareOptions(app, options, text);
     if (!parse(app, argc, argv)) return std::nullopt;
+    requireNoEmptyValues(app);
     understand(text, options);
     requireNothingElse(options);
     options.command = commandText(argc, argv);

@@ -237,7 +237,8 @@ double ObjectReader::durationSeconds(const std::string& name, double fallback, c
     const Node* node = find(name);
     if (!node) return fallback;
     if (valueOf(node).IsString())
-        if (const auto seconds = parseDuration(valueOf(node).GetString())) return std::max(*seconds, 0.0);
+        if (const auto seconds = parseDuration(valueOf(node).GetString()))
+            return std::max(*seconds, 0.0); // "-1" is the format's own for none
     problem(name, "expected a quoted duration such as \"1h 30m\", \"45s\" or \"10\" (minutes), found " +
                       found(valueOf(node)));
     return fallback;
