@@ -33,10 +33,7 @@ void requireOutputsOfTheirOwn(const Options& options) {
         const std::filesystem::path& scene = options.scenes[i];
         for (const auto& file : filesOf(scene, options)) {
             if (file.empty()) continue;
-            std::error_code ignored; // what names cannot be is said before the scene is rendered
-            const auto folder =
-                std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path(), ignored);
-            const auto [writer, added] = writers.emplace(folder / file.filename(), i);
+            const auto [writer, added] = writers.emplace(identityOf(file), i);
             if (!added && writer->second != i)
                 throw UsageError(scene.string() + " would write " + file.string() + ", as " +
                                  options.scenes[writer->second].string() +

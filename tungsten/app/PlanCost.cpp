@@ -172,7 +172,7 @@ bool planCost(const std::filesystem::path& file, const Options& options, const P
               const std::atomic<bool>& interrupted) {
     const LoadedScene loaded = loadScene(file, loadOptions(options, {}));
     const std::filesystem::path report = options.outputs.placed(options.outputs.statistics.value_or(""));
-    if (!report.empty()) checkWritable(report);
+    if (!report.empty()) checkWritable(report, std::nullopt);
     std::vector<Method> methods = methodsFor(loaded);
     try {
         const double seconds = options.timeoutSeconds.value_or(DefaultSeconds) / double(methods.size());

@@ -2,14 +2,17 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/SystemError.h"
+#include "tungsten/film/Destination.h"
 
 #include <cerrno>
 #include <ctime>
 #include <ext/stdio_filebuf.h>
+#include <iostream>
 #include <random>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -43,6 +46,48 @@ std::string randomName() {
     return name;
 }
 
+/// Closes what it holds.
+struct Descriptor {
+    explicit Descriptor(int opened) : number(opened) {}
+    ~Descriptor() {
+        if (number >= 0) ::close(number);
+    }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+
+    int number;
+};
+
+void fillFile(int descriptor, const fs::path& destination, const std::function<void(std::ostream&)>& write) {
+    const int copy = ::dup(descriptor); // the buffer closes its own
+    if (copy < 0) throw cannotWrite(destination, systemError(errno));
+    __gnu_cxx::stdio_filebuf<char> buffer(copy, std::ios::in | std::ios::out | std::ios::binary);
+    std::ostream out(&buffer);
+    errno = 0;
+    write(out);
+    out.flush();
+    const int reason = errno;
+    if (!out || !buffer.close())
+        throw cannotWrite(destination, reason ? systemError(reason) : "the disk is full, or there is a quota");
+}
+
+/// To what this process has open, behind what has been printed there; all of it, once it is whole, as it may be a pipe.
+void writeToDescriptor(int descriptor, const fs::path& destination, const std::function<void(std::ostream&)>& write) {
+    const Descriptor whole(::memfd_create("tungsten", MFD_CLOEXEC));
+    if (whole.number < 0) throw cannotWrite(destination, systemError(errno));
+    fillFile(whole.number, destination, write);
+    std::cout.flush();
+    std::fflush(stdout);
+    char part[1 << 16];
+    ::lseek(whole.number, 0, SEEK_SET);
+    for (ssize_t count = 0; (count = ::read(whole.number, part, sizeof part)) > 0;)
+        for (ssize_t at = 0; at < count;) {
+            const ssize_t written = ::write(descriptor, part + at, size_t(count - at));
+            if (written < 0 && errno != EINTR) throw cannotWrite(destination, systemError(errno));
+            at += std::max<ssize_t>(written, 0);
+        }
+}
+
 /// The temporary file; whoever holds its lock is still writing. Removed unless it has been renamed.
 class TemporaryFile {
   public:
@@ -61,18 +106,7 @@ class TemporaryFile {
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-    void fill(const std::function<void(std::ostream&)>& write) const {
-        const int copy = ::dup(descriptor_); // the buffer closes its own
-        if (copy < 0) throw cannotWrite(destination_, systemError(errno));
-        __gnu_cxx::stdio_filebuf<char> buffer(copy, std::ios::in | std::ios::out | std::ios::binary);
-        std::ostream out(&buffer);
-        errno = 0;
-        write(out);
-        out.flush();
-        const int reason = errno;
-        if (!out || !buffer.close())
-            throw cannotWrite(destination_, reason ? systemError(reason) : "the disk is full, or there is a quota");
-    }
+    void fill(const std::function<void(std::ostream&)>& write) const { fillFile(descriptor_, destination_, write); }
     void rename() {
         // A full disk may be noticed no sooner than here.
         if (::fsync(descriptor_) != 0 && errno != EINVAL) throw cannotWrite(destination_, systemError(errno));
@@ -97,6 +131,12 @@ fs::path folderOf(const fs::path& file) {
 }
 
 void requireReplaceable(const fs::path& file) {
+    if (const auto descriptor = descriptorNamed(file)) {
+        const int flags = ::fcntl(*descriptor, F_GETFL);
+        if (flags < 0) throw cannotWrite(file, systemError(errno));
+        if ((flags & O_ACCMODE) == O_RDONLY) throw cannotWrite(file, "it is open for reading alone");
+        return;
+    }
     std::error_code error;
     const auto status = fs::status(file, error);
     if (fs::is_directory(status)) throw cannotWrite(file, "a folder has this name; choose another with -d, -o or -e");
@@ -115,7 +155,8 @@ bool takesFiles(const fs::path& folder) {
 
 void writeAtomically(const fs::path& destination, const std::function<void(std::ostream&)>& write) {
     requireReplaceable(destination);
-    TemporaryFile temporary(destination);
+    if (const auto descriptor = descriptorNamed(destination)) return writeToDescriptor(*descriptor, destination, write);
+    TemporaryFile temporary(destinationOf(destination));
     temporary.fill(write);
     temporary.rename();
 }

@@ -17,8 +17,9 @@ void requireReplaceable(const std::filesystem::path& file);
 bool takesFiles(const std::filesystem::path& folder);
 
 /// `write` fills a temporary file in the destination's folder, created for this alone under a random name. What it
-/// wrote is checked, brought to the disk and renamed to the destination. On any failure, a full disk among them, the
-/// destination stays as it was, nothing is left behind, and InputError names it. Streams can be sought.
+/// wrote is checked, brought to the disk and renamed to the destination; links lead there (destinationOf), and open
+/// files are written to. On any failure, a full disk among them, the destination stays as it was, nothing is left
+/// behind, and InputError names it. Streams can be sought.
 void writeAtomically(const std::filesystem::path& destination, const std::function<void(std::ostream&)>& write);
 
 /// Removes temporary files in the folder whose writers are gone (killed while writing).

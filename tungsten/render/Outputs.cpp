@@ -3,6 +3,7 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/InsideFolder.h"
 #include "tungsten/film/AtomicFile.h"
+#include "tungsten/film/Destination.h"
 #include "tungsten/film/Video.h"
 #include "tungsten/render/PlannedImages.h"
 #include "tungsten/render/Trace.h"
@@ -36,13 +37,6 @@ void checkExtension(const fs::path& file, const std::vector<std::string>& accept
     if (file.empty() || std::find(accepted.begin(), accepted.end(), extensionOf(file)) != accepted.end()) return;
     throw InputError(file.string(),
                      "unknown image type '" + file.extension().string() + "'; accepted: " + listOf(accepted));
-}
-
-/// Names a file whatever links lead to it; it need not exist.
-fs::path identityOf(const fs::path& file) {
-    std::error_code error;
-    const fs::path folder = fs::weakly_canonical(fs::absolute(file).parent_path(), error);
-    return folder / file.filename();
 }
 
 /// All files of a render.
@@ -89,6 +83,15 @@ void requireInside(const fs::path& file, const fs::path& top, Problem place) {
     throw InputError({place});
 }
 
+/// Links in the folder that a scene writes to may be the scene's.
+void requireNoWayOut(const fs::path& file, const std::optional<fs::path>& within) {
+    if (!within) return;
+    const fs::path end = destinationOf(file), top = within->empty() ? fs::path(".") : *within;
+    if (end != file && isInside(folderOf(file), top) && !isInside(end, top))
+        throw InputError(file.string(), "a link that leads out of the output folder '" + top.string() + "', to " +
+                                            end.string() + "; if you trust it, --allow-outside lets it be written to");
+}
+
 /// Before any folder is made.
 void requireOwnNames(const std::vector<fs::path>& files, const OutputPlan& plan) {
     std::set<fs::path> inputs, taken;
@@ -116,6 +119,17 @@ void requireFewFrames(const fs::path& file, int frames) {
 
 } // namespace
 
+fs::path identityOf(const fs::path& file) {
+    std::error_code error;
+    fs::path end = file;
+    try {
+        end = destinationOf(file);
+    } catch (const InputError&) { // told when the file is checked
+    }
+    const fs::path folder = fs::weakly_canonical(fs::absolute(end).parent_path(), error);
+    return folder / end.filename();
+}
+
 fs::path OutputFiles::partialState(uint32_t first, uint32_t end) const {
     const std::string name = ldr.stem().string() + "_passes_" + std::to_string(first) + "-" + std::to_string(end);
     return ldr.parent_path() / (name + ".state");
@@ -133,6 +147,7 @@ OutputFiles resolveOutputs(const RendererSettings& renderer, const fs::path& sce
         return file;
     };
     OutputFiles outputs;
+    if (!overrides.allowOutside) outputs.within = top;
     outputs.ldr = overrides.ldr ? overrides.placed(*overrides.ldr) : rebase(renderer.outputFile, "output_file");
     outputs.hdr = overrides.hdr ? overrides.placed(*overrides.hdr) : rebase(renderer.hdrOutputFile, "hdr_output_file");
     if (overrides.statistics) outputs.statistics = overrides.placed(*overrides.statistics);
@@ -163,7 +178,10 @@ void makeFolderOf(const fs::path& file) {
     if (!fs::is_directory(folder, error)) throw noFilesIn(folder, file);
 }
 
-void checkWritable(const fs::path& file) {
+void checkWritable(const fs::path& named, const std::optional<fs::path>& within) {
+    requireNoWayOut(named, within);
+    if (descriptorNamed(named)) return requireReplaceable(named);
+    const fs::path file = destinationOf(named);
     makeFolderOf(file);
     if (!takesFiles(folderOf(file))) throw noFilesIn(folderOf(file), file);
     checkName(file);
@@ -193,9 +211,10 @@ void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
     const std::vector<fs::path> files = plannedFiles(outputs, plan);
     requireOwnNames(files, plan);
     std::set<fs::path> folders;
-    for (const fs::path& file : files) {
-        if (folders.insert(folderOf(file)).second)
-            checkWritable(file);
+    for (const fs::path& named : files) {
+        const fs::path file = destinationOf(named);
+        if (named != file || folders.insert(folderOf(file)).second)
+            checkWritable(named, outputs.within);
         else
             checkName(file);
     }

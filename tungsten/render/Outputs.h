@@ -23,7 +23,8 @@ struct OutputFiles {
     std::filesystem::path sheet{};    ///< PNG of all frames; empty: none
     std::filesystem::path video{};    ///< .mp4 or .gif; empty: none
     bool frames = true;               ///< each as an 8-bit image, beside `ldr`
-    std::optional<ExposureChoice> exposure{}; ///< of 8-bit images; none: automatic where there is a gate, else 0
+    std::optional<ExposureChoice> exposure{};      ///< of 8-bit images; none: automatic where there is a gate, else 0
+    std::optional<std::filesystem::path> within{}; ///< the folder that links in it must not lead out of; none: any may
 
     /// Of --passes A:B, named after the main image: NAME_passes_A-B.state.
     [[nodiscard]] std::filesystem::path partialState(uint32_t first, uint32_t end) const;
@@ -67,8 +68,12 @@ void makeFolderOf(const std::filesystem::path& file);
 /// Before the extension of a checkpoint's images.
 inline constexpr const char* CheckpointSuffix = "_checkpoint";
 
-/// Creates missing folders; throws InputError where a file of this name could not be written.
-void checkWritable(const std::filesystem::path& file);
+/// Creates missing folders; throws InputError where a file of this name could not be written, or is a link in the
+/// folder `within` that leads out of it.
+void checkWritable(const std::filesystem::path& file, const std::optional<std::filesystem::path>& within);
+
+/// Names a file whatever links lead to it; it need not exist.
+std::filesystem::path identityOf(const std::filesystem::path& file);
 
 /// An average over `frames` frames as the scene's outputs want it: as it is, or as their integral.
 Image inOutputUnits(Image average, const Scene& scene, int frames);

@@ -63,7 +63,7 @@ class Session {
     void begin(const EffectPlan& plan) {
         const Scene& scene = *loaded_.scene;
         if (options_.passes)
-            checkWritable(partialState());
+            checkWritable(partialState(), outputs_.within);
         else if (shared_.speaks())
             checkOutputs(outputs_, {scene.transport.gate.frames, options_.resumeEnabled,
                                     options_.checkpointSeconds > 0.0, loaded_.inputs, options_.trace});
