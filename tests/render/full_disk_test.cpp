@@ -106,6 +106,22 @@ TEST_F(FullDisk, AnArrayThatFailsKeepsItsMetadata) {
     EXPECT_EQ(contentOf(out() / "box.npy.json"), before);
 }
 
+/// Unless it is ignored, the signal ends whoever writes.
+TEST_F(FullDisk, TheSignalOfTooLargeFilesEndsNothing) {
+    const FileSizeLimit limit(40000); // enough for statistics, not for 64 x 64 pixels of four floats and more
+    std::signal(SIGXFSZ, SIG_DFL);
+    const CommandResult result = render({"-e", "box.npz", "--resolution", "64x64", "-c", "1h", "--stats",
+                                         (out() / "stats.json").string(), "--html", (out() / "box.html").string()});
+    EXPECT_EQ(result.exitCode, BadInput) << result.all();
+    for (const char* const name : {"box.npz", "boxState.dat", "box.html"})
+        EXPECT_NE(result.err.find(std::string(name) + ": cannot be written: File too large"), std::string::npos)
+            << result.err;
+    EXPECT_EQ(filesOf(out()), (std::vector<std::string>{"box.png", "stats.json"})) << "those that fit, and no others";
+    const std::string list =
+        (test::binaryFolder() / "tungsten").string() + " --describe > " + (folder() / "list").string() + " 2>/dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(list.c_str())), BadInput);
+}
+
 /// Where in the file the disk is full makes no difference.
 TEST_F(FullDisk, ImagesAreWholeWhereverTheyAreCut) {
     const TemporaryFolder folder;

@@ -29,6 +29,10 @@ Loading::~Loading() {
     atLoading = false;
 }
 
+void letTooLargeFilesFail() {
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
 void handleSignals(const Team* team) {
     if (team) std::signal(SIGUSR1, onInterrupt);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})

@@ -19,6 +19,9 @@ class Loading {
     Loading& operator=(const Loading&) = delete;
 };
 
+/// From now on writing fails where a file would exceed the limit of sizes (ulimit -f), as on a full disk.
+void letTooLargeFilesFail();
+
 /// Signals that ask for an end are handled, but those that whoever started the command has set aside (nohup). A reader
 /// of our messages that goes away is no reason to lose a render. SIGUSR1 is what mpirun hands on without killing.
 void handleSignals(const Team* team);

@@ -141,6 +141,7 @@ int withWholeOutput(int code) {
 int main(int argc, char** argv) {
     using namespace tungsten;
     keepFreedMemory();
+    letTooLargeFilesFail();
     std::unique_ptr<Team> team;
     try {
         team = joinTeam();

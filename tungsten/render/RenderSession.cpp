@@ -54,7 +54,10 @@ class Session {
         if (options_.passes) return prepared ? renderPartially() : void();
         if (prepared) renderPasses();
         shared_.gatherStatistics();
-        if (result_.film.passes() > 0 && shared_.speaks()) files_.finish();
+    }
+    /// Images and state, where there are any. Throws InputError of everything that could not be written.
+    void writeImages() {
+        if (!options_.passes) files_.finish();
     }
     [[nodiscard]] const Trace& trace() const { return trace_; }
 
@@ -284,17 +287,28 @@ void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectP
     Session session(loaded, integrator, outputs, options, result);
     session.run(plan);
     if (result.film.passes() == 0 || (options.team && options.team->rank() > 0)) return;
-    if (!outputs.statistics.empty()) {
-        makeFolderOf(outputs.statistics);
-        writeTextFile(outputs.statistics, statisticsJson(loaded, options, result));
-        result.written.push_back(outputs.statistics);
-    }
-    if (!outputs.page.empty()) {
-        makeFolderOf(outputs.page);
-        writeFilmPage(outputs.page, loaded, options, result);
-        result.written.push_back(outputs.page);
-    }
-    session.trace().requireWritten(); // now that everything else is
+    std::vector<Problem> problems; // of one output: the others are written all the same
+    const auto attempt = [&](const auto& write) {
+        try {
+            write();
+        } catch (const InputError& error) {
+            problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+        }
+    };
+    const auto attemptFile = [&](const std::filesystem::path& file, const auto& write) {
+        if (file.empty()) return;
+        attempt([&] {
+            makeFolderOf(file);
+            write();
+            result.written.push_back(file);
+        });
+    };
+    attempt([&] { session.writeImages(); });
+    attemptFile(outputs.statistics,
+                [&] { writeTextFile(outputs.statistics, statisticsJson(loaded, options, result)); });
+    attemptFile(outputs.page, [&] { writeFilmPage(outputs.page, loaded, options, result); });
+    attempt([&] { session.trace().requireWritten(); });
+    if (!problems.empty()) throw InputError(problems);
 }
 
 } // namespace tungsten
