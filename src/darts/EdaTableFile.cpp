@@ -1,10 +1,14 @@
 #include "darts/EdaTableFile.h"
 
-#include <atomic>
+#include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <random>
 #include <type_traits>
+#include <utility>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace darts {
@@ -54,19 +58,57 @@ std::uint64_t checksum(Header header, std::span<const std::uint8_t> octaves, std
                 hash(octaves.data(), octaves.size_bytes(), hash(&header, sizeof header)));
 }
 
-/// loadEdaTable() with the header that is expected.
-std::optional<EdaTable> read(const fs::path& file, const Header& expected, const EdaResolution& resolution,
+/// An open file, closed at its end.
+class OpenFile {
+  public:
+    explicit OpenFile(int descriptor = -1) : descriptor_(descriptor) {}
+    ~OpenFile() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    OpenFile(OpenFile&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    OpenFile& operator=(OpenFile&&) = delete;
+
+    [[nodiscard]] bool isOpen() const { return descriptor_ >= 0; }
+    /// Zeroes for what is not known.
+    [[nodiscard]] struct stat status() const {
+        struct stat status {};
+        ::fstat(descriptor_, &status);
+        return status;
+    }
+    /// False unless all of it was read, or written.
+    [[nodiscard]] bool read(void* bytes, size_t count) const {
+        return whole(count, [&](size_t at) { return ::read(descriptor_, static_cast<char*>(bytes) + at, count - at); });
+    }
+    [[nodiscard]] bool write(const void* bytes, size_t count) const {
+        return whole(count,
+                     [&](size_t at) { return ::write(descriptor_, static_cast<const char*>(bytes) + at, count - at); });
+    }
+
+  private:
+    template <typename Transfer>
+    static bool whole(size_t count, const Transfer& transfer) {
+        for (size_t at = 0; at < count;) {
+            const ssize_t some = transfer(at);
+            if (some == 0 || (some < 0 && errno != EINTR)) return false;
+            at += some > 0 ? size_t(some) : 0;
+        }
+        return true;
+    }
+
+    int descriptor_;
+};
+
+/// loadEdaTable() with the header that is expected, of a file that has been opened.
+std::optional<EdaTable> read(const OpenFile& file, const Header& expected, const EdaResolution& resolution,
                              std::string& reason) {
     const auto unfit = [&](const char* why) {
         reason = why;
         return std::nullopt;
     };
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(file, error);
-    std::ifstream stream(file, std::ios::binary);
+    const auto size = std::uint64_t(file.status().st_size);
     Header header;
-    if (error || !stream) return unfit("cannot be read");
-    if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return unfit("is truncated");
+    if (!file.isOpen()) return unfit("cannot be read");
+    if (!file.read(&header, sizeof header)) return unfit("is truncated");
     if (header.magic != Magic) return unfit("is not an EDA table");
     if (header.version != Version) return unfit("is of another version");
     Header comparable = header;
@@ -81,38 +123,50 @@ std::optional<EdaTable> read(const fs::path& file, const Header& expected, const
     if (size > sizeof header + contents) return unfit("is damaged");
     std::vector<std::uint8_t> octaves(header.rows);
     std::vector<float> cumulative(header.floats);
-    stream.read(reinterpret_cast<char*>(octaves.data()), std::streamsize(octaves.size()));
-    stream.read(reinterpret_cast<char*>(cumulative.data()), std::streamsize(cumulative.size() * sizeof(float)));
-    if (!stream) return unfit("cannot be read");
+    if (!file.read(octaves.data(), octaves.size()) || !file.read(cumulative.data(), cumulative.size() * sizeof(float)))
+        return unfit("cannot be read");
     if (checksum(header, octaves, cumulative) != header.checksum) return unfit("is damaged");
     auto table = EdaTable::restore(expected.albedo, expected.g, resolution, std::move(octaves), std::move(cumulative));
     if (!table) return unfit("is damaged");
     return table;
 }
 
-/// Beside the file, so that the rename stays on one file system; not shared with other threads or processes.
-fs::path temporaryBeside(const fs::path& file) {
-    static std::atomic<unsigned> count{0};
-    fs::path temporary = file;
-    temporary += ".tmp" + std::to_string(::getpid()) + "." + std::to_string(count++);
-    return temporary;
+/// The file of a cache, if nobody else can have put another in its place: links are not followed, and it must be this
+/// user's or root's. Otherwise `reason` says what it is; empty where there is none.
+OpenFile openTrusted(const fs::path& file, std::string& reason) {
+    OpenFile opened(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (!opened.isOpen()) {
+        reason = errno == ENOENT ? "" : errno == ELOOP ? "is a link" : "cannot be read";
+        return opened;
+    }
+    const struct stat status = opened.status();
+    const bool regular = S_ISREG(status.st_mode), own = status.st_uid == ::geteuid() || status.st_uid == 0;
+    if (regular && own) return opened;
+    reason = regular ? "belongs to another user" : "is not a file";
+    return OpenFile();
+}
+
+/// Beside the file, so that the rename stays on one file system, and new, under a name that nobody can foresee.
+std::pair<OpenFile, fs::path> temporaryBeside(const fs::path& file) {
+    for (;;) {
+        std::random_device random;
+        char suffix[32];
+        std::snprintf(suffix, sizeof suffix, ".tmp%08x%08x", random(), random());
+        fs::path temporary = file;
+        temporary += suffix;
+        OpenFile opened(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+        if (opened.isOpen() || errno != EEXIST) return {std::move(opened), std::move(temporary)};
+    }
 }
 
 bool write(const fs::path& file, const EdaTable& table, Header header) {
     header.floats = std::uint32_t(table.cumulative().size());
     header.checksum = checksum(header, table.octaves(), table.cumulative());
-    const fs::path temporary = temporaryBeside(file);
-    bool complete = false;
-    {
-        std::ofstream stream(temporary, std::ios::binary);
-        stream.write(reinterpret_cast<const char*>(&header), sizeof header);
-        stream.write(reinterpret_cast<const char*>(table.octaves().data()),
-                     std::streamsize(table.octaves().size_bytes()));
-        stream.write(reinterpret_cast<const char*>(table.cumulative().data()),
-                     std::streamsize(table.cumulative().size_bytes()));
-        stream.close();
-        complete = bool(stream);
-    }
+    const auto [opened, temporary] = temporaryBeside(file);
+    if (!opened.isOpen()) return false;
+    const bool complete = opened.write(&header, sizeof header) &&
+                          opened.write(table.octaves().data(), table.octaves().size_bytes()) &&
+                          opened.write(table.cumulative().data(), table.cumulative().size_bytes());
     std::error_code error, ignored;
     if (complete) fs::rename(temporary, file, error);
     if (complete && !error) return true;
@@ -125,24 +179,24 @@ bool write(const fs::path& file, const EdaTable& table, Header header) {
 std::optional<EdaTable> loadEdaTable(const fs::path& file, float albedo, float g, const EdaResolution& resolution,
                                      std::string& reason) {
     EdaTable::requireValid(albedo, g, resolution);
-    return read(file, headerOf(albedo, g, resolution), resolution, reason);
+    return read(OpenFile(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)), headerOf(albedo, g, resolution),
+                resolution, reason);
 }
 
 CachedEdaTable loadOrBuildEdaTable(const fs::path& file, float albedo, float g, const EdaResolution& resolution,
                                    unsigned threads) {
     EdaTable::requireValid(albedo, g, resolution);
     const Header header = headerOf(albedo, g, resolution);
-    std::error_code error;
-    const fs::file_type type = fs::status(file, error).type();
     std::string reason;
-    if (type == fs::file_type::regular) {
-        if (auto table = read(file, header, resolution, reason)) return {std::move(*table), false, {}};
-    } else if (type != fs::file_type::not_found) {
-        reason = error ? "cannot be read" : "is not a file";
+    // Nothing but a file of this user's is ever renamed over: not a link, not a folder, not a device.
+    bool mayWrite = false;
+    {
+        const OpenFile cached = openTrusted(file, reason);
+        mayWrite = cached.isOpen() || reason.empty();
+        if (cached.isOpen())
+            if (auto table = read(cached, header, resolution, reason)) return {std::move(*table), false, {}};
     }
     CachedEdaTable result{EdaTable::build(albedo, g, resolution, threads), true, {}};
-    // Nothing but a file is ever renamed over: not a folder, not a device.
-    const bool mayWrite = type == fs::file_type::regular || type == fs::file_type::not_found;
     const bool written = mayWrite && write(file, result.table, header);
     if (reason.empty() && written) return result;
     result.warning = "EDA table cache " + file.string() + " ";

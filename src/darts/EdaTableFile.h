@@ -22,8 +22,9 @@ struct CachedEdaTable {
 
 /// The table of this albedo, g and resolution: read from `file` if that holds it, otherwise built and written there, by
 /// way of a temporary file and rename. The outcome is the same either way: a file that is damaged, of another version
-/// or of other parameters is replaced, and one that cannot be written is done without; both are told in the warning.
-/// Throws only as EdaTable::build.
+/// or of other parameters is replaced, one that cannot be written is done without, and a link or another user's file
+/// (but root's) is neither read nor touched; each is told in the warning. The temporary file is made anew, beside
+/// `file`, under a random name. Throws only as EdaTable::build.
 [[nodiscard]] CachedEdaTable loadOrBuildEdaTable(const std::filesystem::path& file, float albedo, float g,
                                                  const EdaResolution& resolution = {}, unsigned threads = 0);
 

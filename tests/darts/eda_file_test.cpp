@@ -144,6 +144,46 @@ TEST_F(EdaTableFile, PlacesThatCannotBeWrittenAreOnlyAWarning) {
     EXPECT_THROW((void)loadOrBuildEdaTable(nowhere, 2.0f, 0.2f), std::invalid_argument);
 }
 
+TEST_F(EdaTableFile, LinksAreNeitherReadNorWrittenThrough) {
+    (void)load();
+    const fs::path other = folder_.path() / "other.eda";
+    fs::rename(file(), other);
+    const auto expectLeft = [&](const fs::path& target) {
+        fs::remove(file());
+        fs::create_symlink(target, file());
+        const CachedEdaTable table = load();
+        EXPECT_TRUE(table.built && table.table == good_);
+        EXPECT_NE(table.warning.find("is a link"), std::string::npos) << table.warning;
+        EXPECT_EQ(fs::read_symlink(file()), target);
+    };
+    expectLeft(other);
+    expectLeft(folder_.path() / "missing.eda");
+    EXPECT_FALSE(fs::exists(folder_.path() / "missing.eda"));
+}
+
+TEST_F(EdaTableFile, AnotherUsersFileIsNotTrusted) {
+    if (::geteuid() != 0) GTEST_SKIP() << "files are given away by root alone";
+    (void)load();
+    const std::string whole = contents();
+    ASSERT_EQ(::chown(file().c_str(), 12345, 12345), 0);
+    const CachedEdaTable table = load();
+    EXPECT_TRUE(table.built && table.table == good_);
+    EXPECT_NE(table.warning.find("belongs to another user"), std::string::npos) << table.warning;
+    EXPECT_EQ(contents(), whole);
+}
+
+/// Names that can be foreseen could be links to what the user may overwrite.
+TEST_F(EdaTableFile, TheTemporaryNameIsNotForeseen) {
+    const fs::path victim = folder_.path() / "victim";
+    std::ofstream(victim) << "precious";
+    for (int i = 0; i < 200; ++i)
+        fs::create_symlink(victim, file().string() + ".tmp" + std::to_string(::getpid()) + "." + std::to_string(i));
+    EXPECT_EQ(load().warning, "");
+    std::stringstream left;
+    left << std::ifstream(victim).rdbuf();
+    EXPECT_EQ(left.str(), "precious");
+}
+
 /// While it lives, files of this process end after so many bytes, as on a full disk.
 class ShortFiles {
   public:
