@@ -52,6 +52,46 @@ class Render(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "film.channels.*luminance"):
             darts_tungsten.render(SCENE, set={"film": {"channels": "luminence"}}, passes=1)
 
+    def test_numbers_of_numpy_and_paths_in_scenes(self):
+        plain = darts_tungsten.render(SCENE, passes=1, threads=1)
+        scene = json.loads(json.dumps(SCENE))
+        scene["integrator"].update(max_bounces=np.int64(8), start_time=np.float32(3), transient_time_width=np.float64(0.5),
+                                   frame_num=np.uint8(4), enable_rr=np.bool_(False))
+        scene["camera"]["resolution"] = np.array([12, 8])
+        scene["camera"]["fov"] = np.array(scene["camera"]["fov"])
+        rendered = darts_tungsten.render(scene, passes=np.int32(1), threads=np.int64(1), seconds=np.float32(100))
+        plainly = darts_tungsten.render(SCENE, set={"integrator.enable_rr": False}, passes=1, threads=1)
+        np.testing.assert_array_equal(rendered.mean, plainly.mean)
+        self.assertEqual(plain.mean.shape, rendered.mean.shape)
+        moved = darts_tungsten.render(SCENE, set={"camera.resolution": np.array([6, 4]), "integrator.frame_num": np.int8(2)}, passes=1)
+        self.assertEqual(moved.mean.shape, (2, 4, 6, 3))
+        with self.assertRaisesRegex(ValueError, "max_bounces"):
+            darts_tungsten.render(SCENE, set={"integrator.max_bounces": np.float32("nan")}, passes=1)
+        with self.assertRaisesRegex(ValueError, "nowhere.obj"):
+            darts_tungsten.plan({**SCENE, "primitives": [{"type": "mesh", "file": Path("nowhere.obj")}]}, folder=self.folder)
+
+    def test_arguments_of_other_types(self):
+        for arguments, expected in (((None,), "scene: expected a dict or the name of a file, found NoneType"),
+                                    ((3,), "scene: expected a dict or the name of a file, found int"),
+                                    (([SCENE],), "found list"), (({**SCENE, "media": {1, 2}},), "a value of type set"),
+                                    (({**SCENE, "media": [3j]},), "a value of type complex")):
+            for function in (darts_tungsten.render, darts_tungsten.plan):
+                with self.assertRaisesRegex(TypeError, expected):
+                    function(*arguments)
+        for named, expected in (({"set": {3: 4}}, "set: expected names as keys, found int"), ({"progress": "yes"}, "progress: expected"),
+                                ({"set": None}, ""), ({"seconds": "1"}, ""), ({"passes": 1.5}, ""), ({"folder": 3}, "")):
+            with self.assertRaisesRegex(TypeError, expected):
+                darts_tungsten.render(SCENE, **named)
+        for named in ({"seconds": 0}, {"seconds": np.nan}, {"seconds": -1}, {"passes": 0}, {"passes": 1 << 62}, {"samples": 1 << 62},
+                      {"samples": -1}, {"target_error": np.nan}, {"target_error": 0}, {"threads": 0}):
+            with self.assertRaisesRegex(ValueError, next(iter(named))):
+                darts_tungsten.render(SCENE, **named)
+
+    def test_results_are_made_by_renders_alone(self):
+        for make in (darts_tungsten.Result, lambda: darts_tungsten.Result.__new__(darts_tungsten.Result)):
+            with self.assertRaises(TypeError):
+                make()
+
     def command(self, *options):
         subprocess.run([TUNGSTEN, "--quiet", "-d", self.folder, "-e", "film.npz", *options, self.file], check=True)
         return np.load(self.folder / "film.npz")

@@ -119,6 +119,95 @@ class Sampling(unittest.TestCase):
             with self.assertRaises(ValueError):
                 bad()
 
+    def test_arguments_out_of_range(self):
+        """Each argument of everything: NaN is a ValueError that names it; so is what is out of range, or it is a number's limit. What
+        indexes a table with them ends the process instead."""
+        inf = np.inf
+        response, table = sampling.TemporalResponse.box(0, 1), sampling.EdaTable(0.9, 0.3)
+        calls = {  # good arguments, and those of them that may be infinite
+            "diffusion_log": (sampling.diffusion_log, {"rho": 1, "s": 2, "sigma_a": 0.1, "sigma_s": 0.9, "g": 0.5}, ""),
+            "causal_log": (sampling.causal_log, {"rho": 1, "s": 2, "sigma_a": 0.1, "sigma_s": 0.9}, ""),
+            "first_leg": (sampling.first_leg, {"C": 2, "delta": 0.5, "h": 1}, ""),
+            "second_leg": (sampling.second_leg, {"C": 2, "delta": 0.5, "h": 1}, ""),
+            "connection_length_sample": (sampling.connection_length_sample,
+                                         {"u": 0.5, "low": 1, "width": 1, "sigma_t": 1, "needle": 0}, "width"),
+            "connection_length_pdf": (sampling.connection_length_pdf,
+                                      {"offset": 0.5, "low": 1, "width": 1, "sigma_t": 1, "needle": 0}, "width"),
+            "control_vertex_pdf": (sampling.control_vertex_pdf, {"C": 2, "delta": 0.5, "h": 1, "length_pdf": 1}, ""),
+            "path_lobe_sample": (sampling.path_lobe_sample, {"u": 0.5, "C": 2, "delta": 0.5}, ""),
+            "path_lobe_pdf": (sampling.path_lobe_pdf, {"h": 0.5, "C": 2, "delta": 0.5}, ""),
+            "photon_lobe_sample": (sampling.photon_lobe_sample, {"u": 0.5, "C": 2, "delta": 0.5}, ""),
+            "photon_lobe_pdf": (sampling.photon_lobe_pdf, {"h": 0.5, "C": 2, "delta": 0.5}, ""),
+            "eda_log_density": (sampling.eda_log_density, {"albedo": 0.9, "g": 0.3, "C": 2, "delta": 0.5, "h": 1}, ""),
+            "EdaTable": (sampling.EdaTable, {"albedo": 0.9, "g": 0.3}, ""),
+            "EdaTable.sample": (table.sample, {"C": 2, "delta": 0.5, "sigma_t": 1, "u": 0.5}, ""),
+            "EdaTable.pdf": (table.pdf, {"C": 2, "delta": 0.5, "sigma_t": 1, "h": 0.5}, ""),
+            "box": (sampling.TemporalResponse.box, {"begin": 0, "end": 1}, ""),
+            "gaussian": (sampling.TemporalResponse.gaussian, {"center": 0, "sigma": 1}, ""),
+            "pdf": (response.pdf, {"time": 0.5}, "time"),
+            "distribution": (response.distribution, {"time": 0.5}, "time"),
+            "quantile": (response.quantile, {"u": 0.5}, ""),
+            "first_passage_log": (sampling.first_passage_log,
+                                  {"depth": 1, "longest": 5, "gate": 0.5, "sigma_a": 0.1, "reduced_sigma_s": 1, "thickness": 2,
+                                   "relative_index": 1.3, "allowance": 1}, "thickness")}
+        random = np.full((3, 4), 0.5, np.float32)
+        for preset in ("best", "published"):
+            for mode in ("path", "photon"):
+                medium = {"preset": preset, "mode": mode, "sigma_a": 0.1, "sigma_s": 0.9, "g": 0.3}
+                distances, guide = sampling.DistanceSampler(**medium), sampling.Guide(**medium)
+                calls.update({
+                    f"DistanceSampler {preset} {mode}": (sampling.DistanceSampler, medium, ""),
+                    f"Guide {preset} {mode}": (sampling.Guide, medium, ""),
+                    f"DistanceSampler.sample {preset} {mode}": (distances.sample, {
+                        "C": 2, "low": 5, "high": 5.1, "h": 1, "random": random, "surface": 3}, "surface"),
+                    f"Guide.sample {preset} {mode}": (guide.sample, {
+                        "C": 2, "low": 5, "high": 5.1, "count": 9, "before": 1, "surface": 3}, "surface"),
+                    f"vertex_pdf {preset} {mode}": (guide.vertex_pdf, {"C": 2, "low": 5, "high": 5.1, "h": 1, "distance": 1}, ""),
+                    f"log_usefulness {preset} {mode}": (guide.log_usefulness, {"C": 2, "low": 5, "high": 5.1, "throughput": 1}, "")})
+                for wrong in (np.nan, inf, -inf, 1e30, -1, 1, 1.5):
+                    for at in ((0, 0), (1, 1), (2, 2), (2, 3)):
+                        numbers = random.copy()
+                        numbers[at] = wrong
+                        with self.assertRaisesRegex(ValueError, "random: expected random numbers from 0 to below 1"):
+                            distances.sample(2, 5, 5.1, 1, numbers)
+        for name, (call, good, infinite) in calls.items():
+            call(**good)
+            for argument, value in good.items():
+                if not isinstance(value, (int, float)) or argument == "count":
+                    continue
+                with self.assertRaisesRegex(ValueError, argument, msg=f"{name}: {argument}"):
+                    call(**{**good, argument: np.nan})
+                # Tables, which constructors make, take half a second each.
+                for wrong in (inf, -inf, 1e30, -1e30, -2) + (() if name[0] in "DEG" and "." not in name else (-1, 0, 1e15, 1e-30, 1e-300)):
+                    try:
+                        call(**{**good, argument: wrong})
+                    except ValueError:
+                        continue
+                    self.assertTrue(argument in infinite or abs(wrong) <= 1e15, f"{name}: {argument} = {wrong} is taken")
+        for name in ("C", "low", "high", "h", "random", "surface"):
+            with self.assertRaises(TypeError):
+                sampling.DistanceSampler("best", "path", 0.1, 0.9).sample(**{**{"C": 2, "low": 5, "high": 5.1, "h": 1, "random": random,
+                                                                               "surface": 3}, name: "much"})
+        for times, values in (([0, np.nan], [1, 1]), ([0, 1], [1, np.inf]), ([0], [1]), ([1, 0], [1, 1]), ([], [])):
+            with self.assertRaises(ValueError):
+                sampling.TemporalResponse.tabulated(times, values)
+
+    def test_random_numbers_out_of_range_of_vectors(self):
+        table = sampling.EdaTable(0.9, 0.3)
+        for call in (lambda u: sampling.path_lobe_sample(u, 2.0, 0.5), lambda u: sampling.photon_lobe_sample(u, 2.0, 0.5),
+                     lambda u: sampling.connection_length_sample(u, 1, 1, 1), lambda u: table.sample(2.0, 0.5, 1.0, u)):
+            self.assertEqual(call(np.array([0.0, 0.5])).shape, (2,))
+            for wrong in (np.nan, np.inf, 1e30, -0.1, 1.0):
+                with self.assertRaisesRegex(ValueError, "u: expected random numbers"):
+                    call(np.array([0.5, wrong, 0.5]))
+
+    def test_nothing_is_made_without_its_constructor(self):
+        for kind in (sampling.DistanceSampler, sampling.Guide, sampling.EdaTable, sampling.TemporalResponse):
+            with self.assertRaises(TypeError):
+                kind.__new__(kind)
+        self.assertEqual(sampling.EdaTable.__new__(sampling.EdaTable, 0.9, 0.3).sample(2, 0.5, 1, 0.5),
+                         sampling.EdaTable(0.9, 0.3).sample(2, 0.5, 1, 0.5))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -29,8 +29,23 @@ const Plugins& plugins() {
     return loaded;
 }
 
+std::string typeOf(const py::handle& value) {
+    return py::type::handle_of(value).attr("__name__").cast<std::string>();
+}
+
+/// What JSON does not know as a scene means it: arrays and numbers of numpy as lists and numbers, paths as their names.
+py::object plain(const py::object& value) {
+    if (py::hasattr(value, "tolist")) return value.attr("tolist")();
+    if (py::hasattr(value, "__fspath__")) return value.attr("__fspath__")();
+    throw py::type_error("scene: a value of type " + typeOf(value) +
+                         " has no place in a scene; accepted: dict, list, tuple, str, numbers, bool, None, numpy's "
+                         "arrays and numbers, and paths");
+}
+
 std::string jsonOf(const py::handle& value) {
-    return py::module_::import("json").attr("dumps")(value).cast<std::string>();
+    return py::module_::import("json")
+        .attr("dumps")(value, py::arg("default") = py::cpp_function(plain))
+        .cast<std::string>();
 }
 
 void warn(const Problem& problem) {
@@ -53,12 +68,17 @@ Job loadJob(const std::filesystem::path& file, LoadOptions options, const Plugin
 /// A scene as a dict, or the name of a file; `set` as --set takes it.
 Job jobOf(const py::object& scene, const py::dict& set, const Folder& folder, bool allowOutside) {
     LoadOptions options{folder.value_or(""), {}, allowOutside};
-    for (const auto& [path, value] : set) options.overrides.push_back(path.cast<std::string>() + "=" + jsonOf(value));
+    for (const auto& [path, value] : set) {
+        if (!py::isinstance<py::str>(path)) throw py::type_error("set: expected names as keys, found " + typeOf(path));
+        options.overrides.push_back(path.cast<std::string>() + "=" + jsonOf(value));
+    }
     std::filesystem::path file = "scene";
     if (py::isinstance<py::dict>(scene))
         options.text = jsonOf(scene);
-    else
+    else if (py::isinstance<py::str>(scene) || py::isinstance<py::bytes>(scene) || py::hasattr(scene, "__fspath__"))
         file = scene.cast<std::filesystem::path>();
+    else
+        throw py::type_error("scene: expected a dict or the name of a file, found " + typeOf(scene));
     for (const Problem& problem : plugins().problems) warn(problem);
     Job job = loadJob(file, options, plugins());
     for (const Problem& problem : job.loaded.diagnostics->warnings) warn(problem);
@@ -77,8 +97,13 @@ SessionOptions sessionOptions(const RendererSettings& renderer, const Limits& li
         if (!positive) throw UsageError(std::string(name) + ": expected a number above 0");
     };
     require(limits.seconds.value_or(1.0) > 0.0, "seconds");
-    require(limits.passes.value_or(1) > 0, "passes");
-    require(limits.samples.value_or(1) > 0, "samples");
+    constexpr int64_t Most = 1000000000000; // as --spp
+    const auto requireCount = [](const std::optional<int64_t>& count, int64_t most, const char* name) {
+        if (count && (*count < 1 || *count > most))
+            throw UsageError(std::string(name) + ": expected a number from 1 to " + std::to_string(most));
+    };
+    requireCount(limits.passes, Most / renderer.sppStep, "passes");
+    requireCount(limits.samples, Most, "samples");
     require(limits.targetError.value_or(1.0) > 0.0, "target_error");
     if (limits.passes && limits.samples) throw UsageError("passes, samples: say one of them");
     SessionOptions options;
@@ -112,6 +137,8 @@ void listen(const SessionResult& session, const SessionOptions& options, const p
 Result render(const py::object& scene, const py::dict& set, const Limits& limits, uint64_t seed,
               std::optional<int> threads, const py::object& progress, const Folder& folder, bool allowOutside) {
     if (threads && (*threads < 1 || *threads > 1024)) throw UsageError("threads: expected a number from 1 to 1024");
+    if (!progress.is_none() && !py::isinstance<py::bool_>(progress) && !PyCallable_Check(progress.ptr()))
+        throw py::type_error("progress: expected a bool or a function, found " + typeOf(progress));
     const Job job = jobOf(scene, set, folder, allowOutside);
     SessionOptions options = sessionOptions(job.loaded.renderer, limits);
     std::atomic<bool> interrupted{false};

@@ -99,8 +99,11 @@ py::object Result::batchMeans(const py::object& self) {
 
 void declareResult(py::module_& module) {
     const auto property = [](auto get) { return py::cpp_function(get); };
-    py::class_<Result>(module, "Result", "What a render left; docs/results.md says what the arrays are.")
-        .def_property_readonly("mean", property(&Result::mean), "(frames, height, width, channels), a read-only view")
+    py::class_<Result> result(module, "Result", "What a render left; docs/results.md says what the arrays are.");
+    // Methods of one that holds nothing would read what is not there.
+    result.attr("__new__") = py::cpp_function(
+        [](const py::args&, const py::kwargs&) -> py::object { throw py::type_error("Result: render() makes it"); });
+    result.def_property_readonly("mean", property(&Result::mean), "(frames, height, width, channels), a read-only view")
         .def_property_readonly("standard_error", property(&Result::standardError),
                                "of mean, a read-only view; NaN while there is but one pass")
         .def_property_readonly("batch_means", property(&Result::batchMeans),

@@ -2,6 +2,8 @@
 
 #include "darts/python/Guides.h"
 
+#include "darts/python/Checks.h"
+
 #include "darts/FirstPassage.h"
 #include "darts/Guide.h"
 
@@ -12,11 +14,10 @@ namespace darts::python {
 namespace py = pybind11;
 using namespace py::literals;
 
-namespace {
-
 darts::Medium mediumOf(float sigmaA, float sigmaS, float g) {
-    if (!(sigmaA >= 0.0f && sigmaS >= 0.0f && std::abs(g) < 1.0f))
-        throw py::value_error("expected coefficients of at least 0, and g between -1 and 1");
+    notNegative(sigmaA, "sigma_a");
+    notNegative(sigmaS, "sigma_s");
+    if (!(std::abs(g) < 1.0f)) throw py::value_error("g: expected a number between -1 and 1, without them");
     return {{sigmaA, sigmaA, sigmaA}, {sigmaS, sigmaS, sigmaS}, g};
 }
 
@@ -27,6 +28,14 @@ darts::Settings presetOf(const std::string& preset, const std::string& mode, flo
     if (preset == "published") return darts::published(kind);
     throw py::value_error("preset: expected 'best' or 'published'");
 }
+
+darts::Residual residualOf(float C, double low, double high) {
+    notNegative(C, "C");
+    if (!(finite(high, "high") > finite(low, "low"))) throw py::value_error("low, high: expected high > low");
+    return darts::Residual::of({0.0f, 0.0f, C}, {low, high});
+}
+
+namespace {
 
 /// Arrays of one length, under their names.
 class Columns {
@@ -53,10 +62,12 @@ class GuideOfMedium {
     /// One vertex's step, `count` times.
     [[nodiscard]] py::dict sample(float C, double low, double high, py::ssize_t count, uint64_t seed, float before,
                                   float surface) const {
-        if (!(C > 0.0f && high > low && before >= 0.0f && before <= 2.0f && count >= 0))
-            throw py::value_error(
-                "expected C > 0, high > low, before = 1 - cos from 0 to 2, and a count of at least 0");
-        const darts::Residual residual = darts::Residual::of({0.0f, 0.0f, C}, {low, high});
+        if (!(C > 0.0f)) throw py::value_error("C: expected a number above 0");
+        if (count < 0) throw py::value_error("count: expected at least 0");
+        cosine(before, "before");
+        length(surface, "surface");
+        const darts::Residual residual = residualOf(C, low, high);
+        if (!residual.alive()) throw py::value_error("high: expected more than C, as no connection is shorter");
         const darts::HenyeyGreenstein phase{{std::sqrt(before * (2.0f - before)), 0.0f, 1.0f - before},
                                             guide_.medium().g};
         Columns columns(count);
@@ -90,10 +101,15 @@ class GuideOfMedium {
     }
 
     [[nodiscard]] float vertexPdf(float C, double low, double high, float h, float distance) const {
-        return guide_.pdfControlVertex(darts::Residual::of({0.0f, 0.0f, C}, {low, high}), h, distance);
+        const darts::Residual residual = residualOf(C, low, high);
+        cosine(h);
+        notNegative(distance, "distance");
+        return residual.alive() ? guide_.pdfControlVertex(residual, h, distance) : 0.0f;
     }
     [[nodiscard]] float logUsefulness(float C, double low, double high, float throughput) const {
-        return guide_.logUsefulness(darts::Residual::of({0.0f, 0.0f, C}, {low, high}), throughput);
+        const darts::Residual residual = residualOf(C, low, high);
+        notNegative(throughput, "throughput");
+        return residual.alive() ? guide_.logUsefulness(residual, throughput) : -std::numeric_limits<float>::infinity();
     }
 
   private:
@@ -104,6 +120,14 @@ class GuideOfMedium {
 double firstPassageLog(double depth, double longest, double gate, double sigmaA, double reducedS, double thickness,
                        double relativeIndex, double allowance) {
     constexpr double Height = 1.0;
+    notNegative(depth, "depth");
+    finite(longest, "longest");
+    notNegative(gate, "gate");
+    notNegative(sigmaA, "sigma_a");
+    notNegative(reducedS, "reduced_sigma_s");
+    length(thickness, "thickness");
+    within(relativeIndex, "relative_index", 1e-3, 1e3);
+    notNegative(allowance, "allowance");
     darts::Residual residual =
         darts::Residual::of({0.0f, 0.0f, float(depth + Height)}, {Height + longest - gate, Height + longest});
     residual.way = darts::Way::Out;
@@ -119,8 +143,10 @@ double firstPassageLog(double depth, double longest, double gate, double sigmaA,
 } // namespace
 
 void declareGuides(py::module_& sampling) {
-    py::class_<GuideOfMedium>(sampling, "Guide",
-                              "What a guided walk draws at a vertex, for a target at distance C, in a grey medium.")
+    py::class_<GuideOfMedium> guide(
+        sampling, "Guide", "What a guided walk draws at a vertex, for a target at distance C, in a grey medium.");
+    makeWhole(guide);
+    guide
         .def(py::init<const std::string&, const std::string&, float, float, float>(), "preset"_a, "mode"_a, "sigma_a"_a,
              "sigma_s"_a, "g"_a = 0.0f)
         .def(
