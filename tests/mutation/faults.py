@@ -667,7 +667,7 @@ FAULTS = [
      [("render_tests", "Robustness.OutputsReplaceNothingButOutputs")]),  # an output replaces a file that the scene reads
     ("tungsten/render/PlannedImages.cpp", "if (!suffix.empty()) return images;", ";",
      [("render_tests", "Outputs.CheckpointsAreOfTheMainImagesOnly")]),  # checkpoints overwrite further outputs
-    ("tungsten/render/Memory.cpp", "return kibibytes * 1024.0;", "return kibibytes;",
+    ("tungsten/core/AvailableMemory.cpp", "return kibibytes * 1024.0;", "return kibibytes;",
      [("render_tests", "Memory.AvailableIsWhatTheSystemSaysInBytes")]),  # renders are refused for lack of memory
     ("tungsten/render/TeamFilm.cpp", "told_ = film_.nonFiniteSamples();", ";",
      [("render_tests", "TeamFilm.NonFiniteSamplesAreToldOnce")]),  # MPI: non-finite samples are counted again at each gathering
@@ -710,4 +710,31 @@ FAULTS = [
      [("photon_sliced_tests", "FrameShares.LeaveNothingOut")]),  # slices that should be dark are never drawn
     ("src/photon/primitives/sliced/SliceLanes.h", "rays.lag = foot - common;", "rays.lag = foot + common;",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # slices are seen at a wrong time from where the ray does not begin
+    # long paths, contents of files, links
+    ("src/transport/StepCounters.h", "watch.pollWithin(StepsPerPoll, ++steps);", "++steps;",
+     [("photon_tests", "BreakOffLongPaths.*")]),  # time-outs wait for the ends of paths
+    ("src/path/light/LightWalk.cpp", "counters_.step(context_.watch);", ";",
+     [("photon_tests", "BreakOffLongPaths.*")]),  # those of the light tracer do
+    ("tungsten/scene/SceneLoader.cpp", "hash.addMany(bytes.data(), bytes.size());", ";",
+     [("scene_tests", "SceneContent.FilesCountByContentAlone")]),  # states know files by size alone
+    ("tungsten/geometry/GltfModel.cpp", "readFileBytes(name, own.watch);", "readFileBytes(name);",
+     [("scene_tests", "SceneContent.*")]),  # buffers of glTF files are not in the hash
+    ("tungsten/core/Hash.h", "value_ ^= value_ >> 32;", ";",
+     [("scene_tests", "SceneContent.TwoChangesDoNotCancel")]),  # two changed signs are none
+    ("tungsten/core/FileBytes.cpp", "if (check) check(", "if (false) check(",
+     [("scene_tests", "SceneContent.LargeFilesOfAnotherTypeAreNotRead")]),  # gigabytes are read before they are refused
+    ("tungsten/render/Plugin.cpp", "if (library.empty()) return directories;", "if (library.empty()) directories.emplace_back(\"tungsten\");",
+     [("render_tests", "Plugin.NoneIsSoughtInTheCurrentFolder")]),  # plugins of the current folder are run
+    ("tungsten/film/AtomicFile.cpp", "TemporaryFile temporary(destinationOf(destination));", "TemporaryFile temporary(destination);",
+     [("render_tests", "Links.TheirTargetIsReplaced")]),  # links are replaced
+    ("tungsten/film/Destination.cpp", "requireTrusted(at, file);", ";",
+     [("render_tests", "Links.OthersLinksInSharedFoldersAreNotFollowed")]),  # another user's link in /tmp leads to one's own files
+    ("tungsten/render/Outputs.cpp", "if (!within) return;", "return;",
+     [("render_tests", "Links.ASceneDoesNotLeadOutOfItsFolder")]),  # a scene's link leads anywhere
+    ("tungsten/app/Signals.cpp", "std::signal(SIGXFSZ, SIG_IGN);", ";",
+     [("render_tests", "FullDisk.TheSignalOfTooLargeFilesEndsNothing")]),  # a limit of file sizes ends the render
+    ("src/darts/EdaTableFile.cpp", "O_RDONLY | O_NOFOLLOW | O_NONBLOCK", "O_RDONLY | O_NONBLOCK",
+     [("darts_tests", "EdaTableFile.LinksAreNeitherReadNorWrittenThrough")]),  # the cache follows links
+    ("tungsten/app/OptionValues.cpp", "!(*seconds > 0.0)", "false",
+     [("render_tests", "Command.BadUsageIsExitCodeTwo")]),  # --timeout 0 is none
 ]
