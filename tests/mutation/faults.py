@@ -737,4 +737,17 @@ FAULTS = [
      [("darts_tests", "EdaTableFile.LinksAreNeitherReadNorWrittenThrough")]),  # the cache follows links
     ("tungsten/app/OptionValues.cpp", "!(*seconds > 0.0)", "false",
      [("render_tests", "Command.BadUsageIsExitCodeTwo")]),  # --timeout 0 is none
+    # faces at one place, and the pilot of costs
+    ("tungsten/geometry/CoincidentFaces.cpp", "return along ? value : -value;", "return value;",
+     [("geometry_tests", "CoincidentFaces.*")]),  # bodies are entered before others are left
+    ("tungsten/geometry/CoincidentFaces.cpp", "std::abs((corner - large.centre).dot(large.normal)) > reach", "std::abs((corner - large.centre).dot(large.normal)) > 0.0f",
+     [("geometry_tests", "CoincidentFaces.*")]),  # rounding parts faces
+    ("tungsten/geometry/SceneGeometry.cpp", "> 0.0f) takeFirst(ray, *hit);", "> 1e30f) takeFirst(ray, *hit);",
+     [("geometry_tests", "CoincidentFaces.*")]),  # the first face that Embree finds is met first
+    ("tungsten/geometry/SceneGeometry.cpp", "while (hit && met(*hit)) {", "while (false) {",
+     [("geometry_tests", "CoincidentFaces.*")]),  # faces that have been met are met again
+    ("tungsten/render/CostPilot.cpp", "s.variance() * share / (mean * mean)", "s.variance() / (mean * mean)",
+     [("render_tests", "CostPilot.LongPassesAreCutAndTakenToWholeOnes")]),  # --plan-cost: cut passes pass for whole ones
+    ("tungsten/render/CostPilot.cpp", "const double other = squared * double(i) / Powers;", "const double other = squared;",
+     [("render_tests", "CostPilot.BiasMayFallMoreSlowlyThanTheSquareOfTheWidth")]),  # --plan-cost: bias falls with the square of the width
 ]
