@@ -37,8 +37,8 @@ enum class RandomStream : uint32_t {
     Folded = 10,
     ReflectedLight = 11,
     Highlight = 12,
-    DetectorLight = 13,
-    RefractedLight = 13
+    RefractedLight = 13,
+    DetectorLight = 14
 };
 
 /// The random numbers of one path. Copying it copies the position in the stream.
