@@ -204,16 +204,23 @@ TEST(CoincidentFaces, ABodyOnAFloor) {
 }
 
 TEST(CoincidentFaces, ALampOnACeilingShines) {
-    for (const bool flipped : {false, true}) {
-        // The ceiling's normal is up or down; the lamp's down.
-        const TestScene scene({floorAt({}, {0, 1, 0}, 3.0f, flipped), floorAt({}, {0, 1, 0}, 0.5f, true)});
-        const auto seen = scene.geometry.intersect({{0.1f, 0, 0.05f}, {0, 1, 0}});
-        ASSERT_TRUE(seen);
-        EXPECT_EQ(seen->shape, 1u);
-        AreaSampler sampler(scene.shapes[1]);
-        SurfaceSample start = sampler.sample(scene.shapes[1], {0.4f, 0.3f});
-        start.face.shape = 1;
-        EXPECT_FALSE(scene.geometry.intersect(start.leave({0, -1, 0})));
+    for (const Transform& place : places()) {
+        for (const bool flipped : {false, true}) {
+            // The ceiling's normal is up or down; the lamp's down. A vast ceiling's plane is rounded far more coarsely.
+            const float size = flipped ? 3.0f : 3e4f;
+            const TestScene scene({floorAt(place, {0, 1, 0}, size, flipped), floorAt(place, {0, 1, 0}, 0.5f, true)});
+            const auto seen = scene.geometry.intersect({place.point({0.1f, 0, 0.05f}), place.y});
+            ASSERT_TRUE(seen);
+            EXPECT_EQ(seen->shape, 1u);
+            Sampler random(9, RandomStream::Test, 0, 0);
+            AreaSampler sampler(scene.shapes[1]);
+            for (int i = 0; i < 2000; ++i) {
+                SurfaceSample start = sampler.sample(scene.shapes[1], random.next2D());
+                start.face.shape = 1;
+                const Vec3f direction = (place.y * -1.0f + randomDirection(random) * 0.99f).normalized();
+                EXPECT_FALSE(scene.geometry.intersect(start.leave(direction)));
+            }
+        }
     }
 }
 

@@ -709,7 +709,7 @@ FAULTS = [
     ("src/photon/primitives/sliced/FrameShares.cpp", "Even + (1.0 - Even) *", "(1.0 - Even) *",
      [("photon_sliced_tests", "FrameShares.LeaveNothingOut")]),  # slices that should be dark are never drawn
     ("src/photon/primitives/sliced/SliceLanes.h", "rays.lag = foot - common;", "rays.lag = foot + common;",
-     [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # slices are seen at a wrong time from where the ray does not begin
+     [("photon_sliced_tests", "Cases/FarSlices.BringWhatPathsBring/Balls")]),  # slices are seen at a wrong time from where the ray does not begin
     # long paths, contents of files, links
     ("src/transport/StepCounters.h", "watch.pollWithin(StepsPerPoll, ++steps);", "watch.pollWithin(StepsPerPoll << 20, ++steps);",
      [("photon_tests", "BreakOffLongPaths.*")]),  # time-outs wait for the ends of paths

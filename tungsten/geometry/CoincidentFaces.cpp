@@ -52,7 +52,7 @@ void addFacets(const TriangleMesh& mesh, uint32_t shape, std::vector<Facet>& fac
         for (const uint32_t v : mesh.triangles[face].v) facet.corners[size_t(facet.count++)] = mesh.positions[v];
         complete(facet, unitOrUp(normal));
         facet.at = {shape, face};
-        facet.reach = Errors * roundingError(mesh, face, 1.0f, 1.0f, largestOf(facet.outline()), facet.normal);
+        facet.reach = Errors * roundingError(largestOf(facet.outline()), facet.normal);
         facets.push_back(facet);
     }
 }
@@ -97,7 +97,7 @@ bool coincide(const Facet& a, const Facet& b) {
     const float reach = std::max(a.reach, b.reach);
     for (const Vec3f& corner : small.outline())
         if (std::abs((corner - large.centre).dot(large.normal)) > reach) return false;
-    return overlap(a, b, large.normal, reach);
+    return overlap(a, b, large.normal, std::min(a.reach, b.reach));
 }
 
 /// Facets in the order of a number that is the same for two in one plane, which it is to `tolerance`.

@@ -128,17 +128,42 @@ RTCRay embreeRay(const Ray& ray) {
     return out;
 }
 
-/// The face's own normal, unit, next to `position`.
-Vec3f faceNormal(const Shape& shape, uint32_t face, const Vec3f& position) {
-    return std::visit(Overloaded{[&](const TriangleMesh& mesh) { return mesh.faceNormal(face); },
-                                 [&](const Sphere& sphere) { return (position - sphere.centre).normalized(); },
-                                 [](const Disk& disk) { return disk.frame.n; }},
-                      shape);
-}
+/// The plane of a face next to a point: its own normal, unit, how far the point is along it, and how far off a ray test
+/// may put the face.
+struct FacePlane {
+    Vec3f normal;
+    float height, error;
+
+    static FacePlane of(const Shape& shape, uint32_t face, const Vec3f& position) {
+        return std::visit(
+            Overloaded{
+                [&](const TriangleMesh& mesh) {
+                    const Vec3d n = mesh.scaledNormal(face),
+                                offset = Vec3d(position) - Vec3d(mesh.positions[mesh.triangles[face].v[0]]);
+                    const double length = std::sqrt(n.dot(n));
+                    const Vec3f normal = unitOrUp(n);
+                    return FacePlane{normal, length > 0.0 ? float(offset.dot(n) / length) : Infinity,
+                                     roundingError(mesh, face, 1.0f, 1.0f, position, normal)};
+                },
+                [&](const Sphere& sphere) {
+                    const Vec3d offset = Vec3d(position) - Vec3d(sphere.centre);
+                    const double length = std::sqrt(offset.dot(offset));
+                    const Vec3f normal = length > 0.0 ? Vec3f(offset / length) : sphere.frame.n;
+                    return FacePlane{normal, float(length - double(sphere.radius)), roundingError(position, normal)};
+                },
+                [&](const Disk& disk) {
+                    const Vec3d n(disk.frame.n);
+                    return FacePlane{disk.frame.n,
+                                     float((Vec3d(position) - Vec3d(disk.centre)).dot(n) / std::sqrt(n.dot(n))),
+                                     roundingError(position, disk.frame.n)};
+                }},
+            shape);
+    }
+};
 
 // --- faces at one place
 
-/// Looks along a normal through a point for the face there that a ray meets next.
+/// Looks along a normal through a point of a face for the face there that a ray meets next.
 struct CoincidentQuery {
     static constexpr unsigned Id = 1; ///< of its rays; those of other queries have 0
 
@@ -146,6 +171,7 @@ struct CoincidentQuery {
     const std::vector<const Shape*>* shapes;
     const CoincidentFaces* faces;
     Vec3f position, normal;
+    float reach;   ///< along the normal
     int64_t side;  ///< 1 for a ray along `normal`, -1 for one against it
     int64_t after; ///< only faces with a later order
     FaceIndex best{};
@@ -155,19 +181,23 @@ struct CoincidentQuery {
     static CoincidentQuery& of(const void* context) {
         return *const_cast<CoincidentQuery*>(static_cast<const CoincidentQuery*>(context));
     }
+    [[nodiscard]] bool isHere(const FacePlane& plane) const {
+        return std::abs(plane.height) <= reach && plane.normal.cross(normal).length2() <= CoincidentFaces::Parallel;
+    }
     void consider(const FaceIndex& at, const Vec2f& uv) {
-        const Vec3f ng = faceNormal(*(*shapes)[at.shape], at.face, position);
-        if (ng.cross(normal).length2() > CoincidentFaces::Parallel) return;
-        const int64_t order = side * faces->order(at.shape, ng.dot(normal) > 0.0f);
+        const FacePlane plane = FacePlane::of(*(*shapes)[at.shape], at.face, position);
+        if (!isHere(plane)) return;
+        const int64_t order = side * faces->order(at.shape, plane.normal.dot(normal) > 0.0f);
         if (order <= after || order >= bestOrder) return;
         best = at;
         bestOrder = order;
         barycentric = uv;
     }
-    /// Of whatever lies within `reach` of the point.
-    void ask(RTCScene scene, float reach) {
+    /// `error`: how far off ray tests may put faces.
+    void ask(RTCScene scene, float error) {
+        const float length = reach + 2.0f * error;
         RTCRayHit query{};
-        query.ray = embreeRay({position - normal * reach, normal, 0.0f, 2.0f * reach});
+        query.ray = embreeRay({position - normal * length, normal, 0.0f, 2.0f * length});
         query.ray.id = Id;
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         embree::queryAll(scene, query, context, [](const RTCFilterFunctionNArguments* arguments) {
@@ -353,8 +383,11 @@ std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
 
 void SceneGeometry::takeFirst(const Ray& ray, SurfaceHit& hit) const {
     const int64_t side = ray.direction.dot(hit.ng) > 0.0f ? 1 : -1;
-    CoincidentQuery query{{}, &shapes_, &coincident_, hit.position, hit.ng, side, std::numeric_limits<int64_t>::min()};
-    query.ask(scene_.get(), coincident_.reach(hit.index()));
+    CoincidentQuery query{{},           &shapes_,
+                          &coincident_, hit.position,
+                          hit.ng,       coincident_.reach(hit.index()),
+                          side,         std::numeric_limits<int64_t>::min()};
+    query.ask(scene_.get(), FacePlane::of(*shapes_[hit.shape], hit.face, hit.position).error);
     if (!query.best.isSet() || query.bestOrder >= side * coincident_.order(hit.shape, true)) return;
     hit.shape = query.best.shape;
     hit.face = query.best.face;
@@ -363,12 +396,13 @@ void SceneGeometry::takeFirst(const Ray& ray, SurfaceHit& hit) const {
 
 std::optional<SurfaceHit> SceneGeometry::intersectFromCoincident(Ray ray) const {
     const FaceIndex left = std::exchange(ray.leaves, FaceIndex{});
-    const Vec3f normal = faceNormal(*shapes_[left.shape], left.face, ray.origin);
-    const float reach = 2.0f * coincident_.reach(left); // from a point that may be off the face
-    const int64_t side = ray.direction.dot(normal) > 0.0f ? 1 : -1;
-    CoincidentQuery query{
-        {}, &shapes_, &coincident_, ray.origin, normal, side, side * coincident_.order(left.shape, true)};
-    query.ask(scene_.get(), reach);
+    const FacePlane plane = FacePlane::of(*shapes_[left.shape], left.face, ray.origin);
+    const int64_t side = ray.direction.dot(plane.normal) > 0.0f ? 1 : -1;
+    CoincidentQuery query{{},           &shapes_,
+                          &coincident_, ray.origin - plane.normal * plane.height,
+                          plane.normal, coincident_.reach(left),
+                          side,         side * coincident_.order(left.shape, true)};
+    query.ask(scene_.get(), plane.error);
     if (query.best.isSet()) {
         SurfaceHit next;
         next.t = 0.0f;
@@ -379,8 +413,8 @@ std::optional<SurfaceHit> SceneGeometry::intersectFromCoincident(Ray ray) const 
     }
     // What else lies at this place has been met before.
     const auto met = [&](const SurfaceHit& hit) {
-        return hit.t * std::abs(ray.direction.dot(normal)) <= reach && coincident_.reach(hit.index()) > 0.0f &&
-               hit.ng.cross(normal).length2() <= CoincidentFaces::Parallel;
+        return coincident_.reach(hit.index()) > 0.0f &&
+               query.isHere({hit.ng, (hit.position - query.position).dot(plane.normal), 0.0f});
     };
     auto hit = intersect(ray);
     while (hit && met(*hit)) {
