@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace tungsten {
 namespace {
 
@@ -68,6 +70,13 @@ TEST(Outputs, TheCommandLineWins) {
     overrides.statistics = "/else/where";
     EXPECT_EQ(resolveOutputs(settings("a.png"), "scenes/s.json", overrides).statistics, "/else/where")
         << "but not what is absolute";
+    for (const auto& [folder, name, expected] :
+         {std::array{"out", "out/a.json", "out/a.json"}, std::array{"a/b/", "./a/b/c.json", "./a/b/c.json"},
+          std::array{"out", "outer/a.json", "out/outer/a.json"}, std::array{".", "a.json", "./a.json"},
+          std::array{"a/b", "a/c.json", "a/b/a/c.json"}}) {
+        overrides.directory = folder;
+        EXPECT_EQ(overrides.placed(name), expected) << "what lies there already stays";
+    }
 }
 
 TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {

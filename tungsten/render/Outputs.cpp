@@ -130,6 +130,14 @@ fs::path identityOf(const fs::path& file) {
     return folder / end.filename();
 }
 
+fs::path OutputOverrides::placed(const fs::path& file) const {
+    if (!directory || file.empty()) return file;
+    const fs::path folder = directory->lexically_normal() / "", name = file.lexically_normal();
+    const auto parts = std::mismatch(folder.begin(), std::prev(folder.end()), name.begin(), name.end());
+    const bool isThere = folder != "./" && folder != "/" && parts.first == std::prev(folder.end());
+    return isThere ? file : *directory / file;
+}
+
 fs::path OutputFiles::partialState(uint32_t first, uint32_t end) const {
     const std::string name = ldr.stem().string() + "_passes_" + std::to_string(first) + "-" + std::to_string(end);
     return ldr.parent_path() / (name + ".state");

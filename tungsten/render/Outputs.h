@@ -37,10 +37,9 @@ struct OutputOverrides {
     bool noFrames = false;
     bool allowOutside = false; ///< a scene's names may lead out of the output folder
 
-    /// What the command line calls a file or folder: relative names are below `directory`, if there is one.
-    [[nodiscard]] std::filesystem::path placed(const std::filesystem::path& file) const {
-        return directory && !file.empty() ? *directory / file : file;
-    }
+    /// What the command line calls a file or folder: relative names are below `directory`, if there is one; those that
+    /// lie there as they are stay.
+    [[nodiscard]] std::filesystem::path placed(const std::filesystem::path& file) const;
 };
 
 /// File names of a scene: the renderer block's, resolved against its output directory, unless the command line says
