@@ -77,6 +77,13 @@ TEST(Outputs, TheCommandLineWins) {
         overrides.directory = folder;
         EXPECT_EQ(overrides.placed(name), expected) << "what lies there already stays";
     }
+    const test::TemporaryFolder folder;
+    const auto link = std::filesystem::relative(folder.path() / "link"), file = link.parent_path() / "file";
+    std::filesystem::create_symlink("target", link);
+    std::ofstream(file) << "old";
+    overrides.directory = "out";
+    EXPECT_EQ(overrides.placed(link), link);
+    EXPECT_EQ(overrides.placed(file), "out" / file);
 }
 
 TEST(Outputs, ExistingFilesAreKeptWhenTheSceneSaysSo) {

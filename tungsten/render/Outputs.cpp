@@ -132,6 +132,11 @@ fs::path identityOf(const fs::path& file) {
 
 fs::path OutputOverrides::placed(const fs::path& file) const {
     if (!directory || file.empty()) return file;
+    std::error_code error;
+    const fs::file_type type = fs::symlink_status(file, error).type();
+    const bool leads = type != fs::file_type::none && type != fs::file_type::not_found &&
+                       type != fs::file_type::regular && type != fs::file_type::directory;
+    if (leads) return file;
     const fs::path folder = directory->lexically_normal() / "", name = file.lexically_normal();
     const auto parts = std::mismatch(folder.begin(), std::prev(folder.end()), name.begin(), name.end());
     const bool isThere = folder != "./" && folder != "/" && parts.first == std::prev(folder.end());

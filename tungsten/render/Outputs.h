@@ -37,8 +37,8 @@ struct OutputOverrides {
     bool noFrames = false;
     bool allowOutside = false; ///< a scene's names may lead out of the output folder
 
-    /// What the command line calls a file or folder: relative names are below `directory`, if there is one; those that
-    /// lie there as they are stay.
+    /// What the command line calls a file or folder: relative names are below `directory`, if there is one. Those that
+    /// begin with it stay, and so do those of links, devices and pipes that are there: they say where to.
     [[nodiscard]] std::filesystem::path placed(const std::filesystem::path& file) const;
 };
 
