@@ -24,11 +24,11 @@ Vec2f spread(int i) {
 }
 
 /// The end of a straight way: a side of a surface, or the sensor, with the medium that it names there.
-struct End {
+struct WayEnd {
     int primitive = -1; ///< index; -1: the sensor
     bool inside = false;
     int medium = -1;
-    auto operator<=>(const End&) const = default;
+    auto operator<=>(const WayEnd&) const = default;
 };
 
 /// A point of a surface.
@@ -38,9 +38,9 @@ struct Place {
 };
 
 struct Way {
-    bool blocked = false;   ///< by what light does not pass, or where surfaces touch
-    std::optional<End> end; ///< none: nothing on the way says what it is in
-    Place place = {};       ///< of the end
+    bool blocked = false;      ///< by what light does not pass, or where surfaces touch
+    std::optional<WayEnd> end; ///< none: nothing on the way says what it is in
+    Place place = {};          ///< of the end
 };
 
 Place placeOn(const Sphere& sphere, int i) {
@@ -69,9 +69,9 @@ class Votes {
         ++ends_[*way.end];
     }
     /// The end most often met of those that name another medium, if that is at least the `part` of all that are met.
-    [[nodiscard]] std::optional<End> against(int medium, double part) const {
+    [[nodiscard]] std::optional<WayEnd> against(int medium, double part) const {
         int others = 0, most = 0;
-        std::optional<End> end;
+        std::optional<WayEnd> end;
         for (const auto& [met, count] : ends_) {
             if (met.medium == medium) continue;
             others += count;
@@ -83,7 +83,7 @@ class Votes {
 
   private:
     int told_ = 0;
-    std::map<End, int> ends_;
+    std::map<WayEnd, int> ends_;
 };
 
 class MediaAgreement {
@@ -147,7 +147,7 @@ class MediaAgreement {
             }
             const auto end = votes.against(medium, SurfacePart);
             if (!end) continue;
-            const End own{int(index), inside, medium};
+            const WayEnd own{int(index), inside, medium};
             if (blames(*end, medium)) {
                 tellAbout(*end, "paths from " + textOf(own), medium);
                 continue;
@@ -211,7 +211,7 @@ class MediaAgreement {
             const bool inside = ray.direction.dot(hit->ng) > 0.0f;
             if (hit->shape != own && says(primitive, inside, hit->material)) {
                 const int medium = (inside ? primitive.inside : primitive.outside).medium;
-                return {true, End{int(hit->shape), inside, medium}, {hit->position, hit->ng, hit->material}};
+                return {true, WayEnd{int(hit->shape), inside, medium}, {hit->position, hit->ng, hit->material}};
             }
             if (hit->shape != own && (scene_.bsdfOf(*hit).lobes() & lobe::Through) == 0) return {true, {}};
             ray.tMin = hit->margin().beyond(ray.direction, hit->t);
@@ -222,7 +222,7 @@ class MediaAgreement {
     [[nodiscard]] Way wayToSensor(const Emitter& emitter, int k) const {
         const SurfaceSample point = sampleEmissionPoint(emitter, spread(k));
         const Vec3f way = sensorRay(-1, k).origin - point.position;
-        const End sensor{-1, false, scene_.cameraRegion.medium};
+        const WayEnd sensor{-1, false, scene_.cameraRegion.medium};
         if (!(way.length() > 0.0f)) return {false, sensor};
         Ray ray = point.leave(way.normalized());
         ray.tMax = way.length();
@@ -241,23 +241,23 @@ class MediaAgreement {
     }
 
     /// Of two ends of a way, of which one names none: that one.
-    static bool blames(const End& end, int medium) { return end.primitive >= 0 && end.medium < 0 && medium >= 0; }
+    static bool blames(const WayEnd& end, int medium) { return end.primitive >= 0 && end.medium < 0 && medium >= 0; }
 
     [[nodiscard]] std::string nameOf(int medium) const { return "'" + scene_.media[size_t(medium)].name + "'"; }
-    [[nodiscard]] std::string textOf(const End& end) const {
+    [[nodiscard]] std::string textOf(const WayEnd& end) const {
         if (end.primitive < 0) return "the camera";
         const Primitive& primitive = scene_.primitives[size_t(end.primitive)];
         return primitive.name.empty() ? primitive.path : "'" + primitive.name + "'";
     }
     /// "'ball' has 'fog' on its inner side".
-    [[nodiscard]] std::string nameAt(const End& end) const {
+    [[nodiscard]] std::string nameAt(const WayEnd& end) const {
         const std::string named = end.medium < 0 ? "vacuum" : nameOf(end.medium);
         if (end.primitive < 0) return "the camera is in " + named;
         return textOf(end) + " has " + named + (end.inside ? " on its inner side" : " on its outer side");
     }
 
     /// Once for every side: what comes there is in another medium.
-    void tellAbout(const End& end, const std::string& what, int medium) {
+    void tellAbout(const WayEnd& end, const std::string& what, int medium) {
         if (!told_.insert({end.primitive, end.inside, -1}).second) return;
         const std::string field = end.inside ? "int_medium" : "ext_medium";
         root_.warn(
@@ -268,13 +268,13 @@ class MediaAgreement {
                 : nameAt(end) + ", while " + what + " arrive there in " + (medium < 0 ? "vacuum" : nameOf(medium)));
     }
 
-    [[nodiscard]] std::string aboutSensor(const std::string& name, const End& end, int medium) const {
+    [[nodiscard]] std::string aboutSensor(const std::string& name, const WayEnd& end, int medium) const {
         if (medium < 0)
             return name + " is in medium " + nameOf(end.medium) +
                    " but names no medium: paths from it start in vacuum, while " + nameAt(end);
         return name + " is in medium " + nameOf(medium) + ", while what it sees is not: " + nameAt(end);
     }
-    [[nodiscard]] std::string aboutEmitter(const Emitter& emitter, const End& end) const {
+    [[nodiscard]] std::string aboutEmitter(const Emitter& emitter, const WayEnd& end) const {
         if (emitter.medium >= 0)
             return "light '" + emitter.name + "' names medium " + nameOf(emitter.medium) + ", while " + nameAt(end);
         return "light '" + emitter.name + "' is in medium " + nameOf(end.medium) +
@@ -288,7 +288,7 @@ class MediaAgreement {
     std::vector<Imath::Box3f> boxes_;                        ///< of the surfaces
     std::vector<float> extents_;                             ///< diagonals of the boxes
     std::map<size_t, std::unique_ptr<SceneGeometry>> alone_; ///< single surfaces, as far as they were needed
-    std::set<End> told_;                                     ///< sides, without their media
+    std::set<WayEnd> told_;                                  ///< sides, without their media
 };
 
 } // namespace
