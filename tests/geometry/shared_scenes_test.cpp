@@ -7,12 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace tungsten {
 namespace {
 
-TEST(SharedScenes, MeshesLoadAndBuildQuickly) {
+TEST(SharedScenes, MeshesLoadAndBuild) {
     const std::filesystem::path scenes = test::sharedFolder() / "scenes";
     if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "the shared scenes are not here";
     struct Expectation {
@@ -22,7 +21,6 @@ TEST(SharedScenes, MeshesLoadAndBuildQuickly) {
     for (const auto& [folder, meshes, triangles] :
          {Expectation{"cbox/meshes", 11, 72}, Expectation{"dragon/models", 13, 87715},
           Expectation{"staircase/models", 774, 262661}}) {
-        const auto start = std::chrono::steady_clock::now();
         std::vector<Shape> shapes;
         size_t bytes = 0;
         for (const auto& entry : std::filesystem::directory_iterator(scenes / folder)) {
@@ -38,13 +36,9 @@ TEST(SharedScenes, MeshesLoadAndBuildQuickly) {
         std::vector<const Shape*> pointers;
         for (const Shape& shape : shapes) pointers.push_back(&shape);
         const SceneGeometry geometry(pointers);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         EXPECT_EQ(shapes.size(), meshes) << folder;
         EXPECT_EQ(geometry.triangleCount(), triangles) << folder;
-        EXPECT_LT(seconds, 10.0) << folder; // far above what it takes; machines differ
         EXPECT_LT(bytes, size_t(16) << 20) << folder;
-        RecordProperty(std::string("seconds_") + std::string(folder).substr(0, std::string(folder).find('/')),
-                       std::to_string(seconds));
     }
 }
 

@@ -11,7 +11,7 @@ namespace tungsten {
 namespace {
 
 /// Errors of a face's coordinates within which another is at the same place: two transforms round to both.
-constexpr float Errors = 16.0f;
+constexpr float Errors = 8.0f;
 
 /// A flat face: a triangle, or the square about a disk.
 struct Facet {
@@ -130,12 +130,14 @@ struct ByPlane {
 
     /// Whether any of [first, last) is near enough to the k-th to touch it.
     [[nodiscard]] bool anyNear(size_t k, size_t first, size_t last) const {
-        bool near = false;
+        const float *xs = x.data(), *ys = y.data(), *zs = z.data(), *rs = radius.data();
+        const float cx = xs[k], cy = ys[k], cz = zs[k], reach = rs[k];
+        int near = 0; // not bool: so that registers hold eight facets
         for (size_t j = first; j < last; ++j) {
-            const float dx = x[j] - x[k], dy = y[j] - y[k], dz = z[j] - z[k], r = radius[j] + radius[k];
-            near |= dx * dx + dy * dy + dz * dz <= r * r;
+            const float dx = xs[j] - cx, dy = ys[j] - cy, dz = zs[j] - cz, r = rs[j] + reach;
+            near |= int(dx * dx + dy * dy + dz * dz <= r * r);
         }
-        return near;
+        return near != 0;
     }
 };
 
