@@ -1,5 +1,7 @@
 #include "support/Agreement.h"
 
+#include "support/SeedShift.h"
+
 #include "support/Folders.h"
 
 #include "tungsten/render/Plugin.h"
@@ -198,7 +200,7 @@ BlockMeans renderBlocks(const AgreementScene& scene, const Method& method) {
     const int frames = fine.film().frames(), blocks = blockCount(scene.width, scene.height);
     BlockFilm values(blocks, frames), shrink(blocks, frames);
     for (uint32_t pass = 0; pass < passes; ++pass) {
-        const PassInfo info{pass, uint64_t(pass) * samples, samples, method.seed};
+        const PassInfo info{pass, uint64_t(pass) * samples, samples, method.seed + seedShift()};
         values.add(fine.render(info));
         if (method.kernel && pass % ShrinkEvery == 0) shrink.add(coarse->render(info), &fine.pass());
     }

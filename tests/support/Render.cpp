@@ -1,5 +1,7 @@
 #include "support/Render.h"
 
+#include "support/SeedShift.h"
+
 #include "tungsten/film/KernelBias.h"
 #include "tungsten/render/Integrator.h"
 #include "tungsten/render/SceneFilm.h"
@@ -29,7 +31,8 @@ std::unique_ptr<Rendered> render(const std::filesystem::path& file, const Render
     rendered->film = filmOf(*loaded.scene);
     rendered->bias = filmOf(*loaded.scene, PassWeight::Repeats);
     for (uint32_t pass = 0; pass < options.passes; ++pass) {
-        PassInfo info{pass, uint64_t(pass) * options.samplesPerPass, options.samplesPerPass, options.seed};
+        PassInfo info{pass, uint64_t(pass) * options.samplesPerPass, options.samplesPerPass,
+                      options.seed + seedShift()};
         const uint32_t standsFor = options.bias ? passesOfItsBias(pass) : 0;
         if (standsFor > 0) info.bias = &rendered->bias;
         rendered->film.beginPass();
