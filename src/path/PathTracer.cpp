@@ -127,8 +127,8 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
                     : renderPlainly<false, false>(rest, film, statistics);
 }
 
-void PathTracer::lookForLights(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
-                               Sampler sampler) const {
+void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
+                                  Sampler sampler) const {
     const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
         ++counters.intoDetectors;
         sink.add(radiance, time, emitter);
@@ -164,8 +164,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             pass.watch.pollWithin(SamplesPerPoll, s + 1);
             trace(ray, sink, counters, sampler, u);
             if (detectorLight_)
-                lookForLights(x, u, sink, pass.watch, counters,
-                              {pass.seed, RandomStream::DetectorLight, sample, pixel});
+                addDetectorLight(x, u, sink, pass.watch, counters,
+                                 {pass.seed, RandomStream::DetectorLight, sample, pixel});
         }
     };
     pass.watch.stage("camera paths", width * height);

@@ -28,8 +28,8 @@ class PathTracer : public Integrator {
 
     /// Of one sample of a pixel: what its detector gets from lights that rays do not meet, by light that nothing has
     /// scattered, or from where light of a single direction is scattered first.
-    void lookForLights(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
-                       Sampler sampler) const;
+    void addDetectorLight(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
+                          Sampler sampler) const;
 
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;

@@ -140,11 +140,10 @@ void PhotonIntegrator::look(GatherStructures& structures, const SensorRecords& r
                          pass.part(splatted + double(i) * each, splatted + double(i + 1) * each), film, statistics);
 }
 
-void PhotonIntegrator::lookForLights(const transport::Sensor& sensor, const PassInfo& pass, Film& film,
-                                     Statistics& statistics) const {
+void PhotonIntegrator::addDetectorLight(const transport::Sensor& sensor, const PassInfo& pass, Film& film,
+                                        Statistics& statistics) const {
     const StageTimer timer(statistics, "lights at detectors");
-    const uint32_t draws = pass.samples * tuning::DetectorDraws;
-    const double scale = 1.0 / (double(draws) * (sensor.gate.steadyState ? 1.0 : sensor.gate.frameWidth));
+    const double scale = 1.0 / (double(pass.samples) * (sensor.gate.steadyState ? 1.0 : sensor.gate.frameWidth));
     tbb::parallel_for(0, film.width(), [&](int column) {
         pass.watch.poll(0);
         FrameSums sums(size_t(sensor.gate.frames), Vec3d(0.0));
@@ -157,10 +156,9 @@ void PhotonIntegrator::lookForLights(const transport::Sensor& sensor, const Pass
                 sums[size_t(frame)] += Vec3d(double(part.x), double(part.y), double(part.z));
             });
         };
-        for (uint32_t i = 0; i < draws; ++i) {
-            const auto sample = uint32_t(pass.firstSample + i / tuning::DetectorDraws);
-            const uint64_t draw = uint64_t(column) * tuning::DetectorDraws + i % tuning::DetectorDraws;
-            Sampler sampler(pass.seed, RandomStream::DetectorLight, sample, draw);
+        for (uint32_t i = 0; i < pass.samples; ++i) {
+            const auto sample = uint32_t(pass.firstSample + i);
+            Sampler sampler(pass.seed, RandomStream::DetectorLight, sample, uint64_t(column));
             detectorLight_->sample(size_t(column), sampler, pass.watch, rays, put);
         }
         for (int frame = 0; frame < sensor.gate.frames; ++frame) {
@@ -186,7 +184,7 @@ void PhotonIntegrator::see(GatherStructures& structures, const PhotonMaps& maps,
         shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,
                    pass.watch.part(0.0, SharingPart));
     }
-    if (detectorLight_) lookForLights(structures.sensor, pass.part(0.0, 0.0), film, statistics);
+    if (detectorLight_) addDetectorLight(structures.sensor, pass.part(0.0, 0.0), film, statistics);
     const double begin = plan_.connections.on ? SharingPart : 0.0;
     if (!first) return look(structures, {}, pass.part(begin, 1.0), film, statistics);
     const double each = (1.0 - begin) / double(pass.samples);

@@ -51,7 +51,8 @@ class PhotonIntegrator : public Integrator {
                Statistics& statistics) const;
 
     /// What detectors get from lights that no ray meets.
-    void lookForLights(const transport::Sensor& sensor, const PassInfo& pass, Film& film, Statistics& statistics) const;
+    void addDetectorLight(const transport::Sensor& sensor, const PassInfo& pass, Film& film,
+                          Statistics& statistics) const;
 
     std::shared_ptr<const Scene> scene_;
     PhotonSettings settings_;

@@ -25,9 +25,6 @@ inline constexpr size_t SurfacePoints = 1 << 16, LeastSurfaceSamples = 2, MostSu
 /// haze 0.36 and 0.45. Bench: study bodies
 inline constexpr uint64_t CameraPaths = 1 << 14, MostCameraPaths = 6;
 
-/// Lights that a detector looks for in each sample, beside those that its rays meet: each is a ray or a few.
-inline constexpr uint32_t DetectorDraws = 16;
-
 /// Photons or beams that a folded ray meets, about, out of all. MSE x CPU of dragon at 160 x 160, before highlight
 /// paths shared them: 0.25 with all photons, 0.17 with 64, 0.20 with 32 and 16. Bench: study dragon-160
 inline constexpr double FoldedMeetings = 48.0;

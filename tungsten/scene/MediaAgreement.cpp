@@ -1,5 +1,5 @@
 // Sensors, lights and surfaces that disagree about the medium between them. What a path is in goes by what it left or
-// crossed last, so where two ends of a straight way name different media, what it is depends on the direction.
+// crossed last, so where two ends of a segment name different media, what it is depends on the direction.
 
 #include "tungsten/core/Warp.h"
 #include "tungsten/scene/LoadEmitters.h"
@@ -13,9 +13,9 @@ namespace tungsten {
 
 namespace {
 
-constexpr size_t MostLooked = 256; ///< surfaces, detectors: a warning is not worth more
-constexpr int Looks = 64;          ///< rays from each side of a surface, or from a sensor
-constexpr int EmitterLooks = 32;   ///< rays from a light, besides those to the sensor
+constexpr size_t MostChecked = 256; ///< surfaces, detectors: a warning is not worth more
+constexpr int RaysOfEach = 64;      ///< rays from each side of a surface, or from a sensor
+constexpr int EmitterRays = 32;     ///< rays from a light, besides those to the sensor
 
 /// Of a low-discrepancy sequence in the unit square.
 Vec2f spread(int i) {
@@ -23,12 +23,12 @@ Vec2f spread(int i) {
     return {float(x - std::floor(x)), float(y - std::floor(y))};
 }
 
-/// The end of a straight way: a side of a surface, or the sensor, with the medium that it names there.
-struct WayEnd {
+/// The end of a segment: a side of a surface, or the sensor, with the medium that it names there.
+struct SegmentEnd {
     int primitive = -1; ///< index; -1: the sensor
     bool inside = false;
     int medium = -1;
-    auto operator<=>(const WayEnd&) const = default;
+    auto operator<=>(const SegmentEnd&) const = default;
 };
 
 /// A point of a surface.
@@ -37,10 +37,10 @@ struct Place {
     int32_t material = 0;
 };
 
-struct Way {
-    bool blocked = false;      ///< by what light does not pass, or where surfaces touch
-    std::optional<WayEnd> end; ///< none: nothing on the way says what it is in
-    Place place = {};          ///< of the end
+struct Segment {
+    bool blocked = false;          ///< by what light does not pass, or where surfaces touch
+    std::optional<SegmentEnd> end; ///< none: nothing on the way says what it is in
+    Place place = {};              ///< of the end
 };
 
 Place placeOn(const Sphere& sphere, int i) {
@@ -54,7 +54,8 @@ Place placeOn(const Disk& disk, int i) {
 /// On triangles that are evenly spaced in the mesh's list, several times on each of a few.
 Place placeOn(const TriangleMesh& mesh, int i) {
     const size_t count = mesh.triangles.size();
-    const auto triangle = uint32_t(count < size_t(Looks) ? size_t(i) % count : size_t(i) * count / size_t(Looks));
+    const auto triangle =
+        uint32_t(count < size_t(RaysOfEach) ? size_t(i) % count : size_t(i) * count / size_t(RaysOfEach));
     const Vec2f b = warp::squareToTriangle(spread(i));
     return {mesh.pointOn(triangle, b.x, b.y), mesh.faceNormal(triangle),
             mesh.materials.empty() ? 0 : mesh.materials[triangle]};
@@ -63,15 +64,15 @@ Place placeOn(const TriangleMesh& mesh, int i) {
 /// What most ways from one place or side lead to.
 class Votes {
   public:
-    void add(const Way& way) {
+    void add(const Segment& way) {
         if (!way.end) return;
         ++told_;
         ++ends_[*way.end];
     }
     /// The end most often met of those that name another medium, if that is at least the `part` of all that are met.
-    [[nodiscard]] std::optional<WayEnd> against(int medium, double part) const {
+    [[nodiscard]] std::optional<SegmentEnd> against(int medium, double part) const {
         int others = 0, most = 0;
-        std::optional<WayEnd> end;
+        std::optional<SegmentEnd> end;
         for (const auto& [met, count] : ends_) {
             if (met.medium == medium) continue;
             others += count;
@@ -83,7 +84,7 @@ class Votes {
 
   private:
     int told_ = 0;
-    std::map<WayEnd, int> ends_;
+    std::map<SegmentEnd, int> ends_;
 };
 
 class MediaAgreement {
@@ -95,13 +96,14 @@ class MediaAgreement {
         }
     }
 
-    void lookFromSensor(const ObjectReader& camera) {
+    void checkSensor(const ObjectReader& camera) {
         const auto* detectors = scene_.camera.detectors();
-        const size_t count = detectors ? std::min(detectors->row.size(), MostLooked) : 1;
+        const size_t count = detectors ? std::min(detectors->row.size(), MostChecked) : 1;
         for (size_t i = 0; i < count; ++i) {
             Votes votes;
             const int medium = scene_.cameraRegion.medium;
-            for (int k = 0; k < Looks; ++k) cast(votes, wayAlong(sensorRay(detectors ? int(i) : -1, k)), medium);
+            for (int k = 0; k < RaysOfEach; ++k)
+                cast(votes, segmentAlong(sensorRay(detectors ? int(i) : -1, k)), medium);
             const std::string name = detectors && !detectors->row[i].name.empty()
                                          ? "detector '" + detectors->row[i].name + "'"
                                      : detectors ? "detector " + std::to_string(i)
@@ -114,14 +116,15 @@ class MediaAgreement {
         }
     }
 
-    void lookFromEmitter(size_t index) {
+    void checkEmitter(size_t index) {
         const Emitter& emitter = scene_.emitters[index];
         if (emitter.isInfinite()) return;
         Votes votes;
-        for (int k = 0; k < EmitterLooks; ++k)
-            cast(votes, wayAlong(sampleEmission(emitter, spread(k), spread(k + EmitterLooks)).ray, emitter.primitive()),
+        for (int k = 0; k < EmitterRays; ++k)
+            cast(votes,
+                 segmentAlong(sampleEmission(emitter, spread(k), spread(k + EmitterRays)).ray, emitter.primitive()),
                  emitter.medium);
-        for (int k = 0; k < 4; ++k) cast(votes, wayToSensor(emitter, k), emitter.medium);
+        for (int k = 0; k < 4; ++k) cast(votes, segmentToSensor(emitter, k), emitter.medium);
         const auto end = votes.against(emitter.medium, EmitterPart);
         if (!end) return;
         if (end->primitive >= 0 && blames(*end, emitter.medium))
@@ -130,24 +133,24 @@ class MediaAgreement {
         context_.emitters[index].warn("ext_medium", aboutEmitter(emitter, *end));
     }
 
-    void lookFromSurface(size_t index) {
+    void checkSurface(size_t index) {
         const Primitive& primitive = scene_.primitives[index];
         for (const bool inside : {false, true}) {
             const int medium = (inside ? primitive.inside : primitive.outside).medium;
             Votes votes;
-            for (int k = 0; k < Looks; ++k) {
+            for (int k = 0; k < RaysOfEach; ++k) {
                 const Place place = std::visit([&](const auto& shape) { return placeOn(shape, k); }, primitive.shape);
                 if (!says(primitive, inside, place.material)) continue;
                 const Vec3f side = inside ? -place.normal : place.normal;
-                const Vec3f direction = Frame(side).toWorld(warp::squareToCosineHemisphere(spread(k + Looks)));
-                Way way = wayAlong({place.position + side * (StartPart * extents_[index]), direction});
+                const Vec3f direction = Frame(side).toWorld(warp::squareToCosineHemisphere(spread(k + RaysOfEach)));
+                Segment way = segmentAlong({place.position + side * (StartPart * extents_[index]), direction});
                 if (way.end && way.end->primitive == int(index)) way.end->medium = medium; // its own holes
                 if (way.end && way.end->medium != medium && touches(place, index)) continue;
                 cast(votes, way, medium);
             }
             const auto end = votes.against(medium, SurfacePart);
             if (!end) continue;
-            const WayEnd own{int(index), inside, medium};
+            const SegmentEnd own{int(index), inside, medium};
             if (blames(*end, medium)) {
                 tellAbout(*end, "paths from " + textOf(own), medium);
                 continue;
@@ -157,7 +160,7 @@ class MediaAgreement {
         }
     }
 
-    [[nodiscard]] bool worthLooking(size_t index) const {
+    [[nodiscard]] bool isWorthChecking(size_t index) const {
         return scene_.primitives[index].boundsMedium && extents_[index] > 0.0f;
     }
 
@@ -196,13 +199,13 @@ class MediaAgreement {
     }
 
     /// What contradicts `medium` counts only where the names tell what is crossed.
-    void cast(Votes& votes, const Way& way, int medium) {
+    void cast(Votes& votes, const Segment& way, int medium) {
         const bool contradicts = way.end && way.end->medium != medium && way.end->primitive >= 0;
         if (!contradicts || !touches(way.place, size_t(way.end->primitive))) votes.add(way);
     }
 
     /// To the first side that says what the ray is in there, through what light passes; as if `own` were not there.
-    [[nodiscard]] Way wayAlong(Ray ray, std::optional<uint32_t> own = {}) const {
+    [[nodiscard]] Segment segmentAlong(Ray ray, std::optional<uint32_t> own = {}) const {
         constexpr int MostCrossed = 64;
         for (int k = 0; k < MostCrossed; ++k) {
             const auto hit = scene_.geometry->intersect(ray);
@@ -211,7 +214,7 @@ class MediaAgreement {
             const bool inside = ray.direction.dot(hit->ng) > 0.0f;
             if (hit->shape != own && says(primitive, inside, hit->material)) {
                 const int medium = (inside ? primitive.inside : primitive.outside).medium;
-                return {true, WayEnd{int(hit->shape), inside, medium}, {hit->position, hit->ng, hit->material}};
+                return {true, SegmentEnd{int(hit->shape), inside, medium}, {hit->position, hit->ng, hit->material}};
             }
             if (hit->shape != own && (scene_.bsdfOf(*hit).lobes() & lobe::Through) == 0) return {true, {}};
             ray.tMin = hit->margin().beyond(ray.direction, hit->t);
@@ -219,14 +222,14 @@ class MediaAgreement {
         return {true, {}};
     }
 
-    [[nodiscard]] Way wayToSensor(const Emitter& emitter, int k) const {
+    [[nodiscard]] Segment segmentToSensor(const Emitter& emitter, int k) const {
         const SurfaceSample point = sampleEmissionPoint(emitter, spread(k));
         const Vec3f way = sensorRay(-1, k).origin - point.position;
-        const WayEnd sensor{-1, false, scene_.cameraRegion.medium};
+        const SegmentEnd sensor{-1, false, scene_.cameraRegion.medium};
         if (!(way.length() > 0.0f)) return {false, sensor};
         Ray ray = point.leave(way.normalized());
         ray.tMax = way.length();
-        Way found = wayAlong(ray, emitter.primitive());
+        Segment found = segmentAlong(ray, emitter.primitive());
         if (!found.blocked) found.end = sensor;
         return found;
     }
@@ -237,27 +240,29 @@ class MediaAgreement {
         const Vec2i& size = scene_.camera.resolution;
         const Vec2i pixel(std::min(int(u.x * float(size.x)), size.x - 1),
                           std::min(int(u.y * float(size.y)), size.y - 1));
-        return scene_.camera.generateRay(detector < 0 ? pixel : Vec2i(detector, 0), spread(k + Looks), {u.y, u.x});
+        return scene_.camera.generateRay(detector < 0 ? pixel : Vec2i(detector, 0), spread(k + RaysOfEach), {u.y, u.x});
     }
 
     /// Of two ends of a way, of which one names none: that one.
-    static bool blames(const WayEnd& end, int medium) { return end.primitive >= 0 && end.medium < 0 && medium >= 0; }
+    static bool blames(const SegmentEnd& end, int medium) {
+        return end.primitive >= 0 && end.medium < 0 && medium >= 0;
+    }
 
     [[nodiscard]] std::string nameOf(int medium) const { return "'" + scene_.media[size_t(medium)].name + "'"; }
-    [[nodiscard]] std::string textOf(const WayEnd& end) const {
+    [[nodiscard]] std::string textOf(const SegmentEnd& end) const {
         if (end.primitive < 0) return "the camera";
         const Primitive& primitive = scene_.primitives[size_t(end.primitive)];
         return primitive.name.empty() ? primitive.path : "'" + primitive.name + "'";
     }
     /// "'ball' has 'fog' on its inner side".
-    [[nodiscard]] std::string nameAt(const WayEnd& end) const {
+    [[nodiscard]] std::string nameAt(const SegmentEnd& end) const {
         const std::string named = end.medium < 0 ? "vacuum" : nameOf(end.medium);
         if (end.primitive < 0) return "the camera is in " + named;
         return textOf(end) + " has " + named + (end.inside ? " on its inner side" : " on its outer side");
     }
 
     /// Once for every side: what comes there is in another medium.
-    void tellAbout(const WayEnd& end, const std::string& what, int medium) {
+    void tellAbout(const SegmentEnd& end, const std::string& what, int medium) {
         if (!told_.insert({end.primitive, end.inside, -1}).second) return;
         const std::string field = end.inside ? "int_medium" : "ext_medium";
         root_.warn(
@@ -268,13 +273,13 @@ class MediaAgreement {
                 : nameAt(end) + ", while " + what + " arrive there in " + (medium < 0 ? "vacuum" : nameOf(medium)));
     }
 
-    [[nodiscard]] std::string aboutSensor(const std::string& name, const WayEnd& end, int medium) const {
+    [[nodiscard]] std::string aboutSensor(const std::string& name, const SegmentEnd& end, int medium) const {
         if (medium < 0)
             return name + " is in medium " + nameOf(end.medium) +
                    " but names no medium: paths from it start in vacuum, while " + nameAt(end);
         return name + " is in medium " + nameOf(medium) + ", while what it sees is not: " + nameAt(end);
     }
-    [[nodiscard]] std::string aboutEmitter(const Emitter& emitter, const WayEnd& end) const {
+    [[nodiscard]] std::string aboutEmitter(const Emitter& emitter, const SegmentEnd& end) const {
         if (emitter.medium >= 0)
             return "light '" + emitter.name + "' names medium " + nameOf(emitter.medium) + ", while " + nameAt(end);
         return "light '" + emitter.name + "' is in medium " + nameOf(end.medium) +
@@ -288,7 +293,7 @@ class MediaAgreement {
     std::vector<Imath::Box3f> boxes_;                        ///< of the surfaces
     std::vector<float> extents_;                             ///< diagonals of the boxes
     std::map<size_t, std::unique_ptr<SceneGeometry>> alone_; ///< single surfaces, as far as they were needed
-    std::set<WayEnd> told_;                                  ///< sides, without their media
+    std::set<SegmentEnd> told_;                              ///< sides, without their media
 };
 
 } // namespace
@@ -296,14 +301,14 @@ class MediaAgreement {
 void warnAboutMedia(const LoadContext& context, const ObjectReader& root, const ObjectReader& camera) {
     if (context.scene.media.empty()) return;
     MediaAgreement agreement(context, root);
-    agreement.lookFromSensor(camera);
-    for (size_t i = 0; i < std::min(context.emitters.size(), MostLooked); ++i) agreement.lookFromEmitter(i);
+    agreement.checkSensor(camera);
+    for (size_t i = 0; i < std::min(context.emitters.size(), MostChecked); ++i) agreement.checkEmitter(i);
     size_t looked = 0;
-    for (size_t i = 0; i < context.scene.primitives.size() && looked < MostLooked; ++i) {
-        if (!agreement.worthLooking(i)) continue;
+    for (size_t i = 0; i < context.scene.primitives.size() && looked < MostChecked; ++i) {
+        if (!agreement.isWorthChecking(i)) continue;
         ++looked;
         context.watch.poll();
-        agreement.lookFromSurface(i);
+        agreement.checkSurface(i);
     }
 }
 

@@ -10,7 +10,7 @@
 
 namespace tungsten::photon {
 
-/// Path length that is left at a time beyond the straight way from a record's base to the camera, at the speed of its
+/// Path length that is left at a time beyond the distance from a record's base to the camera, at the speed of its
 /// medium; where the camera's leg does not count, or is not known, all that is left. Below 0 nothing shows, but for
 /// other speeds on the way.
 double lengthToSpare(const Scene& scene, const CollapsedFlights& record, double time);
