@@ -58,9 +58,10 @@ class MissedLightSearch {
             Sampler sampler(0, RandomStream::Pilot, i, 0);
             const auto from = targets_.sample(sampler.next1D(), sampler, watch, counters);
             if (!from || !from->emitter->isPointLike()) continue;
-            const auto direction = directionFrom(*from, i, sampler);
+            Sampler onward = sampler.branch(RandomStream::Aimed, 0);
+            const auto direction = directionFrom(*from, i, onward);
             if (!direction || isBlack(from->intensity(*direction))) continue;
-            if (const auto found = follow(*from, *direction, sampler, watch, counters)) return found;
+            if (const auto found = follow(*from, *direction, onward, watch, counters)) return found;
         }
         return {};
     }
@@ -88,6 +89,7 @@ class MissedLightSearch {
             counters.step(watch);
             const Medium* medium = scene_.medium(region);
             FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
+            sampler.at(met + 1, Draw::Flight);
             if (medium) flight = sampleFlight(*medium, Infinity, sampler);
             ray.tMax = flight.distance;
             const auto hit = scene_.geometry->intersect(ray);
@@ -104,6 +106,7 @@ class MissedLightSearch {
             const LobeMask onward =
                 isSpecularAlone(*surface.bsdf) ? lobe::Specular | lobe::Forward : LobeMask(lobe::Forward);
             if ((lobes & onward) == 0) return std::nullopt;
+            sampler.at(met + 1, Draw::Direction);
             const auto exit = sampleExit(surface, surface.query(TransportMode::Photons, onward), false, sampler);
             if (!exit || isBlack(exit->weight)) return std::nullopt;
             if (!exit->straight() && !way)

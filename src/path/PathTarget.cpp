@@ -65,6 +65,7 @@ std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const Em
         counters.step(watch);
         const Medium* medium = scene_.medium(laser.region);
         FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
+        sampler.at(target.interactions + 1, Draw::Flight);
         if (medium) flight = sampleFlight(*medium, Infinity, sampler);
         laser.ray.tMax = flight.distance;
         ++counters.rays;
@@ -94,16 +95,18 @@ auto TargetChoice::meetSurface(PathTarget& target, Laser& laser, const SurfaceHi
     const SurfaceInteraction surface = makeInteraction(scene_, hit, laser.ray.direction);
     const LobeMask lobes = surface.bsdf->lobes(), onward = lobes & (lobe::Specular | lobe::Forward);
     const float scatters = (lobes & lobe::Smooth) == 0 ? 0.0f : onward == 0 ? 1.0f : 0.5f;
+    sampler.at(target.interactions, Draw::Roulette);
     if (sampler.next1D() < scatters) {
         target.power = target.power / scatters;
         target.vertex = {scene_, surface, laser.ray.direction, TransportMode::Photons, laser.region};
         return Meeting::Scattered;
     }
     if (onward == 0) return Meeting::Absorbed;
+    sampler.at(target.interactions, Draw::Direction);
     const auto exit = sampleExit(surface, surface.query(TransportMode::Photons, onward), false, sampler);
     if (!exit) return Meeting::Absorbed;
     const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-laser.ray.direction, exit->direction);
-    target.power = target.power * exit->weight * (shading / (1.0f - scatters));
+    target.power = target.power * (exit->weight * (shading / (1.0f - scatters)));
     laser.region = regionBeyond(surface, exit->direction, laser.region);
     laser.ray = hit.leave(exit->direction);
     return Meeting::WentOn;

@@ -135,10 +135,11 @@ void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const Pa
     };
     detectorLight_->sample(size_t(column), sampler, watch, counters.shadowRays, put);
     if (!plan_.lasers) return;
-    const auto source = targets_->sample(u, sampler, watch, counters);
+    Sampler light = sampler.branch(RandomStream::Target, 0);
+    const auto source = targets_->sample(u, light, watch, counters);
     if (!source || source->index >= 0) return;
     if (settings_.limits.orderCounts(source->mediumScatters))
-        detectorLight_->connect(size_t(column), *source, *source->emitter, source->start, source->interactions, sampler,
+        detectorLight_->connect(size_t(column), *source, *source->emitter, source->start, source->interactions, light,
                                 counters.shadowRays, put);
 }
 
@@ -189,7 +190,10 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
         pass, film, statistics,
         [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
             std::optional<PathTarget> source;
-            if (lasers) source = targets_->sample(u, sampler, pass.watch, counters);
+            if (lasers) {
+                Sampler light = sampler.branch(RandomStream::Target, 0);
+                source = targets_->sample(u, light, pass.watch, counters);
+            }
             PathWalk<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr).run(ray);
         });
 }
@@ -201,7 +205,8 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
         pass.watch};
     renderTiles(pass, film, statistics,
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
-                    const std::optional<PathTarget> target = targets_->sample(u, sampler, pass.watch, counters);
+                    Sampler light = sampler.branch(RandomStream::Target, 0);
+                    const std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, counters);
                     if (target) GuidedPathWalk(context, sink, counters, sampler).run(ray, *target);
                 });
 }

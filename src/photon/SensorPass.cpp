@@ -94,9 +94,11 @@ class SensorPass {
             follow(at, sampler, gather, counters);
         }
         if (!oversampled) return;
-        Sampler sampler(pass_.seed, RandomStream::Highlight, sample, pixel);
-        for (uint32_t k = 0; k < tuning::HighlightPaths; ++k)
+        const Sampler paths(pass_.seed, RandomStream::Highlight, sample, pixel);
+        for (uint32_t k = 0; k < tuning::HighlightPaths; ++k) {
+            Sampler sampler = paths.branch(RandomStream::Highlight, k);
             follow(at, sampler, HighlightVisitor{gather, k}, counters);
+        }
     }
 
     template <typename Visitor>

@@ -43,6 +43,7 @@ void DetectorLight::sample(size_t column, Sampler& sampler, const PassWatch& wat
         connect(column, {point, Rgb(1.0f / chosen.probability)}, emitter, emitter.emissionTime, 0, sampler, rays, put);
     }
     if (!emitter.isDelta() && !specular_) return;
+    sampler.at(0, Draw::Emission);
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
     Ballistic light{emission.ray, scene_.regionOf(emitter), emission.power / chosen.probability, emitter.emissionTime};
     if (emitter.isDelta()) meet(column, light, emitter, rays, put);
@@ -58,6 +59,7 @@ void DetectorLight::sample(size_t column, Sampler& sampler, const PassWatch& wat
 
 void DetectorLight::connect(size_t column, const PathEnd& end, const Emitter& emitter, double time, int interactions,
                             Sampler& sampler, uint64_t& rays, const Put& put) const {
+    sampler.at(interactions, Draw::Sensor);
     const auto place = scene_.camera.detectors()->sample(column, end.vertex.position(), sampler.next2D());
     if (!place) return;
     const auto connection = connector_.connect(end.vertex, end.power, connectionEnd(*place), rays);
@@ -86,11 +88,12 @@ std::optional<LobeMask> DetectorLight::goOn(Ballistic& light, Sampler& sampler, 
     const SurfaceInteraction surface = makeInteraction(scene_, *hit, before);
     const LobeMask onward = surface.bsdf->lobes() & (lobe::Specular | lobe::Forward);
     if (onward == 0) return std::nullopt;
+    sampler.at(light.interactions, Draw::Direction);
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Photons, onward), scene_.transport.consistencyChecks, sampler);
     if (!exit) return std::nullopt;
-    light.power = light.power * exit->weight;
-    if (!exit->straight()) light.power = light.power * surface.photonShadingFactor(-before, exit->direction);
+    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-before, exit->direction);
+    light.power = light.power * (exit->weight * shading);
     light.region = regionBeyond(surface, exit->direction, light.region);
     light.ray = hit->leave(exit->direction);
     return exit->lobe;

@@ -12,6 +12,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <set>
+
 namespace tungsten {
 namespace {
 
@@ -41,6 +44,53 @@ TEST(Sampler, IsUniformAndIndependentOfItsNeighbours) {
     }
     const double sigma = std::sqrt((1.0 / 9.0 - 1.0 / 16.0) / Count);
     for (const double sum : {path, pass, stream}) EXPECT_NEAR(sum / Count, 0.25, 4.5 * sigma);
+}
+
+/// What a vertex draws depends on nothing that is drawn elsewhere, nor on the order.
+TEST(Sampler, PlacesHaveNumbersOfTheirOwn) {
+    Sampler straight(1, RandomStream::Camera, 2, 3);
+    straight.at(7, Draw::Light);
+    const std::array<uint32_t, 3> light{straight.nextBits(), straight.nextBits(), straight.nextBits()};
+    Sampler busy(1, RandomStream::Camera, 2, 3);
+    for (int i = 0; i < 1000; ++i) busy.nextBits();
+    busy.at(7, Draw::Roulette);
+    const uint32_t roulette = busy.nextBits();
+    busy.at(7, Draw::Light);
+    for (const uint32_t bits : light) EXPECT_EQ(busy.nextBits(), bits);
+    // Numbers follow one another from any place: roulette's is next to light's.
+    EXPECT_EQ(busy.nextBits(), roulette);
+    std::set<uint32_t> all(light.begin(), light.end());
+    for (const int vertex : {0, 6, 8, 1'000'000}) {
+        busy.at(vertex, Draw::Light);
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(all.insert(busy.nextBits()).second) << vertex;
+    }
+}
+
+TEST(Sampler, BranchesAreStreamsOfTheirOwn) {
+    const Sampler path(1, RandomStream::Photon, 2, 3), other(1, RandomStream::Photon, 2, 4);
+    std::set<uint64_t> all;
+    const auto expectNew = [&](Sampler sampler) {
+        const uint64_t high = sampler.nextBits();
+        EXPECT_TRUE(all.insert((high << 32) | sampler.nextBits()).second);
+    };
+    for (const Sampler& root : {path, other}) {
+        expectNew(root);
+        for (uint64_t place = 0; place < 1000; ++place) {
+            expectNew(root.branch(RandomStream::Record, place));
+            expectNew(root.branch(RandomStream::Connection, place));
+            expectNew(root.copy(int(place), 1).copy(int(place), 1)); // lineage
+            expectNew(root.copy(int(place), 2));
+        }
+    }
+    // Where it is on its own path does not matter.
+    Sampler moved = path;
+    moved.at(5, Draw::Distance);
+    moved.next1D();
+    EXPECT_EQ(moved.branch(RandomStream::Record, 9).nextBits(), path.branch(RandomStream::Record, 9).nextBits());
+    EXPECT_GT(test::chiSquareUniform([count = uint64_t(0)](Sampler& s) mutable {
+                  return double(s.branch(RandomStream::Record, count++).next1D());
+              }),
+              test::SmallestPValue);
 }
 
 TEST(Sampler, IsAPureFunctionOfItsKey) {

@@ -31,10 +31,11 @@ float probabilityFlightExits(const Homogeneous& medium, float distance) {
 FlightSample sampleFlight(const Homogeneous& medium, float tMax, Sampler& sampler) {
     if (!medium.scatters()) return {tMax, true, medium.transmittance(tMax), 1.0f};
     const Rgb sigma = medium.sigmaT();
-    const float uChannel = sampler.next1D();
-    const float chosen = medium.isGrey() ? sigma.x : sigma[std::min(int(uChannel * 3.0f), 2)];
+    // One number: where it falls among three parts chooses the channel, and its place there the distance.
+    const uint64_t bits = uint64_t(sampler.nextBits()) * (medium.isGrey() ? 1 : 3);
+    const float chosen = sigma[int(bits >> 32)];
     // u < 1 always, so the logarithm is finite.
-    const float u = sampler.next1D();
+    const float u = float(uint32_t(bits) >> 8) * 0x1p-24f;
     const float t = chosen > 0.0f ? -std::log1p(-u) / chosen : Infinity;
     if (t >= tMax) {
         const float probability = probabilityFlightExits(medium, tMax);

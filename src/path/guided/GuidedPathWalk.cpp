@@ -80,8 +80,9 @@ void GuidedPathWalk::chooseTarget() {
     std::array<std::optional<PathTarget>, Points> points;
     std::array<float, Points> weights;
     points[0] = target;
+    Sampler others = state.sampler.branch(RandomStream::EntryPoint, uint64_t(state.interactions));
     for (size_t i = 0; i < Points; ++i) {
-        if (i > 0) points[i] = context_.targets->another(target, state.sampler);
+        if (i > 0) points[i] = context_.targets->another(target, others);
         if (!points[i]) return;
         target = *points[i];
         weights[i] = logUsefulTarget();
@@ -91,7 +92,7 @@ void GuidedPathWalk::chooseTarget() {
     float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
     const float least = tuning::LeastPoint * sum / float(Points);
     sum += least * float(Points);
-    float rest = path_.next() * sum;
+    float rest = others.next1D() * sum;
     size_t chosen = 0;
     while (chosen + 1 < Points && (rest -= weights[chosen] + least) >= 0.0f) ++chosen;
     target = *points[chosen];
@@ -105,6 +106,7 @@ bool GuidedPathWalk::survives(const darts::Guide& guide) {
     CameraPath& state = path_.state;
     const float survival = path_.step.survival(guide, state.region.medium, meanComponent(state.throughput));
     if (survival >= 1.0f) return true;
+    state.sampler.at(state.interactions, Draw::Roulette);
     if (!(path_.next() < survival)) return false;
     state.throughput = state.throughput / survival;
     return true;
@@ -149,6 +151,7 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     // In expectation, whether or not the walk goes there.
     if (hit) findAt(*hit, state.throughput * medium.transmittance(surface));
     const darts::Guide& flights = state.mediumScatters == 0 ? context_.guides.view[size_t(state.region.medium)] : guide;
+    state.sampler.at(state.interactions + 1, Draw::Distance);
     const darts::DistanceSample flight =
         step.sampleDistance(flights, heading, surface, state.throughput, [this] { return path_.next(); });
     state.throughput = state.throughput * darts::to<Rgb>(flight.transmittanceOverPdf);
@@ -177,6 +180,7 @@ bool GuidedPathWalk::crossUntimed(const Medium& medium) {
         const Rgb reaching = medium.transmittance(surface);
         findAt(*hit, state.throughput * reaching);
         const float probability = inTime.empty() ? 1.0f : meanComponent(reaching);
+        state.sampler.at(state.interactions + 1, Draw::Flight);
         if (path_.next() < probability) {
             state.throughput = state.throughput * reaching / probability;
             return scatterOnSurface(*hit);
@@ -193,6 +197,7 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const S
     if (chord.empty()) return std::nullopt;
     const darts::ConnectionLength<double> flights{chord.begin(), chord.end() - chord.begin(),
                                                   double(meanComponent(medium.sigmaT()))};
+    path_.state.sampler.at(path_.state.interactions + 1, Draw::Distance);
     const double u = path_.state.sampler.nextDouble();
     const double t = path_.next() < 0.5f ? chord.begin() + flights.sample(u).offset : chord.sample(u);
     const double pdf = 0.5 * flights.pdf(t - chord.begin()) + 0.5 * chord.pdf(t);

@@ -32,7 +32,10 @@ template <typename Scatterer>
 darts::DirectionSample GuidedPathWalk::sampleDirection(const darts::Guide& guide, const Scatterer& scatterer) {
     transport::GuidedStep& step = path_.step;
     const bool lengthFirst = guide.settings().lengthFirst, elliptical = guide.settings().elliptical;
+    Sampler& sampler = path_.state.sampler;
+    sampler.at(path_.state.interactions, Draw::Connection);
     if (lengthFirst) step.connect(path_.drawConnection(guide, step.residual()));
+    sampler.at(path_.state.interactions, Draw::GuidedDirection);
     const darts::DirectionSample sample =
         step.sampleDirection(guide, scatterer, darts::NoView{}, [this] { return path_.next(); });
     if (lengthFirst && elliptical)
@@ -48,8 +51,8 @@ void GuidedPathWalk::split(const darts::Guide& guide, GoOn&& goOn) {
     path_.state.throughput = path_.state.throughput / float(copies);
     for (int i = 1; i < copies; ++i) {
         GuidedPathWalk copy(*this);
+        copy.path_.state.sampler = path_.state.sampler.copy(path_.state.interactions, i);
         goOn(copy);
-        path_.state.sampler = copy.path_.state.sampler;
     }
 }
 
@@ -105,6 +108,7 @@ bool GuidedPathWalk::leaveInMedium(const Medium& medium, const Vec3f& before) {
     path_.step.startWay();
     connectToLightPaths({medium, state.ray.origin, before, state.region});
     if (!path_.step.residual().alive() || guide.settings().direction == darts::Direction::Phase) {
+        state.sampler.at(state.interactions, Draw::Direction);
         state.ray.direction = medium.phase.sample(before, state.sampler.next2D());
         path_.last.pdf = medium.phase.pdf(before, state.ray.direction);
         return true;
@@ -162,6 +166,7 @@ bool GuidedPathWalk::leaveGuided(const transport::Vertex& here, const darts::Gui
 
 bool GuidedPathWalk::leavePlainly(const SurfaceInteraction& surface) {
     CameraPath& state = path_.state;
+    state.sampler.at(state.interactions, Draw::Direction);
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Radiance), scene_.transport.consistencyChecks, state.sampler);
     if (!exit) return false;

@@ -31,6 +31,7 @@ bool LightWalk::emit() {
     if (emitter.primitive() || (detectors && !emitter.isDelta() && !emitter.isInfinite()))
         showEmitter(emitter, chosen.probability);
     if (detectors && emitter.isInfinite()) showEnvironment(emitter, chosen.probability);
+    sampler_.at(0, Draw::Emission);
     const Vec2f uPosition = sampler_.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler_.next2D());
     power_ = emission.power / chosen.probability;
@@ -41,6 +42,7 @@ bool LightWalk::emit() {
 }
 
 void LightWalk::showEmitter(const Emitter& emitter, float probability) {
+    sampler_.at(0, Draw::Light);
     const SurfaceSample point = sampleEmissionPoint(emitter, sampler_.next2D());
     connect({scene_, emitter, point}, Rgb(1.0f / probability));
 }
@@ -49,6 +51,7 @@ void LightWalk::showEnvironment(const Emitter& emitter, float probability) {
     if (&emitter != &scene_.emitters[size_t(scene_.infiniteEmitters.back())] || !context_.limits.orderCounts(0, 0))
         return;
     const auto& row = scene_.camera.detectors()->row;
+    sampler_.at(0, Draw::Distance);
     const auto column = std::min(size_t(sampler_.next1D() * float(row.size())), row.size() - 1);
     const Vec2f uPlace = sampler_.next2D();
     const Ray towards = row[column].sampleRay(uPlace, sampler_.next2D());
@@ -61,6 +64,7 @@ void LightWalk::showEnvironment(const Emitter& emitter, float probability) {
 
 bool LightWalk::crossMedium(const Medium& medium) {
     if (medium.scatters() && ++flights_ > medium.maxBounces) return false;
+    sampler_.at(interactions_ + 1, Draw::Flight);
     const FlightSample flight = sampleFlight(medium, Infinity, sampler_);
     ray_.tMax = flight.distance;
     counters_.fly(medium);
@@ -93,6 +97,7 @@ bool LightWalk::scatterInMedium(const Medium& medium, float distance) {
     if (!arrive(position, distance)) return false;
     scattered_ = time_;
     connect({medium, position, before, region_}, power_ * throughput_);
+    sampler_.at(interactions_, Draw::Direction);
     ray_ = Ray{position, medium.phase.sample(before, sampler_.next2D())};
     return continueRoulette();
 }
@@ -103,6 +108,7 @@ bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
     if (!arrive(hit.position, hit.t)) return false;
     const SurfaceInteraction surface = makeInteraction(scene_, hit, ray_.direction);
     connect({scene_, surface, ray_.direction, TransportMode::Photons, region_}, power_ * throughput_);
+    sampler_.at(interactions_, Draw::Direction);
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Photons), scene_.transport.consistencyChecks, sampler_);
     if (!exit) return false;
@@ -117,11 +123,14 @@ bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
 }
 
 bool LightWalk::continueRoulette() {
-    return !context_.russianRoulette || transport::survivesRoulette(throughput_, interactions_, sampler_);
+    if (!context_.russianRoulette) return true;
+    sampler_.at(interactions_, Draw::Roulette);
+    return transport::survivesRoulette(throughput_, interactions_, sampler_);
 }
 
 void LightWalk::connect(const Vertex& vertex, const Rgb& power) {
     if (!vertex.isConnectible() || !context_.limits.orderCounts(mediumScatters_, inARow_)) return;
+    sampler_.at(interactions_, Draw::Sensor);
     const auto sensor = scene_.camera.sampleSensor(vertex.position(), sampler_.next2D());
     if (!sensor || !inView(sensor->raster)) return;
     const bool unwarped = scene_.transport.cameraUnwarped;

@@ -40,6 +40,7 @@ bool PathWalk<TimeResolved, Media>::crossMedium(const Medium& medium) {
         wayOut_.reset();
     }
     // The free flight comes first: the ray need not look beyond its collision.
+    path_.sampler.at(path_.interactions + 1, Draw::Flight);
     const FlightSample flight = sampleFlight(medium, Infinity, path_.sampler);
     path_.ray.tMax = flight.distance;
     path_.counters.fly(medium);
@@ -81,8 +82,9 @@ bool PathWalk<TimeResolved, Media>::tooLate(const Vec3f& position) const {
 
 template <bool TimeResolved, bool Media>
 bool PathWalk<TimeResolved, Media>::continueRoulette() {
-    return !settings_.russianRoulette ||
-           transport::survivesRoulette(path_.throughput, path_.interactions, path_.sampler);
+    if (!settings_.russianRoulette) return true;
+    path_.sampler.at(path_.interactions, Draw::Roulette);
+    return transport::survivesRoulette(path_.throughput, path_.interactions, path_.sampler);
 }
 
 template <bool TimeResolved, bool Media>
@@ -96,6 +98,7 @@ bool PathWalk<TimeResolved, Media>::scatterInMedium(const Medium& medium, float 
     if (tooLate(vertex_) || path_.interactions >= scene_.transport.maxBounces) return false;
     const Vec3f before = path_.ray.direction;
     if (settings_.volumeLightSampling) connect({medium, vertex_, before, path_.region});
+    path_.sampler.at(path_.interactions, Draw::Direction);
     path_.ray = Ray{vertex_, medium.phase.sample(before, path_.sampler.next2D())};
     directionPdf_ = medium.phase.pdf(before, path_.ray.direction);
     weighted_ = settings_.volumeLightSampling;
@@ -120,6 +123,7 @@ bool PathWalk<TimeResolved, Media>::scatterOnSurface(const SurfaceHit& hit) {
     const LobeMask lobes = surface.bsdf->lobes();
     if (settings_.lightSampling && (lobes & lobe::Smooth) != 0)
         connect({scene_, surface, path_.ray.direction, TransportMode::Radiance, path_.region});
+    path_.sampler.at(path_.interactions, Draw::Direction);
     const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, onward_),
                                  scene_.transport.consistencyChecks, path_.sampler);
     if (!exit) return false;
@@ -158,11 +162,12 @@ void PathWalk<TimeResolved, Media>::addEmission(const SurfaceHit& hit) {
 template <bool TimeResolved, bool Media>
 void PathWalk<TimeResolved, Media>::aimThroughWall(const Medium& medium) {
     if (path_.flights + 1 > medium.maxBounces) return;
-    const auto drawn = refracted_->draw(*sealed_, path_.sampler);
+    Sampler aimed = path_.sampler.branch(RandomStream::Aimed, uint64_t(path_.interactions));
+    const auto drawn = refracted_->draw(*sealed_, aimed);
     if (!drawn) return;
     PathWalk other(*this);
+    other.path_.sampler = aimed;
     other.follow(*drawn, medium);
-    path_.sampler = other.path_.sampler;
 }
 
 template <bool TimeResolved, bool Media>
@@ -222,6 +227,7 @@ void PathWalk<TimeResolved, Media>::addEnvironment() {
 
 template <bool TimeResolved, bool Media>
 auto PathWalk<TimeResolved, Media>::sampleLight(const Vec3f& position) -> std::optional<LightSample> {
+    path_.sampler.at(path_.interactions, Draw::Light);
     const auto choice = lights_.sample(path_.sampler.next1D());
     if (!choice) return std::nullopt;
     const auto direct = sampleDirect(*choice->emitter, position, path_.sampler.next2D());

@@ -22,6 +22,7 @@ void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& ver
     const float phase = medium.phase.eval(state.ray.direction, way->direction);
     const float chance =
         path.guideOf(state.region).chance(path.step.residual(), darts::vec3(state.ray.direction), vertex, phase);
+    state.sampler.at(state.interactions + 1, Draw::ControlVertex);
     if (chance < 1.0f && !(path.next() < chance)) return;
     const float clear = path.target->vertex.margin().before(way->direction, way->distance);
     const Visibility visibility = path.connector().visibility({position, way->direction, 0.0f, clear}, way->distance,
@@ -41,7 +42,10 @@ void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& ver
 void ControlVertices::sample(GuidedPath& path, const Medium& medium, const darts::Guide& guide, float h,
                              float surface) {
     if (!guide.settings().elliptical) return;
-    const auto draw = [&](const darts::Residual& residual) { return path.drawConnection(guide, residual); };
+    const auto draw = [&](const darts::Residual& residual) {
+        path.state.sampler.at(path.state.interactions + 1, Draw::FlightConnection);
+        return path.drawConnection(guide, residual);
+    };
     const auto met = path.step.meetControlVertex({guide, h, path.state.time, path.sharesConnections()}, surface, draw);
     if (!met) return;
     const double arrival = met->departure + met->length / double(path.state.region.speed) + path.target->start;
@@ -66,6 +70,7 @@ void ControlVertices::sampleUntimed(GuidedPath& path, const Medium& medium, floa
         const int count = chord.intersect(low, t, perRadius);
         for (size_t i = 0; i < size_t(count); ++i) addAt(t[i], perRadius[i]);
     } else if (!chord.empty()) {
+        path.state.sampler.at(path.state.interactions + 1, Draw::Untimed);
         const double t = chord.sample(path.state.sampler.nextDouble()), pdf = chord.pdf(t);
         if (pdf > 0.0) addAt(t, 1.0 / pdf);
     }

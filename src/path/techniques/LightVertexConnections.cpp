@@ -10,6 +10,7 @@ void LightVertexConnections::connect(GuidedPath& path, const transport::Vertex& 
     CameraPath& state = path.state;
     if (!path.counts(1, 0)) return;
     const auto [low, high] = path.lengthsInGate();
+    state.sampler.at(state.interactions, Draw::LightVertex);
     const LightVertexCache::Choice choice = cache.choose(here.position(), low, high, state.sampler.next2D());
     if (!choice.vertex) return;
     const LightVertex& light = *choice.vertex;

@@ -32,6 +32,7 @@ Rgb transmittanceOf(const GuidedPath& path, const ReflectedVertex& light, const 
 void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache) {
     CameraPath& state = path.state;
     const auto [low, high] = path.lengthsInGate();
+    state.sampler.at(state.interactions, Draw::ReflectedLight);
     const ReflectedLightCache::Choice choice = cache.choose(here.position(), low, high, state.sampler.next2D());
     if (!choice.vertex) return;
     const ReflectedVertex& light = *choice.vertex;

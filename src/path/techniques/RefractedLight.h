@@ -85,7 +85,7 @@ class RefractedLight {
     [[nodiscard]] float indexTowards(int medium, const RefractedLamp& lamp) const;
     /// At least one; those given are sorted; `all`: holds any.
     static Delays quantiles(std::vector<float>& delays, const Delay& all);
-    [[nodiscard]] std::vector<Delays> delaysOf(int medium, size_t lamp, Sampler sampler) const;
+    [[nodiscard]] std::vector<Delays> delaysOf(int medium, size_t lamp, const Sampler& sampler) const;
     /// Until light that starts at a vertex in a body, as seen from there, is met on the emitter; none if it is not.
     [[nodiscard]] std::optional<double> timeTo(const RefractedLamp& lamp, Ray ray, Region region,
                                                Sampler& sampler) const;

@@ -84,6 +84,7 @@ std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, Ray ray,
         if (i > 0 && scene_->primitives[hit->shape].emitter == lamp.index) return time;
         const SurfaceInteraction surface = makeInteraction(*scene_, *hit, ray.direction);
         const LobeMask lobes = i == 0 ? lobe::SpecularTransmission : lobe::All;
+        sampler.at(i + 1, Draw::Direction);
         const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, lobes), false, sampler);
         if (!exit) return std::nullopt;
         region = regionBeyond(surface, exit->direction, region);
@@ -94,13 +95,14 @@ std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, Ray ray,
     return std::nullopt;
 }
 
-auto RefractedLight::delaysOf(int medium, size_t lamp, Sampler sampler) const -> std::vector<Delays> {
+auto RefractedLight::delaysOf(int medium, size_t lamp, const Sampler& sampler) const -> std::vector<Delays> {
     const Body& body = bodies_[size_t(medium)];
     const float mfp = 1.0f / meanComponent(scene_->media[size_t(medium)].sigmaT());
     const Region region = body.primitive->inside;
     std::vector<std::vector<float>> found(faces(medium));
     for (size_t i = 0; i < tuning::DelayPilots; ++i) {
-        const Vec2f u = sampler.next2D(), uPoint = sampler.next2D();
+        Sampler own = sampler.branch(RandomStream::Pilot, i);
+        const Vec2f u = own.next2D(), uPoint = own.next2D();
         const float z = 1.0f - 2.0f * u.x, r = std::sqrt(std::max(1.0f - sqr(z), 0.0f));
         const Vec3f outward(r * std::cos(2.0f * Pi * u.y), r * std::sin(2.0f * Pi * u.y), z);
         const Body::Face exit = body.leave(body.box.center(), outward).face;
@@ -111,7 +113,7 @@ auto RefractedLight::delaysOf(int medium, size_t lamp, Sampler sampler) const ->
         const SealedVertex vertex{position, outward, 0.0, region};
         const auto drawn = choose(seen, vertex, -Infinity, Infinity, uPoint);
         if (!drawn) continue;
-        const auto time = timeTo(lamps_[lamp], {position, drawn->direction}, region, sampler);
+        const auto time = timeTo(lamps_[lamp], {position, drawn->direction}, region, own);
         if (!time) continue;
         seen.eachAlong(drawn->direction,
                        [&](const RefractedView::Aim& aim) { found[through].push_back(float(*time) - aim.time); });

@@ -27,7 +27,10 @@ float shareOfVertices(float pdfVertex, float pdfPhoton) {
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<Photon>& points) {
     const auto& [medium, guide, h, surface] = flight;
     if (!guide.settings().elliptical || !path_.orderCounts(1)) return;
-    const auto draw = [&](const darts::Residual& residual) { return drawConnection(flight.guide, residual); };
+    const auto draw = [&](const darts::Residual& residual) {
+        path_.sampler.at(path_.bounce + 1, Draw::FlightConnection);
+        return drawConnection(flight.guide, residual);
+    };
     const bool shares = guidance_.storesPhotons();
     const auto met = step_.meetControlVertex({guide, h, path_.time, shares}, surface, draw);
     if (!met) return;
@@ -82,22 +85,25 @@ void GuidedPhotonWalk::leaveAt(float, const Flight&, DepositList<PhotonBeam>&) {
 
 void GuidedPhotonWalk::leaveLight(DepositList<CollapsedFlights>& flights, const Emitter& emitter, float probability,
                                   const SurfaceSample& start) {
+    Sampler own = path_.records(LightPath::RecordsOf::Light);
     chain_.leaveLight(path_.chainRules(), emitter, probability, start,
                       {start.position, Vec3f(0.0f), path_.power, path_.time, Infinity, path_.bounce},
-                      path_.region.medium, path_.sampler, flights);
+                      path_.region.medium, own, flights);
 }
 
 void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<CollapsedFlights>& flights) {
     const Ray& ray = path_.ray;
+    Sampler own = path_.records(LightPath::RecordsOf::Flight);
     chain_.fly(path_.chainRules(), {ray.origin, ray.direction, path_.power, path_.time, flight.surface, path_.bounce},
-               path_.region.medium, path_.sampler, flights);
+               path_.region.medium, own, flights);
 }
 
 void GuidedPhotonWalk::leaveAt(float distance, const Flight&, DepositList<CollapsedFlights>& flights) {
     const Vec3f position = path_.ray.at(distance);
     const double time = path_.timeAt(position);
+    Sampler own = path_.records(LightPath::RecordsOf::Vertex);
     chain_.scatter(path_.chainRules(), {position, path_.ray.direction, path_.power, time, Infinity, path_.bounce + 1},
-                   path_.sampler, flights);
+                   own, flights);
 }
 
 } // namespace tungsten::photon

@@ -54,6 +54,7 @@ bool GuidedPhotonWalk::emit() {
     const Emitter& emitter = scene_.emitters[chosen.index];
     const float frames = guidance_.choosesFrames() ? float(guidance_.frames().frames) : 1.0f;
     if (emitter.isDelta() || emitter.isInfinite()) {
+        path_.sampler.at(0, Draw::Emission);
         if (!path_.emitFrom(emitter, chosen.probability, path_.sampler.next2D())) return false;
         path_.power = path_.power * frames;
         return true;
@@ -66,6 +67,7 @@ bool GuidedPhotonWalk::emit() {
 }
 
 bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, float probability, const darts::Guide* guide) {
+    path_.sampler.at(0, Draw::Emission);
     const SurfaceSample start = sampleEmissionPoint(emitter, path_.sampler.next2D());
     path_.ray = Ray{start.position, Vec3f(0.0f)};
     path_.connectable = true;
@@ -80,6 +82,7 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, float probability, 
         if (!look(*guide, {start.position, start.margin()})) return false;
         inversePdf = redirect(*guide, own);
     } else {
+        path_.sampler.at(0, Draw::Direction);
         const float u = path_.sampler.next1D(), v = path_.sampler.next1D();
         const darts::Vec3 direction = own.sample(u, v);
         path_.ray.direction = darts::to<Vec3f>(direction);
@@ -93,10 +96,12 @@ bool GuidedPhotonWalk::emitFromPoint(const Emitter& emitter, float probability, 
 void GuidedPhotonWalk::connectToSurfaces(const transport::Vertex& vertex, float meanScattering) {
     if (!connections_ || !path_.bears(path_.power)) return;
     const SendingVertex from{{vertex, path_.power}, path_.time, path_.bounce, meanScattering};
-    if (connections_->knowsLightPerConnection())
-        connections_->connect(from, gate_, path_.sampler, draws_, path_.deposits.received, path_.counters.rays);
-    else
+    if (connections_->knowsLightPerConnection()) {
+        Sampler own = path_.sampler.branch(RandomStream::Connection, uint64_t(path_.bounce));
+        connections_->connect(from, gate_, own, draws_, path_.deposits.received, path_.counters.rays);
+    } else {
         path_.deposits.expectedLight.push_back(connections_->expectedLight(from, gate_));
+    }
 }
 
 bool GuidedPhotonWalk::meetSurface(const SurfaceHit& hit) {
@@ -113,6 +118,7 @@ bool GuidedPhotonWalk::look(const darts::Guide& guide, const transport::Start& s
     step_.look(guidance_.residual(start, path_.region, path_.time, gate_, path_.counters.rays));
     // Along a direction that is fixed the surface ahead bounds the lengths: they are drawn when it is known.
     if (!guide.settings().lengthFirst || start.ahead.length2() > 0.0f) return step_.residual().alive();
+    path_.sampler.at(path_.bounce, Draw::Connection);
     const darts::ConnectionSample connection = drawConnection(guide, step_.residual());
     step_.connect(connection);
     // A density of 0: the response is over, or the delta gate, but surfaces may still be seen in its kernel.
@@ -126,6 +132,7 @@ darts::ConnectionSample GuidedPhotonWalk::drawConnection(const darts::Guide& gui
 
 template <typename Scatterer>
 float GuidedPhotonWalk::redirect(const darts::Guide& guide, const Scatterer& scatterer) {
+    path_.sampler.at(path_.bounce, Draw::GuidedDirection);
     const auto random = [this] { return path_.sampler.next1D(); };
     const darts::DirectionSample next = step_.sampleDirection(guide, scatterer, guidance_.view(), random);
     path_.ray.direction = darts::to<Vec3f>(next.direction);
@@ -144,6 +151,7 @@ bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
         out && path_.context.first ? path_.context.first->logged(medium) : transport::GuidedStep::NoOthers;
     const float survival = step_.survival(guide, medium, power, others);
     if (survival >= 1.0f) return true;
+    path_.sampler.at(path_.bounce, Draw::Roulette);
     if (path_.sampler.next1D() >= survival) return false;
     path_.power = path_.power / survival;
     return true;
@@ -164,6 +172,7 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     const Flight flight{medium, guide, heading.h, surface};
     if (path_.context.storeVolume) std::visit([&](auto& list) { leaveOn(flight, list); }, path_.deposits.volume);
 
+    path_.sampler.at(path_.bounce + 1, Draw::Distance);
     const auto random = [this] { return path_.sampler.next1D(); };
     const darts::DistanceSample next = step_.sampleDistance(guide, heading, surface, path_.power, random);
     path_.power = path_.power * darts::to<Rgb>(next.transmittanceOverPdf);
@@ -200,9 +209,12 @@ void GuidedPhotonWalk::split(const darts::Guide& guide, const Medium& medium, co
     path_.power = path_.power / float(copies);
     for (int i = 1; i < copies; ++i) {
         GuidedPhotonWalk copy(*this);
+        copy.path_.sampler = path_.sampler.copy(path_.bounce, i);
+        if (guide.settings().lengthFirst) {
+            copy.path_.sampler.at(path_.bounce, Draw::Connection);
+            copy.step_.connect(copy.drawConnection(guide, copy.step_.residual()));
+        }
         if (copy.leave(medium, guide, before)) copy.goOn();
-        path_.sampler = copy.path_.sampler;
-        if (guide.settings().lengthFirst) step_.connect(drawConnection(guide, step_.residual()));
     }
 }
 

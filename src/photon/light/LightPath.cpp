@@ -75,6 +75,7 @@ bool LightPath::foundBySensorPaths() const {
 }
 
 bool LightPath::leaveSurface() {
+    sampler.at(bounce, Draw::Direction);
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Photons), context.scene.transport.consistencyChecks, sampler);
     if (!exit) return false;
@@ -97,7 +98,8 @@ FlightChain::Rules LightPath::chainRules() const {
 }
 
 void LightPath::leaveBall(DepositList<CollapsedFlights>& list, FlightChain& chain, const Vec3f& position) {
-    chain.leaveSurface(chainRules(), surface, {position, ray.direction, power, time, Infinity, bounce}, region, sampler,
+    Sampler own = records(RecordsOf::Surface);
+    chain.leaveSurface(chainRules(), surface, {position, ray.direction, power, time, Infinity, bounce}, region, own,
                        list);
 }
 

@@ -75,6 +75,11 @@ struct LightPath {
     bool deposit(DepositList<Photon>& list, const Vec3f& position, const Rgb& carried, int medium);
     /// A flight through a medium up to `reach`.
     void depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
+    /// What the records draw that are left here: there may be any number of them.
+    enum class RecordsOf : uint32_t { Light, Flight, Vertex, Surface, End, Count };
+    [[nodiscard]] Sampler records(RecordsOf left) const {
+        return sampler.branch(RandomStream::Record, uint64_t(bounce) * uint64_t(RecordsOf::Count) + uint64_t(left));
+    }
     /// What the chain's records obey.
     [[nodiscard]] FlightChain::Rules chainRules() const;
     /// What the light leaves for a primitive that has arrived at `position` on `surface`: of slices, a ball.

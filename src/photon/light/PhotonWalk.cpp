@@ -18,6 +18,7 @@ void PhotonWalk::goOn() {
             if (medium->scatters() && ++path_.flights > medium->maxBounces) return;
             if (path_.context.storeVolume && medium->scatters())
                 std::visit([&](auto& list) { depositFlight(list, *medium, reach); }, path_.deposits.volume);
+            path_.sampler.at(path_.bounce + 1, Draw::Flight);
             const FlightSample flight = sampleFlight(*medium, reach, path_.sampler);
             path_.power = path_.power * flight.weight;
             if (!flight.exited) {
@@ -52,14 +53,16 @@ void PhotonWalk::depositVertex(DepositList<Photon>& points, const Vec3f& positio
 void PhotonWalk::depositVertex(DepositList<PhotonBeam>&, const Vec3f&) {}
 
 void PhotonWalk::depositFlight(DepositList<CollapsedFlights>& flights, const Medium&, float reach) {
+    Sampler own = path_.records(LightPath::RecordsOf::Flight);
     chain_.fly(path_.chainRules(),
                {path_.ray.origin, path_.ray.direction, path_.power, path_.time, reach, path_.bounce},
-               path_.region.medium, path_.sampler, flights);
+               path_.region.medium, own, flights);
 }
 
 void PhotonWalk::depositVertex(DepositList<CollapsedFlights>& flights, const Vec3f& position) {
+    Sampler own = path_.records(LightPath::RecordsOf::Vertex);
     chain_.scatter(path_.chainRules(), {position, path_.ray.direction, path_.power, path_.time, Infinity, path_.bounce},
-                   path_.sampler, flights);
+                   own, flights);
 }
 
 void PhotonWalk::beginChain(DepositList<CollapsedFlights>&, const Emitter& emitter, float probability,
@@ -68,7 +71,8 @@ void PhotonWalk::beginChain(DepositList<CollapsedFlights>&, const Emitter& emitt
 }
 
 void PhotonWalk::endChain(DepositList<CollapsedFlights>& flights) {
-    chain_.end(path_.chainRules(), path_.sampler, flights);
+    Sampler own = path_.records(LightPath::RecordsOf::End);
+    chain_.end(path_.chainRules(), own, flights);
 }
 
 void PhotonWalk::leaveRegion() {
@@ -88,6 +92,7 @@ bool PhotonWalk::scatterInMedium(const Medium& medium, float distance) {
     if (!path_.culling->mayContinue(position, path_.time)) return false;
     if (path_.context.storeVolume)
         std::visit([&](auto& list) { depositVertex(list, position); }, path_.deposits.volume);
+    path_.sampler.at(path_.bounce, Draw::Direction);
     path_.ray.direction = medium.phase.sample(path_.ray.direction, path_.sampler.next2D());
     return true;
 }

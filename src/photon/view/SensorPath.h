@@ -90,6 +90,7 @@ SensorSteps followSensorPath(const Scene& scene, SensorState state, const Sensor
         state.time += double(hit->t) / double(state.region.speed);
         ++state.interactions;
         ++steps.surfaceEvents;
+        sampler.at(state.interactions, Draw::Direction);
         const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, rules.followed(*surface.bsdf)),
                                      scene.transport.consistencyChecks, sampler);
         if (!exit) return steps;

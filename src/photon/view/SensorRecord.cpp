@@ -112,8 +112,8 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             rows[y].end();
             const SurfaceVisitor recordPoint{
                 [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
-            Sampler further(seed, RandomStream::SensorPoint, sample, pixel);
             for (uint32_t s = 1; s < wishes.samples; ++s) {
+                Sampler further = sampler.branch(RandomStream::SensorPoint, s);
                 const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
                 const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
                 steps += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint, watch);
