@@ -154,11 +154,10 @@ bool GuidedPathWalk::crossMedium(const Medium& medium) {
     state.sampler.at(state.interactions + 1, Draw::Distance);
     const darts::DistanceSample flight =
         step.sampleDistance(flights, heading, surface, state.throughput, [this] { return path_.next(); });
-    state.throughput = state.throughput * darts::to<Rgb>(flight.transmittanceOverPdf);
+    const Rgb weight = darts::to<Rgb>(flight.transmittanceOverPdf);
+    state.throughput = state.throughput * (flight.surface ? weight : weight * medium.sigmaS());
     if (isBlack(state.throughput)) return false;
-    if (flight.surface) return scatterOnSurface(*hit);
-    state.throughput = state.throughput * medium.sigmaS();
-    return scatterInMedium(medium, flight.distance);
+    return flight.surface ? scatterOnSurface(*hit) : scatterInMedium(medium, flight.distance);
 }
 
 /// A camera segment that does not count: time starts at the vertex on it.
@@ -176,24 +175,26 @@ bool GuidedPathWalk::crossUntimed(const Medium& medium) {
     // Only vertices in the medium must lie in the ball from which light is in time: mirrors farther away still count.
     const Vec3f toTarget = path_.target->vertex.position() - state.ray.origin;
     const ShellChord inTime(toTarget, state.ray.direction, 0.0, reach, double(surface));
+    float staying = 1.0f;
     if (hit) {
         const Rgb reaching = medium.transmittance(surface);
         findAt(*hit, state.throughput * reaching);
         const float probability = inTime.empty() ? 1.0f : meanComponent(reaching);
         state.sampler.at(state.interactions + 1, Draw::Flight);
         if (path_.next() < probability) {
-            state.throughput = state.throughput * reaching / probability;
+            state.throughput = state.throughput * (reaching / probability);
             return scatterOnSurface(*hit);
         }
-        state.throughput = state.throughput / (1.0f - probability);
+        staying = 1.0f - probability;
     }
-    const auto distance = sampleUntimed(medium, inTime);
+    const auto distance = sampleUntimed(medium, inTime, staying);
     return distance && !isBlack(state.throughput) && scatterInMedium(medium, *distance);
 }
 
 /// A distance from which light may still arrive, half of them by transmittance, half by angle; the throughput includes
 /// its scattering.
-std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const ShellChord& chord) {
+std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const ShellChord& chord,
+                                                   float probability) {
     if (chord.empty()) return std::nullopt;
     const darts::ConnectionLength<double> flights{chord.begin(), chord.end() - chord.begin(),
                                                   double(meanComponent(medium.sigmaT()))};
@@ -203,7 +204,7 @@ std::optional<float> GuidedPathWalk::sampleUntimed(const Medium& medium, const S
     const double pdf = 0.5 * flights.pdf(t - chord.begin()) + 0.5 * chord.pdf(t);
     if (!(pdf > 0.0)) return std::nullopt;
     Rgb& throughput = path_.state.throughput;
-    throughput = throughput * medium.sigmaS() * medium.transmittance(float(t)) * float(1.0 / pdf);
+    throughput = throughput * (medium.sigmaS() * medium.transmittance(float(t)) * float(1.0 / (pdf * double(probability))));
     return float(t);
 }
 

@@ -28,7 +28,7 @@ class GuidedPathWalk {
     bool crossMedium(const Medium& medium);
     bool crossUntimed(const Medium& medium);
     bool crossEmpty();
-    std::optional<float> sampleUntimed(const Medium& medium, const ShellChord& inTime);
+    std::optional<float> sampleUntimed(const Medium& medium, const ShellChord& inTime, float probability);
     /// Light that the surface at the end of the ray emits or scatters straight from the target; `throughput` includes
     /// the way there.
     void findAt(const SurfaceHit& hit, const Rgb& throughput);

@@ -95,7 +95,9 @@ bool GuidedPathWalk::scatterInMedium(const Medium& medium, float distance) {
     lookOut({state.ray.origin});
     ConnectionsFromMedia::connect(path_, medium, controlShare);
     const darts::Guide& guide = path_.guideOf(state.region);
-    if (state.interactions + 1 >= scene_.transport.maxBounces || !survives(guide)) return false;
+    if (state.interactions + 1 >= scene_.transport.maxBounces) return false;
+    connectToLightPaths({medium, state.ray.origin, before, state.region});
+    if (!survives(guide)) return false;
     split(guide, [&](GuidedPathWalk& copy) {
         if (copy.leaveInMedium(medium, before)) copy.goOn();
     });
@@ -106,7 +108,6 @@ bool GuidedPathWalk::leaveInMedium(const Medium& medium, const Vec3f& before) {
     CameraPath& state = path_.state;
     const darts::Guide& guide = path_.guideOf(state.region);
     path_.step.startWay();
-    connectToLightPaths({medium, state.ray.origin, before, state.region});
     if (!path_.step.residual().alive() || guide.settings().direction == darts::Direction::Phase) {
         state.sampler.at(state.interactions, Draw::Direction);
         state.ray.direction = medium.phase.sample(before, state.sampler.next2D());
@@ -149,17 +150,15 @@ bool GuidedPathWalk::leaveGuided(const transport::Vertex& here, const darts::Gui
     path_.last.kind = LastVertex::Kind::Surface;
     path_.last.position = surface.hit.position;
     state.ray = Ray{surface.hit.position, state.ray.direction};
-    if (path_.step.residual().alive()) {
-        lookOut({surface.hit.position, surface.hit.margin()});
-        if (!survives(guide)) return false;
-    }
+    if (path_.step.residual().alive()) lookOut({surface.hit.position, surface.hit.margin()});
     connectToLightPaths(here);
     if (!path_.step.residual().alive()) return leavePlainly(surface);
+    if (!survives(guide)) return false;
     path_.step.startWay();
     state.counters.leave(lobe::DiffuseReflection);
     const darts::DirectionSample sample = sampleDirection(guide, SurfaceScatterer{surface, state.sampler});
     state.ray = surface.hit.leave(darts::to<Vec3f>(sample.direction));
-    state.throughput = state.throughput * here.scattering(state.ray.direction) * sample.inversePdf;
+    state.throughput = state.throughput * (here.scattering(state.ray.direction) * sample.inversePdf);
     path_.last.pdf = here.pdf(state.ray.direction);
     return !isBlack(state.throughput);
 }

@@ -112,9 +112,9 @@ bool LightWalk::scatterOnSurface(const SurfaceHit& hit) {
     const auto exit =
         sampleExit(surface, surface.query(TransportMode::Photons), scene_.transport.consistencyChecks, sampler_);
     if (!exit) return false;
-    throughput_ = throughput_ * exit->weight;
+    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-ray_.direction, exit->direction);
+    throughput_ = throughput_ * (exit->weight * shading);
     counters_.leave(exit->lobe);
-    if (!exit->straight()) throughput_ = throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction);
     region_ = regionBeyond(surface, exit->direction, region_);
     ray_ = hit.leave(exit->direction);
     if ((exit->lobe & lobe::Smooth) != 0) scattered_ = time_;

@@ -185,7 +185,7 @@ void PathWalk<TimeResolved, Media>::follow(const RefractedLight::Drawn& drawn, c
     const float phase = medium.phase.eval(sealed_->before, drawn.direction);
     const float met = phase * probabilityFlightExits(medium, hit->t);
     const float share = transport::balance(tuning::RefractedGain * density, met);
-    path_.throughput = path_.throughput * medium.transmittance(hit->t) * (phase * drawn.weight * share / density);
+    path_.throughput = path_.throughput * (medium.transmittance(hit->t) * (phase * drawn.weight * share / density));
     aimedAt_ = drawn.emitter;
     onward_ = lobe::SpecularTransmission;
     if (arriveAt(hit)) goOn();

@@ -101,7 +101,7 @@ void GuidedPhotonWalk::leaveOn(const Flight& flight, DepositList<CollapsedFlight
 void GuidedPhotonWalk::leaveAt(float distance, const Flight&, DepositList<CollapsedFlights>& flights) {
     const Vec3f position = path_.ray.at(distance);
     const double time = path_.timeAt(position);
-    Sampler own = path_.records(LightPath::RecordsOf::Vertex);
+    Sampler own = path_.records(LightPath::RecordsOf::Vertex, 1);
     chain_.scatter(path_.chainRules(), {position, path_.ray.direction, path_.power, time, Infinity, path_.bounce + 1},
                    own, flights);
 }

@@ -175,13 +175,13 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
     path_.sampler.at(path_.bounce + 1, Draw::Distance);
     const auto random = [this] { return path_.sampler.next1D(); };
     const darts::DistanceSample next = step_.sampleDistance(guide, heading, surface, path_.power, random);
-    path_.power = path_.power * darts::to<Rgb>(next.transmittanceOverPdf);
+    const Rgb weight = darts::to<Rgb>(next.transmittanceOverPdf);
+    path_.power = path_.power * (next.surface ? weight : weight * medium.sigmaS());
     if (isBlack(path_.power)) return false;
     if (next.surface) {
         step_.leave();
         return meetSurface(*hit);
     }
-    path_.power = path_.power * medium.sigmaS();
     if (path_.context.storeVolume)
         std::visit([&](auto& list) { leaveAt(next.distance, flight, list); }, path_.deposits.volume);
     step_.leave();
@@ -191,9 +191,10 @@ bool GuidedPhotonWalk::crossMedium(const Medium& medium, const darts::Guide& gui
 bool GuidedPhotonWalk::scatter(const Medium& medium, const darts::Guide& guide, float distance) {
     const Vec3f position = path_.ray.at(distance), before = path_.ray.direction;
     path_.collide(position, path_.distanceTo(position));
-    if (!look(guide, {position}) || !survives(guide)) return false;
+    if (!look(guide, {position})) return false;
     if (path_.flights < medium.maxBounces) // else no flight would leave here
         connectToSurfaces({medium, position, before, path_.region}, InSphere);
+    if (!survives(guide)) return false;
     split(guide, medium, before);
     return leave(medium, guide, before);
 }

@@ -81,12 +81,12 @@ bool LightPath::leaveSurface() {
     if (!exit) return false;
     counters.leave(exit->lobe);
     const Region ahead = regionBeyond(surface, exit->direction, region);
+    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-ray.direction, exit->direction);
     if (!exit->straight()) {
-        power = power * surface.photonShadingFactor(-ray.direction, exit->direction);
         connectable = (exit->lobe & lobe::Smooth) != 0 && ahead.medium == region.medium && ahead.speed == region.speed;
         fromLight = fromLight && (exit->lobe & lobe::Smooth) == 0;
     }
-    power = power * exit->weight;
+    power = power * (exit->weight * shading);
     if (isBlack(power)) return false;
     region = ahead;
     ray = surface.hit.leave(exit->direction);

@@ -77,8 +77,9 @@ struct LightPath {
     void depositBeam(DepositList<PhotonBeam>& beams, const Medium& medium, float reach);
     /// What the records draw that are left here: there may be any number of them.
     enum class RecordsOf : uint32_t { Light, Flight, Vertex, Surface, End, Count };
-    [[nodiscard]] Sampler records(RecordsOf left) const {
-        return sampler.branch(RandomStream::Record, uint64_t(bounce) * uint64_t(RecordsOf::Count) + uint64_t(left));
+    [[nodiscard]] Sampler records(RecordsOf left, int further = 0) const {
+        return sampler.branch(RandomStream::Record,
+                              uint64_t(bounce + further) * uint64_t(RecordsOf::Count) + uint64_t(left));
     }
     /// What the chain's records obey.
     [[nodiscard]] FlightChain::Rules chainRules() const;

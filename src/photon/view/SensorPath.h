@@ -105,6 +105,7 @@ SensorSteps followSensorPath(const Scene& scene, SensorState state, const Sensor
             state.glossyPdf = 0.0f;
         }
         state.throughput = state.throughput * exit->weight;
+        if (isBlack(state.throughput)) return steps;
         state.region = regionBeyond(surface, exit->direction, state.region);
         state.ray = hit->leave(exit->direction);
     }
