@@ -1,7 +1,7 @@
 #include "path/PathTracer.h"
 
+#include "path/PathVisitor.h"
 #include "path/Tuning.h"
-#include "path/plain/PathWalk.h"
 
 #include "tungsten/render/EarliestArrival.h"
 
@@ -182,7 +182,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const WalkContext context{
+    const PathContext context{
         *scene_,   settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries,
         pass.watch};
     const bool lasers = targets_->any();
@@ -194,7 +194,7 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
                 Sampler light = sampler.branch(RandomStream::Target, 0);
                 source = targets_->sample(u, light, pass.watch, counters);
             }
-            PathWalk<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr).run(ray);
+            tracePath<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr, ray);
         });
 }
 

@@ -26,8 +26,10 @@ struct BounceLimits {
     [[nodiscard]] Remaining remaining(int interactions) const {
         return {minBounces - interactions, maxBounces - 1 - interactions};
     }
-    /// A path that has interacted so often may be part of one that is rendered.
+    /// Walks go on if what they may find next has so many interactions, with them, that it may count.
     [[nodiscard]] bool mayGoOn(int interactions) const { return interactions < maxBounces; }
+    /// Counts a flight in a scattering medium: false if it is one too many since the last surface.
+    [[nodiscard]] static bool fly(int& flights, const Medium& medium) { return ++flights <= medium.maxBounces; }
     /// Of a path with so many scatterings in media, of which the last `inARow`, seen from the light, have no surface
     /// between them. Without low orders one that is alone there does not count, whatever comes before it: the format
     /// ends camera paths that meet a surface after their first scattering in a medium.

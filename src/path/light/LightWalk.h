@@ -24,7 +24,7 @@ struct LightWalkContext {
 
 /// What happened, counted by one worker.
 struct LightWalkCounters : transport::StepCounters {
-    uint64_t rays = 0, shadowRays = 0, connections = 0, nonFinite = 0;
+    uint64_t shadowRays = 0, connections = 0, nonFinite = 0;
     uint64_t timed = 0, laterFrames = 0, weighed = 0; ///< of what arrives, timed: at a sensor that is not always open
 };
 

@@ -16,7 +16,7 @@
 namespace tungsten::photon {
 
 struct WalkCounters : transport::StepCounters {
-    uint64_t rays = 0, controlVertices = 0;
+    uint64_t controlVertices = 0;
     /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
     uint64_t volumeDeposits = 0, countingDeposits = 0;
     uint64_t nonFinite = 0; ///< powers: nothing was stored

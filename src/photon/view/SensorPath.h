@@ -46,11 +46,10 @@ struct SensorState {
 
 /// What following a path took.
 struct SensorSteps : transport::StepCounters {
-    uint64_t rays = 0, glossy = 0; ///< glossy: surfaces left along a glossy lobe
+    uint64_t glossy = 0; ///< glossy: surfaces left along a glossy lobe
 
     SensorSteps& operator+=(const SensorSteps& other) {
         StepCounters::operator+=(other);
-        rays += other.rays;
         glossy += other.glossy;
         return *this;
     }

@@ -1,0 +1,211 @@
+#include "path/PathVisitor.h"
+
+#include "path/Tuning.h"
+
+#include "transport/Balance.h"
+
+namespace tungsten::path {
+
+using transport::Ahead;
+using transport::Flight;
+using transport::Vertex;
+using transport::WalkVertex;
+using transport::Way;
+
+template <bool TimeResolved>
+bool PathVisitor<TimeResolved>::ahead(PathState&, auto&, const Ahead& ahead) {
+    if (!context_->refracted || !ahead.medium || !ahead.medium->scatters()) return true;
+    wayOut_.reset();
+    return aimedAt_ < 0;
+}
+
+template <bool TimeResolved>
+bool PathVisitor<TimeResolved>::tooLate(const PathState& path) const {
+    // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
+    if (!TimeResolved || !path.timed) return false;
+    const Vec3f& position = path.ray.origin;
+    if (context_->bound.mayArrive(position, path.time)) return false;
+    return !source_ ||
+           !context_->bound.beforeEnd(path.time, (source_->vertex.position() - position).length(), source_->start);
+}
+
+template <bool TimeResolved>
+bool PathVisitor<TimeResolved>::arrive(PathState& path, auto&, const Ahead& ahead, const Flight& flight) {
+    if (tooLate(path)) return false;
+    if (flight.event == Flight::Event::Surface) {
+        const uint32_t shape = ahead.hit->shape;
+        if (shape < scene().primitives.size() && scene().primitives[shape].emitter >= 0) addEmission(path, *ahead.hit);
+        if (limits().endsAtSurface(path.mediumScatters)) return false;
+    }
+    return limits().mayGoOn(path.interactions);
+}
+
+template <bool TimeResolved>
+bool PathVisitor<TimeResolved>::vertex(PathState& path, auto& steps, const WalkVertex& at) {
+    const bool connects = at.medium ? settings().volumeLightSampling
+                                    : settings().lightSampling && (at.surface->bsdf->lobes() & lobe::Smooth) != 0;
+    if (connects) {
+        const Vertex vertex = at.connectible(scene(), TransportMode::Radiance, path);
+        // In sealed bodies no vertex is both smooth and in the open.
+        if (orderCounts(path) && !context_->refracted) connectToLight(path, vertex);
+        if (source_) connectToSource(path, vertex);
+    }
+    if (context_->refracted && at.medium) {
+        sealed_ = SealedVertex{at.position, at.before, path.time, path.region};
+        aimThroughWall(path, steps, *at.medium);
+    }
+    return true;
+}
+
+template <bool TimeResolved>
+void PathVisitor<TimeResolved>::leave(PathState& path, auto& steps, const WalkVertex& at, const Way& way) {
+    if (!context_->refracted || at.medium) return;
+    // A way out of a body begins, or has ended.
+    steps.lobes = lobe::All;
+    const SurfaceHit& hit = at.surface->hit;
+    if (sealed_ && way.lobe == lobe::SpecularTransmission) {
+        const Region& inside = sealed_->region;
+        if (&scene().primitives[hit.shape] == context_->refracted->boundary(inside.medium))
+            wayOut_ = WayOut{*sealed_, at.before, context_->refracted->faceOf(inside.medium, hit.ng),
+                             path.last.pdf * probabilityFlightExits(*scene().medium(inside), hit.t)};
+    }
+    sealed_.reset();
+}
+
+template <bool TimeResolved>
+bool PathVisitor<TimeResolved>::sharesWithConnections(const PathState& path) const {
+    using Kind = transport::LastVertex::Kind;
+    switch (path.last.kind) {
+    case Kind::Medium: return settings().volumeLightSampling;
+    case Kind::Surface: return settings().lightSampling;
+    case Kind::Specular: return false; // emitters seen in a mirror cannot be connected to
+    }
+    return false;
+}
+
+template <bool TimeResolved>
+void PathVisitor<TimeResolved>::addEmission(const PathState& path, const SurfaceHit& hit) {
+    const int index = scene().primitives[hit.shape].emitter;
+    const Emitter& emitter = scene().emitters[size_t(index)];
+    const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -path.ray.direction);
+    // The light is no interaction of its own path.
+    if (isBlack(radiance) || !limits().renders(path.interactions - 1) || !orderCounts(path)) return;
+    float weight = 1.0f;
+    if (sharesWithConnections(path)) {
+        const float lightPdf =
+            pdfDirect(emitter, path.last.position, hit.position, hit.ng) * context_->lights.probability(index);
+        weight = transport::powerHeuristic(path.last.pdf, lightPdf);
+    }
+    if (context_->refracted) weight *= refractedShare(index);
+    sink_->add(path.throughput * radiance * weight, path.time + emitter.emissionTime, emitter);
+}
+
+template <bool TimeResolved>
+void PathVisitor<TimeResolved>::addEnvironment(const PathState& path) {
+    if (scene().infiniteEmitters.empty() || scene().medium(path.region) || !limits().renders(path.interactions) ||
+        !orderCounts(path))
+        return;
+    const int index = scene().infiniteEmitters.back();
+    const Emitter& emitter = scene().emitters[size_t(index)];
+    float weight = 1.0f;
+    if (sharesWithConnections(path))
+        weight = transport::powerHeuristic(path.last.pdf, pdfDirectInfinite(emitter, path.ray.direction) *
+                                                              context_->lights.probability(index));
+    sink_->add(path.throughput * environmentRadiance(emitter, path.ray.direction) * weight, Infinity, emitter);
+}
+
+template <bool TimeResolved>
+void PathVisitor<TimeResolved>::connectToLight(PathState& path, const Vertex& vertex) {
+    path.random.at(path.interactions, Draw::Light);
+    const auto choice = context_->lights.sample(path.random.next1D());
+    if (!choice) return;
+    const Emitter& emitter = *choice->emitter;
+    const auto direct = sampleDirect(emitter, path.ray.origin, path.random.next2D());
+    if (!direct) return;
+    ++counters_->connections;
+    if constexpr (TimeResolved)
+        if (!context_->bound.mayConnect(path.time, direct->distance, emitter.emissionTime)) return;
+    const auto connection =
+        connector_.connect(vertex, path.throughput, transport::connectionEnd(*direct), counters_->shadowRays);
+    if (!connection || !limits().renders(path.interactions + connection->crossings)) return;
+    // Point-like emitters cannot be found by the walk: full weight.
+    const float pdf = direct->pdf;
+    const float weight =
+        pdf > 0.0f ? transport::powerHeuristic(pdf * choice->probability, vertex.pdf(direct->direction)) : 1.0f;
+    sink_->add(connection->throughput * (weight / choice->probability),
+               path.time + connection->time + emitter.emissionTime, emitter);
+}
+
+template <bool TimeResolved>
+void PathVisitor<TimeResolved>::connectToSource(const PathState& path, const Vertex& vertex) {
+    if (!orderCounts(path, source_->mediumScatters)) return;
+    const auto way = transport::straightWay(path.ray.origin, source_->vertex.position());
+    if (!way) return;
+    ++counters_->connections;
+    if constexpr (TimeResolved)
+        if (!context_->bound.mayConnect(path.time, way->distance, source_->start)) return;
+    const auto connection =
+        connector_.connect(vertex, path.throughput, transport::connectionEnd(*way, *source_), counters_->shadowRays);
+    if (!connection || !limits().renders(path.interactions + connection->crossings + source_->interactions)) return;
+    sink_->add(connection->throughput, path.time + connection->time + source_->start, *source_->emitter);
+}
+
+template <bool TimeResolved>
+void PathVisitor<TimeResolved>::aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const {
+    const RefractedLight& refracted = *context_->refracted;
+    if (path.flights + 1 > medium.maxBounces) return;
+    transport::Walk aimed(path, steps, *this);
+    aimed.path.random = path.random.branch(RandomStream::Aimed, uint64_t(path.interactions));
+    const auto drawn = refracted.draw(*sealed_, aimed.path.random);
+    if (!drawn) return;
+    aimed.path.ray = Ray{path.ray.origin, drawn->direction};
+    ++counters_->rays;
+    ++counters_->refracted;
+    const Ahead ahead{&medium, scene().geometry->intersect(aimed.path.ray)};
+    if (!ahead.hit || &scene().primitives[ahead.hit->shape] != refracted.boundary(path.region.medium) ||
+        refracted.faceOf(path.region.medium, ahead.hit->ng) != drawn->face)
+        return;
+    const float density = refracted.density(*sealed_, drawn->direction, drawn->face, drawn->emitter);
+    if (!(density > 0.0f)) return;
+    const float reach = ahead.reach(), exits = probabilityFlightExits(medium, reach);
+    const float phase = medium.phase.eval(sealed_->before, drawn->direction);
+    const float share = transport::balance(tuning::RefractedGain * density, phase * exits);
+    aimed.visitor.aimedAt_ = drawn->emitter;
+    aimed.steps.lobes = lobe::SpecularTransmission;
+    if (aimed.arrive(ahead, {Flight::Event::Surface, reach,
+                             medium.transmittance(reach) * (phase * drawn->weight * share / density)}))
+        aimed.run();
+}
+
+template <bool TimeResolved>
+float PathVisitor<TimeResolved>::refractedShare(int emitter) const {
+    if (aimedAt_ >= 0) return emitter == aimedAt_ ? 1.0f : 0.0f;
+    if (!wayOut_) return 1.0f;
+    const float density = context_->refracted->density(wayOut_->from, wayOut_->direction, wayOut_->face, emitter);
+    return transport::balance(wayOut_->pdf, tuning::RefractedGain * density);
+}
+
+template <bool TimeResolved, bool Media>
+void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
+               const PathTarget* source, const Ray& ray) {
+    const Scene& scene = context.scene;
+    ++counters.paths;
+    CameraSteps<TimeResolved, Media> steps({scene, counters, context.watch});
+    steps.roulette = context.settings.russianRoulette;
+    const PathState start{.random = sampler,
+                          .ray = ray,
+                          .region = scene.cameraRegion,
+                          .timed = !scene.transport.cameraUnwarped};
+    transport::Walk(start, steps, PathVisitor<TimeResolved>(context, sink, counters, source)).run();
+}
+
+template void tracePath<false, false>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
+                                      const Ray&);
+template void tracePath<false, true>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
+                                     const Ray&);
+template void tracePath<true, false>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
+                                     const Ray&);
+template void tracePath<true, true>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
+                                    const Ray&);
+
+} // namespace tungsten::path

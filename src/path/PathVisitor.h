@@ -1,0 +1,97 @@
+#pragma once
+// What plain walks from the camera do on their way: every vertex is connected to a light, and lights are met.
+
+#include "path/ArrivalBound.h"
+#include "path/PathSettings.h"
+#include "path/PathTarget.h"
+#include "path/PixelSink.h"
+#include "path/techniques/RefractedLight.h"
+
+#include "transport/PlainSteps.h"
+
+#include "tungsten/scene/LightChoice.h"
+
+namespace tungsten::path {
+
+using transport::PathState;
+
+/// What a walk needs to know; shared by all threads.
+struct PathContext {
+    const Scene& scene;
+    const PathSettings& settings;
+    const LightChoice& lights;
+    const ArrivalBound& bound;
+    const RefractedLight* refracted; ///< of scenes whose bodies are all sealed, or null
+    bool forwardBoundaries;          ///< connections must look through index-matched surfaces
+    const PassWatch& watch;
+};
+
+/// Light that starts in a single direction is found through the virtual point source `source`, if there is one.
+/// `TimeResolved` off leaves out every test of time.
+template <bool TimeResolved>
+class PathVisitor : public transport::VisitorBase {
+  public:
+    PathVisitor(const PathContext& context, PixelSink& sink, PathCounters& counters, const PathTarget* source)
+        : context_(&context), sink_(&sink), counters_(&counters),
+          connector_(context.scene, context.forwardBoundaries), source_(source) {}
+
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
+    bool ahead(PathState& path, auto& steps, const transport::Ahead& ahead);
+    void escape(PathState& path) { addEnvironment(path); }
+    bool arrive(PathState& path, auto& steps, const transport::Ahead& ahead, const transport::Flight& flight);
+    bool vertex(PathState& path, auto& steps, const transport::WalkVertex& vertex);
+    void leave(PathState& path, auto& steps, const transport::WalkVertex& vertex, const transport::Way& way);
+
+  private:
+    /// The way out of a sealed body, from its last vertex, as long as it meets nothing but surfaces.
+    struct WayOut {
+        SealedVertex from;
+        Vec3f direction;
+        size_t face;
+        float pdf; ///< of the direction, times the probability of the flight to the boundary
+    };
+
+    [[nodiscard]] const Scene& scene() const { return context_->scene; }
+    [[nodiscard]] const PathSettings& settings() const { return context_->settings; }
+    [[nodiscard]] const transport::BounceLimits& limits() const { return settings().limits; }
+    /// Whether light found at the end of the present flight counts (low_order_scattering, include_surfaces).
+    [[nodiscard]] bool orderCounts(const PathState& path, int further = 0) const {
+        return limits().orderCounts(path.mediumScatters + further);
+    }
+    /// The present direction was drawn at a vertex that was connected to lights, too.
+    [[nodiscard]] bool sharesWithConnections(const PathState& path) const;
+    /// Whether light found from the path's vertex on can still arrive inside the gate.
+    [[nodiscard]] bool tooLate(const PathState& path) const;
+    void addEmission(const PathState& path, const SurfaceHit& hit);
+    void addEnvironment(const PathState& path);
+    // Light that connections of the vertex bring: of an emitter, and of the virtual source.
+    void connectToLight(PathState& path, const transport::Vertex& vertex);
+    void connectToSource(const PathState& path, const transport::Vertex& vertex);
+
+    // Sealed bodies.
+    /// From the vertex: a walk that aims at an emitter through a face.
+    void aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const;
+    /// Of light of an emitter that is met: the part that is not left to the other way of finding the same path.
+    [[nodiscard]] float refractedShare(int emitter) const;
+
+    const PathContext* context_;
+    PixelSink* sink_;
+    PathCounters* counters_;
+    transport::Connector connector_;
+    const PathTarget* source_;
+    std::optional<SealedVertex> sealed_; ///< the last vertex, if it is one of a sealed body
+    std::optional<WayOut> wayOut_;
+    int aimedAt_ = -1; ///< the emitter, of a walk that follows a drawn way out
+};
+
+/// The options of walks from the camera.
+template <bool TimeResolved, bool Media>
+using CameraSteps = transport::PlainSteps<transport::PlainOptions{
+    .mode = TransportMode::Radiance, .media = Media, .timed = TimeResolved}>;
+
+/// Traces one camera path along `ray` and adds what it finds to the sink.
+template <bool TimeResolved, bool Media>
+void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
+               const PathTarget* source, const Ray& ray);
+
+} // namespace tungsten::path

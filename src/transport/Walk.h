@@ -1,0 +1,202 @@
+#pragma once
+// Every walk through the scene, from the camera or from a light, plain or guided, is this loop. Steps draw how it goes
+// on; a visitor does what is to be done on the way: connections, deposits, light that is met. Neither the loop nor a
+// step adds light anywhere.
+
+#include "transport/BounceLimits.h"
+#include "transport/PathState.h"
+#include "transport/StepCounters.h"
+#include "transport/Vertex.h"
+
+#include <concepts>
+#include <optional>
+
+namespace tungsten::transport {
+
+/// Where walks go, who counts what they do, and who may break them off.
+struct WalkContext {
+    const Scene& scene;
+    StepCounters& counters;
+    const PassWatch& watch;
+};
+
+/// What lies ahead of a ray.
+struct Ahead {
+    const Medium* medium; ///< that it goes through; null in vacuum
+    std::optional<SurfaceHit> hit;
+
+    [[nodiscard]] float reach() const { return hit ? hit->t : Infinity; }
+};
+
+/// How a flight ends.
+struct Flight {
+    enum class Event { Nothing, Collision, Surface, Escape }; ///< Nothing: nowhere where the walk could still be of use
+    Event event = Event::Nothing;
+    float distance = Infinity; ///< along the ray
+    Rgb weight{1.0f};          ///< collision: sigmaS T / pdf; else T / pdf, T the transmittance
+    float pdf = 1.0f;          ///< collision: density per length; else a probability
+    double length = distance;  ///< the same between the vertices as they are stored, for the clock
+};
+
+/// The vertex at a flight's end, in a medium or on a surface: one of the two is set.
+struct WalkVertex {
+    const Medium* medium;
+    const SurfaceInteraction* surface;
+    Vec3f position;
+    Vec3f before; ///< direction of propagation up to here
+
+    /// As others are connected to it, `path` being there.
+    [[nodiscard]] Vertex connectible(const Scene& scene, TransportMode mode, const PathState& path) const {
+        return surface ? Vertex(scene, *surface, before, mode, path.region)
+                       : Vertex(*medium, position, before, path.region);
+    }
+};
+
+/// How a walk leaves a vertex.
+struct Way {
+    Ray ray;
+    Region region;
+    Rgb weight{1.0f};            ///< scattering, on surfaces times cosine, over the density or the probability
+    float pdf = 0.0f;            ///< per solid angle by the walk's own steps; 0 for what has no density
+    LobeMask lobe = lobe::None;  ///< of a surface
+
+    [[nodiscard]] bool straight() const { return lobe == lobe::Forward; }
+    [[nodiscard]] bool smooth() const { return (lobe & lobe::Smooth) != 0; }
+};
+
+/// How a walk goes on. `Timed`: it has a clock. What it draws it takes from path.random by place (Draw).
+template <typename S>
+concept Steps = requires(S& steps, PathState& path, const Ahead& ahead, const WalkVertex& vertex) {
+    { S::Timed } -> std::convertible_to<bool>;
+    { steps.context() } -> std::convertible_to<WalkContext>;
+    /// Traces the ray ahead, as far as anything can be of use. None where limits, or time, end the walk.
+    { steps.ahead(path) } -> std::same_as<std::optional<Ahead>>;
+    { steps.flight(path, ahead) } -> std::same_as<Flight>;
+    /// What is still to come from the vertex: false if nothing can be in time.
+    { steps.look(path, vertex) } -> std::same_as<bool>;
+    /// Roulette and splitting before the way on, by nothing but the path so far: into how many the walk goes on, 0 if
+    /// it ends. Roulette has divided the throughput, splitting has not.
+    { steps.copies(path, vertex) } -> std::same_as<int>;
+    { steps.way(path, vertex) } -> std::same_as<std::optional<Way>>;
+    /// Roulette by the throughput with the weight of the way.
+    { steps.survives(path) } -> std::same_as<bool>;
+};
+
+/// What is done on the way; VisitorBase does nothing. What returns false ends the walk.
+template <typename V, typename S>
+concept Visitor = requires(V& visitor, PathState& path, S& steps, const Ahead& ahead, const Flight& flight,
+                           const WalkVertex& vertex, const Way& way) {
+    /// What may be found by flying on can still count.
+    { visitor.mayGoOn(path) } -> std::same_as<bool>;
+    /// A flight starts: what it leaves on its whole length, what is looked up along it.
+    { visitor.ahead(path, steps, ahead) } -> std::same_as<bool>;
+    /// The scene is left; the throughput includes the way there.
+    visitor.escape(path);
+    /// At the flight's end, before anything scatters: light that is met, bounds in time, limits.
+    { visitor.arrive(path, steps, ahead, flight) } -> std::same_as<bool>;
+    /// Connections and deposits of the vertex, before its roulette.
+    { visitor.vertex(path, steps, vertex) } -> std::same_as<bool>;
+    /// Before `path` takes this way.
+    visitor.leave(path, steps, vertex, way);
+    /// The walk is over.
+    visitor.end(path);
+};
+
+struct VisitorBase {
+    bool ahead(PathState&, auto&, const Ahead&) { return true; }
+    void escape(PathState&) {}
+    bool arrive(PathState&, auto&, const Ahead&, const Flight&) { return true; }
+    bool vertex(PathState&, auto&, const WalkVertex&) { return true; }
+    void leave(PathState&, auto&, const WalkVertex&, const Way&) {}
+    void end(PathState&) {}
+};
+
+template <typename S, typename V>
+    requires Steps<S> && Visitor<V, S>
+class Walk {
+  public:
+    Walk(const PathState& start, const S& ownSteps, const V& ownVisitor)
+        : path(start), steps(ownSteps), visitor(ownVisitor) {}
+
+    /// Flights and vertices, until something ends the walk.
+    void run() {
+        while (visitor.mayGoOn(path)) {
+            steps.context().counters.step(steps.context().watch);
+            const auto ahead = steps.ahead(path);
+            if (!ahead || !visitor.ahead(path, steps, *ahead)) break;
+            if (!arrive(*ahead, steps.flight(path, *ahead))) break;
+        }
+        visitor.end(path);
+    }
+
+    /// The walk has flown, and scatters: true if it goes on from there.
+    bool arrive(const Ahead& ahead, const Flight& flight) {
+        if (flight.event == Flight::Event::Nothing) return false;
+        path.throughput = path.throughput * flight.weight;
+        if (flight.event == Flight::Event::Escape) {
+            visitor.escape(path);
+            return false;
+        }
+        if (isBlack(path.throughput)) return false;
+        const Medium* scatters = flight.event == Flight::Event::Collision ? ahead.medium : nullptr;
+        fly(flight, scatters, ahead);
+        if (!visitor.arrive(path, steps, ahead, flight)) return false;
+        SurfaceInteraction surface;
+        if (!scatters) surface = makeInteraction(scene(), *ahead.hit, path.ray.direction);
+        const WalkVertex vertex{scatters, scatters ? nullptr : &surface, path.ray.origin, path.ray.direction};
+        if (!steps.look(path, vertex) || !visitor.vertex(path, steps, vertex)) return false;
+        // Copies have their own numbers; they share the throughput.
+        const int copies = steps.copies(path, vertex);
+        if (copies > 1) path.throughput = path.throughput / float(copies);
+        for (int i = 1; i < copies; ++i) {
+            Walk copy(*this);
+            copy.path.random = path.random.copy(path.interactions, i);
+            if (copy.leave(vertex)) copy.run();
+        }
+        return copies > 0 && leave(vertex);
+    }
+
+    PathState path;
+    S steps;
+    V visitor;
+
+  private:
+    [[nodiscard]] const Scene& scene() const { return steps.context().scene; }
+
+    /// To the vertex, where an interaction is counted: in the medium that scatters, or on the surface if it is null.
+    void fly(const Flight& flight, const Medium* scatters, const Ahead& ahead) {
+        if constexpr (S::Timed) path.time = path.timeAfter(flight.length);
+        ++path.interactions;
+        if (scatters) {
+            steps.context().counters.scatter(*scatters);
+            ++path.mediumScatters;
+            ++path.inARow;
+            path.timed = path.scattered = true;
+        } else {
+            ++steps.context().counters.surfaceEvents;
+            path.flights = path.inARow = 0;
+        }
+        path.ray = {scatters ? path.ray.at(flight.distance) : ahead.hit->position, path.ray.direction};
+    }
+
+    /// By a way that the steps draw; false if none goes on.
+    bool leave(const WalkVertex& vertex) {
+        const auto way = steps.way(path, vertex);
+        if (!way) return false;
+        if (vertex.surface) steps.context().counters.leave(way->lobe);
+        visitor.leave(path, steps, vertex, *way);
+        path.ray = way->ray;
+        path.region = way->region;
+        path.throughput = path.throughput * way->weight;
+        if (!way->straight()) {
+            using Kind = LastVertex::Kind;
+            const bool smooth = vertex.medium || way->smooth();
+            path.last = {vertex.medium ? Kind::Medium : smooth ? Kind::Surface : Kind::Specular, vertex.position,
+                         way->pdf};
+            if (smooth) path.timed = path.scattered = true;
+        }
+        return !isBlack(path.throughput) && steps.survives(path);
+    }
+};
+
+} // namespace tungsten::transport
