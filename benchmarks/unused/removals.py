@@ -69,7 +69,7 @@ REMOVALS = [
          "constexpr bool out = false;"),
         ("src/photon/light/GuidedPhotonWalk.cpp",
          "if (hit && step_.residual().way == darts::Way::Out && step_.residual().exit.connects)", "if (false)"),
-        ("src/transport/GuidedStep.cpp", "const bool out = reachable_.way == darts::Way::Out;", "constexpr bool out = false;"),
+        ("src/transport/GuidedSteps.cpp", "const bool out = reachable_.way == darts::Way::Out;", "constexpr bool out = false;"),
     ]),
     ("sliced primitives", MAPS, [
         ("src/photon/light/PhotonWalk.cpp", "std::visit([&](auto& list) { endChain(list); }, path_.deposits.volume);", ""),
@@ -94,8 +94,8 @@ REMOVALS = [
         ("src/photon/light/PhotonWalk.cpp", "if (medium->scatters() && ++path_.flights > medium->maxBounces) return;", ""),
         ("src/photon/light/GuidedPhotonWalk.cpp", "if (++path_.flights > medium.maxBounces) return false;", ""),
         ("src/path/guided/GuidedPathWalk.cpp", "bool GuidedPathWalk::crossMedium(const Medium& medium) {\n    CameraPath& state = "
-         "path_.state;\n    transport::GuidedStep& step = path_.step;\n    if (!path_.mayFly(&medium)) return false;",
+         "path_.state;\n    transport::GuidedSteps& step = path_.step;\n    if (!path_.mayFly(&medium)) return false;",
          "bool GuidedPathWalk::crossMedium(const Medium& medium) {\n    CameraPath& state = path_.state;\n"
-         "    transport::GuidedStep& step = path_.step;"),
+         "    transport::GuidedSteps& step = path_.step;"),
     ]),
 ]

@@ -6,7 +6,7 @@
 #include "path/CameraPath.h"
 #include "path/PathTarget.h"
 
-#include "transport/GuidedStep.h"
+#include "transport/GuidedSteps.h"
 
 namespace tungsten::path {
 
@@ -122,7 +122,7 @@ struct GuidedPath {
     const GuidedContext& context;
     const PathTarget* target = nullptr;
     CameraPath state;
-    transport::GuidedStep step; ///< looks from the ray's origin
+    transport::GuidedSteps step; ///< looks from the ray's origin
     LastVertex last;
     std::optional<Approach> approach;
 };

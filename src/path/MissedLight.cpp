@@ -2,6 +2,8 @@
 
 #include "path/PathTarget.h"
 
+#include "transport/PlainSteps.h"
+
 #include "tungsten/core/Warp.h"
 #include "tungsten/render/EarliestArrival.h"
 #include "tungsten/render/SceneUses.h"
@@ -31,6 +33,41 @@ Vec3f pointIn(const Imath::Box3f& box, Sampler& sampler) {
     const Vec3f u(sampler.next1D(), sampler.next1D(), sampler.next1D());
     return box.min + u * (box.max - box.min);
 }
+
+/// Follows light of an emitter to the first vertex that scatters it, should that be in time.
+struct SpecularWay : transport::VisitorBase {
+    SpecularWay(const Scene& wholeScene, const Emitter& from, double lastTime)
+        : scene(&wholeScene), emitter(&from), last(lastTime) {}
+
+    // What scatters is an interaction, too.
+    [[nodiscard]] bool mayGoOn(const PathState& path) const {
+        return transport::BounceLimits(scene->transport).mayGoOn(path.interactions + 1);
+    }
+    bool vertex(PathState& path, auto& steps, const transport::WalkVertex& at) {
+        const LobeMask lobes = at.surface ? at.surface->bsdf->lobes() : lobe::None;
+        if (at.medium || (first && (lobes & lobe::Smooth) != 0)) {
+            if (inTime(path)) found = first;
+            return false;
+        }
+        steps.lobes = lobes & (isSpecularAlone(*at.surface->bsdf) ? lobe::Specular | lobe::Forward : lobe::Forward);
+        return steps.lobes != 0;
+    }
+    void leave(PathState&, auto&, const transport::WalkVertex& at, const transport::Way& way) {
+        if (!way.straight() && !first)
+            first = MissedLight{emitter, at.surface->primitive, way.lobe == lobe::SpecularTransmission};
+    }
+    [[nodiscard]] bool inTime(const PathState& path) const {
+        const Camera& camera = scene->camera;
+        const bool anywhere = scene->transport.cameraUnwarped || !camera.hasSinglePosition();
+        const float left = anywhere ? 0.0f : (path.ray.origin - camera.position()).length();
+        return path.time + double(left) / double(reachableSpeeds(*scene).highest) < last;
+    }
+
+    const Scene* scene;
+    const Emitter* emitter;
+    double last; ///< time of arrival that counts
+    std::optional<MissedLight> first, found; ///< first: by the first surface that mirrors or refracts
+};
 
 class MissedLightSearch {
   public:
@@ -78,50 +115,19 @@ class MissedLightSearch {
     }
 
     /// Along specular and forward lobes to the next vertex that scatters.
-    [[nodiscard]] std::optional<MissedLight> follow(const PathTarget& from, const Vec3f& direction, Sampler& sampler,
-                                                    const PassWatch& watch, PathCounters& counters) const {
-        Ray ray = from.vertex.leave(direction);
-        Region region = from.vertex.regionTowards(direction);
-        double time = from.start;
-        std::optional<MissedLight> way;
-        // What scatters is an interaction, too.
-        for (int met = from.interactions; met + 1 < scene_.transport.maxBounces; ++met) {
-            counters.step(watch);
-            const Medium* medium = scene_.medium(region);
-            FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
-            sampler.at(met + 1, Draw::Flight);
-            if (medium) flight = sampleFlight(*medium, Infinity, sampler);
-            ray.tMax = flight.distance;
-            const auto hit = scene_.geometry->intersect(ray);
-            if (!hit && flight.exited) return std::nullopt;
-            if (!hit)
-                return inTime(ray.at(flight.distance), time + double(flight.distance) / double(region.speed))
-                           ? way
-                           : std::nullopt;
-            if (medium && isBlack(medium->transmittance(hit->t))) return std::nullopt;
-            time += double(hit->t) / double(region.speed);
-            const SurfaceInteraction surface = makeInteraction(scene_, *hit, ray.direction);
-            const LobeMask lobes = surface.bsdf->lobes();
-            if (way && (lobes & lobe::Smooth) != 0) return inTime(hit->position, time) ? way : std::nullopt;
-            const LobeMask onward =
-                isSpecularAlone(*surface.bsdf) ? lobe::Specular | lobe::Forward : LobeMask(lobe::Forward);
-            if ((lobes & onward) == 0) return std::nullopt;
-            sampler.at(met + 1, Draw::Direction);
-            const auto exit = sampleExit(surface, surface.query(TransportMode::Photons, onward), false, sampler);
-            if (!exit || isBlack(exit->weight)) return std::nullopt;
-            if (!exit->straight() && !way)
-                way = MissedLight{from.emitter, surface.primitive, exit->lobe == lobe::SpecularTransmission};
-            region = regionBeyond(surface, exit->direction, region);
-            ray = hit->leave(exit->direction);
-        }
-        return std::nullopt;
-    }
-
-    [[nodiscard]] bool inTime(const Vec3f& position, double time) const {
-        const Camera& camera = scene_.camera;
-        const bool anywhere = scene_.transport.cameraUnwarped || !camera.hasSinglePosition();
-        const float left = anywhere ? 0.0f : (position - camera.position()).length();
-        return time + double(left) / double(reachableSpeeds(scene_).highest) < end_;
+    [[nodiscard]] std::optional<MissedLight> follow(const PathTarget& from, const Vec3f& direction,
+                                                    const Sampler& sampler, const PassWatch& watch,
+                                                    PathCounters& counters) const {
+        const PathState start{.random = sampler,
+                              .ray = from.vertex.leave(direction),
+                              .region = from.vertex.regionTowards(direction),
+                              .time = from.start,
+                              .interactions = from.interactions};
+        transport::PlainLightSteps steps({scene_, counters, watch});
+        steps.checks = false;
+        transport::Walk walk(start, steps, SpecularWay{scene_, *from.emitter, end_});
+        walk.run();
+        return walk.visitor.found;
     }
 
     const Scene& scene_;

@@ -1,5 +1,7 @@
 #include "path/PathTarget.h"
 
+#include "transport/PlainSteps.h"
+
 #include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::path {
@@ -49,67 +51,63 @@ std::optional<PathTarget> TargetChoice::another(const PathTarget& target, Sample
     return other;
 }
 
-/// Light on its straight or specular way from the emitter to its first scattering vertex.
-struct TargetChoice::Laser {
-    Ray ray;
-    Region region;
+namespace {
+
+/// Light on its straight or specular way from an emitter becomes a virtual source where it scatters first; where it may
+/// also go on along a specular or forward lobe, by chance.
+struct FirstScattering : transport::VisitorBase {
+    FirstScattering(const Scene& scene, PathTarget& target)
+        : scene_(&scene), limits_(scene.transport), target_(&target) {}
+
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits_.mayGoOn(path.interactions + 1); }
+    bool vertex(PathState& path, auto& steps, const transport::WalkVertex& at) {
+        if (at.surface) {
+            const LobeMask lobes = at.surface->bsdf->lobes();
+            steps.lobes = lobes & (lobe::Specular | lobe::Forward);
+            const float scatters = (lobes & lobe::Smooth) == 0 ? 0.0f : steps.lobes == 0 ? 1.0f : 0.5f;
+            path.random.at(path.interactions, Draw::Roulette);
+            if (!(path.random.next1D() < scatters)) {
+                path.throughput = path.throughput / (1.0f - scatters);
+                return steps.lobes != 0;
+            }
+            path.throughput = path.throughput / scatters;
+        }
+        target_->vertex = at.connectible(*scene_, TransportMode::Photons, path);
+        target_->power = path.throughput;
+        target_->start = path.time;
+        target_->interactions = path.interactions;
+        target_->mediumScatters = path.mediumScatters;
+        found = true;
+        return false;
+    }
+
+    bool found = false;
+
+  private:
+    const Scene* scene_;
+    transport::BounceLimits limits_;
+    PathTarget* target_;
 };
 
+} // namespace
+
 std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const EmissionSample& emission,
-                                                     Sampler& sampler, const PassWatch& watch,
+                                                     const Sampler& sampler, const PassWatch& watch,
                                                      PathCounters& counters) const {
     target.index = -1;
-    target.power = emission.power / target.probability;
-    Laser laser{emission.ray, scene_.regionOf(*target.emitter)};
-    while (target.interactions + 1 < scene_.transport.maxBounces && !isBlack(target.power)) {
-        counters.step(watch);
-        const Medium* medium = scene_.medium(laser.region);
-        FlightSample flight{Infinity, true, Rgb(1.0f), 1.0f};
-        sampler.at(target.interactions + 1, Draw::Flight);
-        if (medium) flight = sampleFlight(*medium, Infinity, sampler);
-        laser.ray.tMax = flight.distance;
-        ++counters.rays;
-        const auto hit = scene_.geometry->intersect(laser.ray);
-        if (!hit && flight.exited) return std::nullopt;
-        const float length = hit ? hit->t : flight.distance;
-        target.start += double(length) / double(laser.region.speed);
-        ++target.interactions;
-        if (!hit) {
-            target.power = target.power * flight.weight;
-            target.vertex = {*medium, laser.ray.at(length), laser.ray.direction, laser.region};
-            ++target.mediumScatters;
-            return target;
-        }
-        if (medium)
-            target.power = target.power * (medium->transmittance(length) / probabilityFlightExits(*medium, length));
-        const Meeting meeting = meetSurface(target, laser, *hit, sampler);
-        if (meeting == Meeting::Scattered) return target;
-        if (meeting == Meeting::Absorbed) return std::nullopt;
-    }
-    return std::nullopt;
-}
-
-/// Becomes a virtual source or goes on along a specular or forward lobe, by chance where both can be.
-auto TargetChoice::meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const
-    -> Meeting {
-    const SurfaceInteraction surface = makeInteraction(scene_, hit, laser.ray.direction);
-    const LobeMask lobes = surface.bsdf->lobes(), onward = lobes & (lobe::Specular | lobe::Forward);
-    const float scatters = (lobes & lobe::Smooth) == 0 ? 0.0f : onward == 0 ? 1.0f : 0.5f;
-    sampler.at(target.interactions, Draw::Roulette);
-    if (sampler.next1D() < scatters) {
-        target.power = target.power / scatters;
-        target.vertex = {scene_, surface, laser.ray.direction, TransportMode::Photons, laser.region};
-        return Meeting::Scattered;
-    }
-    if (onward == 0) return Meeting::Absorbed;
-    sampler.at(target.interactions, Draw::Direction);
-    const auto exit = sampleExit(surface, surface.query(TransportMode::Photons, onward), false, sampler);
-    if (!exit) return Meeting::Absorbed;
-    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-laser.ray.direction, exit->direction);
-    target.power = target.power * (exit->weight * (shading / (1.0f - scatters)));
-    laser.region = regionBeyond(surface, exit->direction, laser.region);
-    laser.ray = hit.leave(exit->direction);
-    return Meeting::WentOn;
+    const PathState start{.random = sampler,
+                          .ray = emission.ray,
+                          .region = scene_.regionOf(*target.emitter),
+                          .throughput = emission.power / target.probability,
+                          .time = target.start};
+    if (isBlack(start.throughput)) return std::nullopt;
+    transport::StepCounters steps;
+    transport::PlainLightSteps onward({scene_, steps, watch});
+    onward.checks = false;
+    transport::Walk walk(start, onward, FirstScattering(scene_, target));
+    walk.run();
+    counters.rays += steps.rays;
+    return walk.visitor.found ? std::optional(target) : std::nullopt;
 }
 
 } // namespace tungsten::path

@@ -4,10 +4,13 @@
 #include "path/PixelSink.h"
 
 #include "transport/Connection.h"
+#include "transport/PathState.h"
 
 #include <optional>
 
 namespace tungsten::path {
+
+using transport::PathState;
 
 /// The last vertex of light's own path: a point of an emitter; for light that starts in a single direction, the first
 /// vertex that scatters it: a virtual point source.
@@ -46,11 +49,8 @@ class TargetChoice {
     [[nodiscard]] std::optional<PathTarget> another(const PathTarget& target, Sampler& sampler) const;
 
   private:
-    struct Laser;
-    enum class Meeting { Scattered, WentOn, Absorbed };
-    std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, Sampler& sampler,
+    std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, const Sampler& sampler,
                                            const PassWatch& watch, PathCounters& counters) const;
-    Meeting meetSurface(PathTarget& target, Laser& laser, const SurfaceHit& hit, Sampler& sampler) const;
 
     const Scene& scene_;
     Distribution1D distribution_;

@@ -190,7 +190,8 @@ void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counte
                const PathTarget* source, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
-    CameraSteps<TimeResolved, Media> steps({scene, counters, context.watch});
+    using transport::PlainOptions, transport::PlainSteps;
+    PlainSteps<PlainOptions{.media = Media, .timed = TimeResolved}> steps({scene, counters, context.watch});
     steps.roulette = context.settings.russianRoulette;
     const PathState start{.random = sampler,
                           .ray = ray,

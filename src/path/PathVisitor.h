@@ -13,8 +13,6 @@
 
 namespace tungsten::path {
 
-using transport::PathState;
-
 /// What a walk needs to know; shared by all threads.
 struct PathContext {
     const Scene& scene;
@@ -83,11 +81,6 @@ class PathVisitor : public transport::VisitorBase {
     std::optional<WayOut> wayOut_;
     int aimedAt_ = -1; ///< the emitter, of a walk that follows a drawn way out
 };
-
-/// The options of walks from the camera.
-template <bool TimeResolved, bool Media>
-using CameraSteps = transport::PlainSteps<transport::PlainOptions{
-    .mode = TransportMode::Radiance, .media = Media, .timed = TimeResolved}>;
 
 /// Traces one camera path along `ray` and adds what it finds to the sink.
 template <bool TimeResolved, bool Media>

@@ -106,7 +106,7 @@ class SensorPass {
         const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
         const Ray ray = scene_.camera.generateRay(at, uFilter, uLens);
         counters.steps +=
-            followSensorPath(scene_, {ray, scene_.cameraRegion}, structures_.rules, sampler, visitor, pass_.watch);
+            followSensorPath(scene_, ray, structures_.rules, sampler, visitor, pass_.watch);
     }
 
     const Scene& scene_;

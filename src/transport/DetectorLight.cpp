@@ -1,5 +1,7 @@
 #include "transport/DetectorLight.h"
 
+#include "transport/StraightSteps.h"
+
 #include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::transport {
@@ -10,6 +12,30 @@ Distribution1D pointLikeEmitters(const Scene& scene, const EffectPlan& facts) {
     return emitterDistribution(
         scene, [](const Emitter& emitter) { return emitter.isPointLike(); }, facts.late);
 }
+
+/// Follows light along specular and forward lobes, and tells where each begins that something has changed.
+template <typename Meet>
+struct SpecularWay : VisitorBase {
+    SpecularWay(const Meet& meetDetectors, const BounceLimits& limitsOfPaths)
+        : meet(meetDetectors), limits(&limitsOfPaths) {}
+
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits->mayGoOn(path.interactions + 1); }
+    bool vertex(PathState&, auto& steps, const WalkVertex& at) {
+        steps.lobes = at.surface->bsdf->lobes() & (lobe::Specular | lobe::Forward);
+        return steps.lobes != 0;
+    }
+    void leave(PathState& path, auto&, const WalkVertex&, const Way& way) {
+        if (way.straight()) return; // what passes straight has been looked for from before
+        PathState onward = path;
+        onward.ray = way.ray;
+        onward.region = way.region;
+        onward.throughput = path.throughput * way.weight;
+        meet(onward);
+    }
+
+    Meet meet;
+    const BounceLimits* limits;
+};
 
 } // namespace
 
@@ -45,16 +71,18 @@ void DetectorLight::sample(size_t column, Sampler& sampler, const PassWatch& wat
     if (!emitter.isDelta() && !specular_) return;
     sampler.at(0, Draw::Emission);
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
-    Ballistic light{emission.ray, scene_.regionOf(emitter), emission.power / chosen.probability, emitter.emissionTime};
+    const PathState light{.random = sampler,
+                          .ray = emission.ray,
+                          .region = scene_.regionOf(emitter),
+                          .throughput = emission.power / chosen.probability,
+                          .time = emitter.emissionTime};
     if (emitter.isDelta()) meet(column, light, emitter, rays, put);
+    if (!specular_ || isBlack(light.throughput)) return;
     StepCounters counters;
-    while (specular_ && limits_.mayGoOn(light.interactions + 1) && !isBlack(light.power)) {
-        counters.step(watch);
-        const auto lobe = goOn(light, sampler, rays);
-        if (!lobe) return;
-        // What passes straight has been looked for from before.
-        if ((*lobe & lobe::Forward) == 0) meet(column, light, emitter, rays, put);
-    }
+    const StraightSteps<TransportMode::Photons> steps({scene_, counters, watch});
+    Walk(light, steps, SpecularWay([&](const PathState& path) { meet(column, path, emitter, rays, put); }, limits_))
+        .run();
+    rays += counters.rays;
 }
 
 void DetectorLight::connect(size_t column, const PathEnd& end, const Emitter& emitter, double time, int interactions,
@@ -67,36 +95,14 @@ void DetectorLight::connect(size_t column, const PathEnd& end, const Emitter& em
     put(connection->throughput, scene_.transport.cameraUnwarped ? time : time + connection->time, emitter);
 }
 
-void DetectorLight::meet(size_t column, const Ballistic& light, const Emitter& emitter, uint64_t& rays,
+void DetectorLight::meet(size_t column, const PathState& light, const Emitter& emitter, uint64_t& rays,
                          const Put& put) const {
     const Detector& detector = scene_.camera.detectors()->row[column];
-    const auto met = meetDetector(connector_, detector, light.ray, light.region, light.power, rays);
+    const auto met = meetDetector(connector_, detector, light.ray, light.region, light.throughput, rays);
     if (!met || !limits_.renders(light.interactions + met->crossings)) return;
     // Specular surfaces do not end the camera's own segments.
     const bool unwarped = scene_.transport.cameraUnwarped;
     put(met->throughput, unwarped ? emitter.emissionTime : light.time + met->time, emitter);
-}
-
-std::optional<LobeMask> DetectorLight::goOn(Ballistic& light, Sampler& sampler, uint64_t& rays) const {
-    ++rays;
-    const auto hit = scene_.geometry->intersect(light.ray);
-    if (!hit) return std::nullopt;
-    if (const Medium* medium = scene_.medium(light.region)) light.power = light.power * medium->transmittance(hit->t);
-    light.time += double(hit->t) / double(light.region.speed);
-    ++light.interactions;
-    const Vec3f before = light.ray.direction;
-    const SurfaceInteraction surface = makeInteraction(scene_, *hit, before);
-    const LobeMask onward = surface.bsdf->lobes() & (lobe::Specular | lobe::Forward);
-    if (onward == 0) return std::nullopt;
-    sampler.at(light.interactions, Draw::Direction);
-    const auto exit =
-        sampleExit(surface, surface.query(TransportMode::Photons, onward), scene_.transport.consistencyChecks, sampler);
-    if (!exit) return std::nullopt;
-    const float shading = exit->straight() ? 1.0f : surface.photonShadingFactor(-before, exit->direction);
-    light.power = light.power * (exit->weight * shading);
-    light.region = regionBeyond(surface, exit->direction, light.region);
-    light.ray = hit->leave(exit->direction);
-    return exit->lobe;
 }
 
 } // namespace tungsten::transport

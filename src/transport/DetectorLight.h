@@ -5,6 +5,7 @@
 #include "transport/BounceLimits.h"
 #include "transport/Connection.h"
 #include "transport/GateBounds.h"
+#include "transport/PathState.h"
 #include "transport/StepCounters.h"
 
 #include <functional>
@@ -34,17 +35,8 @@ class DetectorLight {
                  Sampler& sampler, uint64_t& rays, const Put& put) const;
 
   private:
-    /// Where light has got to that nothing but specular surfaces has changed.
-    struct Ballistic {
-        Ray ray;
-        Region region;
-        Rgb power;
-        double time;
-        int interactions = 0;
-    };
-    void meet(size_t column, const Ballistic& light, const Emitter& emitter, uint64_t& rays, const Put& put) const;
-    /// To the next surface and along a specular or forward lobe of it; none where it ends.
-    [[nodiscard]] std::optional<LobeMask> goOn(Ballistic& light, Sampler& sampler, uint64_t& rays) const;
+    /// Light that nothing but specular surfaces has changed; its throughput is power.
+    void meet(size_t column, const PathState& light, const Emitter& emitter, uint64_t& rays, const Put& put) const;
 
     const Scene& scene_;
     BounceLimits limits_;

@@ -17,8 +17,8 @@ struct LastVertex {
 /// A value: copies of a walk that is split have one each.
 struct PathState {
     Sampler random;       ///< the path's own numbers
-    Ray ray;              ///< ahead, from the last vertex, unit direction; at a vertex: the direction up to there
-    Region region;        ///< medium and speed along it
+    Ray ray{};            ///< ahead, from the last vertex, unit direction; at a vertex: the direction up to there
+    Region region{};      ///< medium and speed along it
     Rgb throughput{1.0f}; ///< the path's contribution per channel over its density; walks from lights may hold power
     double time = 0.0;    ///< of flight so far; stands still while `timed` is false
     int interactions = 0; ///< surfaces met, index-matched ones included, and scatterings in media

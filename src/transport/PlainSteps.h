@@ -99,4 +99,7 @@ class PlainSteps {
     FlightSample drawn_{}; ///< of the flight at hand
 };
 
+/// From lights.
+using PlainLightSteps = PlainSteps<PlainOptions{.mode = TransportMode::Photons}>;
+
 } // namespace tungsten::transport

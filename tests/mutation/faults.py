@@ -212,10 +212,10 @@ FAULTS = [
      [("photon_tests", "PhotonResponseOnSurfaces.VisibleEmissionIsWeighedByItsArrival")]),  # photon maps under a temporal response are wrong by the gate's width
     ("src/transport/Sensor.h", "open.back().end = r.times[i + 1];", "open.back().end = r.times[i];",
      [("photon_tests", "PhotonResponseOnSurfaces.AgreesWithPaths")]),  # light in the last piece of a response is lost
-    ("src/transport/GuidedStep.cpp", "vertex.distance -= distance;", "vertex.distance += distance;",
-     [("transport_tests", "GuidedStep.ConnectionGoesOnThroughBoundaries")]),  # control vertices behind an index-matched boundary lie too far away
-    ("src/transport/GuidedStep.h", "residual_.shortest + double(connection.excess - residual_.low)", "residual_.shortest + double(connection.excess)",
-     [("transport_tests", "GuidedStep.ConnectionDrawnInFlight")]),  # control vertices arrive in later frames than they are made for
+    ("src/transport/GuidedSteps.cpp", "vertex.distance -= distance;", "vertex.distance += distance;",
+     [("transport_tests", "GuidedSteps.ConnectionGoesOnThroughBoundaries")]),  # control vertices behind an index-matched boundary lie too far away
+    ("src/transport/GuidedSteps.h", "residual_.shortest + double(connection.excess - residual_.low)", "residual_.shortest + double(connection.excess)",
+     [("transport_tests", "GuidedSteps.ConnectionDrawnInFlight")]),  # control vertices arrive in later frames than they are made for
     ("src/transport/GateBounds.h", "slowness_(1.0 / double(plan.highestSpeed))", "slowness_(double(plan.highestSpeed))",
      [("transport_tests", "TransportAccuracy.TimesOfArrival")]),  # light is culled as too late where its speed is not 1
     ("src/transport/GateBounds.h", "(!oneSpeed_ || arrival >= start_ - slack)", "arrival >= start_ - slack",

@@ -109,7 +109,7 @@ TEST(SensorRecord, ReplaysWhatTheCameraPathsMet) {
         const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
         const Ray ray = scene.camera.generateRay({int(pixel % 4), int(pixel / 4)}, uFilter, uLens);
         Listing traced, replayed;
-        followSensorPath(scene, {ray, scene.cameraRegion}, {true, false}, sampler, traced);
+        followSensorPath(scene, ray, {true, false}, sampler, traced);
         record.replay(scene, pixel, replayed);
         EXPECT_EQ(traced.seen, replayed.seen);
         EXPECT_GT(traced.seen.size(), 20u) << "through fog, ink and haze to the mirror and back";

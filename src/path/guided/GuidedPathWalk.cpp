@@ -131,7 +131,7 @@ bool GuidedPathWalk::crossEmpty() {
 
 bool GuidedPathWalk::crossMedium(const Medium& medium) {
     CameraPath& state = path_.state;
-    transport::GuidedStep& step = path_.step;
+    transport::GuidedSteps& step = path_.step;
     if (!path_.mayFly(&medium)) return false;
     lookOut(transport::Start::along(state.ray));
     if (target_ && step.reachable().way == darts::Way::Out) chooseTarget();

@@ -33,7 +33,7 @@ class GuidedPathWalk {
     /// the way there.
     void findAt(const SurfaceHit& hit, const Rgb& throughput);
 
-    // Stages of a step (transport::GuidedStep).
+    // Stages of a step (transport::GuidedSteps).
     /// What may still come from `position`, at the present time and in the present region.
     void lookAhead(const Vec3f& position);
     /// How light gets from here to the target; once, before anything is sampled.

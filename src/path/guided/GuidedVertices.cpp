@@ -30,7 +30,7 @@ struct SurfaceScatterer {
 
 template <typename Scatterer>
 darts::DirectionSample GuidedPathWalk::sampleDirection(const darts::Guide& guide, const Scatterer& scatterer) {
-    transport::GuidedStep& step = path_.step;
+    transport::GuidedSteps& step = path_.step;
     const bool lengthFirst = guide.settings().lengthFirst, elliptical = guide.settings().elliptical;
     Sampler& sampler = path_.state.sampler;
     sampler.at(path_.state.interactions, Draw::Connection);

@@ -57,7 +57,7 @@ void readRest(const ObjectReader& block, const Scene& scene) {
                                         "the light tracer does not show the environment itself, only what it lights"});
 }
 
-void report(const LightWalkCounters& counters, Statistics& statistics) {
+void report(const LightCounters& counters, Statistics& statistics) {
     statistics.add("rays", counters.rays);
     statistics.add("shadow rays", counters.shadowRays);
     transport::reportSteps(counters, statistics);
@@ -110,7 +110,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
     const StageTimer timer(statistics, "light paths");
     const uint64_t pixels = uint64_t(film.width()) * uint64_t(film.height()), paths = pixels * pass.samples;
     if (!(emitters_.total() > 0.0)) return;
-    const LightWalkContext context{
+    const LightContext context{
         *scene_, limits_, sensor_, bounds_, emitters_, {*scene_, forwardBoundaries_}, russianRoulette_, pass.watch};
     pass.watch.stage("light paths", paths);
     const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
@@ -119,15 +119,14 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
         std::vector<std::vector<Splat>> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
         tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
             const uint64_t first = traced + b * PathsPerBatch, last = std::min(first + PathsPerBatch, traced + wave);
-            LightWalkCounters counters;
+            LightCounters counters;
             for (uint64_t path = first; path < last; ++path) {
                 // As many paths as pixels make a sample: but for rounding the image does not depend on
                 // how samples are cut into passes.
                 pass.watch.pollEvery(PathsPerPoll, path);
                 const auto sample = uint32_t(pass.firstSample + path / pixels);
-                LightWalk(context, Sampler(pass.seed, RandomStream::Photon, sample, path % pixels), batches[b],
-                          counters)
-                    .run();
+                traceLightPath(context, Sampler(pass.seed, RandomStream::Photon, sample, path % pixels), batches[b],
+                               counters);
             }
             FilmSplats::sortByRow(batches[b]);
             report(counters, statistics);

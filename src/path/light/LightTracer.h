@@ -2,7 +2,7 @@
 // The integrators `light_tracer` and `transient_light_tracer`: plain paths from the lights, unbiased for what is seen
 // straight on, steady state or time-resolved.
 
-#include "path/light/LightWalk.h"
+#include "path/light/CameraConnections.h"
 
 #include "tungsten/render/Integrator.h"
 

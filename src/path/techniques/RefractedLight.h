@@ -87,8 +87,8 @@ class RefractedLight {
     static Delays quantiles(std::vector<float>& delays, const Delay& all);
     [[nodiscard]] std::vector<Delays> delaysOf(int medium, size_t lamp, const Sampler& sampler) const;
     /// Until light that starts at a vertex in a body, as seen from there, is met on the emitter; none if it is not.
-    [[nodiscard]] std::optional<double> timeTo(const RefractedLamp& lamp, Ray ray, Region region,
-                                               Sampler& sampler) const;
+    [[nodiscard]] std::optional<double> timeTo(const RefractedLamp& lamp, const Ray& ray, const Region& region,
+                                               const Sampler& sampler) const;
 
     const Scene* scene_ = nullptr;
     TimeGate gate_;                       ///< of arrivals

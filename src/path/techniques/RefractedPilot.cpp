@@ -5,6 +5,7 @@
 #include "path/Tuning.h"
 
 #include "transport/Delays.h"
+#include "transport/StraightSteps.h"
 
 #include "tungsten/scene/Interaction.h"
 #include "tungsten/scene/LightChoice.h"
@@ -14,6 +15,34 @@
 namespace tungsten::path {
 
 using transport::Body;
+using transport::PathState;
+
+namespace {
+
+/// When a walk that starts in a body and leaves it by refraction meets an emitter, nothing between scattering in media.
+struct ArrivalTime : transport::VisitorBase {
+    ArrivalTime(const Scene& wholeScene, int wanted) : scene(&wholeScene), emitter(wanted) {}
+
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return path.interactions < tuning::MostBoundaries; }
+    bool ahead(PathState& path, auto&, const transport::Ahead& ahead) {
+        return path.interactions == 0 || !ahead.medium || !ahead.medium->scatters();
+    }
+    bool arrive(PathState& path, auto&, const transport::Ahead& ahead, const transport::Flight&) {
+        if (path.interactions == 1 || scene->primitives[ahead.hit->shape].emitter != emitter) return true;
+        time = path.time;
+        return false;
+    }
+    bool vertex(PathState& path, auto& steps, const transport::WalkVertex&) {
+        steps.lobes = path.interactions == 1 ? lobe::SpecularTransmission : lobe::All;
+        return true;
+    }
+
+    const Scene* scene;
+    int emitter;
+    std::optional<double> time;
+};
+
+} // namespace
 
 auto RefractedLight::quantiles(std::vector<float>& delays, const Delay& all) -> Delays {
     constexpr size_t Count = tuning::DelayQuantiles;
@@ -74,25 +103,15 @@ float RefractedLight::indexTowards(int medium, const RefractedLamp& lamp) const 
     return index;
 }
 
-std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, Ray ray, Region region,
-                                             Sampler& sampler) const {
-    double time = 0.0;
-    for (int i = 0; i < tuning::MostBoundaries; ++i) {
-        const auto hit = scene_->geometry->intersect(ray);
-        if (!hit) return std::nullopt;
-        time += double(hit->t) / double(region.speed);
-        if (i > 0 && scene_->primitives[hit->shape].emitter == lamp.index) return time;
-        const SurfaceInteraction surface = makeInteraction(*scene_, *hit, ray.direction);
-        const LobeMask lobes = i == 0 ? lobe::SpecularTransmission : lobe::All;
-        sampler.at(i + 1, Draw::Direction);
-        const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, lobes), false, sampler);
-        if (!exit) return std::nullopt;
-        region = regionBeyond(surface, exit->direction, region);
-        const Medium* medium = scene_->medium(region);
-        if (medium && medium->scatters()) return std::nullopt;
-        ray = hit->leave(exit->direction);
-    }
-    return std::nullopt;
+std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, const Ray& ray, const Region& region,
+                                             const Sampler& sampler) const {
+    transport::StepCounters counters;
+    transport::StraightSteps<TransportMode::Radiance> steps({*scene_, counters, {}});
+    steps.checks = steps.attenuated = false;
+    transport::Walk walk(PathState{.random = sampler, .ray = ray, .region = region}, steps,
+                         ArrivalTime{*scene_, lamp.index});
+    walk.run();
+    return walk.visitor.time;
 }
 
 auto RefractedLight::delaysOf(int medium, size_t lamp, const Sampler& sampler) const -> std::vector<Delays> {

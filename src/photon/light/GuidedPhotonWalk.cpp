@@ -148,7 +148,7 @@ bool GuidedPhotonWalk::survives(const darts::Guide& guide) {
         return false;
     }
     const float others =
-        out && path_.context.first ? path_.context.first->logged(medium) : transport::GuidedStep::NoOthers;
+        out && path_.context.first ? path_.context.first->logged(medium) : transport::GuidedSteps::NoOthers;
     const float survival = step_.survival(guide, medium, power, others);
     if (survival >= 1.0f) return true;
     path_.sampler.at(path_.bounce, Draw::Roulette);

@@ -6,7 +6,7 @@
 #include "photon/light/PhotonGuidance.h"
 #include "photon/surface/SurfaceConnections.h"
 
-#include "transport/GuidedStep.h"
+#include "transport/GuidedSteps.h"
 
 namespace tungsten::photon {
 
@@ -32,7 +32,7 @@ class GuidedPhotonWalk {
     bool emitFromPoint(const Emitter& emitter, float probability, const darts::Guide* guide);
     void goOn();
 
-    // The stages of a step (transport::GuidedStep). False ends the path.
+    // The stages of a step (transport::GuidedSteps). False ends the path.
     bool look(const darts::Guide& guide, const transport::Start& start);
     bool survives(const darts::Guide& guide);
     /// The copies share the power.
@@ -79,7 +79,7 @@ class GuidedPhotonWalk {
     const SurfaceConnections* connections_;
     std::vector<PointDraw> draws_; ///< of the vertex at hand
     darts::TimeGate gate_;
-    transport::GuidedStep step_;
+    transport::GuidedSteps step_;
     FlightChain chain_; ///< of the flights since the last light or surface, for slices
 };
 

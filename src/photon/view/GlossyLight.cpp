@@ -21,7 +21,7 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
             // The last surface of a straight path counts.
             const SurfaceVisitor look{
                 [&](const SensorState&, const SurfaceInteraction& surface) { glossy = isGlossyOnly(*surface.bsdf); }};
-            followSensorPath(scene, {ray, scene.cameraRegion}, {false, false}, sampler, look);
+            followSensorPath(scene, ray, {false, false}, sampler, look);
             centres[size_t(y) * size_t(width) + size_t(x)] = glossy;
         }
     });

@@ -1,8 +1,8 @@
 #pragma once
-// A camera path of the sensor pass: straight through forward surfaces and along specular lobes. What is done on the way
-// is a visitor's: gathering photons, or recording where photons are wanted.
+// A camera path of the sensor pass: straight through forward surfaces and along specular lobes. Its legs are shown to
+// what gathers photons, or records where photons are wanted.
 
-#include "transport/StepCounters.h"
+#include "transport/StraightSteps.h"
 
 #include "tungsten/scene/Interaction.h"
 
@@ -55,60 +55,74 @@ struct SensorSteps : transport::StepCounters {
     }
 };
 
-/// Shows a visitor what lies ahead of `state`, up to `hit` if there is one. The visitor has
+/// Shows what lies ahead of `state`, up to `hit` if there is one. What is shown it has
 ///   segment(state, hit): the ray ahead, up to the surface if there is one, in state.region
 ///   surface(state, interaction): the end of the segment; the throughput includes the way there, the time does not
 ///   escaped(state)
-/// Returns the surface, if light gets through from there.
-template <typename Visitor>
-std::optional<SurfaceInteraction> visitLeg(const Scene& scene, SensorState& state, const std::optional<SurfaceHit>& hit,
-                                           Visitor&& visitor) {
-    visitor.segment(state, hit);
+template <typename Shown>
+void showLeg(const Scene& scene, SensorState& state, const std::optional<SurfaceHit>& hit, Shown&& shown) {
+    shown.segment(state, hit);
     if (const Medium* medium = scene.medium(state.region))
         state.throughput = state.throughput * medium->transmittance(hit ? hit->t : Infinity);
-    if (!hit) visitor.escaped(state);
-    if (!hit || isBlack(state.throughput)) return std::nullopt;
-    const SurfaceInteraction surface = makeInteraction(scene, *hit, state.ray.direction);
-    visitor.surface(state, surface);
-    return surface;
+    if (!hit) shown.escaped(state);
+    if (!hit || isBlack(state.throughput)) return;
+    shown.surface(state, makeInteraction(scene, *hit, state.ray.direction));
 }
 
-/// Follows the path from `state`, leg by leg.
-template <typename Visitor>
-SensorSteps followSensorPath(const Scene& scene, SensorState state, const SensorPathRules& rules, Sampler& sampler,
-                             Visitor&& visitor, const PassWatch& watch = {}) {
-    SensorSteps steps;
-    while (state.interactions < scene.transport.maxBounces) {
-        steps.step(watch);
-        ++steps.rays;
-        const auto hit = scene.geometry->intersect(state.ray);
-        if (const Medium* medium = scene.medium(state.region)) steps.fly(*medium);
-        const auto found = visitLeg(scene, state, hit, visitor);
-        if (!found) return steps;
-        const SurfaceInteraction& surface = *found;
-        state.time += double(hit->t) / double(state.region.speed);
-        ++state.interactions;
-        ++steps.surfaceEvents;
-        sampler.at(state.interactions, Draw::Direction);
-        const auto exit = sampleExit(surface, surface.query(TransportMode::Radiance, rules.followed(*surface.bsdf)),
-                                     scene.transport.consistencyChecks, sampler);
-        if (!exit) return steps;
-        steps.leave(exit->lobe);
-        state.folded = state.folded || !exit->straight();
-        if ((exit->lobe & lobe::Smooth) != 0) {
-            ++steps.glossy;
-            state.glossy = true;
-            state.glossyPdf = exit->pdf;
-            state.glossyVertex = hit->position;
-        } else if (!exit->straight()) {
-            state.glossyPdf = 0.0f;
-        }
-        state.throughput = state.throughput * exit->weight;
-        if (isBlack(state.throughput)) return steps;
-        state.region = regionBeyond(surface, exit->direction, state.region);
-        state.ray = hit->leave(exit->direction);
+/// Shows the same of the legs of a walk, as it goes on.
+template <typename Shown>
+class LegVisitor : public transport::VisitorBase {
+  public:
+    LegVisitor(const Scene& scene, const SensorPathRules& rules, SensorSteps& counters, Shown& shown)
+        : limits_(scene.transport), rules_(rules), counters_(&counters), shown_(&shown) {}
+
+    [[nodiscard]] bool mayGoOn(const transport::PathState& path) const { return limits_.mayGoOn(path.interactions); }
+    bool ahead(transport::PathState& path, auto&, const transport::Ahead& ahead) {
+        state_.ray = path.ray;
+        state_.region = path.region;
+        state_.throughput = path.throughput;
+        state_.time = path.time;
+        state_.interactions = path.interactions;
+        shown_->segment(state_, ahead.hit);
+        return true;
     }
-    return steps;
+    void escape(transport::PathState& path) {
+        state_.throughput = path.throughput;
+        shown_->escaped(state_);
+    }
+    bool vertex(transport::PathState& path, auto& steps, const transport::WalkVertex& at) {
+        state_.throughput = path.throughput;
+        shown_->surface(state_, *at.surface);
+        steps.lobes = rules_.followed(*at.surface->bsdf);
+        return true;
+    }
+    void leave(transport::PathState&, auto&, const transport::WalkVertex& at, const transport::Way& way) {
+        if (way.straight()) return;
+        state_.folded = true;
+        state_.glossyPdf = way.pdf;
+        if (!way.smooth()) return;
+        ++counters_->glossy;
+        state_.glossy = true;
+        state_.glossyVertex = at.position;
+    }
+
+  private:
+    transport::BounceLimits limits_;
+    SensorPathRules rules_;
+    SensorSteps* counters_;
+    Shown* shown_;
+    SensorState state_; ///< of the leg
+};
+
+/// Follows a path along `ray` from the camera, and shows its legs (showLeg).
+template <typename Shown>
+SensorSteps followSensorPath(const Scene& scene, const Ray& ray, const SensorPathRules& rules, const Sampler& sampler,
+                             Shown&& shown, const PassWatch& watch = {}) {
+    SensorSteps counters;
+    const transport::PathState start{.random = sampler, .ray = ray, .region = scene.cameraRegion};
+    const transport::StraightSteps<TransportMode::Radiance> steps({scene, counters, watch});
+    transport::Walk(start, steps, LegVisitor(scene, rules, counters, shown)).run();
+    return counters;
 }
 
 inline void report(const SensorSteps& steps, Statistics& statistics) {
@@ -117,7 +131,7 @@ inline void report(const SensorSteps& steps, Statistics& statistics) {
     transport::reportSteps(steps, statistics);
 }
 
-/// A visitor of surfaces alone: `look(state, interaction)`.
+/// Looks at surfaces alone: `look(state, interaction)`.
 template <typename Look>
 struct SurfaceVisitor {
     Look look;

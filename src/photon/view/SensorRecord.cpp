@@ -108,7 +108,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             record.z[pixel] = ray.direction.z;
             if (!record.origins.empty()) record.origins[pixel] = ray.origin;
             rows[y].begin(uint32_t(pixel));
-            steps += followSensorPath(scene, {ray, scene.cameraRegion}, rules, sampler, rows[y], watch);
+            steps += followSensorPath(scene, ray, rules, sampler, rows[y], watch);
             rows[y].end();
             const SurfaceVisitor recordPoint{
                 [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
@@ -116,7 +116,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
                 Sampler further = sampler.branch(RandomStream::SensorPoint, s);
                 const Vec2f uAgain = further.next2D(), uLensAgain = further.next2D();
                 const Ray again = scene.camera.generateRay({x, int(y)}, uAgain, uLensAgain);
-                steps += followSensorPath(scene, {again, scene.cameraRegion}, rules, further, recordPoint, watch);
+                steps += followSensorPath(scene, again, rules, further, recordPoint, watch);
             }
         }
         report(steps, statistics);

@@ -66,15 +66,15 @@ struct SensorRecord {
     std::vector<SensorPoint> points;   ///< in pixel order
     std::vector<LegRow> legs;          ///< by row of pixels
 
-    /// Shows a visitor the legs of a pixel's path.
-    template <typename Visitor>
-    void replay(const Scene& scene, size_t pixel, Visitor&& visitor) const {
+    /// Shows the legs of a pixel's path (showLeg).
+    template <typename Shown>
+    void replay(const Scene& scene, size_t pixel, Shown&& shown) const {
         const LegRow& row = legs[pixel / size_t(width)];
         const size_t column = pixel % size_t(width);
         if (row.ends.empty()) return;
         for (size_t i = column > 0 ? row.ends[column - 1] : 0; i < row.ends[column]; ++i) {
             SensorState state = row.legs[i].state;
-            visitLeg(scene, state, row.legs[i].hit, visitor);
+            showLeg(scene, state, row.legs[i].hit, shown);
         }
     }
 };

@@ -1,6 +1,6 @@
 // The stages of a guided step: what a walk may ask in which state, and what it gets.
 
-#include "transport/GuidedStep.h"
+#include "transport/GuidedSteps.h"
 #include "transport/Tuning.h"
 
 #include "support/BodyExit.h"
@@ -33,8 +33,8 @@ darts::ConnectionSample noDraw(const darts::Residual&) {
     return {};
 }
 
-TEST(GuidedStep, LooksInTwoStages) {
-    GuidedStep step;
+TEST(GuidedSteps, LooksInTwoStages) {
+    GuidedSteps step;
     EXPECT_FALSE(step.hasLooked());
     step.lookAhead(ahead(), 0.5f);
     EXPECT_TRUE(step.hasLooked());
@@ -50,10 +50,10 @@ TEST(GuidedStep, LooksInTwoStages) {
     EXPECT_FALSE(step.hasLooked());
 }
 
-TEST(GuidedStep, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
+TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     const darts::Guide guide = guideWith(0.1f);
     const auto started = [&](float throughput, float others) {
-        GuidedStep step;
+        GuidedSteps step;
         step.look(ahead());
         return step.survival(guide, 0, throughput, others);
     };
@@ -63,7 +63,7 @@ TEST(GuidedStep, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     EXPECT_FLOAT_EQ(started(1.0f, own + std::log(9.0f)), 1.0f); // not below a tenth
     EXPECT_NEAR(started(1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
     // And goes on by it: what has survived has made up for it.
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     EXPECT_NEAR(step.survival(guide, 0, 1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 4.0f, own + std::log(40.0f)), 1.0f);
@@ -71,9 +71,9 @@ TEST(GuidedStep, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     EXPECT_EQ(step.copies(guide), 1);
 }
 
-TEST(GuidedStep, WhatHasBecomeTooUsefulSplits) {
+TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     const darts::Guide guide = guideWith(0.1f);
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     step.startRoulette(guide, 0, 1.0f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 3.9f), 1.0f);
@@ -95,10 +95,10 @@ TEST(GuidedStep, WhatHasBecomeTooUsefulSplits) {
 }
 
 /// Where half of 16 transport mean free paths is not left yet, by their usefulness alone, and by both where it is.
-TEST(GuidedStep, OutOfBodiesHeavyPhotonsSplit) {
+TEST(GuidedSteps, OutOfBodiesHeavyPhotonsSplit) {
     const auto copiesOf = [](darts::Mode mode, double longest) {
         const darts::Guide guide(darts::best(mode, 0.0f), Fog);
-        GuidedStep step;
+        GuidedSteps step;
         step.look(test::outOf(0.5, 3.0, longest, 1.0));
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
         EXPECT_EQ(step.copies(guide), 1);
@@ -113,10 +113,10 @@ TEST(GuidedStep, OutOfBodiesHeavyPhotonsSplit) {
     EXPECT_GT(copiesOf(darts::Mode::Photon, 9.5), halved);
 }
 
-TEST(GuidedStep, OutOfBodiesCameraPathsEndSooner) {
+TEST(GuidedSteps, OutOfBodiesCameraPathsEndSooner) {
     const darts::Guide guide(darts::best(darts::Mode::Path, 0.0f), Fog);
     for (const bool out : {false, true}) {
-        GuidedStep step;
+        GuidedSteps step;
         step.look(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
         EXPECT_NEAR(step.survival(guide, 0, 0.06f), out ? 0.2f : 1.0f, 1e-4f);
@@ -124,16 +124,16 @@ TEST(GuidedStep, OutOfBodiesCameraPathsEndSooner) {
 }
 
 /// Both ways to a control vertex must arrive after the length that was drawn.
-void expectArrivesAfter(float length, const GuidedStep::OnWay& met) {
+void expectArrivesAfter(float length, const GuidedSteps::OnWay& met) {
     const Vec3f vertex = Aslant * met.vertex.distance;
     EXPECT_NEAR(met.vertex.distance + (Vec3f(0.0f, 0.0f, 4.0f) - vertex).length(), length, 1e-5f);
     EXPECT_NEAR(met.length, length, 1e-6);
     EXPECT_EQ(met.departure, 3.0);
 }
 
-TEST(GuidedStep, ConnectionDrawnInFlight) {
+TEST(GuidedSteps, ConnectionDrawnInFlight) {
     const darts::Guide guide = guideWith(0.1f);
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     const float h = step.heading(Aslant).h;
     int draws = 0;
@@ -157,12 +157,12 @@ TEST(GuidedStep, ConnectionDrawnInFlight) {
     EXPECT_FALSE(step.controlVertexPdf(1.0f)) << "does not share";
 }
 
-TEST(GuidedStep, ConnectionDrawnBeforeIsMetOnce) {
+TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
     const darts::Guide guide = guideWith(0.1f);
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     step.connect({1.5f, 2.0f});
-    const GuidedStep::Way way{guide, step.heading(Aslant).h, 3.0, true};
+    const GuidedSteps::Way way{guide, step.heading(Aslant).h, 3.0, true};
     const auto met = step.meetControlVertex(way, Infinity, noDraw);
     ASSERT_TRUE(met);
     expectArrivesAfter(5.5f, *met);
@@ -171,14 +171,14 @@ TEST(GuidedStep, ConnectionDrawnBeforeIsMetOnce) {
     EXPECT_FALSE(step.controlVertexPdf(1.0f)) << "another way";
 }
 
-TEST(GuidedStep, ConnectionGoesOnThroughBoundaries) {
+TEST(GuidedSteps, ConnectionGoesOnThroughBoundaries) {
     const darts::Guide guide = guideWith(0.1f);
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     step.connect({1.5f, 2.0f});
     const float h = step.heading(Aslant).h;
     step.place({guide, h, 3.0, true});
-    GuidedStep whole = step;
+    GuidedSteps whole = step;
     const auto there = whole.meetControlVertex({guide, h, 3.0, true}, Infinity, noDraw);
     ASSERT_TRUE(there);
     const float distance = there->vertex.distance, pdf = *step.controlVertexPdf(distance);
@@ -200,12 +200,12 @@ TEST(GuidedStep, ConnectionGoesOnThroughBoundaries) {
     EXPECT_FALSE(step.meetControlVertex({guide, h, 3.0, true}, Infinity, noDraw)) << "it lies in what was passed";
 }
 
-TEST(GuidedStep, DirectionsSuitTheConnectionDrawnBefore) {
+TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
     darts::Settings settings;
     settings.lengthFirst = true;
     const darts::Guide guide(settings, Fog);
     const auto density = [&](float excess) {
-        GuidedStep step;
+        GuidedSteps step;
         step.look(ahead());
         step.connect({excess, 1.0f});
         const auto half = [] { return 0.5f; };
@@ -214,9 +214,9 @@ TEST(GuidedStep, DirectionsSuitTheConnectionDrawnBefore) {
     EXPECT_NE(density(1.1f), density(1.9f));
 }
 
-TEST(GuidedStep, RouletteStartsAnewWithAnotherModel) {
+TEST(GuidedSteps, RouletteStartsAnewWithAnotherModel) {
     const darts::Guide guide = guideWith(0.5f);
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     EXPECT_EQ(step.survival(guide, 0, 1.0f), 1.0f) << "it starts";
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);
@@ -231,9 +231,9 @@ TEST(GuidedStep, RouletteStartsAnewWithAnotherModel) {
     EXPECT_EQ(step.survival(guide, 1, 1e-6f), 1.0f) << "another way";
 }
 
-TEST(GuidedStep, RouletteCanStartBeforeItIsPlayed) {
+TEST(GuidedSteps, RouletteCanStartBeforeItIsPlayed) {
     const darts::Guide guide = guideWith(0.5f);
-    GuidedStep step;
+    GuidedSteps step;
     step.look(ahead());
     step.startRoulette(guide, 0, 1.0f);
     step.startRoulette(guide, 0, 0.25f); // goes on

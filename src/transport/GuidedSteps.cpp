@@ -1,10 +1,10 @@
-#include "transport/GuidedStep.h"
+#include "transport/GuidedSteps.h"
 
 #include "transport/Tuning.h"
 
 namespace tungsten::transport {
 
-void GuidedStep::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
+void GuidedSteps::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
                          uint64_t& rays) {
     looked_ = Looked::Out;
     waysOut.look(start, region, aim, residual_, rays);
@@ -14,13 +14,13 @@ void GuidedStep::lookOut(const WaysOut& waysOut, const Start& start, const Regio
     if (reachable_.exit.connects) reachable_.exit.surplus = surplus_;
 }
 
-void GuidedStep::startRoulette(const darts::Guide& guide, int medium, float throughput) {
+void GuidedSteps::startRoulette(const darts::Guide& guide, int medium, float throughput) {
     if (!(guide.settings().roulette > 0.0f)) return;
     if (first_ && first_->medium == medium && first_->way == reachable_.way) return;
     first_ = First{guide.logUsefulness(reachable_, throughput), medium, reachable_.way};
 }
 
-float GuidedStep::survival(const darts::Guide& guide, int medium, float throughput, float others) {
+float GuidedSteps::survival(const darts::Guide& guide, int medium, float throughput, float others) {
     if (!(guide.settings().roulette > 0.0f)) return 1.0f;
     useful_ = guide.logUsefulness(reachable_, throughput);
     if (!(first_ && first_->medium == medium && first_->way == reachable_.way))
@@ -30,7 +30,7 @@ float GuidedStep::survival(const darts::Guide& guide, int medium, float throughp
     return survival;
 }
 
-int GuidedStep::copies(const darts::Guide& guide) {
+int GuidedSteps::copies(const darts::Guide& guide) {
     const bool out = reachable_.way == darts::Way::Out;
     int copies = out ? splits_.copies(guide.splits(reachable_)) : 1;
     const bool byUsefulness = out ? guide.settings().splitsHeavyOut : reachable_.way != darts::Way::Unknown;
@@ -40,7 +40,7 @@ int GuidedStep::copies(const darts::Guide& guide) {
     return copies;
 }
 
-void GuidedStep::passBoundary(float distance) {
+void GuidedSteps::passBoundary(float distance) {
     if (std::holds_alternative<OnWay>(connection_)) std::get<OnWay>(connection_).vertex.distance -= distance;
     if (shared_) shared_->behind += distance;
 }

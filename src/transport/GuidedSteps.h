@@ -20,7 +20,7 @@
 
 namespace tungsten::transport {
 
-class GuidedStep {
+class GuidedSteps {
   public:
     /// The control vertex of a connection, on the straight way ahead.
     struct OnWay {

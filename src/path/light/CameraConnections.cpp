@@ -1,0 +1,133 @@
+#include "path/light/CameraConnections.h"
+
+#include "transport/DetectorLight.h"
+
+namespace tungsten::path {
+
+using transport::Ahead;
+using transport::Flight;
+using transport::Vertex;
+using transport::WalkVertex;
+using transport::Way;
+
+bool CameraConnections::emit(PathState& path) {
+    const auto chosen = context_->emitters.sample(path.random.next1D());
+    const Emitter& emitter = scene().emitters[chosen.index];
+    path.time = emitter.emissionTime + context_->sensor.delays.sample(emitter, path.random);
+    scattered_ = path.time;
+    const bool detectors = scene().camera.detectors() != nullptr;
+    if (emitter.primitive() || (detectors && !emitter.isDelta() && !emitter.isInfinite()))
+        showEmitter(path, emitter, chosen.probability);
+    if (detectors && emitter.isInfinite()) showEnvironment(path, emitter, chosen.probability);
+    path.random.at(0, Draw::Emission);
+    const Vec2f uPosition = path.random.next2D();
+    const EmissionSample emission = sampleEmission(emitter, uPosition, path.random.next2D());
+    power_ = emission.power / chosen.probability;
+    path.region = scene().regionOf(emitter);
+    path.ray = emission.ray;
+    if (emitter.isDelta()) meetDetectors(path, path.ray, path.region, power_);
+    return !isBlack(power_);
+}
+
+void CameraConnections::showEmitter(PathState& path, const Emitter& emitter, float probability) {
+    path.random.at(0, Draw::Light);
+    const SurfaceSample point = sampleEmissionPoint(emitter, path.random.next2D());
+    connect(path, {scene(), emitter, point}, Rgb(1.0f / probability));
+}
+
+void CameraConnections::showEnvironment(PathState& path, const Emitter& emitter, float probability) {
+    if (&emitter != &scene().emitters[size_t(scene().infiniteEmitters.back())] || !context_->limits.orderCounts(0, 0))
+        return;
+    const auto& row = scene().camera.detectors()->row;
+    path.random.at(0, Draw::Distance);
+    const auto column = std::min(size_t(path.random.next1D() * float(row.size())), row.size() - 1);
+    const Vec2f uPlace = path.random.next2D();
+    const Ray towards = row[column].sampleRay(uPlace, path.random.next2D());
+    const Rgb radiance = environmentRadiance(emitter, towards.direction) * (float(row.size()) / probability);
+    const auto seen = context_->connector.visibility(towards, Infinity, scene().cameraRegion, counters_->shadowRays);
+    if (isBlack(radiance) || isBlack(seen.transmittance)) return;
+    arriveAtSensor(path, {float(column), 0.0f},
+                   {radiance * seen.transmittance, seen.time, seen.crossings, seen.oneSpeed}, path.time);
+}
+
+bool CameraConnections::arrive(PathState& path, auto&, const Ahead&, const Flight& flight) {
+    if (flight.event == Flight::Event::Collision) inARow_ = path.inARow;
+    const Camera& camera = scene().camera;
+    // Orthographic rays start anywhere.
+    const bool anywhere = scene().transport.cameraUnwarped || camera.hasParallelRays();
+    const float gap =
+        anywhere ? 0.0f : std::max((path.ray.origin - camera.position()).length() - camera.aperture(), 0.0f);
+    return context_->bounds.beforeEnd(path.time, double(gap));
+}
+
+bool CameraConnections::vertex(PathState& path, auto&, const WalkVertex& at) {
+    if (at.medium) scattered_ = path.time;
+    connect(path, at.connectible(scene(), TransportMode::Photons, path), power_ * path.throughput);
+    return true;
+}
+
+void CameraConnections::leave(PathState& path, auto&, const WalkVertex& at, const Way& way) {
+    if (at.medium) return;
+    if (way.smooth()) scattered_ = path.time;
+    if ((way.lobe & lobe::Specular) != 0)
+        meetDetectors(path, way.ray, way.region, power_ * (path.throughput * way.weight));
+}
+
+void CameraConnections::connect(PathState& path, const Vertex& vertex, const Rgb& power) {
+    if (!vertex.isConnectible() || !orderCounts(path)) return;
+    path.random.at(path.interactions, Draw::Sensor);
+    const auto sensor = scene().camera.sampleSensor(vertex.position(), path.random.next2D());
+    if (!sensor || !inView(sensor->raster)) return;
+    const bool unwarped = scene().transport.cameraUnwarped;
+    if (!context_->bounds.mayArrive(path.time, unwarped ? 0.0 : double(sensor->distance))) return;
+    ++counters_->connections;
+    const auto connection =
+        context_->connector.connect(vertex, power, transport::connectionEnd(*sensor), counters_->shadowRays);
+    if (connection) arriveAtSensor(path, sensor->raster, *connection, path.time);
+}
+
+void CameraConnections::meetDetectors(const PathState& path, const Ray& ray, const Region& region, const Rgb& power) {
+    const Detectors* detectors = scene().camera.detectors();
+    if (!detectors || !orderCounts(path)) return;
+    for (size_t column = 0; column < detectors->row.size(); ++column) {
+        const auto met = transport::meetDetector(context_->connector, detectors->row[column], ray, region, power,
+                                                 counters_->shadowRays);
+        if (met) arriveAtSensor(path, {float(column), 0.0f}, *met, scattered_);
+    }
+}
+
+void CameraConnections::arriveAtSensor(const PathState& path, const Vec2f& raster,
+                                       const transport::Connection& connection, double scattered) {
+    if (!context_->limits.renders(path.interactions + connection.crossings)) return;
+    const double time = scene().transport.cameraUnwarped ? scattered : path.time + connection.time;
+    const int frame = context_->sensor.frameOf(time);
+    if (frame < 0) return;
+    const Rgb radiance = connection.throughput * float(context_->sensor.density(time));
+    if (!isFinite(radiance)) {
+        ++counters_->nonFinite;
+        return;
+    }
+    if (!context_->sensor.gate.steadyState) ++counters_->timed;
+    if (context_->sensor.response) ++counters_->weighed;
+    if (frame > 0) ++counters_->laterFrames;
+    splats_->push_back({raster, frame, radiance});
+}
+
+bool CameraConnections::inView(const Vec2f& raster) const {
+    const Vec2i& size = scene().camera.resolution;
+    const float reach = scene().camera.filter.reach();
+    return raster.x >= -reach && raster.y >= -reach && raster.x <= float(size.x - 1) + reach &&
+           raster.y <= float(size.y - 1) + reach;
+}
+
+void traceLightPath(const LightContext& context, const Sampler& sampler, std::vector<Splat>& splats,
+                    LightCounters& counters) {
+    PathState start{.random = sampler};
+    CameraConnections connections(context, splats, counters);
+    if (!connections.emit(start)) return;
+    transport::PlainLightSteps steps({context.scene, counters, context.watch});
+    steps.roulette = context.russianRoulette;
+    transport::Walk(start, steps, connections).run();
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,76 @@
+#pragma once
+// What plain walks from a light do on their way: every vertex is connected to the camera.
+
+#include "path/light/FilmSplats.h"
+#include "transport/Connection.h"
+#include "transport/GateBounds.h"
+#include "transport/PlainSteps.h"
+#include "transport/Sensor.h"
+
+namespace tungsten::path {
+
+using transport::PathState;
+
+/// What a walk needs to know; shared by all threads.
+struct LightContext {
+    const Scene& scene;
+    const transport::BounceLimits& limits;
+    const transport::Sensor& sensor;
+    const transport::GateBounds& bounds;
+    const Distribution1D& emitters;
+    transport::Connector connector;
+    bool russianRoulette;
+    const PassWatch& watch;
+};
+
+/// What happened, counted by one worker.
+struct LightCounters : transport::StepCounters {
+    uint64_t shadowRays = 0, connections = 0, nonFinite = 0;
+    uint64_t timed = 0, laterFrames = 0, weighed = 0; ///< of what arrives, timed: at a sensor that is not always open
+};
+
+/// Throughputs of its walks are relative to the power at their start, as their roulette wants them.
+class CameraConnections : public transport::VisitorBase {
+  public:
+    CameraConnections(const LightContext& context, std::vector<Splat>& splats, LightCounters& counters)
+        : context_(&context), splats_(&splats), counters_(&counters) {}
+
+    /// Starts a path, and shows the camera a point of the light. False if no power leaves it.
+    bool emit(PathState& path);
+
+    /// The last vertex needs no way on.
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return context_->limits.mayGoOn(path.interactions + 1); }
+    bool arrive(PathState& path, auto& steps, const transport::Ahead& ahead, const transport::Flight& flight);
+    bool vertex(PathState& path, auto& steps, const transport::WalkVertex& vertex);
+    void leave(PathState& path, auto& steps, const transport::WalkVertex& vertex, const transport::Way& way);
+
+  private:
+    [[nodiscard]] const Scene& scene() const { return context_->scene; }
+    [[nodiscard]] bool orderCounts(const PathState& path) const {
+        return context_->limits.orderCounts(path.mediumScatters, inARow_);
+    }
+    /// A point of the emitter, as the camera sees it.
+    void showEmitter(PathState& path, const Emitter& emitter, float probability);
+    /// The environment, as a detector sees it straight.
+    void showEnvironment(PathState& path, const Emitter& emitter, float probability);
+    void connect(PathState& path, const transport::Vertex& vertex, const Rgb& power);
+    /// The ray, which no connection stands for, may meet detectors.
+    void meetDetectors(const PathState& path, const Ray& ray, const Region& region, const Rgb& power);
+    /// What a connection brings to one place of the image. `scattered`: when camera segments began.
+    void arriveAtSensor(const PathState& path, const Vec2f& raster, const transport::Connection& connection,
+                        double scattered);
+    [[nodiscard]] bool inView(const Vec2f& raster) const;
+
+    const LightContext* context_;
+    std::vector<Splat>* splats_;
+    LightCounters* counters_;
+    Rgb power_{0.0f};        ///< at the start
+    double scattered_ = 0.0; ///< the time at the last vertex that is not specular: where camera segments begin
+    int inARow_ = 0;         ///< the last scatterings in media without a surface between them
+};
+
+/// Traces one path from a light.
+void traceLightPath(const LightContext& context, const Sampler& sampler, std::vector<Splat>& splats,
+                    LightCounters& counters);
+
+} // namespace tungsten::path
