@@ -72,7 +72,7 @@ struct FirstScattering : transport::VisitorBase {
             }
             path.throughput = path.throughput / scatters;
         }
-        target_->vertex = at.connectible(*scene_, TransportMode::Photons, path);
+        target_->vertex = at.connectible(*scene_, TransportMode::Photons);
         target_->power = path.throughput;
         target_->start = path.time;
         target_->interactions = path.interactions;

@@ -45,7 +45,7 @@ bool PathVisitor<TimeResolved>::vertex(PathState& path, auto& steps, const WalkV
     const bool connects = at.medium ? settings().volumeLightSampling
                                     : settings().lightSampling && (at.surface->bsdf->lobes() & lobe::Smooth) != 0;
     if (connects) {
-        const Vertex vertex = at.connectible(scene(), TransportMode::Radiance, path);
+        const Vertex vertex = at.connectible(scene(), TransportMode::Radiance);
         // In sealed bodies no vertex is both smooth and in the open.
         if (orderCounts(path) && !context_->refracted) connectToLight(path, vertex);
         if (source_) connectToSource(path, vertex);

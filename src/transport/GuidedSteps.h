@@ -90,14 +90,14 @@ class GuidedSteps {
                                      scatterer, view, random);
     }
     /// What a flight's control vertex depends on.
-    struct Way {
+    struct Line {
         const darts::Guide& guide;
         float h;        ///< 1 - cos of the angle between the way and the target's direction
         double elapsed; ///< the walk's time at the ray's origin
         bool shares;    ///< ordinary vertices share with control vertices: controlVertexPdf() will be asked for
     };
     /// Of a connection drawn before: its control vertex now lies on the way.
-    void place(const Way& way) {
+    void place(const Line& way) {
         if (!std::holds_alternative<darts::ConnectionSample>(connection_)) return;
         const auto placed = onWay(way, std::get<darts::ConnectionSample>(connection_), Infinity);
         if (way.shares) shared_ = Shared{&way.guide, residual_, way.h, 0.0f};
@@ -123,7 +123,7 @@ class GuidedSteps {
     /// The control vertex between the ray's origin and the surface ahead, if there is one. Its connection is drawn now
     /// by draw(residual) if it has not been before.
     template <typename Draw>
-    [[nodiscard]] std::optional<OnWay> meetControlVertex(const Way& way, float surface, Draw&& draw) {
+    [[nodiscard]] std::optional<OnWay> meetControlVertex(const Line& way, float surface, Draw&& draw) {
         if (std::holds_alternative<Later>(connection_)) return drawControlVertex(way, surface, draw);
         place(way);
         return takeControlVertex(surface);
@@ -161,7 +161,7 @@ class GuidedSteps {
     static constexpr darts::ConnectionSample NoConnection{};
 
     template <typename Draw>
-    std::optional<OnWay> drawControlVertex(const Way& way, float surface, Draw&& draw) {
+    std::optional<OnWay> drawControlVertex(const Line& way, float surface, Draw&& draw) {
         shared_.reset();
         if (!residual_.alive()) return std::nullopt;
         const darts::Residual before = darts::Guide::beforeSurface(residual_, way.h, surface);
@@ -178,7 +178,7 @@ class GuidedSteps {
         if (!(ahead.vertex.distance >= 0.0f)) return std::nullopt;
         return ahead;
     }
-    [[nodiscard]] std::optional<OnWay> onWay(const Way& way, const darts::ConnectionSample& connection,
+    [[nodiscard]] std::optional<OnWay> onWay(const Line& way, const darts::ConnectionSample& connection,
                                              float surface) const {
         const auto vertex = way.guide.controlVertex(residual_, connection, way.h, surface);
         if (!vertex) return std::nullopt;

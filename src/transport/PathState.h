@@ -14,6 +14,12 @@ struct LastVertex {
     float pdf = 0.0f;     ///< of the present direction, per solid angle; 0 for what has no density: specular lobes
 };
 
+/// In double, of positions as they are stored.
+inline double distanceBetween(const Vec3f& a, const Vec3f& b) {
+    const Vec3d d(double(b.x) - double(a.x), double(b.y) - double(a.y), double(b.z) - double(a.z));
+    return d.length();
+}
+
 /// A value: copies of a walk that is split have one each.
 struct PathState {
     Sampler random;       ///< the path's own numbers

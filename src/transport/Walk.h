@@ -43,12 +43,12 @@ struct WalkVertex {
     const Medium* medium;
     const SurfaceInteraction* surface;
     Vec3f position;
-    Vec3f before; ///< direction of propagation up to here
+    Vec3f before;  ///< direction of propagation up to here
+    Region region; ///< through which the walk came
 
-    /// As others are connected to it, `path` being there.
-    [[nodiscard]] Vertex connectible(const Scene& scene, TransportMode mode, const PathState& path) const {
-        return surface ? Vertex(scene, *surface, before, mode, path.region)
-                       : Vertex(*medium, position, before, path.region);
+    /// As others are connected to it.
+    [[nodiscard]] Vertex connectible(const Scene& scene, TransportMode mode) const {
+        return surface ? Vertex(scene, *surface, before, mode, region) : Vertex(*medium, position, before, region);
     }
 };
 
@@ -143,7 +143,8 @@ class Walk {
         if (!visitor.arrive(path, steps, ahead, flight)) return false;
         SurfaceInteraction surface;
         if (!scatters) surface = makeInteraction(scene(), *ahead.hit, path.ray.direction);
-        const WalkVertex vertex{scatters, scatters ? nullptr : &surface, path.ray.origin, path.ray.direction};
+        const WalkVertex vertex{scatters, scatters ? nullptr : &surface, path.ray.origin, path.ray.direction,
+                                path.region};
         if (!steps.look(path, vertex) || !visitor.vertex(path, steps, vertex)) return false;
         // Copies have their own numbers; they share the throughput.
         const int copies = steps.copies(path, vertex);

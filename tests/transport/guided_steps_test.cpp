@@ -162,7 +162,7 @@ TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
     GuidedSteps step;
     step.look(ahead());
     step.connect({1.5f, 2.0f});
-    const GuidedSteps::Way way{guide, step.heading(Aslant).h, 3.0, true};
+    const GuidedSteps::Line way{guide, step.heading(Aslant).h, 3.0, true};
     const auto met = step.meetControlVertex(way, Infinity, noDraw);
     ASSERT_TRUE(met);
     expectArrivesAfter(5.5f, *met);

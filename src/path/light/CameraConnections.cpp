@@ -62,7 +62,7 @@ bool CameraConnections::arrive(PathState& path, auto&, const Ahead&, const Fligh
 
 bool CameraConnections::vertex(PathState& path, auto&, const WalkVertex& at) {
     if (at.medium) scattered_ = path.time;
-    connect(path, at.connectible(scene(), TransportMode::Photons, path), power_ * path.throughput);
+    connect(path, at.connectible(scene(), TransportMode::Photons), power_ * path.throughput);
     return true;
 }
 

@@ -1,8 +1,7 @@
 #include "photon/light/PhotonPass.h"
 
 #include "photon/Tuning.h"
-#include "photon/light/GuidedPhotonWalk.h"
-#include "photon/light/PhotonWalk.h"
+#include "photon/light/DepositVisitor.h"
 #include "photon/light/TracedPaths.h"
 #include "photon/store/StoreFilling.h"
 
@@ -82,7 +81,7 @@ uint64_t leastPathsFor(const SurfaceConnections& connections) {
            uint64_t(tuning::MostPerPath);
 }
 
-void report(const WalkCounters& counters, Statistics& statistics) {
+void report(const PhotonCounters& counters, Statistics& statistics) {
     transport::reportSteps(counters, statistics);
     statistics.add("rays", counters.rays);
     statistics.add("control vertices", counters.controlVertices);
@@ -129,7 +128,7 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     return settings;
 }
 
-WalkContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& settings,
+PhotonContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& settings,
                                   const FirstUsefulness* first) const {
     return {.scene = scene_,
             .settings = settings,
@@ -140,15 +139,15 @@ WalkContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& se
             .watch = pass.watch};
 }
 
-void PhotonPass::tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
-                            const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const {
+void PhotonPass::tracePaths(uint64_t first, uint64_t last, const PhotonContext& context, const PassInfo& pass,
+                            const SurfaceConnections* connections, Deposits& deposits, PhotonCounters& counters) const {
     for (uint64_t path = first; path < last; ++path) {
         pass.watch.pollWithin(1, path);
         const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
         if (guidance_)
-            GuidedPhotonWalk(context, *guidance_, connections, sampler, path, deposits, counters).run();
+            traceGuidedPhotons(context, *guidance_, connections, sampler, path, deposits, counters);
         else
-            PhotonWalk(context, sampler, deposits, counters).run();
+            tracePlainPhotons(context, sampler, deposits, counters);
         deposits.endPath();
     }
     pass.watch.poll(last - first);
@@ -162,7 +161,7 @@ PhotonMaps PhotonPass::emptyMaps() const {
     return maps;
 }
 
-std::vector<TracedPaths> PhotonPass::traceWave(uint64_t first, uint64_t last, const WalkContext& context,
+std::vector<TracedPaths> PhotonPass::traceWave(uint64_t first, uint64_t last, const PhotonContext& context,
                                                const PassInfo& pass, const SurfaceConnections* connections) const {
     std::vector<TracedPaths> batches((last - first + PathsPerBatch - 1) / PathsPerBatch,
                                      TracedPaths(settings_.primitive));
@@ -180,7 +179,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
     const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
 
-    WalkContext context = contextOf(pass, settings, usefulAtFirst.get());
+    PhotonContext context = contextOf(pass, settings, usefulAtFirst.get());
     context.frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     context.connects = connections != nullptr;
     context.densityPhotons = densityPhotons_;

@@ -15,8 +15,8 @@ namespace tungsten::photon {
 
 struct Deposits;
 struct TracedPaths;
-struct WalkContext;
-struct WalkCounters;
+struct PhotonContext;
+struct PhotonCounters;
 
 /// The stores of one pass.
 struct PhotonMaps {
@@ -46,7 +46,7 @@ class PhotonPass {
     /// Of its part of a whole pass, and with its kernels.
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// What every walk is told; nothing is stored and nothing connected to.
-    [[nodiscard]] WalkContext contextOf(const PassInfo& pass, const PhotonSettings& settings,
+    [[nodiscard]] PhotonContext contextOf(const PassInfo& pass, const PhotonSettings& settings,
                                         const FirstUsefulness* first) const;
 
     // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
@@ -64,10 +64,10 @@ class PhotonPass {
 
     [[nodiscard]] PhotonMaps emptyMaps() const;
     /// Paths [first, last) in batches of consecutive ones.
-    [[nodiscard]] std::vector<TracedPaths> traceWave(uint64_t first, uint64_t last, const WalkContext& context,
+    [[nodiscard]] std::vector<TracedPaths> traceWave(uint64_t first, uint64_t last, const PhotonContext& context,
                                                      const PassInfo& pass, const SurfaceConnections* connections) const;
-    void tracePaths(uint64_t first, uint64_t last, const WalkContext& context, const PassInfo& pass,
-                    const SurfaceConnections* connections, Deposits& deposits, WalkCounters& counters) const;
+    void tracePaths(uint64_t first, uint64_t last, const PhotonContext& context, const PassInfo& pass,
+                    const SurfaceConnections* connections, Deposits& deposits, PhotonCounters& counters) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;

@@ -1,7 +1,7 @@
 // Pilots of a photon pass: a few light paths of their own, which store nothing, but tell how the pass is to be traced.
 
 #include "photon/Tuning.h"
-#include "photon/light/GuidedPhotonWalk.h"
+#include "photon/light/DepositVisitor.h"
 #include "photon/light/PhotonPass.h"
 #include "photon/light/TracedPaths.h"
 
@@ -12,13 +12,13 @@ namespace tungsten::photon {
 namespace {
 
 /// One after the other.
-Deposits tracePilots(const WalkContext& context, const PhotonGuidance& guidance, const PassInfo& pass, uint64_t paths,
+Deposits tracePilots(const PhotonContext& context, const PhotonGuidance& guidance, const PassInfo& pass, uint64_t paths,
                      Statistics& statistics) {
     TracedPaths pilot(context.settings.primitive);
     for (uint64_t path = 0; path < paths; ++path) {
         pass.watch.poll(0);
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
-        GuidedPhotonWalk(context, guidance, nullptr, sampler, path, pilot.deposits, pilot.counters).run();
+        traceGuidedPhotons(context, guidance, nullptr, sampler, path, pilot.deposits, pilot.counters);
     }
     statistics.add("rays", pilot.counters.rays);
     return std::move(pilot.deposits);
@@ -31,7 +31,7 @@ std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pas
     if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
     auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
-    WalkContext context = contextOf(pass, settings, nullptr);
+    PhotonContext context = contextOf(pass, settings, nullptr);
     context.measured = first.get();
     tracePilots(context, *guidance_, pass, paths, statistics);
     return first;
@@ -41,7 +41,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
                                        const FirstUsefulness* first, SurfaceConnections& connections,
                                        Statistics& statistics) const {
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-    WalkContext context = contextOf(pass, settings, first);
+    PhotonContext context = contextOf(pass, settings, first);
     context.storeVolume = storeVolume_;
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<TracedPaths> pilots(paths, TracedPaths(settings_.primitive));
@@ -50,7 +50,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         TracedPaths& pilot = pilots[path];
         const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
-        GuidedPhotonWalk(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters).run();
+        traceGuidedPhotons(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters);
     });
     std::vector<float> expectedLight;
     uint64_t deposits = 0;
@@ -77,7 +77,7 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
         else {
             auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
             const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-            WalkContext context = contextOf(pass, settings, first);
+            PhotonContext context = contextOf(pass, settings, first);
             context.storeVolume = true;
             context.recordCounts = counts.get();
             const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);

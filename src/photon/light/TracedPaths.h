@@ -2,14 +2,14 @@
 // What one task's light paths have left, and counted.
 
 #include "photon/light/Deposits.h"
-#include "photon/light/LightPath.h"
+#include "photon/light/DepositVisitor.h"
 
 namespace tungsten::photon {
 
 struct TracedPaths {
     explicit TracedPaths(const VolumePrimitive& primitive) : deposits(primitive) {}
     Deposits deposits;
-    WalkCounters counters;
+    PhotonCounters counters;
 };
 
 } // namespace tungsten::photon

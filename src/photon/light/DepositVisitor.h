@@ -1,0 +1,150 @@
+#pragma once
+// What light paths leave on their way for the primitive in use, on surfaces and for visible surface points. Plain and
+// guided paths leave the same, but that guided ones have control vertices for photons of points.
+
+#include "photon/PhotonSettings.h"
+#include "photon/light/Deposits.h"
+#include "photon/light/FirstUsefulness.h"
+#include "photon/light/StepsToCamera.h"
+#include "photon/primitives/sliced/FlightChain.h"
+#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/store/ArrivalCulling.h"
+#include "photon/surface/SurfaceConnections.h"
+
+#include "transport/PlainSteps.h"
+
+#include <span>
+
+namespace tungsten::photon {
+
+using transport::PathState;
+
+struct PhotonCounters : transport::StepCounters {
+    uint64_t controlVertices = 0;
+    /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
+    uint64_t volumeDeposits = 0, countingDeposits = 0;
+    uint64_t nonFinite = 0; ///< powers: nothing was stored
+};
+
+/// What every light path of a pass shares.
+struct PhotonContext {
+    const Scene& scene;
+    const PhotonSettings& settings;
+    const ArrivalCulling& culling;
+    std::span<const ArrivalCulling> frameCullings; ///< for paths that aim at single frames
+    const Distribution1D& emitters;
+    float frameShift = 0.0f; ///< of the order of frames: over passes, each is aimed at equally often
+    bool storeSurface = false, storeVolume = false;
+    bool connects = false; ///< to surfaces: SurfaceConnections
+    /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
+    /// photons are, not from how dense those few are that bring what connections cannot.
+    bool densityPhotons = false;
+    bool glossySensorPaths = false;             ///< SensorPathRules::glossy
+    const RecordCounts* recordCounts = nullptr; ///< of guided paths
+    const FirstUsefulness* first = nullptr;     ///< likewise: in bodies that light must leave
+    FirstUsefulness* measured = nullptr;        ///< of pilot paths, which end at their first vertex there
+    PassWatch watch{};
+};
+
+/// Plain light paths: flights and directions by the scene's own distributions, and whole rays for beams and slices.
+using PlainPhotonSteps =
+    transport::PlainSteps<transport::PlainOptions{.mode = TransportMode::Photons, .wholeRays = true}>;
+
+/// Throughputs of its walks are powers.
+class DepositVisitor : public transport::VisitorBase {
+  public:
+    /// `culling`: of the gate that the path aims at. `connections` may be null.
+    DepositVisitor(const PhotonContext& context, const ArrivalCulling& culling, const SurfaceConnections* connections,
+                   Deposits& deposits, PhotonCounters& counters)
+        : context_(&context), culling_(&culling), connections_(connections), deposits_(&deposits),
+          counters_(&counters), limits_(context.scene.transport) {}
+
+    // Emission. False if nothing leaves that could be in time.
+    bool emit(PathState& path, PlainPhotonSteps& steps);
+    bool emit(PathState& path, StepsToCamera& steps);
+
+    /// A photon after b interactions takes part in paths of at least b + 1.
+    [[nodiscard]] bool mayGoOn(const PathState& path) const {
+        return limits_.mayGoOn(path.interactions + 1) && path.interactions < MostPhotonBounces;
+    }
+    bool ahead(PathState& path, auto& steps, const transport::Ahead& ahead);
+    bool arrive(PathState& path, auto& steps, const transport::Ahead& ahead, const transport::Flight& flight);
+    bool vertex(PathState& path, auto& steps, const transport::WalkVertex& vertex);
+    void leave(PathState& path, auto& steps, const transport::WalkVertex& vertex, const transport::Way& way);
+    void end(PathState& path) { endChain(path, path.interactions); }
+
+  private:
+    template <typename Steps>
+    static constexpr bool Guided = std::is_same_v<Steps, StepsToCamera>;
+    using PointList = DepositList<Photon>;
+    using BeamList = DepositList<PhotonBeam>;
+    using SliceList = DepositList<CollapsedFlights>;
+
+    [[nodiscard]] const Scene& scene() const { return context_->scene; }
+    /// When light that is recorded as it arrives would have left: emission time and a delay that is drawn.
+    void startAt(PathState& path, const Emitter& emitter) const;
+    /// By the emitter's own distribution; `probability` is that of its choice.
+    bool emitFrom(PathState& path, const Emitter& emitter, float probability, const Vec2f& uPosition) const;
+    /// From a point of an emitter that shines in more than one direction.
+    bool emitFromPoint(PathState& path, StepsToCamera& steps, const Emitter& emitter, float probability);
+    /// Whether what has been scattered so often in this medium is to be stored, counting `further` scatterings.
+    [[nodiscard]] bool orderCounts(const PathState& path, int further = 0) const {
+        return context_->settings.lowOrderScattering || path.inARow + further > 1;
+    }
+    /// False, and counted if it is not finite, for a power that leaves nothing.
+    bool bears(const Rgb& power);
+
+    // Surfaces.
+    void leaveOnSurface(const PathState& path, const transport::WalkVertex& at);
+    void depositOnSurface(const PathState& path, const SurfaceInteraction& surface);
+    /// Whether sensor paths along its glossy lobes find the light that arrives on `surface`.
+    [[nodiscard]] bool foundBySensorPaths(const PathState& path, const SurfaceInteraction& surface) const;
+    void connectToSurfaces(const PathState& path, const darts::TimeGate& gate, const transport::Vertex& vertex,
+                           float meanScattering);
+
+    // What is left for a primitive on a flight, and at a collision; of slices, too, at lights and on surfaces.
+    void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, PointList& points);
+    void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, BeamList& beams);
+    void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, SliceList& slices);
+    void leaveAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
+                       PointList& points);
+    void leaveAtVertex(PathState&, auto&, const transport::Flight&, const Medium&, BeamList&) {}
+    void leaveAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
+                       SliceList& slices);
+    void store(const auto& steps, const ArrivalCulling& culling, const Photon& photon, PointList& points);
+    /// What the records draw that are left here: there may be any number of them.
+    enum class RecordsOf : uint32_t { Light, Flight, Vertex, Surface, End, Count };
+    [[nodiscard]] static Sampler records(const PathState& path, int interactions, RecordsOf left) {
+        return path.random.branch(RandomStream::Record,
+                                  uint64_t(interactions) * uint64_t(RecordsOf::Count) + uint64_t(left));
+    }
+    [[nodiscard]] FlightChain::Rules chainRules() const;
+    /// Calls use(slices) if they are the primitive in use.
+    template <typename Use>
+    void withSlices(Use&& use) {
+        if (auto* slices = std::get_if<SliceList>(&deposits_->volume)) use(*slices);
+    }
+    /// The path meets a surface, or ends, after so many interactions.
+    void endChain(const PathState& path, int interactions);
+
+    const PhotonContext* context_;
+    const ArrivalCulling* culling_;
+    const SurfaceConnections* connections_;
+    Deposits* deposits_;
+    PhotonCounters* counters_;
+    transport::BounceLimits limits_;
+    std::vector<PointDraw> draws_; ///< of the vertex at hand
+    FlightChain chain_;            ///< of the flights since the last light or surface, for slices
+    bool guided_ = false;
+    bool connectable_ = false; ///< the last vertex has no single direction and lies in this region: it connects
+};
+
+/// Traces one light path, plain.
+void tracePlainPhotons(const PhotonContext& context, const Sampler& sampler, Deposits& deposits,
+                       PhotonCounters& counters);
+/// The same, guided. `path` is its index in the run: frames are chosen in turn. `connections` may be null.
+void traceGuidedPhotons(const PhotonContext& context, const PhotonGuidance& guidance,
+                        const SurfaceConnections* connections, const Sampler& sampler, uint64_t path,
+                        Deposits& deposits, PhotonCounters& counters);
+
+} // namespace tungsten::photon
