@@ -65,7 +65,7 @@ struct SpecularWay : transport::VisitorBase {
 
     const Scene* scene;
     const Emitter* emitter;
-    double last; ///< time of arrival that counts
+    double last;                             ///< time of arrival that counts
     std::optional<MissedLight> first, found; ///< first: by the first surface that mirrors or refracts
 };
 

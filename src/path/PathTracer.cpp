@@ -186,16 +186,15 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
         *scene_,   settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries,
         pass.watch};
     const bool lasers = targets_->any();
-    renderTiles(
-        pass, film, statistics,
-        [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
-            std::optional<PathTarget> source;
-            if (lasers) {
-                Sampler light = sampler.branch(RandomStream::Target, 0);
-                source = targets_->sample(u, light, pass.watch, counters);
-            }
-            tracePath<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr, ray);
-        });
+    renderTiles(pass, film, statistics,
+                [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
+                    std::optional<PathTarget> source;
+                    if (lasers) {
+                        Sampler light = sampler.branch(RandomStream::Target, 0);
+                        source = targets_->sample(u, light, pass.watch, counters);
+                    }
+                    tracePath<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr, ray);
+                });
 }
 
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
@@ -207,7 +206,7 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
                 [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
                     Sampler light = sampler.branch(RandomStream::Target, 0);
                     const std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, counters);
-                    if (target) GuidedPathWalk(context, sink, counters, sampler).run(ray, *target);
+                    if (target) traceGuidedPath(context, sink, counters, sampler, *target, ray);
                 });
 }
 

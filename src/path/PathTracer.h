@@ -1,8 +1,9 @@
 #pragma once
 // The integrators `path_tracer` and `transient_path_tracer`: unbiased, steady state or time-resolved.
 
+#include "path/GuidedVisitor.h"
 #include "path/PathPlan.h"
-#include "path/guided/GuidedPathWalk.h"
+#include "path/techniques/LightPaths.h"
 #include "path/techniques/RefractedLight.h"
 #include "transport/DetectorLight.h"
 #include "tungsten/scene/LightChoice.h"

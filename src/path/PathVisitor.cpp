@@ -76,9 +76,12 @@ template <bool TimeResolved>
 bool PathVisitor<TimeResolved>::sharesWithConnections(const PathState& path) const {
     using Kind = transport::LastVertex::Kind;
     switch (path.last.kind) {
-    case Kind::Medium: return settings().volumeLightSampling;
-    case Kind::Surface: return settings().lightSampling;
-    case Kind::Specular: return false; // emitters seen in a mirror cannot be connected to
+    case Kind::Medium:
+        return settings().volumeLightSampling;
+    case Kind::Surface:
+        return settings().lightSampling;
+    case Kind::Specular:
+        return false; // emitters seen in a mirror cannot be connected to
     }
     return false;
 }
@@ -193,10 +196,8 @@ void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counte
     using transport::PlainOptions, transport::PlainSteps;
     PlainSteps<PlainOptions{.media = Media, .timed = TimeResolved}> steps({scene, counters, context.watch});
     steps.roulette = context.settings.russianRoulette;
-    const PathState start{.random = sampler,
-                          .ray = ray,
-                          .region = scene.cameraRegion,
-                          .timed = !scene.transport.cameraUnwarped};
+    const PathState start{
+        .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped};
     transport::Walk(start, steps, PathVisitor<TimeResolved>(context, sink, counters, source)).run();
 }
 

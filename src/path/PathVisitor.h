@@ -30,8 +30,8 @@ template <bool TimeResolved>
 class PathVisitor : public transport::VisitorBase {
   public:
     PathVisitor(const PathContext& context, PixelSink& sink, PathCounters& counters, const PathTarget* source)
-        : context_(&context), sink_(&sink), counters_(&counters),
-          connector_(context.scene, context.forwardBoundaries), source_(source) {}
+        : context_(&context), sink_(&sink), counters_(&counters), connector_(context.scene, context.forwardBoundaries),
+          source_(source) {}
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
     bool ahead(PathState& path, auto& steps, const transport::Ahead& ahead);

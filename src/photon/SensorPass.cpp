@@ -105,8 +105,7 @@ class SensorPass {
     void follow(const Vec2i& at, Sampler& sampler, Visitor&& visitor, SensorCounters& counters) const {
         const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
         const Ray ray = scene_.camera.generateRay(at, uFilter, uLens);
-        counters.steps +=
-            followSensorPath(scene_, ray, structures_.rules, sampler, visitor, pass_.watch);
+        counters.steps += followSensorPath(scene_, ray, structures_.rules, sampler, visitor, pass_.watch);
     }
 
     const Scene& scene_;

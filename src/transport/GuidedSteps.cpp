@@ -5,7 +5,7 @@
 namespace tungsten::transport {
 
 void GuidedSteps::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
-                         uint64_t& rays) {
+                          uint64_t& rays) {
     looked_ = Looked::Out;
     waysOut.look(start, region, aim, residual_, rays);
     reachable_.way = residual_.way;

@@ -36,9 +36,7 @@ struct PathState {
     LastVertex last{};
 
     /// The time at the end of a straight way of this length.
-    [[nodiscard]] double timeAfter(double length) const {
-        return timed ? time + length / double(region.speed) : time;
-    }
+    [[nodiscard]] double timeAfter(double length) const { return timed ? time + length / double(region.speed) : time; }
 };
 static_assert(sizeof(PathState) <= 256, "walks are copied where they are split");
 

@@ -85,7 +85,7 @@ class PlainSteps {
     }
 
     bool roulette = false;
-    bool checks; ///< of directions against both normals (sampleSurfaceWay)
+    bool checks;                ///< of directions against both normals (sampleSurfaceWay)
     LobeMask lobes = lobe::All; ///< that surfaces are left along
 
   private:

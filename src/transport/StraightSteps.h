@@ -33,7 +33,7 @@ class StraightSteps {
     }
     bool survives(PathState&) { return true; }
 
-    bool checks; ///< of directions against both normals (sampleSurfaceWay)
+    bool checks;            ///< of directions against both normals (sampleSurfaceWay)
     bool attenuated = true; ///< false: only when, and where, light gets
     LobeMask lobes = lobe::All;
 

@@ -56,9 +56,9 @@ struct WalkVertex {
 struct Way {
     Ray ray;
     Region region;
-    Rgb weight{1.0f};            ///< scattering, on surfaces times cosine, over the density or the probability
-    float pdf = 0.0f;            ///< per solid angle by the walk's own steps; 0 for what has no density
-    LobeMask lobe = lobe::None;  ///< of a surface
+    Rgb weight{1.0f};           ///< scattering, on surfaces times cosine, over the density or the probability
+    float pdf = 0.0f;           ///< per solid angle by the walk's own steps; 0 for what has no density
+    LobeMask lobe = lobe::None; ///< of a surface
 
     [[nodiscard]] bool straight() const { return lobe == lobe::Forward; }
     [[nodiscard]] bool smooth() const { return (lobe & lobe::Smooth) != 0; }
@@ -112,7 +112,7 @@ struct VisitorBase {
 };
 
 template <typename S, typename V>
-    requires Steps<S> && Visitor<V, S>
+requires Steps<S> && Visitor<V, S>
 class Walk {
   public:
     Walk(const PathState& start, const S& ownSteps, const V& ownVisitor)
@@ -192,8 +192,10 @@ class Walk {
         if (!way->straight()) {
             using Kind = LastVertex::Kind;
             const bool smooth = vertex.medium || way->smooth();
-            path.last = {vertex.medium ? Kind::Medium : smooth ? Kind::Surface : Kind::Specular, vertex.position,
-                         way->pdf};
+            path.last = {vertex.medium ? Kind::Medium
+                         : smooth      ? Kind::Surface
+                                       : Kind::Specular,
+                         vertex.position, way->pdf};
             if (smooth) path.timed = path.scattered = true;
         }
         return !isBlack(path.throughput) && steps.survives(path);

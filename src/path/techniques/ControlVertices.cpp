@@ -10,68 +10,69 @@ namespace tungsten::path {
 namespace {
 
 /// The last vertex before the target, in the medium of the present flight; `arrival` is the total time of flight.
-void add(GuidedPath& path, const Medium& medium, const darts::ControlVertex& vertex, double arrival) {
-    CameraPath& state = path.state;
+void add(const GuidedPath& path, const Medium& medium, const darts::ControlVertex& vertex, double arrival) {
+    PathState& state = path.state;
     if (!path.context.forwardBoundaries && !path.counts(1, 1)) return;
     const Vec3f position = state.ray.at(vertex.distance);
-    const auto way = transport::straightWay(position, path.target->vertex.position());
+    const auto way = transport::straightWay(position, path.target().vertex.position());
     if (!(vertex.toTarget > 0.0f) || !way) return;
-    ++state.counters.controlVertices;
-    const Rgb light = path.target->intensity(-way->direction);
+    ++path.counters.controlVertices;
+    const Rgb light = path.target().intensity(-way->direction);
     if (isBlack(light)) return;
     const float phase = medium.phase.eval(state.ray.direction, way->direction);
     const float chance =
-        path.guideOf(state.region).chance(path.step.residual(), darts::vec3(state.ray.direction), vertex, phase);
-    state.sampler.at(state.interactions + 1, Draw::ControlVertex);
+        path.steps.guideOf(state.region).chance(path.steps.residual(), darts::vec3(state.ray.direction), vertex, phase);
+    state.random.at(state.interactions + 1, Draw::ControlVertex);
     if (chance < 1.0f && !(path.next() < chance)) return;
-    const float clear = path.target->vertex.margin().before(way->direction, way->distance);
+    const float clear = path.target().vertex.margin().before(way->direction, way->distance);
     const Visibility visibility = path.connector().visibility({position, way->direction, 0.0f, clear}, way->distance,
-                                                              state.region, state.counters.shadowRays);
+                                                              state.region, path.counters.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
     const float share = ControlVertices::share(path, medium, vertex.distance);
     const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
     const Rgb radiance = state.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
-    state.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival,
-                         *path.target->emitter);
+    path.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival,
+                        *path.target().emitter);
 }
 
 } // namespace
 
-void ControlVertices::sample(GuidedPath& path, const Medium& medium, const darts::Guide& guide, float h,
-                             float surface) {
+void ControlVertices::sample(const GuidedPath& path, const transport::Ahead& ahead) {
+    const darts::Guide& guide = path.steps.guideOf(path.state.region);
     if (!guide.settings().elliptical) return;
     const auto draw = [&](const darts::Residual& residual) {
-        path.state.sampler.at(path.state.interactions + 1, Draw::FlightConnection);
-        return path.drawConnection(guide, residual);
+        path.state.random.at(path.state.interactions + 1, Draw::FlightConnection);
+        return path.steps.drawConnection(path.state, guide, residual);
     };
-    const auto met = path.step.meetControlVertex({guide, h, path.state.time, path.sharesConnections()}, surface, draw);
+    const auto met = path.steps.meetControlVertex(
+        {guide, path.steps.heading().h, path.state.time, path.steps.sharesConnections()}, ahead.reach(), draw);
     if (!met) return;
-    const double arrival = met->departure + met->length / double(path.state.region.speed) + path.target->start;
-    add(path, medium, met->vertex, arrival);
+    const double arrival = met->departure + met->length / double(path.state.region.speed) + path.target().start;
+    add(path, *ahead.medium, met->vertex, arrival);
 }
 
-void ControlVertices::sampleUntimed(GuidedPath& path, const Medium& medium, float surface) {
-    const CameraPath& state = path.state;
-    if (!path.guideOf(state.region).settings().elliptical) return;
+void ControlVertices::sampleUntimed(const GuidedPath& path, const transport::Ahead& ahead) {
+    const PathState& state = path.state;
+    if (!path.steps.guideOf(state.region).settings().elliptical) return;
     const TimeGate& gate = path.context.sensor.arrivals;
-    const PathTarget& target = *path.target;
+    const PathTarget& target = path.target();
     const double speed = double(state.region.speed), low = speed * (gate.start - target.start),
                  high = speed * (gate.end() - target.start);
     const ShellChord chord(target.vertex.position() - state.ray.origin, state.ray.direction, low, high,
-                           double(surface));
+                           double(ahead.reach()));
     const auto addAt = [&](double t, double inversePdf) {
         const double toTarget = double((target.vertex.position() - state.ray.at(float(t))).length());
-        add(path, medium, {float(t), float(toTarget), float(inversePdf)}, toTarget / speed + target.start);
+        add(path, *ahead.medium, {float(t), float(toTarget), float(inversePdf)}, toTarget / speed + target.start);
     };
     if (gate.delta) {
         std::array<double, 2> t{}, perRadius{};
         const int count = chord.intersect(low, t, perRadius);
         for (size_t i = 0; i < size_t(count); ++i) addAt(t[i], perRadius[i]);
     } else if (!chord.empty()) {
-        path.state.sampler.at(path.state.interactions + 1, Draw::Untimed);
-        const double t = chord.sample(path.state.sampler.nextDouble()), pdf = chord.pdf(t);
+        path.state.random.at(path.state.interactions + 1, Draw::Untimed);
+        const double t = chord.sample(path.state.random.nextDouble()), pdf = chord.pdf(t);
         if (pdf > 0.0) addAt(t, 1.0 / pdf);
     }
 }

@@ -13,11 +13,10 @@ namespace {
 /// and reflected light.
 float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
                   const transport::Straight& way) {
-    if (path.last.caches == LastVertex::Caches::None || !holdsLightVertices(vertex.lobes()) ||
-        !vertex.reflects(way.direction))
+    if (path.caches == Caches::None || !holdsLightVertices(vertex.lobes()) || !vertex.reflects(way.direction))
         return 1.0f;
     const Vec3f& direction = path.state.ray.direction;
-    const float areaPdf = vertex.areaDensity(path.target->vertex.pdf(-way.direction), way.direction, way.distance);
+    const float areaPdf = vertex.areaDensity(path.target().vertex.pdf(-way.direction), way.direction, way.distance);
     float reflected = 0.0f;
     if (ReflectedConnections::mayFind(path, vertex))
         reflected = ReflectedConnections::density(path, vertex.pdfReverse(way.direction), {direction, length}, areaPdf);
@@ -27,56 +26,58 @@ float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float
 
 } // namespace
 
-void ConnectionsFromMedia::connect(GuidedPath& path, const Medium& medium, float controlShare) {
-    CameraPath& state = path.state;
-    if (path.step.residual().exit.sealed) return;
+void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium, float controlShare) {
+    PathState& state = path.state;
+    if (path.steps.residual().exit.sealed) return;
     if (controlShare == 1.0f && path.context.bound.oneSpeed()) return; // control vertices find it
-    ++state.counters.connections;
+    ++path.counters.connections;
     const auto way = path.wayInTime(state.ray.origin, state.time);
     if (!way) return;
     const transport::Vertex vertex(medium, state.ray.origin, state.ray.direction, state.region);
     const auto connection = path.connector().connect(
-        vertex, state.throughput, transport::connectionEnd(*way, *path.target), state.counters.shadowRays);
+        vertex, state.throughput, transport::connectionEnd(*way, path.target()), path.counters.shadowRays);
     if (!connection || !path.counts(connection->crossings, 0)) return;
     const float share = connection->oneSpeed ? 1.0f - controlShare : 1.0f;
     if (share > 0.0f)
-        state.sink.add(connection->throughput * share, state.time + connection->time + path.target->start,
-                       *path.target->emitter);
+        path.sink.add(connection->throughput * share, state.time + connection->time + path.target().start,
+                      *path.target().emitter);
 }
 
-void ConnectionsFromSurfaces::connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
-    CameraPath& state = path.state;
-    const PathTarget& target = *path.target;
-    ++state.counters.connections;
+void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
+    PathState& state = path.state;
+    const PathTarget& target = path.target();
+    ++path.counters.connections;
     const double time = state.timeAfter(hit.t);
     const auto way = path.wayInTime(hit.position, time);
     if (!way) return;
     const transport::Vertex vertex = path.vertexOn(makeInteraction(path.scene(), hit, state.ray.direction));
     const auto connection =
-        path.connector().connect(vertex, throughput, transport::connectionEnd(*way, target), state.counters.shadowRays);
+        path.connector().connect(vertex, throughput, transport::connectionEnd(*way, target), path.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
     const float lightPdf = target.pdfFrom(hit.position, target.vertex.position(), target.vertex.margin().normal);
     float weight = lightPdf > 0.0f ? transport::powerHeuristic(lightPdf, vertex.pdf(way->direction)) : 1.0f;
     if (connection->crossings == 0) weight *= shareOfWalk(path, vertex, hit.t, *way);
-    state.sink.add(connection->throughput * weight, time + connection->time + target.start, *target.emitter);
+    path.sink.add(connection->throughput * weight, time + connection->time + target.start, *target.emitter);
 }
 
 float ConnectionsFromSurfaces::density(const GuidedPath& path, const transport::Vertex& vertex, float length) {
-    return vertex.areaDensity(path.last.pdf, path.state.ray.direction, length);
+    return vertex.areaDensity(path.state.last.pdf, path.state.ray.direction, length);
 }
 
-void EmittersMet::add(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
-    const PathTarget& target = *path.target;
+void EmittersMet::add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
+    const PathTarget& target = path.target();
     if (target.index < 0 || path.scene().primitives[hit.shape].emitter != target.index) return;
-    if (path.last.kind == LastVertex::Kind::Medium || !path.counts(0, 0)) return; // connections from media find it
+    if (path.state.last.kind == transport::LastVertex::Kind::Medium || !path.counts(0, 0))
+        return; // connections from media find it
     const Rgb radiance = emittedRadiance(*target.emitter, hit.uv, hit.ng, -path.state.ray.direction);
     if (isBlack(radiance)) return;
     float weight = 1.0f;
-    if (path.last.kind == LastVertex::Kind::Surface)
-        weight = transport::powerHeuristic(density(path), target.pdfFrom(path.last.position, hit.position, hit.ng));
-    path.state.sink.add(throughput * radiance * (weight / target.probability),
-                        path.state.timeAfter(hit.t) + target.start, *target.emitter);
+    if (path.state.last.kind == transport::LastVertex::Kind::Surface)
+        weight =
+            transport::powerHeuristic(density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng));
+    path.sink.add(throughput * radiance * (weight / target.probability), path.state.timeAfter(hit.t) + target.start,
+                  *target.emitter);
 }
 
 } // namespace tungsten::path

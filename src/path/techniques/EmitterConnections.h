@@ -10,7 +10,7 @@ namespace tungsten::path {
 /// From vertices in media.
 struct ConnectionsFromMedia {
     /// From the ray's origin, less the share of control vertices.
-    static void connect(GuidedPath& path, const Medium& medium, float controlShare);
+    static void connect(const GuidedPath& path, const Medium& medium, float controlShare);
     /// Per length, for weights, of the walk's flights that end at `distance`.
     [[nodiscard]] static float density(const Medium& medium, float distance) {
         return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
@@ -20,7 +20,7 @@ struct ConnectionsFromMedia {
 /// From surfaces at the end of the ray.
 struct ConnectionsFromSurfaces {
     /// `throughput` includes the way there.
-    static void connect(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
+    static void connect(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
     /// Per area, of the surface point at the end of the ray, `length` long, as the walk's next vertex.
     [[nodiscard]] static float density(const GuidedPath& path, const transport::Vertex& vertex, float length);
 };
@@ -28,9 +28,9 @@ struct ConnectionsFromSurfaces {
 /// Emitters that the walk meets.
 struct EmittersMet {
     /// Light that the surface at the end of the ray emits, if it is the target's; `throughput` includes the way there.
-    static void add(GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
+    static void add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
     /// Per solid angle at the last vertex, a surface.
-    [[nodiscard]] static float density(const GuidedPath& path) { return path.last.pdf; }
+    [[nodiscard]] static float density(const GuidedPath& path) { return path.state.last.pdf; }
 };
 
 } // namespace tungsten::path

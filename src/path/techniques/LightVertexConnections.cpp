@@ -6,12 +6,13 @@
 
 namespace tungsten::path {
 
-void LightVertexConnections::connect(GuidedPath& path, const transport::Vertex& here, const LightVertexCache& cache) {
-    CameraPath& state = path.state;
+void LightVertexConnections::connect(const GuidedPath& path, const transport::Vertex& here,
+                                     const LightVertexCache& cache) {
+    PathState& state = path.state;
     if (!path.counts(1, 0)) return;
     const auto [low, high] = path.lengthsInGate();
-    state.sampler.at(state.interactions, Draw::LightVertex);
-    const LightVertexCache::Choice choice = cache.choose(here.position(), low, high, state.sampler.next2D());
+    state.random.at(state.interactions, Draw::LightVertex);
+    const LightVertexCache::Choice choice = cache.choose(here.position(), low, high, state.random.next2D());
     if (!choice.vertex) return;
     const LightVertex& light = *choice.vertex;
     const auto way = transport::straightWay(here.position(), light.vertex.position());
@@ -19,7 +20,7 @@ void LightVertexConnections::connect(GuidedPath& path, const transport::Vertex& 
     const auto& [direction, distance] = *way;
     const transport::ConnectionEnd end{direction, distance, light.weighedIntensity(-direction) / sqr(distance),
                                        light.vertex.margin()};
-    ++state.counters.lightVertices;
+    ++path.counters.lightVertices;
     const auto connection = path.connectInRegion(here, end);
     if (!connection) return;
     const float walk = light.vertex.areaDensity(here.pdf(direction), direction, distance);
@@ -31,8 +32,8 @@ void LightVertexConnections::connect(GuidedPath& path, const transport::Vertex& 
     if (const Medium* beyond = path.scene().medium(light.vertex.regionTowards(-direction, state.region)))
         transmittance = beyond->transmittance(light.distance);
     const double time = connection->time + double(light.distance) / double(state.region.speed);
-    state.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                   state.time + time + path.target->start, *path.target->emitter);
+    path.sink.add(connection->throughput * transmittance * (choice.weight * share),
+                  state.time + time + path.target().start, *path.target().emitter);
 }
 
 } // namespace tungsten::path

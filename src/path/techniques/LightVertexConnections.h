@@ -8,7 +8,7 @@ namespace tungsten::path {
 
 struct LightVertexConnections {
     /// From the vertex at the ray's origin.
-    static void connect(GuidedPath& path, const transport::Vertex& here, const LightVertexCache& cache);
+    static void connect(const GuidedPath& path, const transport::Vertex& here, const LightVertexCache& cache);
     /// Per area, of a surface point that light reaches with density `areaPdf`.
     [[nodiscard]] static float density(float areaPdf) { return candidateDensity(areaPdf); }
 };

@@ -29,11 +29,12 @@ Rgb transmittanceOf(const GuidedPath& path, const ReflectedVertex& light, const 
 
 } // namespace
 
-void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache) {
-    CameraPath& state = path.state;
+void ReflectedConnections::connect(const GuidedPath& path, const transport::Vertex& here,
+                                   const ReflectedLightCache& cache) {
+    PathState& state = path.state;
     const auto [low, high] = path.lengthsInGate();
-    state.sampler.at(state.interactions, Draw::ReflectedLight);
-    const ReflectedLightCache::Choice choice = cache.choose(here.position(), low, high, state.sampler.next2D());
+    state.random.at(state.interactions, Draw::ReflectedLight);
+    const ReflectedLightCache::Choice choice = cache.choose(here.position(), low, high, state.random.next2D());
     if (!choice.vertex) return;
     const ReflectedVertex& light = *choice.vertex;
     const bool inMedium = !light.surface;
@@ -42,7 +43,7 @@ void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& he
     const transport::Vertex& end = target.vertex;
     const auto way = transport::straightWay(here.position(), end.position());
     if (!way || !walkGoesOn(path, end, way->direction)) return;
-    ++state.counters.reflectedLight;
+    ++path.counters.reflectedLight;
     const auto connection = path.connectInRegion(here, transport::connectionEnd(*way, target));
     if (!connection) return;
     // Of the walk and of light vertices one vertex on, together.
@@ -54,8 +55,8 @@ void ReflectedConnections::connect(GuidedPath& path, const transport::Vertex& he
     Rgb transmittance = transmittanceOf(path, light, end, way->direction);
     if (inMedium) transmittance = transmittance * path.scene().medium(state.region)->sigmaS();
     const double time = connection->time + double(light.length()) / double(state.region.speed);
-    state.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                   state.time + time + path.target->start, *path.target->emitter);
+    path.sink.add(connection->throughput * transmittance * (choice.weight * share),
+                  state.time + time + path.target().start, *path.target().emitter);
 }
 
 float ReflectedConnections::density(const GuidedPath& path, float pdf, const transport::Straight& way, float areaPdf) {
@@ -64,7 +65,7 @@ float ReflectedConnections::density(const GuidedPath& path, float pdf, const tra
     if (!inMedium && !(cosine > 0.0f)) return 0.0f;
     const LightPaths& lightPaths = path.context.lightPaths;
     const float end = inMedium ? lightPaths.flights().pdf(way.distance) : cosine;
-    return lightPaths.reflected(path.target->index)->candidates() * areaPdf * pdf * end / sqr(way.distance) /
+    return lightPaths.reflected(path.target().index)->candidates() * areaPdf * pdf * end / sqr(way.distance) /
            path.approach->pdf;
 }
 

@@ -8,7 +8,7 @@ namespace tungsten::path {
 
 struct ReflectedConnections {
     /// From the vertex at the ray's origin.
-    static void connect(GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache);
+    static void connect(const GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache);
     /// Whether one vertex before reflected light was connected to that may have come by way of `glossy`.
     [[nodiscard]] static bool mayFind(const GuidedPath& path, const transport::Vertex& glossy) {
         return path.approach && reflectsSharply(glossy.lobes());

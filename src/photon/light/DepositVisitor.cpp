@@ -58,8 +58,8 @@ bool DepositVisitor::vertex(PathState& path, auto& steps, const WalkVertex& at) 
     if (at.surface) leaveOnSurface(path, at);
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
         // Without a flight that may leave here nothing else does.
-        const bool sends = at.surface ? (at.surface->bsdf->lobes() & lobe::Smooth) != 0
-                                      : path.flights < at.medium->maxBounces;
+        const bool sends =
+            at.surface ? (at.surface->bsdf->lobes() & lobe::Smooth) != 0 : path.flights < at.medium->maxBounces;
         if (connections_ && sends)
             connectToSurfaces(path, steps.gate(), at.connectible(scene(), TransportMode::Photons),
                               at.surface ? 2.0f * InSphere : InSphere);
@@ -132,8 +132,7 @@ bool DepositVisitor::emitFromPoint(PathState& path, StepsToCamera& steps, const 
         });
     const bool guides = guide && guide->settings().guideEmission;
     // What is guided aims at the camera itself.
-    const EmissionDirections own(emitter, start,
-                                 guides ? std::span<const transport::BodySphere>() : guidance.bodies());
+    const EmissionDirections own(emitter, start, guides ? std::span<const transport::BodySphere>() : guidance.bodies());
     Vec3f direction;
     float inversePdf = 0.0f;
     if (guides) {
@@ -174,8 +173,7 @@ void DepositVisitor::leaveOnSurface(const PathState& path, const WalkVertex& at)
 void DepositVisitor::depositOnSurface(const PathState& path, const SurfaceInteraction& surface) {
     if (!context_->storeSurface || (surface.bsdf->lobes() & lobe::Smooth) == 0) return;
     const Vec3f& direction = path.ray.direction;
-    const float shading = std::abs(direction.dot(surface.frame.n)),
-                geometric = std::abs(direction.dot(surface.hit.ng));
+    const float shading = std::abs(direction.dot(surface.frame.n)), geometric = std::abs(direction.dot(surface.hit.ng));
     if (!(geometric > 0.0f)) return;
     const auto deposit = [&](const Rgb& power) {
         if (culling_->mayCount(surface.hit.position, path.time))
@@ -223,8 +221,7 @@ void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ah
         const double time = path.timeAfter(transport::distanceBetween(path.ray.origin, position));
         // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
         store(steps, context_->culling,
-              {time, position, path.ray.direction, power, uint16_t(path.interactions + 1),
-               int16_t(path.region.medium)},
+              {time, position, path.ray.direction, power, uint16_t(path.interactions + 1), int16_t(path.region.medium)},
               points);
     }
 }
@@ -249,8 +246,7 @@ void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& f
           points);
 }
 
-void DepositVisitor::store(const auto& steps, const ArrivalCulling& culling, const Photon& photon,
-                           PointList& points) {
+void DepositVisitor::store(const auto& steps, const ArrivalCulling& culling, const Photon& photon, PointList& points) {
     if (!bears(photon.power) || photon.bounce > MostPhotonBounces) return;
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
         const PhotonGuidance& guidance = steps.guidance();
@@ -287,8 +283,7 @@ void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ah
 // ---- Slices
 
 FlightChain::Rules DepositVisitor::chainRules() const {
-    return {scene(), *culling_, std::get<Slices>(context_->settings.primitive).classes,
-            context_->recordCounts};
+    return {scene(), *culling_, std::get<Slices>(context_->settings.primitive).classes, context_->recordCounts};
 }
 
 void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, SliceList& slices) {

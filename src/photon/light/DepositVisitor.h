@@ -56,8 +56,8 @@ class DepositVisitor : public transport::VisitorBase {
     /// `culling`: of the gate that the path aims at. `connections` may be null.
     DepositVisitor(const PhotonContext& context, const ArrivalCulling& culling, const SurfaceConnections* connections,
                    Deposits& deposits, PhotonCounters& counters)
-        : context_(&context), culling_(&culling), connections_(connections), deposits_(&deposits),
-          counters_(&counters), limits_(context.scene.transport) {}
+        : context_(&context), culling_(&culling), connections_(connections), deposits_(&deposits), counters_(&counters),
+          limits_(context.scene.transport) {}
 
     // Emission. False if nothing leaves that could be in time.
     bool emit(PathState& path, PlainPhotonSteps& steps);

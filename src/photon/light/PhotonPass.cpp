@@ -129,7 +129,7 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
 }
 
 PhotonContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& settings,
-                                  const FirstUsefulness* first) const {
+                                    const FirstUsefulness* first) const {
     return {.scene = scene_,
             .settings = settings,
             .culling = culling_,

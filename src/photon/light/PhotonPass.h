@@ -47,7 +47,7 @@ class PhotonPass {
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// What every walk is told; nothing is stored and nothing connected to.
     [[nodiscard]] PhotonContext contextOf(const PassInfo& pass, const PhotonSettings& settings,
-                                        const FirstUsefulness* first) const;
+                                          const FirstUsefulness* first) const;
 
     // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
     // for.

@@ -37,8 +37,8 @@ Flight StepsToCamera::flight(PathState& path, const Ahead& ahead) {
         return {Event::Surface, ahead.hit->t, ahead.medium ? ahead.medium->transmittance(ahead.hit->t) : Rgb(1.0f)};
     }
     path.random.at(path.interactions + 1, Draw::Distance);
-    const darts::DistanceSample sample = sampleDistance(*guide_, heading_, ahead.reach(), path.throughput,
-                                                        [&] { return path.random.next1D(); });
+    const darts::DistanceSample sample =
+        sampleDistance(*guide_, heading_, ahead.reach(), path.throughput, [&] { return path.random.next1D(); });
     const Rgb weight = darts::to<Rgb>(sample.transmittanceOverPdf);
     if (sample.surface) return {Event::Surface, ahead.hit->t, weight, 0.0f};
     // As it is stored, so that times are those of the path that is gathered.

@@ -1,8 +1,8 @@
 #pragma once
 // What one task's light paths have left, and counted.
 
-#include "photon/light/Deposits.h"
 #include "photon/light/DepositVisitor.h"
+#include "photon/light/Deposits.h"
 
 namespace tungsten::photon {
 

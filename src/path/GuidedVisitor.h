@@ -1,0 +1,47 @@
+#pragma once
+// What guided camera paths do on their way: everything is connected to one target (docs/method.md, sections 3 to 6).
+//
+// Every path is found in one way or by weighted ways, told apart by the last vertex before the emitter: in a medium
+// with a straight connection at one speed: a control vertex; in a medium otherwise: an ordinary connection; on a
+// surface: an ordinary connection from where the walk meets it, a light vertex, or, glossy, reflected light one vertex
+// before, weighted against each other and against emitters that the walk meets; specular, or none: emitters that the
+// walk meets. Each way is a technique in src/path/techniques.
+
+#include "path/GuidedPath.h"
+
+namespace tungsten::path {
+
+class GuidedVisitor : public transport::VisitorBase {
+  public:
+    GuidedVisitor(const GuidedContext& context, PixelSink& sink, PathCounters& counters)
+        : context_(&context), sink_(&sink), counters_(&counters) {}
+
+    [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
+    bool ahead(PathState& path, StepsToEmitter& steps, const transport::Ahead& ahead);
+    bool arrive(PathState& path, StepsToEmitter& steps, const transport::Ahead& ahead, const transport::Flight& flight);
+    bool vertex(PathState& path, StepsToEmitter& steps, const transport::WalkVertex& vertex);
+
+  private:
+    [[nodiscard]] const transport::BounceLimits& limits() const { return context_->settings.limits; }
+    [[nodiscard]] GuidedPath at(PathState& path, StepsToEmitter& steps) const {
+        return {*context_, *sink_, *counters_, path, steps, caches_, approach_};
+    }
+    /// At a vertex that the walk came to with this density, per area or volume; `normal` as in Approach. What has been
+    /// connected to along the way is over.
+    void approach(float pdf, const Vec3f& normal);
+    /// By light vertices and reflected light, from the vertex at the ray's origin.
+    void connectToLightPaths(const GuidedPath& path, const transport::Vertex& here);
+
+    const GuidedContext* context_;
+    PixelSink* sink_;
+    PathCounters* counters_;
+    Caches caches_ = Caches::None;
+    std::optional<Approach> approach_;
+    float controlShare_ = 0.0f; ///< of control vertices, in paths with a last vertex where the walk is
+};
+
+/// Traces one camera path along `ray`, guided towards the target.
+void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
+                     PathTarget target, const Ray& ray);
+
+} // namespace tungsten::path
