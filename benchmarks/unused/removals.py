@@ -35,7 +35,7 @@ REMOVALS = [
          "(void)emitter; time = 0.0;"),
     ]),
     ("bump maps", [*PATHS, *MAPS], [
-        ("tungsten/bsdf/ShadingFrame.cpp", "if (!bsdf.bump) return Frame(ns);", "if (true) return Frame(ns);"),
+        ("tungsten/scene/Interaction.cpp", "interaction.bsdf->bump\n", "false\n"),
     ]),
     ("checks against the geometric normal", [*PATHS, *MAPS], [
         ("tungsten/scene/Interaction.cpp", "if (!checksOn) return true;", "(void)checksOn; if (true) return true;"),

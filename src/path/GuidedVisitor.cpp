@@ -89,9 +89,11 @@ void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters
                      PathTarget target, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
-    const PathState start{
-        .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped};
-    transport::Walk(start, StepsToEmitter(context, counters, target), GuidedVisitor(context, sink, counters)).run();
+    transport::Walk walk{
+        PathState{
+            .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
+        StepsToEmitter(context, counters, target), GuidedVisitor(context, sink, counters)};
+    walk.run();
 }
 
 } // namespace tungsten::path

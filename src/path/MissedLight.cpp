@@ -125,7 +125,7 @@ class MissedLightSearch {
                               .interactions = from.interactions};
         transport::PlainLightSteps steps({scene_, counters, watch});
         steps.checks = false;
-        transport::Walk walk(start, steps, SpecularWay{scene_, *from.emitter, end_});
+        transport::Walk walk{start, steps, SpecularWay(scene_, *from.emitter, end_)};
         walk.run();
         return walk.visitor.found;
     }

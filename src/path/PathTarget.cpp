@@ -104,7 +104,7 @@ std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const Em
     transport::StepCounters steps;
     transport::PlainLightSteps onward({scene_, steps, watch});
     onward.checks = false;
-    transport::Walk walk(start, onward, FirstScattering(scene_, target));
+    transport::Walk walk{start, onward, FirstScattering(scene_, target)};
     walk.run();
     counters.rays += steps.rays;
     return walk.visitor.found ? std::optional(target) : std::nullopt;

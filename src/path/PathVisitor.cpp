@@ -157,14 +157,14 @@ template <bool TimeResolved>
 void PathVisitor<TimeResolved>::aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const {
     const RefractedLight& refracted = *context_->refracted;
     if (path.flights + 1 > medium.maxBounces) return;
-    transport::Walk aimed(path, steps, *this);
+    transport::Walk aimed{path, steps, *this};
     aimed.path.random = path.random.branch(RandomStream::Aimed, uint64_t(path.interactions));
     const auto drawn = refracted.draw(*sealed_, aimed.path.random);
     if (!drawn) return;
     aimed.path.ray = Ray{path.ray.origin, drawn->direction};
     ++counters_->rays;
     ++counters_->refracted;
-    const Ahead ahead{&medium, scene().geometry->intersect(aimed.path.ray)};
+    const Ahead ahead{true, &medium, scene().geometry->intersect(aimed.path.ray)};
     if (!ahead.hit || &scene().primitives[ahead.hit->shape] != refracted.boundary(path.region.medium) ||
         refracted.faceOf(path.region.medium, ahead.hit->ng) != drawn->face)
         return;
@@ -193,12 +193,13 @@ void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counte
                const PathTarget* source, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
-    using transport::PlainOptions, transport::PlainSteps;
-    PlainSteps<PlainOptions{.media = Media, .timed = TimeResolved}> steps({scene, counters, context.watch});
-    steps.roulette = context.settings.russianRoulette;
-    const PathState start{
-        .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped};
-    transport::Walk(start, steps, PathVisitor<TimeResolved>(context, sink, counters, source)).run();
+    using Steps = transport::PlainSteps<transport::PlainOptions{.media = Media, .timed = TimeResolved}>;
+    transport::Walk walk{
+        PathState{
+            .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
+        Steps({scene, counters, context.watch}), PathVisitor<TimeResolved>(context, sink, counters, source)};
+    walk.steps.roulette = context.settings.russianRoulette;
+    walk.run();
 }
 
 template void tracePath<false, false>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,

@@ -145,50 +145,50 @@ bool StepsToEmitter::look(PathState& path, const WalkVertex& vertex) {
 
 // ---- Flights
 
-std::optional<Ahead> StepsToEmitter::ahead(PathState& path) {
+Ahead StepsToEmitter::ahead(PathState& path) {
     if (std::exchange(startsAnew_, false) && path.timed) lookAheadFrom(path, path.ray.origin);
     const Medium* medium = context_.scene.medium(path.region);
     if (!medium || !medium->scatters()) return aheadInEmpty(path, medium);
     return path.timed ? aheadInMedium(path, *medium) : aheadUntimed(path, *medium);
 }
 
-std::optional<Ahead> StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium) {
+Ahead StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium) {
     passage_ = Passage::Empty;
     if (path.timed) {
-        if (!reachable().alive()) return std::nullopt;
+        if (!reachable().alive()) return {};
         path.ray.tMax = bound(path.ray.direction);
     }
     ++context_.counters.rays;
-    const Ahead ahead{medium, context_.scene.geometry->intersect(path.ray)};
-    if (!ahead.hit) return std::nullopt;
-    if (medium) context_.counters.fly(*medium);
+    Ahead ahead{true, medium, context_.scene.geometry->intersect(path.ray)};
+    ahead.flies = ahead.hit.has_value();
+    if (medium && ahead.flies) context_.counters.fly(*medium);
     return ahead;
 }
 
-std::optional<Ahead> StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium) {
+Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium) {
     passage_ = Passage::Medium;
-    if (!transport::BounceLimits::fly(path.flights, medium)) return std::nullopt;
+    if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     lookOutFrom(path, transport::Start::along(path.ray));
     if (choosesTarget_ && reachable().way == darts::Way::Out) chooseTarget(path);
-    if (!reachable().alive()) return std::nullopt;
+    if (!reachable().alive()) return {};
     const darts::Guide& guide = guideOf(path.region);
     startRoulette(guide, path.region.medium, meanComponent(path.throughput));
     heading_ = GuidedSteps::heading(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
     ++context_.counters.rays;
-    const Ahead ahead{&medium, context_.scene.geometry->intersect(path.ray)};
+    const Ahead ahead{true, &medium, context_.scene.geometry->intersect(path.ray)};
     // What the camera sees beyond the fog, or of lamps there, has been connected to by no vertex.
     if (ahead.hit && reachable().way == darts::Way::Out && reachable().exit.connects && path.mediumScatters > 0)
         leaveWithOdds(guided_->waysOut->leaveOdds(path.region, path.ray.direction, *ahead.hit));
     return ahead;
 }
 
-std::optional<Ahead> StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium) {
+Ahead StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium) {
     passage_ = Passage::Untimed;
-    if (!transport::BounceLimits::fly(path.flights, medium)) return std::nullopt;
+    if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     lookAheadFrom(path, path.ray.origin);
     ++context_.counters.rays;
-    return Ahead{&medium, context_.scene.geometry->intersect(path.ray)};
+    return {true, &medium, context_.scene.geometry->intersect(path.ray)};
 }
 
 Flight StepsToEmitter::flight(PathState& path, const Ahead& ahead) {

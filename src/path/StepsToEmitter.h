@@ -58,7 +58,7 @@ class StepsToEmitter : public transport::GuidedSteps {
           choosesTarget_(guided.targets != nullptr) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
-    std::optional<transport::Ahead> ahead(PathState& path);
+    transport::Ahead ahead(PathState& path);
     transport::Flight flight(PathState& path, const transport::Ahead& ahead);
     bool look(PathState& path, const transport::WalkVertex& vertex);
     int copies(PathState& path, const transport::WalkVertex& vertex);
@@ -97,9 +97,9 @@ class StepsToEmitter : public transport::GuidedSteps {
 
   private:
     // What lies ahead.
-    std::optional<transport::Ahead> aheadInEmpty(PathState& path, const Medium* medium);
-    std::optional<transport::Ahead> aheadInMedium(PathState& path, const Medium& medium);
-    std::optional<transport::Ahead> aheadUntimed(PathState& path, const Medium& medium);
+    transport::Ahead aheadInEmpty(PathState& path, const Medium* medium);
+    transport::Ahead aheadInMedium(PathState& path, const Medium& medium);
+    transport::Ahead aheadUntimed(PathState& path, const Medium& medium);
     transport::Flight flyUntimed(PathState& path, const transport::Ahead& ahead);
 
     /// What may still come from `position`, at the present time and in the present region.

@@ -79,9 +79,9 @@ void DetectorLight::sample(size_t column, Sampler& sampler, const PassWatch& wat
     if (emitter.isDelta()) meet(column, light, emitter, rays, put);
     if (!specular_ || isBlack(light.throughput)) return;
     StepCounters counters;
-    const StraightSteps<TransportMode::Photons> steps({scene_, counters, watch});
-    Walk(light, steps, SpecularWay([&](const PathState& path) { meet(column, path, emitter, rays, put); }, limits_))
-        .run();
+    Walk walk{light, StraightSteps<TransportMode::Photons>({scene_, counters, watch}),
+              SpecularWay([&](const PathState& path) { meet(column, path, emitter, rays, put); }, limits_)};
+    walk.run();
     rays += counters.rays;
 }
 

@@ -45,16 +45,16 @@ class PlainSteps {
         : checks(context.scene.transport.consistencyChecks), context_(context) {}
     [[nodiscard]] const WalkContext& context() const { return context_; }
 
-    std::optional<Ahead> ahead(PathState& path) {
+    Ahead ahead(PathState& path) {
         const Medium* medium = Options.media ? context_.scene.medium(path.region) : nullptr;
         if (medium) {
-            if (medium->scatters() && !BounceLimits::fly(path.flights, *medium)) return std::nullopt;
+            if (medium->scatters() && !BounceLimits::fly(path.flights, *medium)) return {};
             context_.counters.fly(*medium);
             // The ray need not look beyond the collision.
             if (!Options.wholeRays) path.ray.tMax = draw(path, *medium, Infinity);
         }
         ++context_.counters.rays;
-        return Ahead{medium, context_.scene.geometry->intersect(path.ray)};
+        return {true, medium, context_.scene.geometry->intersect(path.ray)};
     }
 
     Flight flight(PathState& path, const Ahead& ahead) {

@@ -15,11 +15,11 @@ class StraightSteps {
         : checks(context.scene.transport.consistencyChecks), context_(context) {}
     [[nodiscard]] const WalkContext& context() const { return context_; }
 
-    std::optional<Ahead> ahead(PathState& path) {
+    Ahead ahead(PathState& path) {
         const Medium* medium = context_.scene.medium(path.region);
         if (medium) context_.counters.fly(*medium);
         ++context_.counters.rays;
-        return Ahead{medium, context_.scene.geometry->intersect(path.ray)};
+        return {true, medium, context_.scene.geometry->intersect(path.ray)};
     }
     Flight flight(PathState&, const Ahead& ahead) {
         Flight flight{ahead.hit ? Flight::Event::Surface : Flight::Event::Escape, ahead.reach()};

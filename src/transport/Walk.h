@@ -22,8 +22,9 @@ struct WalkContext {
 
 /// What lies ahead of a ray.
 struct Ahead {
-    const Medium* medium; ///< that it goes through; null in vacuum
-    std::optional<SurfaceHit> hit;
+    bool flies = false;             ///< false: limits, or time, end the walk
+    const Medium* medium = nullptr; ///< that the ray goes through; null in vacuum
+    std::optional<SurfaceHit> hit{};
 
     [[nodiscard]] float reach() const { return hit ? hit->t : Infinity; }
 };
@@ -69,8 +70,8 @@ template <typename S>
 concept Steps = requires(S& steps, PathState& path, const Ahead& ahead, const WalkVertex& vertex) {
     { S::Timed } -> std::convertible_to<bool>;
     { steps.context() } -> std::convertible_to<WalkContext>;
-    /// Traces the ray ahead, as far as anything can be of use. None where limits, or time, end the walk.
-    { steps.ahead(path) } -> std::same_as<std::optional<Ahead>>;
+    /// Traces the ray ahead, as far as anything can be of use.
+    { steps.ahead(path) } -> std::same_as<Ahead>;
     { steps.flight(path, ahead) } -> std::same_as<Flight>;
     /// What is still to come from the vertex: false if nothing can be in time.
     { steps.look(path, vertex) } -> std::same_as<bool>;
@@ -113,18 +114,18 @@ struct VisitorBase {
 
 template <typename S, typename V>
 requires Steps<S> && Visitor<V, S>
-class Walk {
-  public:
-    Walk(const PathState& start, const S& ownSteps, const V& ownVisitor)
-        : path(start), steps(ownSteps), visitor(ownVisitor) {}
+struct Walk {
+    PathState path;
+    S steps;
+    V visitor;
 
     /// Flights and vertices, until something ends the walk.
     void run() {
         while (visitor.mayGoOn(path)) {
             steps.context().counters.step(steps.context().watch);
-            const auto ahead = steps.ahead(path);
-            if (!ahead || !visitor.ahead(path, steps, *ahead)) break;
-            if (!arrive(*ahead, steps.flight(path, *ahead))) break;
+            const Ahead ahead = steps.ahead(path);
+            if (!ahead.flies || !visitor.ahead(path, steps, ahead)) break;
+            if (!arrive(ahead, steps.flight(path, ahead))) break;
         }
         visitor.end(path);
     }
@@ -141,10 +142,16 @@ class Walk {
         const Medium* scatters = flight.event == Flight::Event::Collision ? ahead.medium : nullptr;
         fly(flight, scatters, ahead);
         if (!visitor.arrive(path, steps, ahead, flight)) return false;
-        SurfaceInteraction surface;
-        if (!scatters) surface = makeInteraction(scene(), *ahead.hit, path.ray.direction);
-        const WalkVertex vertex{scatters, scatters ? nullptr : &surface, path.ray.origin, path.ray.direction,
-                                path.region};
+        if (scatters) return goOn({scatters, nullptr, path.ray.origin, path.ray.direction, path.region});
+        const SurfaceInteraction surface = makeInteraction(scene(), *ahead.hit, path.ray.direction);
+        return goOn({nullptr, &surface, path.ray.origin, path.ray.direction, path.region});
+    }
+
+  private:
+    [[nodiscard]] const Scene& scene() const { return steps.context().scene; }
+
+    /// From the vertex, in as many copies as the steps say.
+    bool goOn(const WalkVertex& vertex) {
         if (!steps.look(path, vertex) || !visitor.vertex(path, steps, vertex)) return false;
         // Copies have their own numbers; they share the throughput.
         const int copies = steps.copies(path, vertex);
@@ -156,13 +163,6 @@ class Walk {
         }
         return copies > 0 && leave(vertex);
     }
-
-    PathState path;
-    S steps;
-    V visitor;
-
-  private:
-    [[nodiscard]] const Scene& scene() const { return steps.context().scene; }
 
     /// To the vertex, where an interaction is counted: in the medium that scatters, or on the surface if it is null.
     void fly(const Flight& flight, const Medium* scatters, const Ahead& ahead) {
@@ -201,5 +201,7 @@ class Walk {
         return !isBlack(path.throughput) && steps.survives(path);
     }
 };
+template <typename S, typename V>
+Walk(PathState, S, V) -> Walk<S, V>;
 
 } // namespace tungsten::transport

@@ -78,8 +78,9 @@ TEST(MeshHits, QuadFillsEveryField) {
         expectNear(hit->position, target, 1e-5f);
         expectNear(hit->ng, normal, 1e-5f); // not flipped
         expectNear(hit->ns, normal, 1e-5f);
-        expectNear(hit->dpdu, transform.x, 1e-4f);
-        expectNear(hit->dpdv, transform.z, 1e-4f);
+        const Tangents tangents = scene.geometry.tangents(*hit);
+        expectNear(tangents.u, transform.x, 1e-4f);
+        expectNear(tangents.v, transform.z, 1e-4f);
         EXPECT_NEAR(hit->uv.x, 0.6f, 1e-5f);
         EXPECT_NEAR(hit->uv.y, 0.2f, 1e-5f);
     }
@@ -99,13 +100,15 @@ TriangleMesh singleTriangle() {
 TEST(MeshHits, SmoothNormalsAreInterpolated) {
     TriangleMesh mesh = singleTriangle();
     const Ray ray{{0.2f, 0.3f, 1}, {0, 0, -1}};
-    const auto hit = TestScene({mesh}).geometry.intersect(ray);
+    const TestScene scene({mesh});
+    const auto hit = scene.geometry.intersect(ray);
     ASSERT_TRUE(hit);
     expectNear(hit->ns, Vec3f(0.2f, 0.3f, 0.5f).normalized(), 1e-5f);
     expectNear(hit->ng, {0, 0, 1}, 1e-6f);
     EXPECT_EQ(hit->material, -7);
     EXPECT_EQ(hit->uv, Vec2f(0.0f));
-    EXPECT_NEAR(hit->dpdu.cross(hit->dpdv).dot(hit->ng), 1.0f, 1e-5f); // any frame, without uvs
+    const Tangents tangents = scene.geometry.tangents(*hit);
+    EXPECT_NEAR(tangents.u.cross(tangents.v).dot(hit->ng), 1.0f, 1e-5f); // any frame, without uvs
     mesh.normals.assign(3, Vec3f(0.0f));
     expectNear(TestScene({mesh}).geometry.intersect(ray)->ns, {0, 0, 1}, 1e-6f);
     mesh.normals.clear();
@@ -151,7 +154,8 @@ TEST(MeshHits, DegenerateAndInvalidTrianglesNeverGiveNaN) {
         const auto hit = scene.geometry.intersect({origin, (target - origin).normalized()});
         if (!hit) continue;
         ++hits;
-        for (const Vec3f& v : {hit->position, hit->ng, hit->ns, hit->dpdu, hit->dpdv})
+        const Tangents tangents = scene.geometry.tangents(*hit);
+        for (const Vec3f& v : {hit->position, hit->ng, hit->ns, tangents.u, tangents.v})
             EXPECT_TRUE(std::isfinite(v.length()));
         EXPECT_NEAR(hit->ng.length(), 1.0f, 1e-5f);
     }

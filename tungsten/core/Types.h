@@ -64,6 +64,11 @@ struct Ray {
     [[nodiscard]] Vec3f at(float t) const { return origin + direction * t; }
 };
 
+/// Derivatives of a surface's position by the two coordinates of its textures.
+struct Tangents {
+    Vec3f u, v;
+};
+
 /// Right-handed orthonormal frame (s, t, n); local z is n.
 struct Frame {
     Vec3f s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};

@@ -8,10 +8,9 @@ bool isWithin(float t, float tMin, float tMax) {
     return t >= tMin && t <= tMax;
 }
 
-void setDefaultTangents(SurfaceHit& hit) {
+Tangents anyTangents(const SurfaceHit& hit) {
     const Frame frame(hit.ng);
-    hit.dpdu = frame.s;
-    hit.dpdv = frame.t;
+    return {frame.s, frame.t};
 }
 
 } // namespace
@@ -59,11 +58,6 @@ void completeHit(const Sphere& sphere, const Ray& ray, SurfaceHit& hit) {
     hit.error = roundingError(hit.position, hit.ng);
     const Vec3f local = sphere.frame.toLocal(hit.ng);
     hit.uv = sphereUv(local);
-    const float sinTheta = std::hypot(local.x, local.y);
-    if (sinTheta < 1e-6f) return setDefaultTangents(hit); // the poles
-    const float cosPhi = local.x / sinTheta, sinPhi = local.y / sinTheta;
-    hit.dpdu = sphere.frame.toWorld({-local.y, local.x, 0.0f}) * (2.0f * Pi * sphere.radius);
-    hit.dpdv = sphere.frame.toWorld({cosPhi * local.z, sinPhi * local.z, -sinTheta}) * (Pi * sphere.radius);
 }
 
 void completeHit(const Disk& disk, const Ray& ray, SurfaceHit& hit) {
@@ -75,10 +69,23 @@ void completeHit(const Disk& disk, const Ray& ray, SurfaceHit& hit) {
     hit.position = pointOn(disk, offset);
     hit.error = roundingError(hit.position, hit.ng);
     hit.uv = diskUv(inPlane / disk.radius);
+}
+
+Tangents tangentsOf(const Sphere& sphere, const SurfaceHit& hit) {
+    const Vec3f local = sphere.frame.toLocal(hit.ng);
+    const float sinTheta = std::hypot(local.x, local.y);
+    if (sinTheta < 1e-6f) return anyTangents(hit); // the poles
+    const float cosPhi = local.x / sinTheta, sinPhi = local.y / sinTheta;
+    return {sphere.frame.toWorld({-local.y, local.x, 0.0f}) * (2.0f * Pi * sphere.radius),
+            sphere.frame.toWorld({cosPhi * local.z, sinPhi * local.z, -sinTheta}) * (Pi * sphere.radius)};
+}
+
+Tangents tangentsOf(const Disk& disk, const SurfaceHit& hit) {
+    const Vec3f s = disk.frame.s, t = disk.frame.t, offset = hit.position - disk.centre;
+    const Vec2f inPlane(offset.dot(s), offset.dot(t));
     const float radius = inPlane.length();
-    if (!(radius > 1e-6f * disk.radius)) return setDefaultTangents(hit); // the centre
-    hit.dpdu = (t * inPlane.x - s * inPlane.y) * (2.0f * Pi);
-    hit.dpdv = (s * inPlane.x + t * inPlane.y) * (disk.radius / radius);
+    if (!(radius > 1e-6f * disk.radius)) return anyTangents(hit); // the centre
+    return {(t * inPlane.x - s * inPlane.y) * (2.0f * Pi), (s * inPlane.x + t * inPlane.y) * (disk.radius / radius)};
 }
 
 Vec2f sphereUv(const Vec3f& local) {

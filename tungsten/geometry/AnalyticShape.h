@@ -18,6 +18,8 @@ Vec3f pointOn(const Disk& disk, const Vec3d& offset);
 /// Everything of `hit` but shape, face and material, from its t.
 void completeHit(const Sphere& sphere, const Ray& ray, SurfaceHit& hit);
 void completeHit(const Disk& disk, const Ray& ray, SurfaceHit& hit);
+Tangents tangentsOf(const Sphere& sphere, const SurfaceHit& hit);
+Tangents tangentsOf(const Disk& disk, const SurfaceHit& hit);
 
 /// u = azimuth / 2 pi + 1/2, v = polar angle / pi of a unit vector in the sphere's frame.
 Vec2f sphereUv(const Vec3f& local);

@@ -4,6 +4,7 @@
 #include "tungsten/geometry/AnalyticShape.h"
 
 #include <atomic>
+#include <bit>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -44,21 +45,20 @@ RTCGeometry makeTriangles(RTCDevice device, const TriangleMesh& mesh) {
 }
 
 /// Tangents from the uvs; any frame about the normal where they are degenerate.
-void setTangents(const TriangleMesh& mesh, const Triangle& triangle, SurfaceHit& hit) {
+Tangents tangentsOf(const TriangleMesh& mesh, const SurfaceHit& hit) {
+    const Triangle& triangle = mesh.triangles[hit.face];
     if (!mesh.uvs.empty()) {
         const Vec2f duv1 = mesh.uvs[triangle.v[1]] - mesh.uvs[triangle.v[0]];
         const Vec2f duv2 = mesh.uvs[triangle.v[2]] - mesh.uvs[triangle.v[0]];
         const Vec3f dp1 = mesh.positions[triangle.v[1]] - mesh.positions[triangle.v[0]];
         const Vec3f dp2 = mesh.positions[triangle.v[2]] - mesh.positions[triangle.v[0]];
         const float inverse = 1.0f / (duv1.x * duv2.y - duv1.y * duv2.x);
-        hit.dpdu = (dp1 * duv2.y - dp2 * duv1.y) * inverse;
-        hit.dpdv = (dp2 * duv1.x - dp1 * duv2.x) * inverse;
-        const float u2 = hit.dpdu.length2(), v2 = hit.dpdv.length2();
-        if (std::isfinite(u2) && std::isfinite(v2) && u2 > 0.0f && v2 > 0.0f) return;
+        const Tangents tangents{(dp1 * duv2.y - dp2 * duv1.y) * inverse, (dp2 * duv1.x - dp1 * duv2.x) * inverse};
+        const float u2 = tangents.u.length2(), v2 = tangents.v.length2();
+        if (std::isfinite(u2) && std::isfinite(v2) && u2 > 0.0f && v2 > 0.0f) return tangents;
     }
     const Frame frame(hit.ng);
-    hit.dpdu = frame.s;
-    hit.dpdv = frame.t;
+    return {frame.s, frame.t};
 }
 
 /// The point where the ray meets the plane of a triangle, from a corner and the plane's normal of any length. On a vast
@@ -106,14 +106,14 @@ void completeHit(const TriangleMesh& mesh, const Ray& ray, float b1, float b2, S
     hit.error = roundingError(mesh, hit.face, b1, b2, hit.position, hit.ng);
     hit.ns = hit.ng;
     hit.uv = mesh.uvs.empty() ? Vec2f(0.0f) : blend(mesh.uvs);
-    setTangents(mesh, triangle, hit);
     if (!mesh.smooth || mesh.normals.empty()) return;
     const Vec3f shading = blend(mesh.normals);
     const float length = shading.length();
     if (length > 0.0f && std::isfinite(length)) hit.ns = shading / length;
 }
 
-/// The open interval (tMin, tMax) as the closest closed one; Embree needs tnear >= 0, and denormals may be flushed.
+/// The open interval (tMin, tMax) of a ray that canBeTraced() as the closest closed one, of neighbouring floats; Embree
+/// needs tnear >= 0, and denormals may be flushed.
 RTCRay embreeRay(const Ray& ray) {
     RTCRay out{};
     out.org_x = ray.origin.x;
@@ -122,8 +122,9 @@ RTCRay embreeRay(const Ray& ray) {
     out.dir_x = ray.direction.x;
     out.dir_y = ray.direction.y;
     out.dir_z = ray.direction.z;
-    out.tnear = std::max(std::nextafter(ray.tMin, Infinity), std::numeric_limits<float>::min());
-    out.tfar = std::nextafter(ray.tMax, -Infinity);
+    constexpr float Least = std::numeric_limits<float>::min();
+    out.tnear = ray.tMin < Least ? Least : std::bit_cast<float>(std::bit_cast<uint32_t>(ray.tMin) + 1);
+    out.tfar = std::bit_cast<float>(std::bit_cast<uint32_t>(ray.tMax) - 1);
     out.mask = ~0u;
     return out;
 }
@@ -317,7 +318,8 @@ bool canBeTraced(const Ray& ray) {
     const auto inReach = [](const Vec3f& v) {
         return std::abs(v.x) < Largest && std::abs(v.y) < Largest && std::abs(v.z) < Largest;
     };
-    return inReach(ray.origin) && inReach(ray.direction) && !std::isnan(ray.tMin) && !std::isnan(ray.tMax);
+    // Without room between its ends, or a number at one of them, nothing is on it.
+    return inReach(ray.origin) && inReach(ray.direction) && ray.tMin < ray.tMax && ray.tMax > 0.0f;
 }
 
 } // namespace
@@ -361,6 +363,10 @@ void SceneGeometry::complete(const Ray& ray, const Vec2f& barycentric, SurfaceHi
     std::visit(Overloaded{[&](const TriangleMesh& mesh) { completeHit(mesh, ray, barycentric.x, barycentric.y, hit); },
                           [&](const OneOf<Sphere, Disk> auto& round) { completeHit(round, ray, hit); }},
                *shapes_[hit.shape]);
+}
+
+Tangents SceneGeometry::tangents(const SurfaceHit& hit) const {
+    return std::visit([&](const auto& shape) { return tangentsOf(shape, hit); }, *shapes_[hit.shape]);
 }
 
 std::optional<SurfaceHit> SceneGeometry::intersect(const Ray& ray) const {
@@ -425,7 +431,7 @@ std::optional<SurfaceHit> SceneGeometry::intersectFromCoincident(Ray ray) const 
 }
 
 bool SceneGeometry::occluded(const Ray& ray) const {
-    if (!(ray.tMin < ray.tMax) || !canBeTraced(ray)) return false; // below 0 the end would pass for Embree's answer
+    if (!canBeTraced(ray)) return false; // an end below 0 would pass for Embree's answer
     if (leavesCoincident(ray)) return intersectFromCoincident(ray).has_value();
     RTCRay query = embreeRay(ray);
     return embree::occluded(scene_.get(), query);

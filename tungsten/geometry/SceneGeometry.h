@@ -19,9 +19,8 @@ struct SurfaceHit {
     uint32_t face = 0;    ///< triangle index (meshes)
     int32_t material = 0; ///< material index of the face, not yet clamped
     Vec3f position;
-    Vec3f ng;         ///< geometric normal (by winding), unit; not flipped
-    Vec3f ns;         ///< shading normal, unit; not flipped
-    Vec3f dpdu, dpdv; ///< parametrisation tangents (for bump and anisotropy)
+    Vec3f ng; ///< geometric normal (by winding), unit; not flipped
+    Vec3f ns; ///< shading normal, unit; not flipped
     Vec2f uv;
     float error = 0.0f; ///< of the margin
 
@@ -53,6 +52,8 @@ class SceneGeometry {
     [[nodiscard]] std::optional<SurfaceHit> intersect(const Ray& ray) const;
     /// Any hit in (tMin, tMax).
     [[nodiscard]] bool occluded(const Ray& ray) const;
+    /// At a point that a ray has met; any two across the normal where the surface has no coordinates.
+    [[nodiscard]] Tangents tangents(const SurfaceHit& hit) const;
 
     [[nodiscard]] Vec3f boundsMin() const { return boundsMin_; }
     [[nodiscard]] Vec3f boundsMax() const { return boundsMax_; }

@@ -27,7 +27,9 @@ SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, co
     interaction.hit = hit;
     interaction.primitive = &scene.primitives[hit.shape];
     interaction.bsdf = &scene.bsdfOf(hit);
-    interaction.frame = shadingFrame(*interaction.bsdf, hit.ns, hit.dpdu, hit.dpdv, hit.uv);
+    interaction.frame = interaction.bsdf->bump
+                            ? bumpedFrame(*interaction.bsdf, hit.ns, scene.geometry->tangents(hit), hit.uv)
+                            : Frame(hit.ns);
     const bool transmissive = (interaction.bsdf->lobes() & lobe::Transmissive) != 0;
     if (scene.transport.twoSidedShading && !transmissive && rayDirection.dot(hit.ng) > 0.0f) {
         interaction.frame.n = -interaction.frame.n;

@@ -122,12 +122,11 @@ bool CameraConnections::inView(const Vec2f& raster) const {
 
 void traceLightPath(const LightContext& context, const Sampler& sampler, std::vector<Splat>& splats,
                     LightCounters& counters) {
-    PathState start{.random = sampler};
-    CameraConnections connections(context, splats, counters);
-    if (!connections.emit(start)) return;
-    transport::PlainLightSteps steps({context.scene, counters, context.watch});
-    steps.roulette = context.russianRoulette;
-    transport::Walk(start, steps, connections).run();
+    transport::Walk walk{PathState{.random = sampler},
+                         transport::PlainLightSteps({context.scene, counters, context.watch}),
+                         CameraConnections(context, splats, counters)};
+    walk.steps.roulette = context.russianRoulette;
+    if (walk.visitor.emit(walk.path)) walk.run();
 }
 
 } // namespace tungsten::path

@@ -106,10 +106,11 @@ float RefractedLight::indexTowards(int medium, const RefractedLamp& lamp) const 
 std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, const Ray& ray, const Region& region,
                                              const Sampler& sampler) const {
     transport::StepCounters counters;
-    transport::StraightSteps<TransportMode::Radiance> steps({*scene_, counters, {}});
-    steps.checks = steps.attenuated = false;
-    transport::Walk walk(PathState{.random = sampler, .ray = ray, .region = region}, steps,
-                         ArrivalTime{*scene_, lamp.index});
+    const PassWatch watch; // a few boundaries: nobody waits
+    transport::Walk walk{PathState{.random = sampler, .ray = ray, .region = region},
+                         transport::StraightSteps<TransportMode::Radiance>({*scene_, counters, watch}),
+                         ArrivalTime(*scene_, lamp.index)};
+    walk.steps.checks = walk.steps.attenuated = false;
     walk.run();
     return walk.visitor.time;
 }

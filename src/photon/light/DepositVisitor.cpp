@@ -312,10 +312,9 @@ void DepositVisitor::endChain(const PathState& path, int interactions) {
 
 void tracePlainPhotons(const PhotonContext& context, const Sampler& sampler, Deposits& deposits,
                        PhotonCounters& counters) {
-    PathState start{.random = sampler};
-    PlainPhotonSteps steps({context.scene, counters, context.watch});
-    DepositVisitor visitor(context, context.culling, nullptr, deposits, counters);
-    if (visitor.emit(start, steps)) transport::Walk(start, steps, visitor).run();
+    transport::Walk walk{PathState{.random = sampler}, PlainPhotonSteps({context.scene, counters, context.watch}),
+                         DepositVisitor(context, context.culling, nullptr, deposits, counters)};
+    if (walk.visitor.emit(walk.path, walk.steps)) walk.run();
 }
 
 void traceGuidedPhotons(const PhotonContext& context, const PhotonGuidance& guidance,
@@ -330,11 +329,11 @@ void traceGuidedPhotons(const PhotonContext& context, const PhotonGuidance& guid
     }
     const bool storesVertices =
         context.storeVolume && std::visit([](const auto& p) { return p.AtVertices; }, context.settings.primitive);
-    PathState start{.random = sampler};
-    StepsToCamera steps({context.scene, counters, context.watch}, guidance,
-                        {storesVertices, context.first, context.measured}, gate);
-    DepositVisitor visitor(context, *culling, connections, deposits, counters);
-    if (visitor.emit(start, steps)) transport::Walk(start, steps, visitor).run();
+    transport::Walk walk{PathState{.random = sampler},
+                         StepsToCamera({context.scene, counters, context.watch}, guidance,
+                                       {storesVertices, context.first, context.measured}, gate),
+                         DepositVisitor(context, *culling, connections, deposits, counters)};
+    if (walk.visitor.emit(walk.path, walk.steps)) walk.run();
 }
 
 } // namespace tungsten::photon

@@ -10,20 +10,20 @@ using transport::PathState;
 using transport::WalkVertex;
 using transport::Way;
 
-std::optional<Ahead> StepsToCamera::ahead(PathState& path) {
+Ahead StepsToCamera::ahead(PathState& path) {
     const Medium* medium = context_.scene.medium(path.region);
     guide_ = guidance_->guide(path.region);
     if (guide_) {
-        if (!transport::BounceLimits::fly(path.flights, *medium)) return std::nullopt;
+        if (!transport::BounceLimits::fly(path.flights, *medium)) return {};
         const bool afterSurface = !hasLooked();
         if (afterSurface && (!lookFrom(path, transport::Start::along(path.ray)) || !passesRoulette(path, *guide_)))
-            return std::nullopt;
+            return {};
         heading_ = heading(path.ray.direction);
         path.ray.tMax = bound(*guide_, heading_.h);
     }
     if (medium) context_.counters.fly(*medium);
     ++context_.counters.rays;
-    const Ahead ahead{medium, context_.scene.geometry->intersect(path.ray)};
+    const Ahead ahead{true, medium, context_.scene.geometry->intersect(path.ray)};
     path.ray.tMax = Infinity;
     if (guide_ && ahead.hit && residual().way == darts::Way::Out && residual().exit.connects)
         leaveWithOdds(guidance_->leaveOdds(path.region, path.ray.direction, *ahead.hit));

@@ -28,7 +28,7 @@ class StepsToCamera : public transport::GuidedSteps {
         : context_(context), guidance_(&guidance), rules_(rules), gate_(gate) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
-    std::optional<transport::Ahead> ahead(transport::PathState& path);
+    transport::Ahead ahead(transport::PathState& path);
     transport::Flight flight(transport::PathState& path, const transport::Ahead& ahead);
     bool look(transport::PathState& path, const transport::WalkVertex& vertex);
     int copies(transport::PathState& path, const transport::WalkVertex& vertex);

@@ -119,9 +119,10 @@ template <typename Shown>
 SensorSteps followSensorPath(const Scene& scene, const Ray& ray, const SensorPathRules& rules, const Sampler& sampler,
                              Shown&& shown, const PassWatch& watch = {}) {
     SensorSteps counters;
-    const transport::PathState start{.random = sampler, .ray = ray, .region = scene.cameraRegion};
-    const transport::StraightSteps<TransportMode::Radiance> steps({scene, counters, watch});
-    transport::Walk(start, steps, LegVisitor(scene, rules, counters, shown)).run();
+    transport::Walk walk{transport::PathState{.random = sampler, .ray = ray, .region = scene.cameraRegion},
+                         transport::StraightSteps<TransportMode::Radiance>({scene, counters, watch}),
+                         LegVisitor(scene, rules, counters, shown)};
+    walk.run();
     return counters;
 }
 
