@@ -35,8 +35,8 @@ Vec3f pointIn(const Imath::Box3f& box, Sampler& sampler) {
 }
 
 /// Follows light of an emitter to the first vertex that scatters it, should that be in time.
-struct SpecularWay : transport::VisitorBase {
-    SpecularWay(const Scene& wholeScene, const Emitter& from, double lastTime)
+struct SpecularSearch : transport::VisitorBase {
+    SpecularSearch(const Scene& wholeScene, const Emitter& from, double lastTime)
         : scene(&wholeScene), emitter(&from), last(lastTime) {}
 
     // What scatters is an interaction, too.
@@ -125,7 +125,7 @@ class MissedLightSearch {
                               .interactions = from.interactions};
         transport::PlainLightSteps steps({scene_, counters, watch});
         steps.checks = false;
-        transport::Walk walk{start, steps, SpecularWay(scene_, *from.emitter, end_)};
+        transport::Walk walk{start, steps, SpecularSearch(scene_, *from.emitter, end_)};
         walk.run();
         return walk.visitor.found;
     }

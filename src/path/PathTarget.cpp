@@ -101,12 +101,12 @@ std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const Em
                           .throughput = emission.power / target.probability,
                           .time = target.start};
     if (isBlack(start.throughput)) return std::nullopt;
-    transport::StepCounters steps;
-    transport::PlainLightSteps onward({scene_, steps, watch});
+    transport::StepCounters own; // what happens on light's own path is not counted
+    transport::PlainLightSteps onward({scene_, own, watch});
     onward.checks = false;
     transport::Walk walk{start, onward, FirstScattering(scene_, target)};
     walk.run();
-    counters.rays += steps.rays;
+    counters.rays += own.rays;
     return walk.visitor.found ? std::optional(target) : std::nullopt;
 }
 

@@ -173,7 +173,7 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium) {
     if (!reachable().alive()) return {};
     const darts::Guide& guide = guideOf(path.region);
     startRoulette(guide, path.region.medium, meanComponent(path.throughput));
-    heading_ = GuidedSteps::heading(path.ray.direction);
+    heading_ = headingOf(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
     ++context_.counters.rays;
     const Ahead ahead{true, &medium, context_.scene.geometry->intersect(path.ray)};
@@ -249,7 +249,7 @@ bool StepsToEmitter::passesRoulette(PathState& path, const darts::Guide& guide) 
 int StepsToEmitter::copies(PathState& path, const WalkVertex& vertex) {
     if (vertex.surface) return guidesSurface() && !passesRoulette(path, *surfaceGuide_) ? 0 : 1;
     const darts::Guide& guide = guideOf(path.region);
-    return passesRoulette(path, guide) ? GuidedSteps::copies(guide) : 0;
+    return passesRoulette(path, guide) ? copiesBy(guide) : 0;
 }
 
 template <typename Scatterer>

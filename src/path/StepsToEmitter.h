@@ -123,7 +123,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     transport::WalkContext context_;
     const GuidedContext* guided_;
     PathCounters* counters_;
-    PathTarget* target_;
+    PathTarget* target_;     ///< shared with copies: chosen before anything scatters, and so before splits
     bool choosesTarget_;     ///< until it is final
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;

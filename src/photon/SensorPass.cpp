@@ -25,7 +25,7 @@ void report(const SensorCounters& counters, const VolumeGathers& volume, Statist
 }
 
 /// Follows a highlight path.
-struct HighlightVisitor {
+struct HighlightGather {
     SensorGather& gather;
     uint32_t part;
 
@@ -97,15 +97,15 @@ class SensorPass {
         const Sampler paths(pass_.seed, RandomStream::Highlight, sample, pixel);
         for (uint32_t k = 0; k < tuning::HighlightPaths; ++k) {
             Sampler sampler = paths.branch(RandomStream::Highlight, k);
-            follow(at, sampler, HighlightVisitor{gather, k}, counters);
+            follow(at, sampler, HighlightGather{gather, k}, counters);
         }
     }
 
-    template <typename Visitor>
-    void follow(const Vec2i& at, Sampler& sampler, Visitor&& visitor, SensorCounters& counters) const {
+    template <typename Shown>
+    void follow(const Vec2i& at, Sampler& sampler, Shown&& shown, SensorCounters& counters) const {
         const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
         const Ray ray = scene_.camera.generateRay(at, uFilter, uLens);
-        counters.steps += followSensorPath(scene_, ray, structures_.rules, sampler, visitor, pass_.watch);
+        counters.steps += followSensorPath(scene_, ray, structures_.rules, sampler, shown, pass_.watch);
     }
 
     const Scene& scene_;

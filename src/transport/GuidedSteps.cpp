@@ -30,7 +30,7 @@ float GuidedSteps::survival(const darts::Guide& guide, int medium, float through
     return survival;
 }
 
-int GuidedSteps::copies(const darts::Guide& guide) {
+int GuidedSteps::copiesBy(const darts::Guide& guide) {
     const bool out = reachable_.way == darts::Way::Out;
     int copies = out ? splits_.copies(guide.splits(reachable_)) : 1;
     const bool byUsefulness = out ? guide.settings().splitsHeavyOut : reachable_.way != darts::Way::Unknown;

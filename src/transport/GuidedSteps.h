@@ -1,14 +1,13 @@
 #pragma once
-// One step of a walk that is guided towards a target, from vertex to vertex (docs/method.md, sections 3 to 6). Its
-// stages, in this order:
-//   look        what is still to come from the vertex;
-//   roulette    whether the walk goes on, and in how many copies;
-//   connection  the length of the rest of the path, should the next vertex be the last one: the control vertex;
-//   direction   of the straight way ahead, to suit the connection if its length is drawn first;
-//   flight      the control vertex on the way, then the distance to the next vertex.
+// What steps towards a target have in common, an emitter's point or the camera (docs/method.md, sections 3 to 6). From
+// vertex to vertex they
+//   look                 at what is still to come from the vertex;
+//   play roulette        whether the walk goes on, and in how many copies;
+//   draw a connection    the length of the rest of the path, should the next vertex be the last one: the control
+//   vertex; draw a direction     of the straight way ahead, to suit the connection if its length is drawn first; fly
+//   past the control vertex on the way, a distance to the next vertex.
 // A straight way may cross several regions: the stages up to the direction are then passed once, the flight in each.
-//
-// A step draws no random numbers of its own and adds no light: the walk says how, and where its light goes.
+// Random numbers are the walk's own, which says how they are drawn.
 
 #include "transport/WaysOut.h"
 
@@ -31,7 +30,7 @@ class GuidedSteps {
 
     // Look. Whatever the walk may find besides its target may arrive later by `surplus`, a length.
     void lookAhead(const darts::Residual& residual, float surplus) {
-        look(residual);
+        lookedAt(residual);
         looked_ = Looked::Ahead;
         reachable_.excess += surplus;
         reachable_.width += surplus;
@@ -40,14 +39,14 @@ class GuidedSteps {
     /// How light gets to the target, too. Adds the rays traced to `rays`.
     void lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim, uint64_t& rays);
     /// Both at once, when the walk knows.
-    void look(const darts::Residual& residual) {
+    void lookedAt(const darts::Residual& residual) {
         looked_ = Looked::Out;
         residual_ = residual;
         reachable_ = residual;
         surplus_ = 0.0f;
     }
-    /// The vertex is left behind.
-    void leave() {
+    /// At another vertex: what the walk knew of the last one is over.
+    void forget() {
         looked_ = Looked::Nowhere;
         startWay();
     }
@@ -69,7 +68,7 @@ class GuidedSteps {
     [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput, float others = NoOthers);
     /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, and where it has become
     /// too useful.
-    [[nodiscard]] int copies(const darts::Guide& guide);
+    [[nodiscard]] int copiesBy(const darts::Guide& guide);
 
     // Connection.
     /// A straight way starts whose connection is drawn in flight, when the surface ahead is known, unless connect()
@@ -110,7 +109,7 @@ class GuidedSteps {
     void passBoundary(float distance);
 
     // Flight.
-    [[nodiscard]] darts::Heading heading(const Vec3f& direction) const {
+    [[nodiscard]] darts::Heading headingOf(const Vec3f& direction) const {
         return residual_.heading(darts::vec3(direction));
     }
     /// Distance beyond which nothing can be in time; for flights through what scatters, if its guide is to end them.

@@ -10,8 +10,8 @@ struct LastVertex {
     enum class Kind { Specular, Surface, Medium }; ///< Specular: mirrors, refraction, and where the walk starts
 
     Kind kind = Kind::Specular;
-    Vec3f position{0.0f}; ///< of surfaces with smooth lobes, and in media
-    float pdf = 0.0f;     ///< of the present direction, per solid angle; 0 for what has no density: specular lobes
+    Vec3f position{0.0f};
+    float pdf = 0.0f; ///< of the present direction, per solid angle (Way::pdf)
 };
 
 /// In double, of positions as they are stored.
@@ -31,7 +31,7 @@ struct PathState {
     int flights = 0;      ///< in scattering media since the last surface
     int mediumScatters = 0;
     int inARow = 0;         ///< the last of these, since the last surface
-    bool timed = true;      ///< false: on camera segments that do not count
+    bool timed = true;      ///< false: on camera segments that do not count, up to the first vertex that scatters
     bool scattered = false; ///< at a surface by a smooth lobe, or in a medium
     LastVertex last{};
 

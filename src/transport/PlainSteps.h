@@ -1,6 +1,7 @@
 #pragma once
 // Steps by the scene's own distributions: free flights, phase functions, BSDFs, roulette by the throughput.
 
+#include "transport/BounceLimits.h"
 #include "transport/Roulette.h"
 #include "transport/Walk.h"
 

@@ -3,7 +3,6 @@
 // on; a visitor does what is to be done on the way: connections, deposits, light that is met. Neither the loop nor a
 // step adds light anywhere.
 
-#include "transport/BounceLimits.h"
 #include "transport/PathState.h"
 #include "transport/StepCounters.h"
 #include "transport/Vertex.h"
@@ -17,14 +16,14 @@ namespace tungsten::transport {
 struct WalkContext {
     const Scene& scene;
     StepCounters& counters;
-    const PassWatch& watch;
+    PassWatch watch;
 };
 
 /// What lies ahead of a ray.
 struct Ahead {
-    bool flies = false;             ///< false: limits, or time, end the walk
-    const Medium* medium = nullptr; ///< that the ray goes through; null in vacuum
-    std::optional<SurfaceHit> hit{};
+    bool flies = false;              ///< false: limits, or time, end the walk
+    const Medium* medium = nullptr;  ///< that the ray goes through; null in vacuum
+    std::optional<SurfaceHit> hit{}; ///< none either where a flight that is drawn first ends before the surface
 
     [[nodiscard]] float reach() const { return hit ? hit->t : Infinity; }
 };
@@ -36,7 +35,7 @@ struct Flight {
     float distance = Infinity; ///< along the ray
     Rgb weight{1.0f};          ///< collision: sigmaS T / pdf; else T / pdf, T the transmittance
     float pdf = 1.0f;          ///< collision: density per length; else a probability
-    double length = distance;  ///< the same between the vertices as they are stored, for the clock
+    double length = distance;  ///< for the clock: some steps take it between the vertices, which are rounded
 };
 
 /// The vertex at a flight's end, in a medium or on a surface: one of the two is set.
@@ -45,7 +44,7 @@ struct WalkVertex {
     const SurfaceInteraction* surface;
     Vec3f position;
     Vec3f before;  ///< direction of propagation up to here
-    Region region; ///< through which the walk came
+    Region region; ///< through which the walk came; steps that look may have set path.region to what is ahead
 
     /// As others are connected to it.
     [[nodiscard]] Vertex connectible(const Scene& scene, TransportMode mode) const {
@@ -57,8 +56,8 @@ struct WalkVertex {
 struct Way {
     Ray ray;
     Region region;
-    Rgb weight{1.0f};           ///< scattering, on surfaces times cosine, over the density or the probability
-    float pdf = 0.0f;           ///< per solid angle by the walk's own steps; 0 for what has no density
+    Rgb weight{1.0f}; ///< scattering, on surfaces times cosine, over the density or the probability
+    float pdf = 0.0f; ///< per solid angle, by the phase function or the BSDF, whoever drew; 0 for what has none
     LobeMask lobe = lobe::None; ///< of a surface
 
     [[nodiscard]] bool straight() const { return lobe == lobe::Forward; }
@@ -72,14 +71,16 @@ concept Steps = requires(S& steps, PathState& path, const Ahead& ahead, const Wa
     { steps.context() } -> std::convertible_to<WalkContext>;
     /// Traces the ray ahead, as far as anything can be of use.
     { steps.ahead(path) } -> std::same_as<Ahead>;
+    /// Draws how the flight ends.
     { steps.flight(path, ahead) } -> std::same_as<Flight>;
     /// What is still to come from the vertex: false if nothing can be in time.
     { steps.look(path, vertex) } -> std::same_as<bool>;
-    /// Roulette and splitting before the way on, by nothing but the path so far: into how many the walk goes on, 0 if
-    /// it ends. Roulette has divided the throughput, splitting has not.
+    /// Roulette and splitting by nothing but the path so far: in how many copies the walk goes on, 0 if it ends. The
+    /// throughput makes up for roulette; the loop shares it among the copies.
     { steps.copies(path, vertex) } -> std::same_as<int>;
+    /// Draws the way on; none where the walk is absorbed.
     { steps.way(path, vertex) } -> std::same_as<std::optional<Way>>;
-    /// Roulette by the throughput with the weight of the way.
+    /// Roulette by the throughput once it includes the way's weight.
     { steps.survives(path) } -> std::same_as<bool>;
 };
 
@@ -97,9 +98,9 @@ concept Visitor = requires(V& visitor, PathState& path, S& steps, const Ahead& a
     { visitor.arrive(path, steps, ahead, flight) } -> std::same_as<bool>;
     /// Connections and deposits of the vertex, before its roulette.
     { visitor.vertex(path, steps, vertex) } -> std::same_as<bool>;
-    /// Before `path` takes this way.
+    /// Before `path` takes this way, which its roulette may still end.
     visitor.leave(path, steps, vertex, way);
-    /// The walk is over.
+    /// The last of run(): nothing goes on.
     visitor.end(path);
 };
 
@@ -130,7 +131,7 @@ struct Walk {
         visitor.end(path);
     }
 
-    /// The walk has flown, and scatters: true if it goes on from there.
+    /// The flight's end: true if the walk goes on from there. A walk whose first way is given starts here.
     bool arrive(const Ahead& ahead, const Flight& flight) {
         if (flight.event == Flight::Event::Nothing) return false;
         path.throughput = path.throughput * flight.weight;
@@ -172,7 +173,7 @@ struct Walk {
             steps.context().counters.scatter(*scatters);
             ++path.mediumScatters;
             ++path.inARow;
-            path.timed = path.scattered = true;
+            path.timed = path.scattered = true; // here the camera's own segments are over
         } else {
             ++steps.context().counters.surfaceEvents;
             path.flights = path.inARow = 0;

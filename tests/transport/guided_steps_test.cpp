@@ -43,10 +43,10 @@ TEST(GuidedSteps, LooksInTwoStages) {
     EXPECT_FLOAT_EQ(step.reachable().excess, 2.5f);
     EXPECT_FLOAT_EQ(step.reachable().width, step.residual().width + 0.5f);
     EXPECT_EQ(step.reachable().low, step.residual().low);
-    step.look(ahead());
+    step.lookedAt(ahead());
     EXPECT_TRUE(step.hasLookedOut());
     EXPECT_EQ(step.reachable().excess, step.residual().excess);
-    step.leave();
+    step.forget();
     EXPECT_FALSE(step.hasLooked());
 }
 
@@ -54,7 +54,7 @@ TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     const darts::Guide guide = guideWith(0.1f);
     const auto started = [&](float throughput, float others) {
         GuidedSteps step;
-        step.look(ahead());
+        step.lookedAt(ahead());
         return step.survival(guide, 0, throughput, others);
     };
     const float own = guide.logUsefulness(ahead(), 1.0f);
@@ -64,34 +64,34 @@ TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     EXPECT_NEAR(started(1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
     // And goes on by it: what has survived has made up for it.
     GuidedSteps step;
-    step.look(ahead());
+    step.lookedAt(ahead());
     EXPECT_NEAR(step.survival(guide, 0, 1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 4.0f, own + std::log(40.0f)), 1.0f);
     EXPECT_NEAR(step.survival(guide, 0, 0.4f), 0.1f, 1e-4f);
-    EXPECT_EQ(step.copies(guide), 1);
+    EXPECT_EQ(step.copiesBy(guide), 1);
 }
 
 TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.look(ahead());
+    step.lookedAt(ahead());
     step.startRoulette(guide, 0, 1.0f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 3.9f), 1.0f);
-    EXPECT_EQ(step.copies(guide), 1);
+    EXPECT_EQ(step.copiesBy(guide), 1);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 20.0f), 1.0f);
-    EXPECT_EQ(step.copies(guide), 6);
+    EXPECT_EQ(step.copiesBy(guide), 6);
     // Never more of one walk than the bound allows, however useful it is.
     float stemming = 6.0f;
     for (int i = 0; i < 100; ++i) {
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1e6f), 1.0f);
-        stemming *= float(step.copies(guide));
+        stemming *= float(step.copiesBy(guide));
     }
     EXPECT_LE(stemming, tuning::MostCopies);
     EXPECT_GT(stemming, 0.1f * tuning::MostCopies);
     // Roulette makes room again.
     EXPECT_LT(step.survival(guide, 0, 1e-4f), 0.01f);
     (void)step.survival(guide, 0, 1e6f);
-    EXPECT_GT(step.copies(guide), 8);
+    EXPECT_GT(step.copiesBy(guide), 8);
 }
 
 /// Where half of 16 transport mean free paths is not left yet, by their usefulness alone, and by both where it is.
@@ -99,12 +99,12 @@ TEST(GuidedSteps, OutOfBodiesHeavyPhotonsSplit) {
     const auto copiesOf = [](darts::Mode mode, double longest) {
         const darts::Guide guide(darts::best(mode, 0.0f), Fog);
         GuidedSteps step;
-        step.look(test::outOf(0.5, 3.0, longest, 1.0));
+        step.lookedAt(test::outOf(0.5, 3.0, longest, 1.0));
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
-        EXPECT_EQ(step.copies(guide), 1);
-        if (longest < 10.0) step.look(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
+        EXPECT_EQ(step.copiesBy(guide), 1);
+        if (longest < 10.0) step.lookedAt(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 40.0f), 1.0f);
-        return step.copies(guide);
+        return step.copiesBy(guide);
     };
     EXPECT_EQ(copiesOf(darts::Mode::Photon, 43.5), 11); // 40 / 4 + 1
     EXPECT_EQ(copiesOf(darts::Mode::Path, 43.5), 1);
@@ -117,7 +117,7 @@ TEST(GuidedSteps, OutOfBodiesCameraPathsEndSooner) {
     const darts::Guide guide(darts::best(darts::Mode::Path, 0.0f), Fog);
     for (const bool out : {false, true}) {
         GuidedSteps step;
-        step.look(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
+        step.lookedAt(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
         EXPECT_NEAR(step.survival(guide, 0, 0.06f), out ? 0.2f : 1.0f, 1e-4f);
     }
@@ -134,8 +134,8 @@ void expectArrivesAfter(float length, const GuidedSteps::OnWay& met) {
 TEST(GuidedSteps, ConnectionDrawnInFlight) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.look(ahead());
-    const float h = step.heading(Aslant).h;
+    step.lookedAt(ahead());
+    const float h = step.headingOf(Aslant).h;
     int draws = 0;
     const auto draw = [&](const darts::Residual& residual) {
         ++draws;
@@ -160,9 +160,9 @@ TEST(GuidedSteps, ConnectionDrawnInFlight) {
 TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.look(ahead());
+    step.lookedAt(ahead());
     step.connect({1.5f, 2.0f});
-    const GuidedSteps::Line way{guide, step.heading(Aslant).h, 3.0, true};
+    const GuidedSteps::Line way{guide, step.headingOf(Aslant).h, 3.0, true};
     const auto met = step.meetControlVertex(way, Infinity, noDraw);
     ASSERT_TRUE(met);
     expectArrivesAfter(5.5f, *met);
@@ -174,9 +174,9 @@ TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
 TEST(GuidedSteps, ConnectionGoesOnThroughBoundaries) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.look(ahead());
+    step.lookedAt(ahead());
     step.connect({1.5f, 2.0f});
-    const float h = step.heading(Aslant).h;
+    const float h = step.headingOf(Aslant).h;
     step.place({guide, h, 3.0, true});
     GuidedSteps whole = step;
     const auto there = whole.meetControlVertex({guide, h, 3.0, true}, Infinity, noDraw);
@@ -206,7 +206,7 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
     const darts::Guide guide(settings, Fog);
     const auto density = [&](float excess) {
         GuidedSteps step;
-        step.look(ahead());
+        step.lookedAt(ahead());
         step.connect({excess, 1.0f});
         const auto half = [] { return 0.5f; };
         return step.sampleDirection(guide, darts::HenyeyGreenstein{}, darts::NoView{}, half).inversePdf;
@@ -217,24 +217,24 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
 TEST(GuidedSteps, RouletteStartsAnewWithAnotherModel) {
     const darts::Guide guide = guideWith(0.5f);
     GuidedSteps step;
-    step.look(ahead());
+    step.lookedAt(ahead());
     EXPECT_EQ(step.survival(guide, 0, 1.0f), 1.0f) << "it starts";
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);
-    step.leave();
-    step.look(ahead());
+    step.forget();
+    step.lookedAt(ahead());
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f) << "vertices of one model compare";
     EXPECT_EQ(step.survival(guide, 1, 0.25f), 1.0f) << "another medium";
     EXPECT_NEAR(step.survival(guide, 1, 0.0625f), 0.5f, 1e-5f);
     darts::Residual unknown = ahead();
     unknown.way = darts::Way::Unknown;
-    step.look(unknown);
+    step.lookedAt(unknown);
     EXPECT_EQ(step.survival(guide, 1, 1e-6f), 1.0f) << "another way";
 }
 
 TEST(GuidedSteps, RouletteCanStartBeforeItIsPlayed) {
     const darts::Guide guide = guideWith(0.5f);
     GuidedSteps step;
-    step.look(ahead());
+    step.lookedAt(ahead());
     step.startRoulette(guide, 0, 1.0f);
     step.startRoulette(guide, 0, 0.25f); // goes on
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);

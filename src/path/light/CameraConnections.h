@@ -66,7 +66,7 @@ class CameraConnections : public transport::VisitorBase {
     LightCounters* counters_;
     Rgb power_{0.0f};        ///< at the start
     double scattered_ = 0.0; ///< the time at the last vertex that is not specular: where camera segments begin
-    int inARow_ = 0;         ///< the last scatterings in media without a surface between them
+    int inARow_ = 0;         ///< PathState::inARow at the last scattering in a medium, surfaces since left out
 };
 
 /// Traces one path from a light.

@@ -106,9 +106,8 @@ float RefractedLight::indexTowards(int medium, const RefractedLamp& lamp) const 
 std::optional<double> RefractedLight::timeTo(const RefractedLamp& lamp, const Ray& ray, const Region& region,
                                              const Sampler& sampler) const {
     transport::StepCounters counters;
-    const PassWatch watch; // a few boundaries: nobody waits
     transport::Walk walk{PathState{.random = sampler, .ray = ray, .region = region},
-                         transport::StraightSteps<TransportMode::Radiance>({*scene_, counters, watch}),
+                         transport::StraightSteps<TransportMode::Radiance>({*scene_, counters, {}}),
                          ArrivalTime(*scene_, lamp.index)};
     walk.steps.checks = walk.steps.attenuated = false;
     walk.run();

@@ -135,8 +135,8 @@ class DepositVisitor : public transport::VisitorBase {
     transport::BounceLimits limits_;
     std::vector<PointDraw> draws_; ///< of the vertex at hand
     FlightChain chain_;            ///< of the flights since the last light or surface, for slices
-    bool guided_ = false;
-    bool connectable_ = false; ///< the last vertex has no single direction and lies in this region: it connects
+    bool guided_ = false;          ///< slices' records then draw their own directions
+    bool connectable_ = false;     ///< the last vertex has no single direction and lies in this region: it connects
 };
 
 /// Traces one light path, plain.

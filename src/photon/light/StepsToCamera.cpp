@@ -18,7 +18,7 @@ Ahead StepsToCamera::ahead(PathState& path) {
         const bool afterSurface = !hasLooked();
         if (afterSurface && (!lookFrom(path, transport::Start::along(path.ray)) || !passesRoulette(path, *guide_)))
             return {};
-        heading_ = heading(path.ray.direction);
+        heading_ = headingOf(path.ray.direction);
         path.ray.tMax = bound(*guide_, heading_.h);
     }
     if (medium) context_.counters.fly(*medium);
@@ -47,12 +47,12 @@ Flight StepsToCamera::flight(PathState& path, const Ahead& ahead) {
 }
 
 bool StepsToCamera::lookFrom(const PathState& path, const transport::Start& start) {
-    GuidedSteps::look(guidance_->residual(start, path.region, path.time, gate_, context_.counters.rays));
+    lookedAt(guidance_->residual(start, path.region, path.time, gate_, context_.counters.rays));
     return residual().alive();
 }
 
 bool StepsToCamera::look(PathState& path, const WalkVertex& vertex) {
-    leave();
+    forget();
     return vertex.surface || lookFrom(path, {vertex.position});
 }
 
@@ -75,7 +75,7 @@ bool StepsToCamera::passesRoulette(PathState& path, const darts::Guide& guide) {
 
 int StepsToCamera::copies(PathState& path, const WalkVertex& vertex) {
     if (vertex.surface) return 1; // where the next flight starts
-    return passesRoulette(path, *guide_) ? GuidedSteps::copies(*guide_) : 0;
+    return passesRoulette(path, *guide_) ? copiesBy(*guide_) : 0;
 }
 
 std::optional<Way> StepsToCamera::way(PathState& path, const WalkVertex& vertex) {

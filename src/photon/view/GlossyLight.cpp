@@ -19,7 +19,7 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
             bool glossy = false;
             const Ray ray = scene.camera.generateRay({x, y}, Vec2f(0.5f), Vec2f(0.5f));
             // The last surface of a straight path counts.
-            const SurfaceVisitor look{
+            const SurfaceLook look{
                 [&](const SensorState&, const SurfaceInteraction& surface) { glossy = isGlossyOnly(*surface.bsdf); }};
             followSensorPath(scene, ray, {false, false}, sampler, look);
             centres[size_t(y) * size_t(width) + size_t(x)] = glossy;

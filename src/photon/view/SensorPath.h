@@ -134,13 +134,13 @@ inline void report(const SensorSteps& steps, Statistics& statistics) {
 
 /// Looks at surfaces alone: `look(state, interaction)`.
 template <typename Look>
-struct SurfaceVisitor {
+struct SurfaceLook {
     Look look;
     void segment(const SensorState&, const std::optional<SurfaceHit>&) const {}
     void surface(const SensorState& state, const SurfaceInteraction& surface) const { look(state, surface); }
     void escaped(const SensorState&) const {}
 };
 template <typename Look>
-SurfaceVisitor(Look) -> SurfaceVisitor<Look>;
+SurfaceLook(Look) -> SurfaceLook<Look>;
 
 } // namespace tungsten::photon

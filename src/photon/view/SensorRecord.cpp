@@ -110,7 +110,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             rows[y].begin(uint32_t(pixel));
             steps += followSensorPath(scene, ray, rules, sampler, rows[y], watch);
             rows[y].end();
-            const SurfaceVisitor recordPoint{
+            const SurfaceLook recordPoint{
                 [&](const SensorState& state, const SurfaceInteraction& surface) { rows[y].surface(state, surface); }};
             for (uint32_t s = 1; s < wishes.samples; ++s) {
                 Sampler further = sampler.branch(RandomStream::SensorPoint, s);
