@@ -1,6 +1,7 @@
 // Every method shows the same image on every scene, and the closed form where there is one.
 
 #include "support/AgreementScenes.h"
+#include "support/SeedShift.h"
 #include "support/SingleScattering.h"
 
 #include <gtest/gtest.h>
@@ -49,6 +50,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, MethodsAgree, testing::ValuesIn(scenesInTests()
 class ClosedForms : public testing::TestWithParam<PulsesInFog> {};
 
 TEST_P(ClosedForms, MatchEveryMethod) {
+    const test::OtherSeeds seeds{{"coloured_and_slow", 1}, {"two_pulses", 1}};
     constexpr int Side = 24;
     AgreementScene scene = builtScene(GetParam().name, sceneJson(GetParam()), 0.1, ClosedFormEffort);
     const BlockMeans exact = closedForm(GetParam(), Side);

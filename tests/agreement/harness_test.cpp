@@ -3,6 +3,7 @@
 #include "tungsten/core/Errors.h"
 
 #include "support/AgreementScenes.h"
+#include "support/SeedShift.h"
 #include "support/SingleScattering.h"
 
 #include <gtest/gtest.h>
@@ -24,6 +25,7 @@ AgreementScene sceneCalled(const std::string& name) {
 class Faults : public testing::TestWithParam<Fault> {};
 
 TEST_P(Faults, AreDetected) {
+    const test::OtherSeeds seeds{{"SecondPulseLate", 1}};
     const AgreementScene right = sceneCalled(GetParam().scene);
     AgreementScene wrong = right;
     wrong.overrides.insert(wrong.overrides.end(), GetParam().overrides.begin(), GetParam().overrides.end());

@@ -2,6 +2,7 @@
 // switch alone.
 
 #include "support/PathsAndPhotons.h"
+#include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
@@ -52,6 +53,7 @@ std::unique_ptr<test::Rendered> renderOrder(const VerifiedValue& value, const Sa
 class GuidedOrders : public testing::TestWithParam<std::tuple<Sampling, VerifiedValue>> {};
 
 TEST_P(GuidedOrders, MatchVerifiedValues) {
+    const test::OtherSeeds seeds{{"Published_B2WarpedDelta", 1}, {"Published_B2UnwarpedBox", 1}};
     const auto& [sampling, value] = GetParam();
     const auto rendered = renderOrder(value, sampling);
     const double error = rendered->pixelError(), expected = value.radiance;

@@ -6,6 +6,7 @@
 
 #include "support/AgreementScenes.h"
 #include "support/PathsAndPhotons.h"
+#include "support/SeedShift.h"
 
 #include <gtest/gtest.h>
 
@@ -141,6 +142,7 @@ TEST(LightTracer, ShowsSurfacesAlongParallelRays) {
 
 /// A wall that a floor with leaning shading normals alone lights: the walk over the floor goes on with their factor.
 TEST(LightTracer, KeepsTheFactorOfShadingNormals) {
+    const test::OtherSeeds seeds(1);
     const std::string scene = R"({"bsdfs": [{"name": "grey", "type": "lambert", "albedo": 0.8}],
         "primitives": [
           {"type": "mesh", "file": "leaning.obj", "smooth": true, "bsdf": "grey"},

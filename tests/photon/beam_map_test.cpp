@@ -5,6 +5,7 @@
 
 #include "support/Folders.h"
 #include "support/PathsAndPhotons.h"
+#include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
@@ -122,6 +123,7 @@ class CornellFog : public testing::Test {
 };
 
 TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
+    const test::OtherSeeds seeds(1);
     const auto beams = photons("beams", 26);
     // Plain paths are as noisy with four times as many samples.
     expectSame(*beams, *paths("best", 20, 1024), 0.02, 0.15);
@@ -132,6 +134,7 @@ TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
 }
 
 TEST_F(CornellFog, BeamsAgreeWithPathsThroughAMirror) {
+    const test::OtherSeeds seeds(1);
     overrides.emplace_back(R"(primitives.tall block.bsdf={"type": "mirror", "albedo": 0.9})");
     // A lamp that paths can hit through the mirror.
     overrides.emplace_back(

@@ -3,6 +3,7 @@
 #include "tungsten/film/KernelBias.h"
 
 #include "support/PathsAndPhotons.h"
+#include "support/SeedShift.h"
 
 #include "support/SingleScattering.h"
 #include "support/VerifiedValues.h"
@@ -84,6 +85,7 @@ class KernelBiasOf : public testing::TestWithParam<BiasCase> {
 };
 
 TEST_P(KernelBiasOf, IsWithinAFactorOfTwo) {
+    const test::OtherSeeds seeds{{"PointsAtADeltaGate", 4}};
     const BiasCase& c = GetParam();
     const Errors errors = errorsOf(c, c.radius, 24);
     EXPECT_GT(errors.bias, 2.0 * errors.noise) << "nothing is seen below the noise";

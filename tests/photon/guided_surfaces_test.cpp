@@ -2,6 +2,7 @@
 
 #include "support/Folders.h"
 #include "support/PathsAndPhotons.h"
+#include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
@@ -131,6 +132,7 @@ std::pair<double, double> meanOverSeeds(const Render& render) {
 /// A lamp so large that paths which leave smooth metal often meet it, in a mirror beside: photons bring that light
 /// already.
 TEST(GlossySurfaces, CountLampsInMirrorsOnce) {
+    const test::OtherSeeds seeds(2);
     const std::string json =
         R"({"media": [{"name": "air", "type": "homogeneous", "sigma_a": 0.05, "sigma_s": 1e-5}],
          "primitives": [{"type": "cube", "bsdf": {"type": "rough_conductor", "material": "Ag", "roughness": 0.15}, "ext_medium": "air",
@@ -183,6 +185,7 @@ TEST(GlossySurfaces, ShowSeveralLamps) {
 
 /// Fog on rough metal, of which every highlight path gathers a part: without it a third of the light would be missing.
 TEST(GlossySurfaces, ShowFog) {
+    const test::OtherSeeds seeds(5);
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     const Overrides foggy{R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Ag", "roughness": 0.2})",
                           R"(primitives.block.bsdf={"type": "lambert", "albedo": 0})",
@@ -270,6 +273,7 @@ TEST(SurfaceConnections, KeepTheMediumsLimit) {
 
 /// One pixel within the mirror; the warm light of the fog that it shows.
 TEST(DirectView, IsWrongInAMirrorAndTheDefaultIsRight) {
+    const test::OtherSeeds seeds(2);
     struct Warm {
         double mean, error;
         explicit Warm(const Rendered& render)

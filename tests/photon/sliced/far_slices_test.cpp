@@ -1,6 +1,7 @@
 // Slices seen from far away, against plain paths.
 
 #include "support/PathsAndPhotons.h"
+#include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
 #include <gtest/gtest.h>
@@ -52,6 +53,7 @@ std::pair<double, double> farMean(int frame, const Render& render) {
 class FarSlices : public testing::TestWithParam<FarCase> {};
 
 TEST_P(FarSlices, BringWhatPathsBring) {
+    const test::OtherSeeds seeds{{"PlainFilm", 2}};
     const FarCase& c = GetParam();
     const std::string json = ballOfFog(c);
     const test::Overrides slices{std::string("integrator.volume_photon_type=") + c.type,

@@ -1,6 +1,7 @@
 // What must hold for slices whatever the scene: short flights have the means of long ones, volumes and balls together
 // are no noisier than either, box gates tend to delta gates, closed boxes keep their light.
 
+#include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
 #include "photon/primitives/balls/VolumeOrBall.h"
@@ -72,6 +73,7 @@ class SharedPaths : public testing::TestWithParam<GateCase> {};
 
 /// Of what both make alone, standard errors over the same light paths. 1.2 and 1.5: the errors' own error, about.
 TEST_P(SharedPaths, AreNoNoisierThanTheBetterOfVolumesAndBalls) {
+    const test::OtherSeeds seeds{{"/WarpedBox", 1}, {"/WarpedDelta", 1}};
     const GateCase& c = GetParam();
     for (const char* g : {"0", "0.7"}) {
         const auto errorOf = [&](const char* type) {
@@ -204,6 +206,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, SkippedLight,
 /// A pulse of intensity 1 in a closed white box of volume 1: after two thousand scatterings light is the same
 /// everywhere, 4 pi of energy over 4 pi V.
 TEST(ClosedBox, KeepsItsLightOverThousandsOfBounces) {
+    const test::OtherSeeds seeds(4);
     const std::string json =
         R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0, "sigma_s": 8, "max_bounces": 100000}],
         "camera": {"type": "pinhole", "resolution": [3, 3], "fov": 50, "medium": "fog", "reconstruction_filter": "box",
