@@ -100,7 +100,7 @@ concept Visitor = requires(V& visitor, PathState& path, S& steps, const Ahead& a
     { visitor.vertex(path, steps, vertex) } -> std::same_as<bool>;
     /// Before `path` takes this way, which its roulette may still end.
     visitor.leave(path, steps, vertex, way);
-    /// The last of run(): nothing goes on.
+    /// The last of a walk, and of each copy: nothing goes on.
     visitor.end(path);
 };
 
@@ -160,7 +160,10 @@ struct Walk {
         for (int i = 1; i < copies; ++i) {
             Walk copy(*this);
             copy.path.random = path.random.copy(path.interactions, i);
-            if (copy.leave(vertex)) copy.run();
+            if (copy.leave(vertex))
+                copy.run();
+            else
+                copy.visitor.end(copy.path);
         }
         return copies > 0 && leave(vertex);
     }

@@ -67,31 +67,31 @@ FAULTS = [
      [("path_tests", "BoxGates/GuidedOrders.MatchVerifiedValues/*")]),
     ("src/transport/Connection.cpp", "double(distance) / double(region.speed)", "double(distance)",
      [("photon_tests", "GlossySurfaces.KnowTheSpeedThatMatters")]),
-    ("src/path/plain/PathWalk.cpp", "double(length) / double(path_.region.speed)", "double(length) * double(path_.region.speed)",
+    ("src/transport/PathState.h", "length / double(region.speed)", "length * double(region.speed)",
      [("path_tests", "SpecularTime.GlassBallDelaysAndEchoes")]),
-    ("src/path/plain/PathWalk.cpp", "* weight, path_.time + emitter.emissionTime", "* weight, path_.time - emitter.emissionTime",
+    ("src/path/PathVisitor.cpp", "* weight, path.time + emitter.emissionTime", "* weight, path.time - emitter.emissionTime",
      [("path_tests", "LightTracer.ShowsSurfacesThroughALens")]),
-    ("src/path/plain/PathWalk.cpp", "powerHeuristic(pdf * light->probability,", "powerHeuristic(pdf,",
+    ("src/path/PathVisitor.cpp", "powerHeuristic(pdf * choice->probability,", "powerHeuristic(pdf,",
      [("path_tests", "Energy.RoomWithAFixedNumberOfBounces")]),
-    ("src/path/plain/PathWalk.cpp", "(medium.transmittance(reach) / probabilityFlightExits(medium, reach))", "(Rgb(1.0f) / probabilityFlightExits(medium, reach))",
+    ("src/transport/PlainSteps.h", "ahead.medium->transmittance(reach) / exits", "Rgb(1.0f) / exits",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),
-    ("src/path/plain/PathWalk.cpp", "!rendered(path_.interactions) || !orderCounts()", "!rendered(path_.interactions - 1) || !orderCounts()",
+    ("src/path/PathVisitor.cpp", "limits().renders(path.interactions - 1)", "limits().renders(path.interactions - 2)",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),
-    ("src/path/plain/PathWalk.cpp", "weighted_ = false; // emitters", "weighted_ = weighted_; // emitters",
+    ("src/path/PathVisitor.cpp", "return false; // emitters", "return settings().lightSampling; // emitters",
      [("path_tests", "Energy.RoomOfHalfMirrors")]),
-    ("src/path/plain/PathWalk.cpp", "path_.time + connection->time + source_->start", "path_.time + connection->time",
+    ("src/path/PathVisitor.cpp", "path.time + connection->time + source_->start", "path.time + connection->time",
      [("agreement_tests", "Cases/GuidedRoom.AgreesWithPlainPaths/Laser")]),
-    ("src/path/PathTarget.cpp", "target.start += double(length) / double(laser.region.speed);", "target.start += double(length);",
+    ("src/path/PathTarget.cpp", "target_->start = path.time;", ";",
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),
-    ("src/path/PathTarget.cpp", "exit->weight * (shading / (1.0f - scatters))", "exit->weight * shading",
+    ("src/path/PathTarget.cpp", "path.throughput = path.throughput / (1.0f - scatters);", ";",
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),
-    ("src/path/light/LightWalk.cpp", "throughput_ * surface.photonShadingFactor(-ray_.direction, exit->direction)", "throughput_",
+    ("src/transport/PlainSteps.h", "exit->weight * surface.photonShadingFactor(-vertex.before, exit->direction)", "exit->weight",
      [("path_tests", "LightTracer.KeepsTheFactorOfShadingNormals")]),
-    ("src/path/light/LightWalk.cpp", "? scattered : time_ + connection.time", "? scattered + connection.time : time_ + connection.time",
+    ("src/path/light/CameraConnections.cpp", "? scattered : path.time + connection.time", "? scattered + connection.time : path.time + connection.time",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),
-    ("src/path/light/LightWalk.cpp", "interactions_ + connection.crossings", "interactions_",
+    ("src/path/light/CameraConnections.cpp", "path.interactions + connection.crossings", "path.interactions",
      [("path_tests", "LightTracer.CountsBouncesAndOrdersAsThePathTracerDoes")]),
-    ("src/path/light/LightWalk.cpp", "time_ = emitter.emissionTime +", "time_ = 0.0 +",
+    ("src/path/light/CameraConnections.cpp", "path.time = emitter.emissionTime +", "path.time = 0.0 +",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),
     ("src/path/techniques/ControlVertices.cpp", "phase / sqr(vertex.toTarget)", "phase / vertex.toTarget",
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),
@@ -101,11 +101,11 @@ FAULTS = [
      [("path_tests", "Bodies.GuidedControlVerticesThatRouletteKeepsAreWeighedUp")]),
     ("src/path/techniques/LightVertexConnections.cpp", "transmittance = beyond->transmittance(light.distance);", "transmittance = beyond->transmittance(0.0f);",
      [("agreement_tests", "Cases/GuidedRoom.AgreesWithPlainPaths/*")]),
-    ("src/photon/light/LightPath.cpp", "power * (shading / geometric)", "power * (geometric / shading)",
+    ("src/photon/light/DepositVisitor.cpp", "path.throughput * (shading / geometric)", "path.throughput * (geometric / shading)",
      [("photon_tests", "PhotonMap.ShadingNormalsWeighWhatArrives")]),
-    ("src/photon/light/LightPath.cpp", "time += length / double(region.speed);", "time += length;",
+    ("src/transport/PathState.h", "length / double(region.speed)", "length",
      [("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:PointGather*")]),
-    ("src/photon/light/LightPath.cpp", "time = emitter.emissionTime +", "time = 0.0 +",
+    ("src/photon/light/DepositVisitor.cpp", "path.time = emitter.emissionTime +", "path.time = 0.0 +",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
     ("src/photon/SensorGather.cpp", "surface.wi, wo) / std::abs(wo.z)", "surface.wi, wo)",
      [("photon_tests", "PhotonMap.DirectLightingAndItsArrivalTime")]),
@@ -220,19 +220,19 @@ FAULTS = [
      [("transport_tests", "TransportAccuracy.TimesOfArrival")]),  # light is culled as too late where its speed is not 1
     ("src/transport/GateBounds.h", "(!oneSpeed_ || arrival >= start_ - slack)", "arrival >= start_ - slack",
      [("path_tests", "LightTracer.ShowsSlowLight")]),  # slow media: connections that arrive in time are culled as too early
-    # src/path/plain
-    ("src/path/plain/PathWalk.cpp", "path_.flights = 0;", ";",
+    # Camera paths, plain
+    ("src/transport/Walk.h", "path.flights = path.inARow = 0;", "path.inARow = 0;",
      [("path_tests", "Energy.MediumLimitsStartAnewAtSurfaces")]),  # max_bounces of media counts on across surfaces: paths end early
-    ("src/path/plain/PathWalk.cpp", "(phase * drawn.weight * share / density)", "(phase * drawn.weight / density)",
+    ("src/path/PathVisitor.cpp", "(phase * drawn->weight * share / density)", "(phase * drawn->weight / density)",
      [("path_tests", "RefractedLight.AgreesBesideAWideLamp")]),  # light through refracting walls is counted twice
-    ("src/path/plain/PathWalk.cpp", "const float lightPdf = pdfDirect(emitter, vertex_, hit.position, hit.ng) *", "const float lightPdf = pdfDirect(emitter, hit.position, vertex_, hit.ng) *",
+    ("src/path/PathVisitor.cpp", "pdfDirect(emitter, path.last.position, hit.position, hit.ng)", "pdfDirect(emitter, hit.position, path.last.position, hit.ng)",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # swapped ends: emitters that are met get the wrong share
-    ("src/path/plain/PathWalk.cpp", "rendered(path_.interactions + connection->crossings + source_->interactions)", "rendered(path_.interactions + connection->crossings)",
+    ("src/path/PathVisitor.cpp", "limits().renders(path.interactions + connection->crossings + source_->interactions)", "limits().renders(path.interactions + connection->crossings)",
      [("path_tests", "Bounces.WhatALaser*")]),  # min_bounces and max_bounces do not count a laser's own path
     # src/path
     ("src/path/PathTracer.cpp", "const auto sample = uint32_t(pass.firstSample + s);", "const auto sample = uint32_t(s);",
      [("path_tests", "SpecularTime.GlassBallDelaysAndEchoes")]),  # every pass repeats the first one's random numbers: more samples bring nothing
-    ("src/path/PathTarget.cpp", "target.power = target.power / scatters;", "target.power = target.power * scatters;",
+    ("src/path/PathTarget.cpp", "path.throughput = path.throughput / scatters;", "path.throughput = path.throughput * scatters;",
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),  # lasers on plastic: what it scatters is four times too dark
     ("src/path/PixelSink.h", "if (inUse) addToFilm(sum);", ";",
      [("path_tests", "TimeBounds.ManyLightsShareOneBound")]),  # paths that reach more than 8 frames lose light
@@ -240,29 +240,29 @@ FAULTS = [
      [("path_tests", "SpecularTime.MirrorPathsCountEverySegment")]),  # radiance is not divided by the frame's width
     ("src/path/ArrivalBound.cpp", "(position - source.centre).length() - source.radius, 0.0f)", "(position - source.centre).length() + source.radius, 0.0f)",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # paths that arrive just in time from large lights are cut off
-    ("src/path/GuidedPath.cpp", "elapsed = state.time + target->start;", "elapsed = state.time;",
+    ("src/path/GuidedPath.h", "elapsed = state.time + target().start;", "elapsed = state.time;",
      [("path_tests", "ManyLights.PulsesOfDifferentTimesShownByFogAboveAFloor")]),  # window of light vertices ignores emission times
-    # src/path/guided
-    ("src/path/guided/GuidedPathWalk.cpp", "{gate.start - target.start, gate.end() - target.start}", "{gate.start - target.start, gate.end()}",
+    # Camera paths, guided
+    ("src/path/StepsToEmitter.cpp", "{gate.start - target.start, gate.end() - target.start}", "{gate.start - target.start, gate.end()}",
      [("path_tests", "BoxGates/GuidedOrders.MatchVerifiedValues/Published_C2WarpedBox")]),  # guided walks take late light of delayed emitters into the gate
-    ("src/path/guided/GuidedPathWalk.cpp", "(float(Points) * (weights[chosen] + least))", "(float(Points) * weights[chosen])",
+    ("src/path/StepsToEmitter.cpp", "(float(Points) * (weights[chosen] + least))", "(float(Points) * weights[chosen])",
      [("path_tests", "Bodies.PathsThatEnterChooseAmongPointsOfALampUnlessTheGateIsWide")]),  # points of lights chosen anew: weight is not over their probability
-    ("src/path/guided/GuidedPathWalk.cpp", "state.throughput = state.throughput / (1.0f - probability);", "state.throughput = state.throughput * (1.0f - probability);",
+    ("src/path/StepsToEmitter.cpp", "* double(staying);", "/ double(staying);",
      [("agreement_tests", "Cases/GuidedRoom.AgreesWithPlainPaths/*")]),  # unwarped paths: media before surfaces too dark
-    ("src/path/guided/GuidedPathWalk.cpp", "0.5 * flights.pdf(t - chord.begin())", "0.5 * flights.pdf(t)",
+    ("src/path/StepsToEmitter.cpp", "0.5 * flights.pdf(t - chord.begin())", "0.5 * flights.pdf(t)",
      [("path_tests", "DeltaGates/GuidedOrders.MatchVerifiedValues/Best_A2UnwarpedDelta")]),  # unwarped flights: density from the wrong start
-    ("src/path/guided/GuidedVertices.cpp", "path_.state.throughput / float(copies);", "path_.state.throughput / float(copies + 1);",
+    ("src/transport/Walk.h", "path.throughput / float(copies);", "path.throughput / float(copies + 1);",
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # split walks lose a copy's share
-    ("src/path/guided/GuidedVertices.cpp", "(path_.last.pdf * sample.inversePdf)", "sample.inversePdf",
+    ("src/path/StepsToEmitter.cpp", "Rgb(own * sample.inversePdf)", "Rgb(sample.inversePdf)",
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # guided directions lose the phase function's value
     # src/path/light
     ("src/path/light/FilmSplats.cpp", "filter_.pdf(splat->raster.x - float(x))", "filter_.pdf(splat->raster.y - float(x))",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer: filter takes rows for columns
     ("src/path/light/LightTracer.cpp", "float(1.0 / double(paths))", "float(1.0 / double(pixels))",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer too bright by the samples of a pass
-    ("src/path/light/LightWalk.cpp", "(medium.transmittance(hit->t) / probabilityFlightExits(medium, hit->t))", "medium.transmittance(hit->t)",
+    ("src/transport/PlainSteps.h", "ahead.medium->transmittance(reach) / exits", "ahead.medium->transmittance(reach)",
      [("path_tests", "LightTracer.CountsBouncesAndOrdersAsThePathTracerDoes")]),  # light tracer: surfaces in fog too dark
-    ("src/path/light/LightWalk.cpp", "connection.throughput * float(context_.sensor.density(time))", "connection.throughput",
+    ("src/path/light/CameraConnections.cpp", "connection.throughput * float(context_->sensor.density(time))", "connection.throughput",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),  # light tracer: not divided by the frame's width, response ignored
     # src/path/techniques
     ("src/path/techniques/EmitterConnections.cpp", "(weight / target.probability)", "weight",
@@ -378,22 +378,22 @@ FAULTS = [
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # highlights of several lights: shares do not sum to 1
     ("src/photon/view/LightConnection.cpp", "{connection->throughput / choice->probability, start", "{connection->throughput, start",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # glossy surfaces lit by several lights too dark
-    ("src/photon/view/SensorPath.h", "state.time += double(hit->t) / double(state.region.speed);", "state.time += double(hit->t);",
+    ("src/photon/view/SensorPath.h", "state_.time = path.time;", ";",
      [("photon_tests", "SensorRecord.TimesGoByTheSpeedOfEachRegion")]),  # times behind mirrors and glass as if light's speed were 1
-    ("src/photon/view/SensorPath.h", "state.glossyPdf = 0.0f;", ";",
+    ("src/photon/view/SensorPath.h", "state_.glossyPdf = way.pdf;", "if (way.smooth()) state_.glossyPdf = way.pdf;",
      [("photon_tests", "GlossySurfaces.CountLampsInMirrorsOnce")]),  # lights seen by a mirror behind a glossy surface get a share as if connected
     # src/photon/light
-    ("src/photon/light/PhotonWalk.cpp", "++path_.flights > medium->maxBounces", "++path_.flights >= medium->maxBounces",
+    ("src/transport/BounceLimits.h", "++flights <= medium.maxBounces", "++flights < medium.maxBounces",
      [("photon_tests", "BeamMap.OrdersAndLimitsAsForPoints")]),  # max_bounces of a medium ends light paths one early
     ("src/photon/light/PhotonPass.cpp", "RandomStream::Photon, pass.index, path);", "RandomStream::Photon, 0u, path);",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/planesA2UnwarpedBox")]),  # all passes trace the same photons: more passes bring nothing
-    ("src/photon/light/GuidedPhotonWalk.cpp", "path_.power = path_.power / survival;", "path_.power = path_.power * survival;",
+    ("src/photon/light/StepsToCamera.cpp", "path.throughput = path.throughput / survival;", "path.throughput = path.throughput * survival;",
      [("photon_sliced_tests", "Kinds/GuidedSliceOrders.MatchVerifiedValues/ballsC3WarpedDelta")]),  # roulette of guided photons loses light
-    ("src/photon/light/GuidedPhotonWalk.cpp", "path_.power = Rgb(frames / chosen.probability);", "path_.power = Rgb(1.0f / chosen.probability);",
+    ("src/photon/light/DepositVisitor.cpp", "path.throughput = Rgb(frames / chosen.probability);", "path.throughput = Rgb(1.0f / chosen.probability);",
      [("photon_tests", "GuidedFrames.MayBeShort")]),  # sequences by guided photons too dark by the number of frames
-    ("src/photon/light/GuidedDeposits.cpp", "path_.power * (1.0f - share));", "path_.power);",
+    ("src/photon/light/DepositVisitor.cpp", "power = power * (1.0f - share);", ";",
      [("photon_tests", "GuidedSwitches.WithoutAnObjectHaveNoEffect")]),  # photons beside control vertices count twice
-    ("src/photon/light/GuidedDeposits.cpp", "const int bounce = path_.bounce + 1;", "const int bounce = path_.bounce;",
+    ("src/photon/light/DepositVisitor.cpp", "uint16_t(path.interactions + 1)", "uint16_t(path.interactions)",
      [("photon_tests", "PointsAtDeltaGates.HaveNoTemporalBias")]),  # guided photons: max_bounces shows one order more
     ("src/photon/light/EmissionDirections.h", "share_ * towards / float(cones_.size());", "share_ * towards;",
      [("photon_tests", "EmissionDirections.CarryThePowerOfTheEmitter")]),  # lamps outside several bodies of fog too dark
@@ -610,7 +610,7 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # disks with a cone_angle shine into a narrower cone
     ("tungsten/core/Warp.h", "v.z * InvPi / (1.0f - sqr(cosHalfAngle))", "v.z * InvPi",
      [("core_tests", "Warp.DirectionsFollowTheirDensities")]),  # density of emission into cones is not normalised
-    ("tungsten/core/Random.h", "uint32_t(seed >> 32) ^ (uint32_t(stream) * 0x632BE5ABu)", "uint32_t(seed >> 32)",
+    ("tungsten/core/Random.h", "uint32_t(seed >> 32) ^ (uint32_t(stream) * StreamFactor)", "uint32_t(seed >> 32)",
      [("photon_tests", "SensorRecord.HoldsStraightPiecesAndVisiblePoints")]),  # streams of different purposes share their numbers
     # tungsten/render
     ("tungsten/render/Checkpoint.cpp", "if (header.seed != identity.seed) throw", "if (false) throw",
@@ -713,7 +713,7 @@ FAULTS = [
     # long paths, contents of files, links
     ("src/transport/StepCounters.h", "watch.pollWithin(StepsPerPoll, ++steps);", "watch.pollWithin(StepsPerPoll << 20, ++steps);",
      [("photon_tests", "BreakOffLongPaths.*")]),  # time-outs wait for the ends of paths
-    ("src/path/light/LightWalk.cpp", "counters_.step(context_.watch);", ";",
+    ("src/transport/Walk.h", "steps.context().counters.step(steps.context().watch);", ";",
      [("photon_tests", "BreakOffLongPaths.*")]),  # those of the light tracer do
     ("tungsten/scene/SceneLoader.cpp", "hash.addMany(bytes.data(), bytes.size());", ";",
      [("scene_tests", "SceneContent.FilesCountByContentAlone")]),  # states know files by size alone

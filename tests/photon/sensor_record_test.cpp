@@ -116,5 +116,58 @@ TEST(SensorRecord, ReplaysWhatTheCameraPathsMet) {
     }
 }
 
+/// States at the surfaces of a path.
+struct States {
+    std::vector<SensorState> seen;
+    bool escapedAtLast = false;
+    void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
+        EXPECT_EQ(state.ray.origin.z < 0.0f ? -1 : state.region.medium, state.region.medium);
+        EXPECT_TRUE(hit || state.folded);
+    }
+    void surface(const SensorState& state, const SurfaceInteraction&) { seen.push_back(state); }
+    void escaped(const SensorState&) { escapedAtLast = true; }
+};
+
+/// A metal that is nearly a mirror, behind a sheet that light passes straight; behind the camera a real one.
+TEST(SensorPath, KnowsItsLastGlossyVertexUntilAMirror) {
+    const test::SceneFile file(R"({
+      "primitives": [{"type": "cube", "bsdf": {"type": "rough_conductor", "material": "Al", "roughness": 0.01},
+                      "transform": {"position": [0, 0, 5], "scale": [40, 40, 2]}},
+                     {"type": "quad", "bsdf": {"type": "forward"}, "transform": {"position": [0, 0, 1], "rotation": [90, 0, 0], "scale": 40}},
+                     {"type": "cube", "bsdf": {"type": "mirror", "albedo": 0.5},
+                      "transform": {"position": [0, 0, -9], "scale": [40, 40, 2]}}],
+      "camera": {"type": "pinhole", "fov": 1, "resolution": 1,
+                 "transform": {"position": [0, 0, 0], "look_at": [0, 0, 1], "up": [0, 1, 0]}},
+      "integrator": {"type": "progressive_photon_map", "max_bounces": 6}})");
+    const LoadedScene loaded = loadScene(file.path(), {});
+    const Ray ray{Vec3f(0.0f), Vec3f(0.0f, 0.0f, 1.0f)};
+    States path;
+    const SensorSteps steps = followSensorPath(*loaded.scene, ray, {true, true}, {1, RandomStream::Test, 0, 0}, path);
+    ASSERT_EQ(path.seen.size(), 6u) << "sheet, metal, sheet, mirror, sheet, metal: as many as count";
+    const auto expectState = [&](size_t i, bool folded, bool glossy, bool density) {
+        EXPECT_EQ(path.seen[i].folded, folded) << i;
+        EXPECT_EQ(path.seen[i].glossy, glossy) << i;
+        EXPECT_EQ(path.seen[i].glossyPdf > 0.0f, density) << i;
+        EXPECT_EQ(path.seen[i].interactions, int(i));
+    };
+    expectState(0, false, false, false);
+    expectState(1, false, false, false);
+    expectState(2, true, true, true);
+    expectState(3, true, true, true);
+    expectState(4, true, true, false);
+    expectState(5, true, true, false);
+    EXPECT_EQ(path.seen[2].glossyPdf, path.seen[3].glossyPdf);
+    EXPECT_NEAR(path.seen[3].glossyVertex.z, 4.0f, 1e-5f);
+    EXPECT_EQ(path.seen[1].throughput.x, 1.0f);
+    EXPECT_NEAR(path.seen[4].throughput.x, 0.5f * path.seen[3].throughput.x, 1e-6f);
+    EXPECT_EQ(steps.glossy, 2u);
+    EXPECT_EQ(steps.mirrored, 1u);
+    EXPECT_EQ(steps.straight, 3u);
+    // Without glossy ones the metal ends the path.
+    States short_;
+    followSensorPath(*loaded.scene, ray, {true, false}, {1, RandomStream::Test, 0, 0}, short_);
+    EXPECT_EQ(short_.seen.size(), 2u);
+}
+
 } // namespace
 } // namespace tungsten::photon

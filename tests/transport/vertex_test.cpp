@@ -171,6 +171,15 @@ TEST(BounceLimits, CountInteractionsAndOrders) {
     EXPECT_FALSE(limits.orderCounts(0) || limits.orderCounts(1));
     EXPECT_TRUE(limits.orderCounts(2) && limits.endsAtSurface(1) && !limits.endsAtSurface(2));
     EXPECT_FALSE(limits.orderCounts(2, 1)); // the camera's first one met a surface next
+    EXPECT_TRUE(limits.mayGoOn(4));         // a path of four more vertices than its ends counts, and none of five
+    EXPECT_FALSE(limits.mayGoOn(5));
+    Medium fog;
+    fog.maxBounces = 2;
+    int flights = 0;
+    EXPECT_TRUE(BounceLimits::fly(flights, fog));
+    EXPECT_EQ(flights, 1);
+    EXPECT_TRUE(BounceLimits::fly(flights, fog));
+    EXPECT_FALSE(BounceLimits::fly(flights, fog));
 }
 
 } // namespace
