@@ -33,21 +33,25 @@ METHODS = {
 SIDE = 24  # pixels
 
 
-def instructions(tungsten, method, samples, folder):
-    settings, _ = METHODS[method]
-    render = [tungsten, SCENE, "--quiet", "-t", "1", "-d", folder, "--resolution", f"{SIDE}x{SIDE}", "--spp", str(samples)]
-    for setting in settings:
+def instructions(tungsten, method, samples, folder, scene=SCENE, settings=(), seed=None):
+    render = [tungsten, scene, "--quiet", "-t", "1", "-d", folder, "--resolution", f"{SIDE}x{SIDE}", "--spp", str(samples)]
+    for setting in [*METHODS[method][0], *settings]:
         render += ["--set", setting]
+    if seed is not None:
+        render += ["--seed", str(seed)]
     counts = Path(folder) / "counts"
-    subprocess.run(["valgrind", "--tool=cachegrind", "--cache-sim=no", f"--cachegrind-out-file={counts}", *map(str, render)], check=True,
-                   capture_output=True)
+    done = subprocess.run(["valgrind", "--tool=cachegrind", "--cache-sim=no", f"--cachegrind-out-file={counts}", *map(str, render)],
+                          capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{scene}, {method}: {tungsten} under valgrind ended with {done.returncode}:\n{done.stderr[-1000:]}")
     return int(counts.read_text().rsplit("summary:", 1)[1].split()[0])
 
 
-def of_samples(tungsten, method):
+def of_samples(tungsten, method, **other):
+    """What the samples between the shorter and the longer render cost; `other` is the scene, its settings and the seed."""
     shorter, longer = METHODS[method][1]
     with tempfile.TemporaryDirectory() as folder:
-        return instructions(tungsten, method, longer, folder) - instructions(tungsten, method, shorter, folder)
+        return instructions(tungsten, method, longer, folder, **other) - instructions(tungsten, method, shorter, folder, **other)
 
 
 def build(folder, jobs):
