@@ -122,7 +122,7 @@ void StepsToEmitter::chooseTarget(PathState& path) {
     ++counters_->pointsChosen;
 }
 
-bool StepsToEmitter::look(PathState& path, const WalkVertex& vertex) {
+bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
     surfaceGuide_ = nullptr;
     if (path.timed) {
         lookAheadFrom(path, vertex.position);

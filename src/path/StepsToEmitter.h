@@ -60,7 +60,7 @@ class StepsToEmitter : public transport::GuidedSteps {
 
     transport::Ahead ahead(PathState& path);
     transport::Flight flight(PathState& path, const transport::Ahead& ahead);
-    bool look(PathState& path, const transport::WalkVertex& vertex);
+    bool canArrive(PathState& path, const transport::WalkVertex& vertex);
     int copies(PathState& path, const transport::WalkVertex& vertex);
     std::optional<transport::Way> way(PathState& path, const transport::WalkVertex& vertex);
     bool survives(PathState&) { return true; }

@@ -1,11 +1,11 @@
 #pragma once
-// What steps towards a target have in common, an emitter's point or the camera (docs/method.md, sections 3 to 6). From
-// vertex to vertex they
-//   look                 at what is still to come from the vertex;
-//   play roulette        whether the walk goes on, and in how many copies;
-//   draw a connection    the length of the rest of the path, should the next vertex be the last one: the control
-//   vertex; draw a direction     of the straight way ahead, to suit the connection if its length is drawn first; fly
-//   past the control vertex on the way, a distance to the next vertex.
+// What steps towards a target have in common, an emitter's point or the camera (docs/method.md, sections 3 to 6), from
+// vertex to vertex:
+//   budget       what may still come from the vertex, in lengths;
+//   roulette     whether the walk goes on, and in how many copies;
+//   connection   the length of the rest of the path, should the next vertex be the last one: the control vertex;
+//   direction    of the straight way ahead, to suit the connection if its length is drawn first;
+//   flight       the control vertex on the way, then the distance to the next vertex.
 // A straight way may cross several regions: the stages up to the direction are then passed once, the flight in each.
 // Random numbers are the walk's own, which says how they are drawn.
 
@@ -30,7 +30,7 @@ class GuidedSteps {
 
     // Look. Whatever the walk may find besides its target may arrive later by `surplus`, a length.
     void lookAhead(const darts::Residual& residual, float surplus) {
-        lookedAt(residual);
+        setTimeBudget(residual);
         looked_ = Looked::Ahead;
         reachable_.excess += surplus;
         reachable_.width += surplus;
@@ -39,7 +39,7 @@ class GuidedSteps {
     /// How light gets to the target, too. Adds the rays traced to `rays`.
     void lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim, uint64_t& rays);
     /// Both at once, when the walk knows.
-    void lookedAt(const darts::Residual& residual) {
+    void setTimeBudget(const darts::Residual& residual) {
         looked_ = Looked::Out;
         residual_ = residual;
         reachable_ = residual;

@@ -71,7 +71,7 @@ class PlainSteps {
         return {end, reach, ahead.medium->transmittance(reach) / exits, exits};
     }
 
-    bool look(PathState&, const WalkVertex&) { return true; }
+    bool canArrive(PathState&, const WalkVertex&) { return true; }
     int copies(PathState&, const WalkVertex&) { return 1; }
 
     std::optional<Way> way(PathState& path, const WalkVertex& vertex) {

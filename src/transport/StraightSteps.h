@@ -26,7 +26,7 @@ class StraightSteps {
         if (ahead.medium && attenuated) flight.weight = ahead.medium->transmittance(ahead.reach());
         return flight;
     }
-    bool look(PathState&, const WalkVertex&) { return true; }
+    bool canArrive(PathState&, const WalkVertex&) { return true; }
     int copies(PathState&, const WalkVertex&) { return 1; }
     std::optional<Way> way(PathState& path, const WalkVertex& vertex) {
         return sampleSurfaceWay(path, vertex, Mode, checks, lobes);

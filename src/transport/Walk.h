@@ -44,7 +44,7 @@ struct WalkVertex {
     const SurfaceInteraction* surface;
     Vec3f position;
     Vec3f before;  ///< direction of propagation up to here
-    Region region; ///< through which the walk came; steps that look may have set path.region to what is ahead
+    Region region; ///< through which the walk came; canArrive() may have set path.region to what is ahead
 
     /// As others are connected to it.
     [[nodiscard]] Vertex connectible(const Scene& scene, TransportMode mode) const {
@@ -73,8 +73,8 @@ concept Steps = requires(S& steps, PathState& path, const Ahead& ahead, const Wa
     { steps.ahead(path) } -> std::same_as<Ahead>;
     /// Draws how the flight ends.
     { steps.flight(path, ahead) } -> std::same_as<Flight>;
-    /// What is still to come from the vertex: false if nothing can be in time.
-    { steps.look(path, vertex) } -> std::same_as<bool>;
+    /// Light that the walk finds from the vertex on can still be in time.
+    { steps.canArrive(path, vertex) } -> std::same_as<bool>;
     /// Roulette and splitting by nothing but the path so far: in how many copies the walk goes on, 0 if it ends. The
     /// throughput makes up for roulette; the loop shares it among the copies.
     { steps.copies(path, vertex) } -> std::same_as<int>;
@@ -153,7 +153,7 @@ struct Walk {
 
     /// From the vertex, in as many copies as the steps say.
     bool goOn(const WalkVertex& vertex) {
-        if (!steps.look(path, vertex) || !visitor.vertex(path, steps, vertex)) return false;
+        if (!steps.canArrive(path, vertex) || !visitor.vertex(path, steps, vertex)) return false;
         // Copies have their own numbers; they share the throughput.
         const int copies = steps.copies(path, vertex);
         if (copies > 1) path.throughput = path.throughput / float(copies);

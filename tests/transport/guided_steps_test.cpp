@@ -43,7 +43,7 @@ TEST(GuidedSteps, LooksInTwoStages) {
     EXPECT_FLOAT_EQ(step.reachable().excess, 2.5f);
     EXPECT_FLOAT_EQ(step.reachable().width, step.residual().width + 0.5f);
     EXPECT_EQ(step.reachable().low, step.residual().low);
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     EXPECT_TRUE(step.hasLookedOut());
     EXPECT_EQ(step.reachable().excess, step.residual().excess);
     step.forget();
@@ -54,7 +54,7 @@ TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     const darts::Guide guide = guideWith(0.1f);
     const auto started = [&](float throughput, float others) {
         GuidedSteps step;
-        step.lookedAt(ahead());
+        step.setTimeBudget(ahead());
         return step.survival(guide, 0, throughput, others);
     };
     const float own = guide.logUsefulness(ahead(), 1.0f);
@@ -64,7 +64,7 @@ TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
     EXPECT_NEAR(started(1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
     // And goes on by it: what has survived has made up for it.
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     EXPECT_NEAR(step.survival(guide, 0, 1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 4.0f, own + std::log(40.0f)), 1.0f);
     EXPECT_NEAR(step.survival(guide, 0, 0.4f), 0.1f, 1e-4f);
@@ -74,7 +74,7 @@ TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
 TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     step.startRoulette(guide, 0, 1.0f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 3.9f), 1.0f);
     EXPECT_EQ(step.copiesBy(guide), 1);
@@ -99,10 +99,10 @@ TEST(GuidedSteps, OutOfBodiesHeavyPhotonsSplit) {
     const auto copiesOf = [](darts::Mode mode, double longest) {
         const darts::Guide guide(darts::best(mode, 0.0f), Fog);
         GuidedSteps step;
-        step.lookedAt(test::outOf(0.5, 3.0, longest, 1.0));
+        step.setTimeBudget(test::outOf(0.5, 3.0, longest, 1.0));
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
         EXPECT_EQ(step.copiesBy(guide), 1);
-        if (longest < 10.0) step.lookedAt(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
+        if (longest < 10.0) step.setTimeBudget(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 40.0f), 1.0f);
         return step.copiesBy(guide);
     };
@@ -117,7 +117,7 @@ TEST(GuidedSteps, OutOfBodiesCameraPathsEndSooner) {
     const darts::Guide guide(darts::best(darts::Mode::Path, 0.0f), Fog);
     for (const bool out : {false, true}) {
         GuidedSteps step;
-        step.lookedAt(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
+        step.setTimeBudget(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
         EXPECT_NEAR(step.survival(guide, 0, 0.06f), out ? 0.2f : 1.0f, 1e-4f);
     }
@@ -134,7 +134,7 @@ void expectArrivesAfter(float length, const GuidedSteps::OnWay& met) {
 TEST(GuidedSteps, ConnectionDrawnInFlight) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     const float h = step.headingOf(Aslant).h;
     int draws = 0;
     const auto draw = [&](const darts::Residual& residual) {
@@ -160,7 +160,7 @@ TEST(GuidedSteps, ConnectionDrawnInFlight) {
 TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     step.connect({1.5f, 2.0f});
     const GuidedSteps::Line way{guide, step.headingOf(Aslant).h, 3.0, true};
     const auto met = step.meetControlVertex(way, Infinity, noDraw);
@@ -174,7 +174,7 @@ TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
 TEST(GuidedSteps, ConnectionGoesOnThroughBoundaries) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     step.connect({1.5f, 2.0f});
     const float h = step.headingOf(Aslant).h;
     step.place({guide, h, 3.0, true});
@@ -206,7 +206,7 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
     const darts::Guide guide(settings, Fog);
     const auto density = [&](float excess) {
         GuidedSteps step;
-        step.lookedAt(ahead());
+        step.setTimeBudget(ahead());
         step.connect({excess, 1.0f});
         const auto half = [] { return 0.5f; };
         return step.sampleDirection(guide, darts::HenyeyGreenstein{}, darts::NoView{}, half).inversePdf;
@@ -217,24 +217,24 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
 TEST(GuidedSteps, RouletteStartsAnewWithAnotherModel) {
     const darts::Guide guide = guideWith(0.5f);
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     EXPECT_EQ(step.survival(guide, 0, 1.0f), 1.0f) << "it starts";
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);
     step.forget();
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f) << "vertices of one model compare";
     EXPECT_EQ(step.survival(guide, 1, 0.25f), 1.0f) << "another medium";
     EXPECT_NEAR(step.survival(guide, 1, 0.0625f), 0.5f, 1e-5f);
     darts::Residual unknown = ahead();
     unknown.way = darts::Way::Unknown;
-    step.lookedAt(unknown);
+    step.setTimeBudget(unknown);
     EXPECT_EQ(step.survival(guide, 1, 1e-6f), 1.0f) << "another way";
 }
 
 TEST(GuidedSteps, RouletteCanStartBeforeItIsPlayed) {
     const darts::Guide guide = guideWith(0.5f);
     GuidedSteps step;
-    step.lookedAt(ahead());
+    step.setTimeBudget(ahead());
     step.startRoulette(guide, 0, 1.0f);
     step.startRoulette(guide, 0, 0.25f); // goes on
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);

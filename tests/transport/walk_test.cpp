@@ -92,8 +92,8 @@ struct ScriptedSteps {
         const Script& s = now(path.interactions);
         return {s.event, s.distance, s.flightWeight, 1.0f, s.length};
     }
-    bool look(PathState& path, const WalkVertex&) {
-        log->add("look", path);
+    bool canArrive(PathState& path, const WalkVertex&) {
+        log->add("canArrive", path);
         return now(path.interactions - 1).looks;
     }
     int copies(PathState& path, const WalkVertex&) {
@@ -187,9 +187,9 @@ class Scripted : public testing::Test {
 TEST_F(Scripted, HooksComeInOrder) {
     walk({{.event = Event::Collision, .beyond = InFog}, {.event = Event::Surface}, {.event = Event::Escape}},
          startIn(InFog));
-    expectHooks({"mayGoOn",  "steps.ahead", "ahead",       "flight",   "arrive",  "look",        "vertex",
+    expectHooks({"mayGoOn",  "steps.ahead", "ahead",       "flight",   "arrive",  "canArrive",   "vertex",
                  "copies",   "way",         "leave",       "survives", "mayGoOn", "steps.ahead", "ahead",
-                 "flight",   "arrive",      "look",        "vertex",   "copies",  "way",         "leave",
+                 "flight",   "arrive",      "canArrive",   "vertex",   "copies",  "way",         "leave",
                  "survives", "mayGoOn",     "steps.ahead", "ahead",    "flight",  "escape",      "end"});
     EXPECT_EQ(counters_.steps, 3u);
     EXPECT_EQ(counters_.mediumEvents, 1u);
@@ -200,7 +200,7 @@ TEST_F(Scripted, HooksComeInOrder) {
 
 /// Every hook that says so ends the walk, and none is called after it but the end.
 TEST_F(Scripted, EndsWhereAHookSaysSo) {
-    const std::vector<std::string> all{"mayGoOn", "steps.ahead", "ahead", "flight", "arrive",  "look",
+    const std::vector<std::string> all{"mayGoOn", "steps.ahead", "ahead", "flight", "arrive",  "canArrive",
                                        "vertex",  "copies",      "way",   "leave",  "survives"};
     const auto expectEndAfter = [&](const std::string& last, const Script& script) {
         SCOPED_TRACE(last);
@@ -212,7 +212,7 @@ TEST_F(Scripted, EndsWhereAHookSaysSo) {
     };
     expectEndAfter("flight", {.event = Event::Nothing});
     expectEndAfter("flight", {.flightWeight = Rgb(0.0f)});
-    expectEndAfter("look", {.looks = false});
+    expectEndAfter("canArrive", {.looks = false});
     expectEndAfter("vertex", {.visits = false});
     expectEndAfter("copies", {.copies = 0});
     expectEndAfter("way", {.hasWay = false});

@@ -41,11 +41,10 @@ bool DepositVisitor::ahead(PathState& path, auto& steps, const Ahead& ahead) {
 
 bool DepositVisitor::arrive(PathState& path, auto& steps, const Ahead& ahead, const Flight& flight) {
     const bool collided = flight.event == Flight::Event::Collision;
-    if (collided) {
+    if (collided)
         connectable_ = true;
-    } else {
+    else
         endChain(path, path.interactions - 1);
-    }
     // Guided paths look for themselves what can still be in time from there.
     const bool looks = Guided<std::decay_t<decltype(steps)>> && collided;
     if (!looks && !culling_->mayContinue(path.ray.origin, path.time)) return false;
@@ -247,7 +246,7 @@ void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& f
 }
 
 void DepositVisitor::store(const auto& steps, const ArrivalCulling& culling, const Photon& photon, PointList& points) {
-    if (!bears(photon.power) || photon.bounce > MostPhotonBounces) return;
+    if (!bears(photon.power)) return;
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
         const PhotonGuidance& guidance = steps.guidance();
         if (guidance.directView() && !guidance.view().sees(photon.position, context_->settings.volumeReach())) return;

@@ -47,11 +47,11 @@ Flight StepsToCamera::flight(PathState& path, const Ahead& ahead) {
 }
 
 bool StepsToCamera::lookFrom(const PathState& path, const transport::Start& start) {
-    lookedAt(guidance_->residual(start, path.region, path.time, gate_, context_.counters.rays));
+    setTimeBudget(guidance_->residual(start, path.region, path.time, gate_, context_.counters.rays));
     return residual().alive();
 }
 
-bool StepsToCamera::look(PathState& path, const WalkVertex& vertex) {
+bool StepsToCamera::canArrive(PathState& path, const WalkVertex& vertex) {
     forget();
     return vertex.surface || lookFrom(path, {vertex.position});
 }

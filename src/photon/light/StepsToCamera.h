@@ -30,7 +30,7 @@ class StepsToCamera : public transport::GuidedSteps {
 
     transport::Ahead ahead(transport::PathState& path);
     transport::Flight flight(transport::PathState& path, const transport::Ahead& ahead);
-    bool look(transport::PathState& path, const transport::WalkVertex& vertex);
+    bool canArrive(transport::PathState& path, const transport::WalkVertex& vertex);
     int copies(transport::PathState& path, const transport::WalkVertex& vertex);
     std::optional<transport::Way> way(transport::PathState& path, const transport::WalkVertex& vertex);
     bool survives(transport::PathState&) { return true; }

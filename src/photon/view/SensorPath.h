@@ -60,7 +60,7 @@ struct SensorSteps : transport::StepCounters {
 ///   surface(state, interaction): the end of the segment; the throughput includes the way there, the time does not
 ///   escaped(state)
 template <typename Shown>
-void showLeg(const Scene& scene, SensorState& state, const std::optional<SurfaceHit>& hit, Shown&& shown) {
+void visitSegment(const Scene& scene, SensorState& state, const std::optional<SurfaceHit>& hit, Shown&& shown) {
     shown.segment(state, hit);
     if (const Medium* medium = scene.medium(state.region))
         state.throughput = state.throughput * medium->transmittance(hit ? hit->t : Infinity);
@@ -71,9 +71,9 @@ void showLeg(const Scene& scene, SensorState& state, const std::optional<Surface
 
 /// Shows the same of the legs of a walk, as it goes on.
 template <typename Shown>
-class LegVisitor : public transport::VisitorBase {
+class SegmentVisitor : public transport::VisitorBase {
   public:
-    LegVisitor(const Scene& scene, const SensorPathRules& rules, SensorSteps& counters, Shown& shown)
+    SegmentVisitor(const Scene& scene, const SensorPathRules& rules, SensorSteps& counters, Shown& shown)
         : limits_(scene.transport), rules_(rules), counters_(&counters), shown_(&shown) {}
 
     [[nodiscard]] bool mayGoOn(const transport::PathState& path) const { return limits_.mayGoOn(path.interactions); }
@@ -114,14 +114,14 @@ class LegVisitor : public transport::VisitorBase {
     SensorState state_; ///< of the leg
 };
 
-/// Follows a path along `ray` from the camera, and shows its legs (showLeg).
+/// Follows a path along `ray` from the camera, and shows its legs (visitSegment).
 template <typename Shown>
 SensorSteps followSensorPath(const Scene& scene, const Ray& ray, const SensorPathRules& rules, const Sampler& sampler,
                              Shown&& shown, const PassWatch& watch = {}) {
     SensorSteps counters;
     transport::Walk walk{transport::PathState{.random = sampler, .ray = ray, .region = scene.cameraRegion},
                          transport::StraightSteps<TransportMode::Radiance>({scene, counters, watch}),
-                         LegVisitor(scene, rules, counters, shown)};
+                         SegmentVisitor(scene, rules, counters, shown)};
     walk.run();
     return counters;
 }

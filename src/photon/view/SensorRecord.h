@@ -66,7 +66,7 @@ struct SensorRecord {
     std::vector<SensorPoint> points;   ///< in pixel order
     std::vector<LegRow> legs;          ///< by row of pixels
 
-    /// Shows the legs of a pixel's path (showLeg).
+    /// Shows the legs of a pixel's path (visitSegment).
     template <typename Shown>
     void replay(const Scene& scene, size_t pixel, Shown&& shown) const {
         const LegRow& row = legs[pixel / size_t(width)];
@@ -74,7 +74,7 @@ struct SensorRecord {
         if (row.ends.empty()) return;
         for (size_t i = column > 0 ? row.ends[column - 1] : 0; i < row.ends[column]; ++i) {
             SensorState state = row.legs[i].state;
-            showLeg(scene, state, row.legs[i].hit, shown);
+            visitSegment(scene, state, row.legs[i].hit, shown);
         }
     }
 };
