@@ -29,6 +29,18 @@ TEST(Philox, KnownAnswers) {
               (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 }
 
+TEST(Philox, PairsAreTheNumbersOfTwoCounters) {
+    const std::array<uint32_t, 3> rest{0x85a308d3, 0x13198a2e, 0x03707344};
+    const std::array<uint32_t, 2> key{0xa4093822, 0x299f31d0};
+    for (const uint32_t first : {0u, 6u, 0x7fffffffu, 0xfffffffeu, ~0u}) {
+        const auto pair = philox4x32Pair<7>(first, rest, key);
+        for (uint32_t i = 0; i < 2; ++i)
+            EXPECT_EQ((Words{pair[4 * i], pair[4 * i + 1], pair[4 * i + 2], pair[4 * i + 3]}),
+                      (philox4x32<7>({first + i, rest[0], rest[1], rest[2]}, key)))
+                << first << " + " << i;
+    }
+}
+
 TEST(Sampler, IsUniformAndIndependentOfItsNeighbours) {
     EXPECT_GT(test::chiSquareUniform([](Sampler& s) { return double(s.next1D()); }), test::SmallestPValue);
     // Products of numbers of neighbouring paths, passes and streams average to 1/4.

@@ -3,26 +3,13 @@
 // results do not depend on the number of threads or the order of work (Salmon et al. 2011, Philox4x32), and what one
 // vertex of a path draws moves no number of another.
 
+#include "tungsten/core/Philox.h"
 #include "tungsten/core/Types.h"
 
 #include <array>
 #include <cstdint>
 
 namespace tungsten {
-
-/// Philox4x32 with `Rounds` rounds: a keyed bijection of the 128-bit counter.
-template <int Rounds>
-inline std::array<uint32_t, 4> philox4x32(std::array<uint32_t, 4> counter, std::array<uint32_t, 2> key) {
-    constexpr uint32_t M0 = 0xD2511F53u, M1 = 0xCD9E8D57u, W0 = 0x9E3779B9u, W1 = 0xBB67AE85u;
-    for (int round = 0; round < Rounds; ++round) {
-        const uint64_t p0 = uint64_t(M0) * counter[0];
-        const uint64_t p1 = uint64_t(M1) * counter[2];
-        counter = {uint32_t(p1 >> 32) ^ counter[1] ^ key[0], uint32_t(p1), uint32_t(p0 >> 32) ^ counter[3] ^ key[1],
-                   uint32_t(p0)};
-        key = {key[0] + W0, key[1] + W1};
-    }
-    return counter;
-}
 
 /// What a random stream is for; streams with different purposes never share numbers.
 enum class RandomStream : uint32_t {
@@ -80,14 +67,9 @@ class Sampler {
     void at(int vertex, Draw draw) { next_ = uint64_t(uint32_t(vertex)) * NumbersPerVertex + uint32_t(draw); }
     /// A stream of its own for what has no bound, or is a path of its own: `place` tells several from one path apart.
     [[nodiscard]] Sampler branch(RandomStream stream, uint64_t place) const {
-        const auto root = philox4x32<7>({uint32_t(place), path_[0] ^ uint32_t(place >> 32), path_[1], path_[2]},
-                                        {key_[0], key_[1] ^ (uint32_t(stream) * StreamFactor)});
-        Sampler branch = *this;
-        branch.key_ = {root[0], root[1]};
-        branch.path_[0] = root[2] ^ root[3];
-        branch.next_ = 0;
-        branch.cached_ = {None, None};
-        return branch;
+        const auto root = philox4x32Pair<7>(uint32_t(place), {path_[0] ^ uint32_t(place >> 32), path_[1], path_[2]},
+                                            {key_[0], key_[1] ^ (uint32_t(stream) * StreamFactor)});
+        return Sampler({root[0], root[1]}, {root[2] ^ root[3], path_[1], path_[2]});
     }
     /// Of one of the copies that a path is split into at a vertex.
     [[nodiscard]] Sampler copy(int vertex, int index) const {
@@ -96,13 +78,12 @@ class Sampler {
 
     /// 32 uniform random bits.
     uint32_t nextBits() {
-        const auto block = uint32_t(next_ >> 2);
-        std::array<uint32_t, 4>& numbers = blocks_[block & 1];
-        if (cached_[block & 1] != block) {
-            numbers = philox4x32<7>({block, path_[0], path_[1], path_[2]}, key_);
-            cached_[block & 1] = block;
+        const auto pair = uint32_t(next_ >> 3);
+        if (cached_ != pair) {
+            numbers_ = philox4x32Pair<7>(2 * pair, path_, key_);
+            cached_ = pair;
         }
-        return numbers[next_++ & 3];
+        return numbers_[next_++ & 7];
     }
     /// Uniform in [0, 1), 24 bits.
     float next1D() { return float(nextBits() >> 8) * 0x1p-24f; }
@@ -117,14 +98,15 @@ class Sampler {
     }
 
   private:
+    Sampler(const std::array<uint32_t, 2>& key, const std::array<uint32_t, 3>& path) : key_(key), path_(path) {}
+
     static constexpr uint32_t StreamFactor = 0x632BE5ABu, NumbersPerVertex = 64, None = ~0u;
 
     std::array<uint32_t, 2> key_;
     std::array<uint32_t, 3> path_;
-    uint64_t next_ = 0; ///< place of the next number
-    /// The last even and the last odd block of four.
-    std::array<std::array<uint32_t, 4>, 2> blocks_{};
-    std::array<uint32_t, 2> cached_{None, None};
+    uint64_t next_ = 0;                 ///< place of the next number
+    std::array<uint32_t, 8> numbers_{}; ///< from the last place that is a multiple of eight
+    uint32_t cached_ = None;            ///< which one
 };
 
 } // namespace tungsten
