@@ -233,7 +233,7 @@ FAULTS = [
     ("src/path/PathTracer.cpp", "const auto sample = uint32_t(pass.firstSample + s);", "const auto sample = uint32_t(s);",
      [("path_tests", "SpecularTime.GlassBallDelaysAndEchoes")]),  # every pass repeats the first one's random numbers: more samples bring nothing
     ("src/path/PathTarget.cpp", "path.throughput = path.throughput / scatters;", "path.throughput = path.throughput * scatters;",
-     [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),  # lasers on plastic: what it scatters is four times too dark
+     [("path_tests", "TargetChoice.LasersBecomeVirtualSourcesWhereTheyAreScattered")]),  # lasers on plastic: what it scatters is four times too dark
     ("src/path/PixelSink.h", "if (inUse) addToFilm(sum);", ";",
      [("path_tests", "TimeBounds.ManyLightsShareOneBound")]),  # paths that reach more than 8 frames lose light
     ("src/path/PixelSink.h", "(1.0 / (double(samples) * sensor.evenWidth()))", "(1.0 / double(samples))",
@@ -252,7 +252,7 @@ FAULTS = [
     ("src/path/StepsToEmitter.cpp", "0.5 * flights.pdf(t - chord.begin())", "0.5 * flights.pdf(t)",
      [("path_tests", "DeltaGates/GuidedOrders.MatchVerifiedValues/Best_A2UnwarpedDelta")]),  # unwarped flights: density from the wrong start
     ("src/transport/Walk.h", "path.throughput / float(copies);", "path.throughput / float(copies + 1);",
-     [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # split walks lose a copy's share
+     [("transport_tests", "Scripted.CopiesShareTheThroughputAndHaveNumbersOfTheirOwn")]),  # split walks lose a copy's share
     ("src/path/StepsToEmitter.cpp", "Rgb(own * sample.inversePdf)", "Rgb(sample.inversePdf)",
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # guided directions lose the phase function's value
     # src/path/light
@@ -381,7 +381,7 @@ FAULTS = [
     ("src/photon/view/SensorPath.h", "state_.time = path.time;", ";",
      [("photon_tests", "SensorRecord.TimesGoByTheSpeedOfEachRegion")]),  # times behind mirrors and glass as if light's speed were 1
     ("src/photon/view/SensorPath.h", "state_.glossyPdf = way.pdf;", "if (way.smooth()) state_.glossyPdf = way.pdf;",
-     [("photon_tests", "GlossySurfaces.CountLampsInMirrorsOnce")]),  # lights seen by a mirror behind a glossy surface get a share as if connected
+     [("photon_tests", "SensorPath.KnowsItsLastGlossyVertexUntilAMirror")]),  # lights seen by a mirror behind a glossy surface get a share as if connected
     # src/photon/light
     ("src/transport/BounceLimits.h", "++flights <= medium.maxBounces", "++flights < medium.maxBounces",
      [("photon_tests", "BeamMap.OrdersAndLimitsAsForPoints")]),  # max_bounces of a medium ends light paths one early
@@ -611,7 +611,7 @@ FAULTS = [
     ("tungsten/core/Warp.h", "v.z * InvPi / (1.0f - sqr(cosHalfAngle))", "v.z * InvPi",
      [("core_tests", "Warp.DirectionsFollowTheirDensities")]),  # density of emission into cones is not normalised
     ("tungsten/core/Random.h", "uint32_t(seed >> 32) ^ (uint32_t(stream) * StreamFactor)", "uint32_t(seed >> 32)",
-     [("photon_tests", "SensorRecord.HoldsStraightPiecesAndVisiblePoints")]),  # streams of different purposes share their numbers
+     [("core_tests", "Sampler.IsUniformAndIndependentOfItsNeighbours")]),  # streams of different purposes share their numbers
     # tungsten/render
     ("tungsten/render/Checkpoint.cpp", "if (header.seed != identity.seed) throw", "if (false) throw",
      [("render_tests", "Session.AStateOfAnotherRenderIsRefusedAndKept")]),  # a state of another seed is resumed
