@@ -13,7 +13,7 @@ PROJECT = Path(__file__).resolve().parents[2]
 # Tools, and C libraries that are linked when a program starts: nothing of them is in the package.
 LINKED = {"g++", "cmake", "ninja-build", "zlib1g-dev", "libminizip-dev", "libhdf5-dev", "python3-dev", "python3-numpy"}
 LINKED_HEADERS = ["zlib.h", "minizip/*", "hdf5.h", "hdf5_hl.h", "Python.h", "mpi.h"]
-SYSTEM_HEADERS = ["sys/*", "ext/*", "dlfcn.h", "fcntl.h", "link.h", "malloc.h", "pthread.h", "sched.h", "signal.h", "spawn.h", "unistd.h"]
+SYSTEM_HEADERS = ["*intrin.h", "sys/*", "ext/*", "dlfcn.h", "fcntl.h", "link.h", "malloc.h", "pthread.h", "sched.h", "signal.h", "spawn.h", "unistd.h"]
 
 
 def paragraphs(text):
