@@ -51,7 +51,7 @@ bool PathVisitor<TimeResolved>::vertex(PathState& path, auto& steps, const WalkV
         if (source_) connectToSource(path, vertex);
     }
     if (context_->refracted && at.medium) {
-        sealed_ = SealedVertex{at.position, at.before, path.time, path.region};
+        sealed_ = SealedVertex{at.position, at.before, path.time, path.region, path.channels};
         aimThroughWall(path, steps, *at.medium);
     }
     return true;
@@ -67,7 +67,7 @@ void PathVisitor<TimeResolved>::leave(PathState& path, auto& steps, const WalkVe
         const Region& inside = sealed_->region;
         if (&scene().primitives[hit.shape] == context_->refracted->boundary(inside.medium))
             wayOut_ = WayOut{*sealed_, at.before, context_->refracted->faceOf(inside.medium, hit.ng),
-                             path.last.pdf * probabilityFlightExits(*scene().medium(inside), hit.t)};
+                             path.last.pdf * probabilityFlightExits(*scene().medium(inside), hit.t, sealed_->channels)};
     }
     sealed_.reset();
 }
@@ -170,7 +170,7 @@ void PathVisitor<TimeResolved>::aimThroughWall(const PathState& path, const auto
         return;
     const float density = refracted.density(*sealed_, drawn->direction, drawn->face, drawn->emitter);
     if (!(density > 0.0f)) return;
-    const float reach = ahead.reach(), exits = probabilityFlightExits(medium, reach);
+    const float reach = ahead.reach(), exits = probabilityFlightExits(medium, reach, path.channels);
     const float phase = medium.phase.eval(sealed_->before, drawn->direction);
     const float share = transport::balance(tuning::RefractedGain * density, phase * exits);
     aimed.visitor.aimedAt_ = drawn->emitter;

@@ -26,9 +26,10 @@ struct PathState {
     Ray ray{};            ///< ahead, from the last vertex, unit direction; at a vertex: the direction up to there
     Region region{};      ///< medium and speed along it
     Rgb throughput{1.0f}; ///< the path's contribution per channel over its density; walks from lights may hold power
-    double time = 0.0;    ///< of flight so far; stands still while `timed` is false
-    int interactions = 0; ///< surfaces met, index-matched ones included, and scatterings in media
-    int flights = 0;      ///< in scattering media since the last surface
+    ChannelDensities channels{1.0f}; ///< of plain flights
+    double time = 0.0;               ///< of flight so far; stands still while `timed` is false
+    int interactions = 0;            ///< surfaces met, index-matched ones included, and scatterings in media
+    int flights = 0;                 ///< in scattering media since the last surface
     int mediumScatters = 0;
     int inARow = 0;         ///< the last of these, since the last surface
     bool timed = true;      ///< false: on camera segments that do not count, up to the first vertex that scatters

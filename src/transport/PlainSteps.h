@@ -64,11 +64,9 @@ class PlainSteps {
         const float reach = ahead.reach();
         if (!Options.media || !ahead.medium) return {end, reach};
         if (Options.wholeRays) draw(path, *ahead.medium, reach);
-        if (!drawn_.exited && (Options.wholeRays || !ahead.hit))
-            return {Event::Collision, drawn_.distance, drawn_.weight, drawn_.pdf};
-        if (Options.wholeRays) return {end, reach, drawn_.weight, drawn_.pdf};
-        const float exits = probabilityFlightExits(*ahead.medium, reach);
-        return {end, reach, ahead.medium->transmittance(reach) / exits, exits};
+        if (!Options.wholeRays && ahead.hit) drawn_ = flightThatExits(*ahead.medium, reach, path.channels);
+        path.channels = drawn_.channels;
+        return {drawn_.exited ? end : Event::Collision, drawn_.distance, drawn_.weight, drawn_.pdf};
     }
 
     bool canArrive(PathState&, const WalkVertex&) { return true; }
@@ -92,7 +90,7 @@ class PlainSteps {
   private:
     float draw(PathState& path, const Medium& medium, float reach) {
         path.random.at(path.interactions + 1, Draw::Flight);
-        drawn_ = sampleFlight(medium, reach, path.random);
+        drawn_ = sampleFlight(medium, reach, path.channels, path.random);
         return drawn_.distance;
     }
 

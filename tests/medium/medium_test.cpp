@@ -75,14 +75,20 @@ Medium colouredFog() {
     return fog;
 }
 
+/// A path's first flight.
+FlightSample draw(const Medium& medium, float tMax, Sampler& sampler) {
+    return sampleFlight(medium, tMax, ChannelDensities(1.0f), sampler);
+}
+
 TEST(Medium, FlightsEstimateTheCollisionIntegralPerChannel) {
     const Medium fog = colouredFog();
     constexpr int Count = 400000;
     constexpr float Reach = 1.3f;
+    const ChannelDensities before(0.4f, 1.7f, 0.9f);
     Vec3d collided(0.0), squared(0.0), exited(0.0);
     for (uint64_t i = 0; i < Count; ++i) {
         Sampler sampler(9, RandomStream::Test, 0, i);
-        const FlightSample flight = sampleFlight(fog, Reach, sampler);
+        const FlightSample flight = sampleFlight(fog, Reach, before, sampler);
         const Vec3d weight(double(flight.weight.x), double(flight.weight.y), double(flight.weight.z));
         EXPECT_LE(flight.distance, Reach);
         if (flight.exited)
@@ -91,8 +97,10 @@ TEST(Medium, FlightsEstimateTheCollisionIntegralPerChannel) {
             collided += weight;
             squared += weight * weight;
         }
-        EXPECT_NEAR(flight.pdf, flight.exited ? probabilityFlightExits(fog, Reach) : pdfFlight(fog, flight.distance),
-                    1e-5f);
+        const float pdf =
+            flight.exited ? probabilityFlightExits(fog, Reach, before) : pdfFlight(fog, flight.distance, before);
+        EXPECT_NEAR(flight.pdf, pdf, 1e-5f);
+        EXPECT_NEAR(meanComponent(flight.channels), 1.0f, 1e-5f);
     }
     for (int c = 0; c < 3; ++c) {
         const double sigmaT = double(fog.sigmaT()[c]), sigmaS = double(fog.sigmaS()[c]);
@@ -106,16 +114,63 @@ TEST(Medium, FlightsEstimateTheCollisionIntegralPerChannel) {
 TEST(Medium, FlightDistancesFollowTheirDensity) {
     Medium fog;
     fog.model = Homogeneous{Rgb(0.0f), Rgb(2.0f)};
-    EXPECT_GT(test::chiSquareUniform(
-                  [&](Sampler& s) { return -std::expm1(-2.0 * double(sampleFlight(fog, Infinity, s).distance)); }),
-              test::SmallestPValue);
+    EXPECT_GT(
+        test::chiSquareUniform([&](Sampler& s) { return -std::expm1(-2.0 * double(draw(fog, Infinity, s).distance)); }),
+        test::SmallestPValue);
+    // Of coloured media: the mixture that the densities of the channels call for.
+    const Medium coloured = colouredFog();
+    const ChannelDensities before(0.4f, 1.7f, 0.9f);
+    const auto passed = [&](Sampler& s) {
+        const float distance = sampleFlight(coloured, Infinity, before, s).distance;
+        return 1.0 - double(probabilityFlightExits(coloured, distance, before));
+    };
+    EXPECT_GT(test::chiSquareUniform(passed), test::SmallestPValue);
+}
+
+/// Flights of a path are those of one channel, chosen at its start; weighed by all three, none of its contributions
+/// exceeds three times what that channel alone would bring.
+TEST(Medium, FlightsOfAPathAreWeighedByChannelsOverAllOfIt) {
+    Medium fog;
+    fog.model = Homogeneous{Rgb(0.5f, 0.0f, 0.1f), Rgb(5.0f, 10.0f, 20.0f)};
+    constexpr int Paths = 20000, Flights = 40;
+    constexpr float Reach = 0.3f;
+    const Rgb sigma = fog.sigmaT(), albedo = fog.sigmaS() / sigma;
+    Vec3d sum(0.0), squares(0.0);
+    for (uint64_t i = 0; i < Paths; ++i) {
+        Sampler sampler(10, RandomStream::Test, 0, i);
+        ChannelDensities channels(1.0f);
+        Vec3d throughput(1.0), own(1.0), densities(1.0);
+        for (int k = 0; k < Flights; ++k) {
+            const FlightSample flight = sampleFlight(fog, Reach, channels, sampler);
+            channels = flight.channels;
+            for (int c = 0; c < 3; ++c) {
+                throughput[c] *= double(flight.weight[c]);
+                own[c] *= flight.exited ? 1.0 : double(albedo[c]);
+                densities[c] *=
+                    std::exp(-double(sigma[c]) * double(flight.distance)) * (flight.exited ? 1.0 : double(sigma[c]));
+            }
+        }
+        const double mean = (densities[0] + densities[1] + densities[2]) / 3.0;
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_NEAR(double(channels[c]), densities[c] / mean, 1e-4) << c;
+            ASSERT_NEAR(throughput[c], own[c] * densities[c] / mean, 1e-4) << c;
+            ASSERT_LE(throughput[c], 3.0 * own[c] * 1.0001) << c;
+        }
+        sum += throughput;
+        squares += throughput * throughput;
+    }
+    for (int c = 0; c < 3; ++c) {
+        const double left = std::exp(-double(sigma[c]) * double(Reach)), a = double(albedo[c]);
+        const double mean = sum[c] / Paths, error = std::sqrt((squares[c] / Paths - mean * mean) / Paths);
+        EXPECT_NEAR(mean, std::pow(left + (1.0 - left) * a, Flights), 4.5 * error) << c;
+    }
 }
 
 TEST(Medium, AbsorptionAloneAndEmptinessAreCrossedAnalytically) {
     Medium smoke;
     smoke.model = Homogeneous{Rgb(0.7f), Rgb(0.0f)};
     Sampler sampler(1, RandomStream::Test, 0, 0);
-    const FlightSample flight = sampleFlight(smoke, 2.0f, sampler);
+    const FlightSample flight = draw(smoke, 2.0f, sampler);
     EXPECT_TRUE(flight.exited);
     EXPECT_FLOAT_EQ(flight.weight.x, std::exp(-1.4f));
     EXPECT_EQ(smoke.transmittance(Infinity), Rgb(0.0f));
@@ -132,7 +187,7 @@ TEST(Medium, OpticalDepthsFromTinyToHuge) {
         fog.model = Homogeneous{Rgb(0.0f), Rgb(depth)};
         for (uint64_t i = 0; i < 2000; ++i) {
             Sampler sampler(2, RandomStream::Test, 0, i);
-            const FlightSample flight = sampleFlight(fog, 1.0f, sampler);
+            const FlightSample flight = draw(fog, 1.0f, sampler);
             EXPECT_TRUE(isFinite(flight.weight)) << depth;
             EXPECT_GE(flight.weight.x, 0.0f);
         }

@@ -407,7 +407,7 @@ TEST_F(OwnSteps, FlightsAreDrawnWithTheNumbersOfTheVertexTheyLeadTo) {
             EXPECT_EQ(path.flights, 1);
             const Flight flight = steps.flight(path, ahead);
             Sampler own = numbers(1, Draw::Flight);
-            const FlightSample drawn = sampleFlight(fog(), Infinity, own);
+            const FlightSample drawn = sampleFlight(fog(), Infinity, path.channels, own);
             if (drawn.distance < 0.9f) {
                 ++collisions;
                 EXPECT_EQ(flight.event, Event::Collision);

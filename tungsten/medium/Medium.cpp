@@ -24,44 +24,70 @@ Rgb Homogeneous::transmittance(float distance) const {
 
 namespace {
 
-float probabilityFlightExits(const Homogeneous& medium, float distance) {
-    return medium.scatters() ? meanComponent(medium.transmittance(distance)) : 1.0f;
+float probabilityFlightExits(const Homogeneous& medium, float distance, const ChannelDensities& channels) {
+    if (!medium.scatters()) return 1.0f;
+    const Rgb transmittance = medium.transmittance(distance);
+    return medium.isGrey() ? transmittance.x : meanComponent(channels * transmittance);
 }
 
-FlightSample sampleFlight(const Homogeneous& medium, float tMax, Sampler& sampler) {
-    if (!medium.scatters()) return {tMax, true, medium.transmittance(tMax), 1.0f};
-    const Rgb sigma = medium.sigmaT();
-    // One number: where it falls among three parts chooses the channel, and its place there the distance.
-    const uint64_t bits = uint64_t(sampler.nextBits()) * (medium.isGrey() ? 1 : 3);
-    const float chosen = sigma[int(bits >> 32)];
+float pdfFlight(const Homogeneous& medium, float distance, const ChannelDensities& channels) {
+    if (!medium.scatters()) return 0.0f;
+    const Rgb density = medium.sigmaT() * medium.transmittance(distance);
+    return medium.isGrey() ? density.x : meanComponent(channels * density);
+}
+
+FlightSample flightThatExits(const Homogeneous& medium, float distance, const ChannelDensities& channels) {
+    const Rgb transmittance = medium.transmittance(distance);
+    if (!medium.scatters()) return {distance, true, transmittance, 1.0f, channels};
+    if (medium.isGrey()) return {distance, true, Rgb(1.0f), transmittance.x, channels};
+    const float probability = meanComponent(channels * transmittance);
+    return {distance, true, transmittance / probability, probability, channels * transmittance / probability};
+}
+
+/// A channel in proportion to the densities, and a number in [0, 1) of what is left of the random one.
+struct ChosenChannel {
+    int index;
+    float u;
+};
+ChosenChannel chooseChannel(const ChannelDensities& channels, uint32_t bits) {
+    double rest = double(bits) * 0x1p-32 * (double(channels.x) + double(channels.y) + double(channels.z));
+    int index = 0;
+    while (index < 2 && !(rest < double(channels[index]))) rest -= double(channels[index++]);
+    while (index > 0 && !(channels[index] > 0.0f)) rest = double(channels[--index]); // rounding at the end
+    return {index, std::min(float(rest / double(channels[index])), 0x1.fffffep-1f)};
+}
+
+FlightSample sampleFlight(const Homogeneous& medium, float tMax, const ChannelDensities& channels, Sampler& sampler) {
+    if (!medium.scatters()) return {tMax, true, medium.transmittance(tMax), 1.0f, channels};
     // u < 1 always, so the logarithm is finite.
-    const float u = float(uint32_t(bits) >> 8) * 0x1p-24f;
-    const float t = chosen > 0.0f ? -std::log1p(-u) / chosen : Infinity;
-    if (t >= tMax) {
-        const float probability = probabilityFlightExits(medium, tMax);
-        return {tMax, true, medium.transmittance(tMax) / probability, probability};
-    }
-    const Rgb transmittance = medium.transmittance(t);
-    const float pdf = meanComponent(sigma * transmittance);
-    return {t, false, medium.sigmaS() * transmittance / pdf, pdf};
-}
-
-float pdfFlight(const Homogeneous& medium, float distance) {
-    return medium.scatters() ? meanComponent(medium.sigmaT() * medium.transmittance(distance)) : 0.0f;
+    const uint32_t bits = sampler.nextBits();
+    const auto [chosen, u] =
+        medium.isGrey() ? ChosenChannel{0, float(bits >> 8) * 0x1p-24f} : chooseChannel(channels, bits);
+    const Rgb sigma = medium.sigmaT();
+    const float t = sigma[chosen] > 0.0f ? -std::log1p(-u) / sigma[chosen] : Infinity;
+    if (t >= tMax) return flightThatExits(medium, tMax, channels);
+    const Rgb density = sigma * medium.transmittance(t);
+    if (medium.isGrey()) return {t, false, medium.sigmaS() / sigma, density.x, channels};
+    const float pdf = meanComponent(channels * density);
+    return {t, false, medium.sigmaS() * medium.transmittance(t) / pdf, pdf, channels * density / pdf};
 }
 
 } // namespace
 
-FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler) {
-    return std::visit([&](const auto& m) { return sampleFlight(m, tMax, sampler); }, medium.model);
+FlightSample sampleFlight(const Medium& medium, float tMax, const ChannelDensities& channels, Sampler& sampler) {
+    return std::visit([&](const auto& m) { return sampleFlight(m, tMax, channels, sampler); }, medium.model);
 }
 
-float pdfFlight(const Medium& medium, float distance) {
-    return std::visit([&](const auto& m) { return pdfFlight(m, distance); }, medium.model);
+FlightSample flightThatExits(const Medium& medium, float distance, const ChannelDensities& channels) {
+    return std::visit([&](const auto& m) { return flightThatExits(m, distance, channels); }, medium.model);
 }
 
-float probabilityFlightExits(const Medium& medium, float distance) {
-    return std::visit([&](const auto& m) { return probabilityFlightExits(m, distance); }, medium.model);
+float pdfFlight(const Medium& medium, float distance, const ChannelDensities& channels) {
+    return std::visit([&](const auto& m) { return pdfFlight(m, distance, channels); }, medium.model);
+}
+
+float probabilityFlightExits(const Medium& medium, float distance, const ChannelDensities& channels) {
+    return std::visit([&](const auto& m) { return probabilityFlightExits(m, distance, channels); }, medium.model);
 }
 
 } // namespace tungsten

@@ -71,20 +71,29 @@ struct Medium {
     [[nodiscard]] Rgb sigmaT() const { return homogeneous().sigmaT(); }
 };
 
+/// How dense the flights of a path so far would be, were each drawn by one channel's coefficients: by channel, over
+/// their mean, with which the path is weighed. No contribution to a channel then exceeds three times what paths drawn
+/// by that channel alone would bring (balance heuristic over whole paths: Wilkie et al. 2014). Even at a path's start,
+/// and as long as all media are grey.
+using ChannelDensities = Rgb;
+
 /// Outcome of a plain free flight up to `tMax`.
 struct FlightSample {
-    float distance; ///< of the collision, or tMax
-    bool exited;    ///< reached tMax
-    Rgb weight;     ///< sigmaS T / pdf at a collision; T / probability when exited (channel-averaged density)
-    float pdf;      ///< per length at a collision; probability when exited
+    float distance;            ///< of the collision, or tMax
+    bool exited;               ///< reached tMax
+    Rgb weight;                ///< sigmaS T / pdf at a collision; T / probability when exited
+    float pdf;                 ///< per length at a collision; probability when exited
+    ChannelDensities channels; ///< of the path with this flight
 };
 
-/// Draws a free flight: one channel chosen uniformly, weighted by the channel-averaged density. Absorbing-only media
-/// always exit.
-FlightSample sampleFlight(const Medium& medium, float tMax, Sampler& sampler);
-/// Density per length of a collision at `distance` (channel average).
-float pdfFlight(const Medium& medium, float distance);
-/// Probability of passing `distance` without collision (channel average).
-float probabilityFlightExits(const Medium& medium, float distance);
+/// Draws a free flight after those of `channels`: by one channel, chosen in proportion to these densities, as if one
+/// had been chosen for the whole path at its start. Absorbing-only media always exit.
+FlightSample sampleFlight(const Medium& medium, float tMax, const ChannelDensities& channels, Sampler& sampler);
+/// The same flight without a collision up to `distance`, where its end is known to lie beyond.
+FlightSample flightThatExits(const Medium& medium, float distance, const ChannelDensities& channels);
+/// Density per length of a collision at `distance`.
+float pdfFlight(const Medium& medium, float distance, const ChannelDensities& channels = ChannelDensities(1.0f));
+/// Probability of passing `distance` without collision.
+float probabilityFlightExits(const Medium& medium, float distance, const ChannelDensities& channels);
 
 } // namespace tungsten

@@ -16,6 +16,7 @@ struct SealedVertex {
     Vec3f before; ///< direction of propagation up to here
     double time;  ///< of the path so far
     Region region;
+    ChannelDensities channels{1.0f}; ///< of the path so far
 };
 
 class RefractedLight {
