@@ -182,5 +182,35 @@ TEST(BounceLimits, CountInteractionsAndOrders) {
     EXPECT_FALSE(BounceLimits::fly(flights, fog));
 }
 
+/// What a ray crosses on its way moves it on by some of the margin; it must still end short of the lamp.
+TEST(Visibility, OfALampFromInsideBoxesIsNeverHiddenByTheLampItself) {
+    const test::SceneFile file(R"({
+      "media": [{"name": "fog", "type": "homogeneous", "sigma_a": 0, "sigma_s": 0.1}],
+      "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"},
+                      "transform": {"rotation": [10, 15, 5], "scale": 1.4}},
+                     {"type": "cube", "bsdf": {"type": "forward"}, "transform": {"rotation": [0, 25, 0], "scale": 1.7}},
+                     {"type": "cube", "bsdf": {"type": "forward"}, "transform": {"rotation": [0, 65, 0], "scale": 1.71}},
+                     {"type": "sphere", "emission": 1, "bsdf": {"type": "null"},
+                      "transform": {"position": [1.2, 1.6, 1.4], "scale": 0.3}}],
+      "camera": {"resolution": 1}, "integrator": {"type": "path_tracer"}, "renderer": {}})");
+    const auto scene = loadScene(file.path()).scene;
+    const Primitive& box = scene->primitives[0];
+    uint64_t rays = 0;
+    int connected = 0;
+    for (uint64_t i = 0; i < 100000; ++i) {
+        Sampler sampler(1, RandomStream::Test, 0, i);
+        const Vec3f from = (Vec3f(sampler.next1D(), sampler.next1D(), sampler.next1D()) - Vec3f(0.5f)) * 0.9f;
+        const auto direct = sampleDirect(scene->emitters[0], from, sampler.next2D());
+        if (!direct) continue;
+        const ConnectionEnd end = connectionEnd(*direct);
+        const Ray ray{from, end.direction, 0.0f, end.margin.before(end.direction, end.distance)};
+        const Visibility seen = traceVisibility(*scene, ray, end.distance, box.inside, rays);
+        ASSERT_EQ(seen.crossings, 3) << i;
+        ASSERT_FALSE(isBlack(seen.transmittance)) << i;
+        ++connected;
+    }
+    EXPECT_GT(connected, 30000);
+}
+
 } // namespace
 } // namespace tungsten::transport

@@ -30,10 +30,20 @@ struct SurfaceHit {
     [[nodiscard]] Ray leave(const Vec3f& direction) const {
         return {margin().off(position, direction), direction, 0.0f, Infinity, index()};
     }
-    /// The rest of the ray that met it; lengths along it count from here.
+    /// The rest of the ray that met it, up to the same end; lengths along it count from here.
     [[nodiscard]] Ray rest(const Ray& ray) const {
         Ray onward = leave(ray.direction);
-        onward.tMax = ray.tMax - t;
+        if (!(ray.tMax < Infinity)) return onward;
+        // It starts beside the ray, by some of the margin: from there to the same point, else it would meet what the
+        // ray ends short of.
+        const Vec3d left = Vec3d(ray.origin) + Vec3d(ray.direction) * double(ray.tMax) - Vec3d(onward.origin);
+        const double length = left.length();
+        if (!(length > 0.0) || left.dot(Vec3d(ray.direction)) <= 0.0) {
+            onward.tMax = 0.0f;
+        } else {
+            onward.direction = Vec3f(left / length);
+            onward.tMax = float(length);
+        }
         return onward;
     }
 };
