@@ -4,6 +4,7 @@
 
 #include "darts/CandidateUsefulness.h"
 #include "darts/DistanceSampler.h"
+#include "darts/Registers.h"
 
 namespace darts {
 
@@ -188,23 +189,5 @@ float resample(const CandidateDraw& draw, const DistanceRandom& random, Vec3& tr
     }
     return d;
 }
-
-namespace detail {
-
-template <int N>
-struct Register {
-    using type = std::conditional_t<(N < int(xsimd::batch<float>::size)), xsimd::make_sized_batch_t<float, size_t(N)>,
-                                    xsimd::batch<float>>;
-};
-template <>
-struct Register<1> {
-    using type = float;
-};
-
-} // namespace detail
-
-/// The widest register of the machine compiled for that N candidates fill.
-template <int N>
-using RegisterOf = typename detail::Register<N>::type;
 
 } // namespace darts

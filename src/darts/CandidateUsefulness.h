@@ -19,6 +19,8 @@ struct CandidateDraw {
     float firstLeg = 0;    ///< t(S_hi)
     float gateWidth = 0;   ///< of the connections' range
     float bound = 0;       ///< candidates lie in [0, bound)
+    float kink = 0;        ///< where the reachable part of the gate begins to shrink; 0: everywhere
+    bool falls = true;     ///< usefulness falls to nothing towards the bound in time
     float probability = 1; ///< of the medium event
     float floor = 0;
     Proposals proposals = Proposals::Exponential;

@@ -27,6 +27,8 @@ class ConnectionLobe {
 
     /// u in [0, 1) -> h in [0, 2]. Never NaN (kappa has bounds), so std::min serves: fmin would be a call.
     [[nodiscard]] Real sample(Real u) const { return std::min(kappa_ * fastExpm1(u * range_), Real(2)); }
+    /// Its inverse.
+    [[nodiscard]] Real part(Real h) const { return fastLog1p(h / kappa_) / range_; }
     /// Density per solid angle.
     [[nodiscard]] Real pdf(Real h) const { return 1 / (Real(TwoPi) * (kappa_ + h) * range_); }
 

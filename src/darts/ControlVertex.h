@@ -35,6 +35,21 @@ struct ConnectionLength {
         const Real start = needle + low;
         return Real(0.5) * exponential + Real(0.5) / ((start + offset) * fastLog1p(width / start));
     }
+    /// Half of the lengths are shorter; with a needle to about a hundredth.
+    [[nodiscard]] Real median() const {
+        const Real exponential = sampleExponential(Real(0.5)).offset;
+        if (!(needle > 0)) return exponential;
+        const Real start = needle + low, range = fastLog1p(width / start);
+        const Real peaked = std::min(start * fastExpm1(range / 2), width);
+        const Real least = std::min(exponential, peaked), most = std::max(exponential, peaked);
+        Real below = start + least, above = start + most;
+        for (int i = 0; i < 10; ++i) {
+            const Real middle = std::sqrt(below * above);
+            const Real part = partExponential(middle - start) + std::log(middle / start) / range;
+            (part < 1 ? below : above) = middle;
+        }
+        return std::clamp(std::sqrt(below * above) - start, least, most);
+    }
 
   private:
     /// Depths of the range below which the density is uniform to as many digits as are kept.
@@ -52,6 +67,10 @@ struct ConnectionLength {
         const Real depth = sigmaT * width;
         if (depth < Shallow) return 1 / width;
         return sigmaT * std::exp(-sigmaT * offset) / -fastExpm1(-depth);
+    }
+    [[nodiscard]] Real partExponential(Real offset) const {
+        const Real depth = sigmaT * width;
+        return depth < Shallow ? offset / width : fastExpm1(-sigmaT * offset) / fastExpm1(-depth);
     }
 };
 

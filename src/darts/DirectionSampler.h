@@ -2,6 +2,7 @@
 // Directions drawn for the connection that is to follow, mixed with what the scatterer prefers.
 
 #include "darts/ConnectionLobe.h"
+#include "darts/DirectionStrata.h"
 #include "darts/DirectionsOut.h"
 #include "darts/EdaTable.h"
 #include "darts/PhaseFunction.h"
@@ -19,8 +20,6 @@ struct DirectionSample : Heading {
     float inversePdf = 0;
 };
 
-inline constexpr float BelowOne = 0x1.fffffep-1f;
-
 /// The target's own view, from which a share of the guided directions comes: sample(u, v) -> unit direction seen from
 /// the target, pdf(direction) per solid angle. NoView where there is none.
 struct NoView {
@@ -36,6 +35,9 @@ struct AboutTarget {
     Vec3 axis;
 
     [[nodiscard]] Vec3 sample(float, float u, float v) const { return directionAbout(axis, lobe.sample(u), v); }
+    [[nodiscard]] float quantile(float f) const { return lobe.sample(f); }
+    [[nodiscard]] float part(float h) const { return lobe.part(h); }
+    [[nodiscard]] float pdf(float h) const { return lobe.pdf(h); }
     [[nodiscard]] float pdf(const Vec3&, float h) const { return lobe.pdf(h); }
     /// What a direction of this density is good for, about 1 on the average over the sphere; last() is the density of
     /// its connection's last turn per solid angle.
@@ -116,11 +118,18 @@ class DirectionSampler {
         if (settings_.direction == Direction::Phase || isBehindRefraction(residual))
             return fromScatterer(residual, scatterer, random);
         if (residual.way == Way::Out) {
-            if (const auto turns = LastTurns::of(residual, medium_))
-                return resample(residual, excess, scatterer, *turns, random);
+            if (const auto turns = LastTurns::of(residual, medium_)) {
+                if (const auto phase = peakOf(scatterer))
+                    return draw(residual, strata(*phase, *turns, residual, excess), random);
+                return mix(residual, TurnsShare, scatterer, *turns, random);
+            }
             if (settings_.scattererOut) return fromScatterer(residual, scatterer, random);
             const DirectionsOut out(residual, least(residual, excess), medium_);
             return mix(residual, out.share(), scatterer, out, random);
+        }
+        if (const auto phase = peakOf(scatterer)) {
+            const float delta = least(residual, excess);
+            return draw(residual, multiplied(*phase, residual, delta, view), random);
         }
         return withGuided(residual, excess, view, [&](const auto& guided) {
             if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
@@ -128,7 +137,7 @@ class DirectionSampler {
         });
     }
 
-    /// Density per solid angle of the mixture; for Direction::Ris and LastTurns, of their candidates.
+    /// Density per solid angle of sample(); for Direction::Ris, of its candidates.
     template <typename Scatterer, typename View>
     [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction, const Scatterer& scatterer,
                             const View& view) const {
@@ -138,11 +147,17 @@ class DirectionSampler {
             return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         };
         if (residual.way == Way::Out) {
-            if (const auto turns = LastTurns::of(residual, medium_)) return mixture(0.5f, *turns);
+            if (const auto turns = LastTurns::of(residual, medium_)) {
+                if (const auto phase = peakOf(scatterer))
+                    return strata(*phase, *turns, residual, excess).pdf(direction, h);
+                return mixture(TurnsShare, *turns);
+            }
             if (settings_.scattererOut) return scatterer.pdf(direction);
             const DirectionsOut out(residual, least(residual, excess), medium_);
             return mixture(out.share(), out);
         }
+        if (const auto phase = peakOf(scatterer))
+            return multiplied(*phase, residual, least(residual, excess), view).pdf(direction, h);
         const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
         return withGuided(residual, excess, view, [&](const auto& guided) { return mixture(share, guided); });
     }
@@ -157,6 +172,7 @@ class DirectionSampler {
 
   private:
     static constexpr int MostDirections = 8;
+    static constexpr float TurnsShare = 0.5f; ///< of LastTurns, the rest the scatterer's own
     /// Where boundaries of unknown kind lie between, the lobe is a rougher guess. (Bench: study bodies, paths.)
     static constexpr float LeastAlphaOutside = 0.5f;
     /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
@@ -168,6 +184,47 @@ class DirectionSampler {
     [[nodiscard]] static float least(const Residual& residual, float excess) {
         return std::max(excess, 1e-6f * residual.C);
     }
+    /// The scatterer as a peaked phase function, if directions are to be its product with the guide.
+    template <typename Scatterer>
+    [[nodiscard]] std::optional<HenyeyGreenstein> peakOf(const Scatterer& scatterer) const {
+        if constexpr (requires { scatterer.asHenyeyGreenstein(); })
+            if (settings_.strata) return scatterer.asHenyeyGreenstein();
+        return std::nullopt;
+    }
+    template <typename Guided>
+    [[nodiscard]] DirectionStrata<Guided> strata(const HenyeyGreenstein& phase, const Guided& guided,
+                                                 const Residual& residual, float excess) const {
+        return {phase, guided, [&](const Vec3& direction, float h, float own, float guide) {
+                    return own * guided.usefulness(guide, lastTurn(residual, excess, direction, h));
+                }};
+    }
+    /// By the product of the phase function and the connection's lobe, and for the rest by the target's view.
+    template <typename View>
+    [[nodiscard]] auto multiplied(const HenyeyGreenstein& phase, const Residual& residual, float excess,
+                                  const View& view) const {
+        const AboutTarget lobe{connectionLobe(residual.C, excess), residual.axis};
+        return GuidedDirections(strata(phase, lobe, residual, excess), residual, excess, view,
+                                focus<View>(residual.C + excess));
+    }
+    template <typename Guided, typename Random>
+    static DirectionSample draw(const Residual& residual, const Guided& guided, Random& random) {
+        const float choice = random(), u = random(), v = random();
+        const Vec3 direction = guided.sample(choice, u, v);
+        const float h = oneMinusCosine(direction, residual.axis), pdf = guided.pdf(direction, h);
+        return {{direction, h}, pdf > 0 ? 1.0f / pdf : 0.0f};
+    }
+    [[nodiscard]] ConnectionLobe<float> connectionLobe(float C, float excess) const {
+        return settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, excess)
+                                            : ConnectionLobe<float>::photon(C, excess);
+    }
+    /// The density, per solid angle, of the last turn of a connection that leaves in this direction.
+    [[nodiscard]] auto lastTurn(const Residual& residual, float excess, const Vec3& direction, float h) const {
+        return [=, this, &residual] {
+            const Ellipse<float> e{residual.C, excess, h};
+            const Vec3 onward = residual.axis * residual.C - direction * e.firstLeg();
+            return HenyeyGreenstein{direction, g_}.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
+        };
+    }
     /// use(the vertex's guided distribution).
     template <typename View, typename Use>
     [[nodiscard]] auto withGuided(const Residual& residual, float excess, const View& view, Use&& use) const {
@@ -177,8 +234,7 @@ class DirectionSampler {
                 GuidedDirections(AboutTarget{lobe, residual.axis}, residual, delta, view, focus<View>(C + delta)));
         };
         if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
-        return about(settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, delta)
-                                                  : ConnectionLobe<float>::photon(C, delta));
+        return about(connectionLobe(C, delta));
     }
     /// Share of the view's directions for connections of length S: long chains of scatterings forget where they began.
     template <typename View>
@@ -218,12 +274,7 @@ class DirectionSampler {
             c.direction = i < owns ? scatterer.sample(u, v) : guided.sample(choice, u, v);
             c.h = oneMinusCosine(c.direction, residual.axis);
             const float own = scatterer.pdf(c.direction), guide = guided.pdf(c.direction, c.h);
-            const auto last = [&] {
-                const Ellipse<float> e{residual.C, excess, c.h};
-                const Vec3 onward = residual.axis * residual.C - c.direction * e.firstLeg();
-                return HenyeyGreenstein{c.direction, g_}.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
-            };
-            const float wanted = own * guided.usefulness(guide, last);
+            const float wanted = own * guided.usefulness(guide, lastTurn(residual, excess, c.direction, c.h));
             const float mixture = ownShare * own + (1.0f - ownShare) * guide;
             weights[size_t(i)] = mixture > 0 ? wanted / mixture : 0.0f;
             c.inversePdf = wanted > 0 ? 1.0f / wanted : 0.0f;

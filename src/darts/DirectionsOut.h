@@ -39,9 +39,14 @@ class LastTurns {
     /// None where directions are forgotten before, or were never kept.
     static std::optional<LastTurns> of(const Residual& residual, const Medium& medium);
 
+    Vec3 axis; ///< towards the target
+
     [[nodiscard]] Vec3 sample(float, float u, float v) const { return peak_.sample(u, v); }
-    /// Density per solid angle.
-    [[nodiscard]] float pdf(const Vec3& direction, float) const { return peak_.pdf(direction); }
+    /// Density per solid angle; h = 1 - cos to the axis.
+    [[nodiscard]] float pdf(float h) const { return peak_.pdfAt(h); }
+    [[nodiscard]] float pdf(const Vec3&, float h) const { return pdf(h); }
+    [[nodiscard]] float quantile(float f) const { return peak_.quantile(f); }
+    [[nodiscard]] float part(float h) const { return peak_.part(h); }
     /// What a direction of this density is good for, about 1 on the average over the sphere.
     template <typename Last>
     [[nodiscard]] static float usefulness(float pdf, const Last&) {
@@ -53,7 +58,7 @@ class LastTurns {
     /// without, 7.5 with 0.2, 7.8 with 0.05.) Bench: study bodies.
     static constexpr float LeastPeak = 0.5f, Forgotten = 0.1f, Floor = 0.2f;
 
-    explicit LastTurns(const HenyeyGreenstein& peak) : peak_(peak) {}
+    explicit LastTurns(const HenyeyGreenstein& peak) : axis(peak.before), peak_(peak) {}
 
     HenyeyGreenstein peak_;
 };

@@ -64,7 +64,10 @@ DistanceSampler::Kernels DistanceSampler::chooseKernels(const Settings& settings
 
 DistanceSampler::DistanceSampler(const Settings& settings, const Medium& medium, bool scalar)
     : settings_(settings), medium_(medium), sigmaT_(medium.sigmaT()), meanSigmaT_(mean(sigmaT_)),
-      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernels_(chooseKernels(settings, grey_, scalar)) {}
+      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernels_(chooseKernels(settings, grey_, scalar)) {
+    for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal, Shape::FirstPassage})
+        usefulness_[size_t(shape)] = LogLinearDistance::logUsefulness(shape, grey_, scalar);
+}
 
 Vec3 DistanceSampler::transmittance(float distance) const {
     if (grey_) {
@@ -79,30 +82,30 @@ float DistanceSampler::floor(const Residual& residual) const {
     return std::clamp(settings_.strays / (meanSigmaT_ * residual.excess), settings_.floor, MostFloor);
 }
 
-DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
-                                       const Vec3& throughput, const DistanceRandom& random) const {
-    DistanceSample sample;
+Shape DistanceSampler::shapeFor(const Residual& residual) const {
+    // Without a Green's function nothing but the bound in time is wanted.
+    if (settings_.greens == Greens::None || residual.way == Way::Unknown) return Shape::TimeBound;
+    if (residual.way == Way::Through) return shapeOf(settings_.greens);
+    // Behind refraction light leaves where it is not known.
+    return residual.exit.connects || !settings_.aloneBehindRefraction ? Shape::FirstPassage : Shape::TimeBound;
+}
+
+auto DistanceSampler::surfaceEvent(const Residual& residual, float surface, float firstLeg,
+                                   const Vec3& throughput) const -> SurfaceEvent {
+    if (!((surface < firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity())) return {};
+    const Vec3 reaching = transmittance(surface);
+    const float total = throughput.x + throughput.y + throughput.z;
+    const float natural = !scatters_ ? 1.0f : grey_ || !(total > 0) ? reaching.x : dot(throughput, reaching) / total;
+    const float odds = settings_.surfaceOdds * (residual.way == Way::Out ? residual.exit.leaveOdds : 1.0f);
+    return {natural * odds / (natural * odds + (1.0f - natural)), reaching};
+}
+
+CandidateDraw DistanceSampler::drawOf(const Residual& residual, const Heading& ray, const Ellipse<float>& latest,
+                                      float bound, const Vec3& throughput) const {
     CandidateDraw draw;
-    draw.latest = residual.latest(ray.h);
-    draw.firstLeg = draw.latest.firstLeg();
-    if ((surface < draw.firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity()) {
-        const Vec3 reaching = transmittance(surface);
-        const float total = throughput.x + throughput.y + throughput.z;
-        const float natural = !scatters_              ? 1.0f
-                              : grey_ || !(total > 0) ? reaching.x
-                                                      : dot(throughput, reaching) / total;
-        const float odds = settings_.surfaceOdds * (residual.way == Way::Out ? residual.exit.leaveOdds : 1.0f);
-        const float probability = natural * odds / (natural * odds + (1.0f - natural));
-        if (probability > 0 && random.event < probability) {
-            sample.surface = true;
-            sample.distance = surface;
-            sample.transmittanceOverPdf = reaching * (1.0f / probability);
-            return sample;
-        }
-        draw.probability = 1.0f - probability;
-    }
-    draw.bound = settings_.bounded ? std::min(surface, draw.firstLeg) : surface;
-    if (!scatters_ || !(draw.probability > 0) || !(draw.bound > 0)) return sample;
+    draw.latest = latest;
+    draw.firstLeg = latest.firstLeg();
+    draw.bound = bound;
     draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
     draw.proposals = settings_.proposals;
     if (residual.way == Way::Out ? settings_.exponentialOut : settings_.mixDenseOnly && meanSigmaT_ * residual.C < 4.0f)
@@ -113,6 +116,45 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
     draw.medium = &medium_;
     draw.exit = &residual.exit;
     draw.direction = ray.direction;
+    return draw;
+}
+
+DistanceDensity DistanceSampler::density(const Residual& residual, const Heading& ray, float surface,
+                                         const Vec3& throughput) const {
+    const Ellipse<float> latest = residual.latest(ray.h);
+    const float firstLeg = latest.firstLeg(), bound = std::min(surface, firstLeg);
+    const SurfaceEvent event = surfaceEvent(residual, surface, firstLeg, throughput);
+    if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return DistanceDensity(event.probability);
+    CandidateDraw draw = drawOf(residual, ray, latest, bound, throughput);
+    if (residual.low > 0) draw.kink = Ellipse<float>{residual.C, residual.low, ray.h}.firstLeg();
+    const Shape shape = shapeFor(residual);
+    draw.falls = shape != Shape::TimeBound || draw.overlap;
+    return {event.probability, draw, usefulness_[size_t(shape)]};
+}
+
+DistanceSample DistanceSampler::sample(const DistanceDensity& density, float surface, float event, float choice) const {
+    if (event < density.surface())
+        return {surface, true, transmittance(surface) * (1.0f / density.surface()), density.surface()};
+    const auto drawn = density.sample(choice);
+    if (!drawn) return {};
+    const float pdf = density.pdf(*drawn);
+    return {*drawn, false, transmittance(*drawn) * (pdf > 0 ? 1.0f / pdf : 0.0f), pdf};
+}
+
+DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
+                                       const Vec3& throughput, const DistanceRandom& random) const {
+    DistanceSample sample;
+    if (settings_.logLinear && settings_.bounded)
+        return this->sample(density(residual, ray, surface, throughput), surface, random.event, random.choice);
+    const Ellipse<float> latest = residual.latest(ray.h);
+    const float firstLeg = latest.firstLeg();
+    const SurfaceEvent event = surfaceEvent(residual, surface, firstLeg, throughput);
+    if (event.probability > 0 && random.event < event.probability)
+        return {surface, true, event.reaching * (1.0f / event.probability)};
+    const float bound = settings_.bounded ? std::min(surface, firstLeg) : surface;
+    if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return sample;
+    CandidateDraw draw = drawOf(residual, ray, latest, bound, throughput);
+    draw.probability = 1.0f - event.probability;
     const Kernel kernel = residual.way == Way::Through ? kernels_.through
                           : residual.way == Way::Out   ? residual.exit.connects ? kernels_.out : kernels_.refracted
                                                        : kernels_.unknown;

@@ -1,12 +1,10 @@
 #pragma once
 // Distances to the next vertex, resampled towards the light that can still arrive inside the gate.
 
-#include "darts/ResidualRange.h"
+#include "darts/LogLinearDistance.h"
 #include "darts/Settings.h"
 
 namespace darts {
-
-struct CandidateDraw;
 
 /// Uniform numbers in [0, 1) of one draw.
 struct DistanceRandom {
@@ -21,6 +19,33 @@ struct DistanceSample {
     /// surface), whose expectation over the draws is the integral of the transmittance over what can count. In the
     /// medium the caller's throughput takes sigmaS times this. Zero: nothing can arrive, the walk ends.
     Vec3 transmittanceOverPdf;
+    /// Of this draw, per length in the medium, a probability at the surface; 0 where it is resampled, so that none is
+    /// known.
+    float pdf = 0;
+};
+
+/// How distances are distributed from a place along a ray, where they are drawn by a density that is known.
+class DistanceDensity {
+  public:
+    /// Nothing in the medium: every draw is the surface, if `surface` is a probability above 0.
+    explicit DistanceDensity(float surface) : surface_(surface) {}
+    DistanceDensity(float surface, const CandidateDraw& draw, LogLinearDistance::LogUsefulness usefulness)
+        : surface_(surface), medium_(std::in_place, draw, usefulness) {}
+
+    /// Probability of the surface; the rest is the medium's, unless nothing there can be in time.
+    [[nodiscard]] float surface() const { return surface_; }
+    /// Per length.
+    [[nodiscard]] float pdf(float distance) const {
+        return medium_ ? (1.0f - surface_) * medium_->pdf(distance) : 0.0f;
+    }
+    /// In the medium, by its own density.
+    [[nodiscard]] std::optional<float> sample(float u) const {
+        return medium_ ? std::optional(medium_->sample(u)) : std::nullopt;
+    }
+
+  private:
+    float surface_;
+    std::optional<LogLinearDistance> medium_;
 };
 
 /// Resampled importance sampling (Talbot et al. 2005) of N candidates by usefulness
@@ -37,6 +62,11 @@ class DistanceSampler {
     /// `surface` is the distance to the first surface, possibly infinite; `throughput` the walk's, for coloured media.
     [[nodiscard]] DistanceSample sample(const Residual& residual, const Heading& ray, float surface,
                                         const Vec3& throughput, const DistanceRandom& random) const;
+    /// The density of sample(), where Settings::logLinear is on.
+    [[nodiscard]] DistanceDensity density(const Residual& residual, const Heading& ray, float surface,
+                                          const Vec3& throughput) const;
+    /// A draw by it; `event` and `choice` are uniform in [0, 1).
+    [[nodiscard]] DistanceSample sample(const DistanceDensity& density, float surface, float event, float choice) const;
     /// Where the candidates end: nothing beyond can be in time. The ray need not be traced farther.
     [[nodiscard]] float bound(const Residual& residual, float h) const {
         return settings_.bounded ? residual.latest(h).firstLeg() : std::numeric_limits<float>::infinity();
@@ -46,6 +76,17 @@ class DistanceSampler {
     [[nodiscard]] Vec3 transmittance(float distance) const;
 
   private:
+    /// The event at the surface: its probability, and of a free flight that of getting there.
+    struct SurfaceEvent {
+        float probability = 0;
+        Vec3 reaching;
+    };
+    [[nodiscard]] SurfaceEvent surfaceEvent(const Residual& residual, float surface, float firstLeg,
+                                            const Vec3& throughput) const;
+    /// Of distances in the medium, up to a bound above 0.
+    [[nodiscard]] CandidateDraw drawOf(const Residual& residual, const Heading& ray, const Ellipse<float>& latest,
+                                       float bound, const Vec3& throughput) const;
+    [[nodiscard]] Shape shapeFor(const Residual& residual) const;
     using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3& transmittanceOverPdf);
     /// By how light gets to the target.
     struct Kernels {
@@ -64,6 +105,7 @@ class DistanceSampler {
     float meanSigmaT_;
     bool grey_, scatters_;
     Kernels kernels_;
+    std::array<LogLinearDistance::LogUsefulness, 4> usefulness_; ///< by shape
 };
 
 } // namespace darts

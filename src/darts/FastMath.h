@@ -6,6 +6,9 @@
 
 namespace darts {
 
+/// The largest float below 1.
+inline constexpr float BelowOne = 0x1.fffffep-1f;
+
 namespace detail {
 /// Below it the series, above it the difference, whose relative error is an ulp over this.
 inline constexpr float SeriesBelow = 0.25f;

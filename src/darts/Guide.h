@@ -118,19 +118,22 @@ class Guide {
         return count;
     }
 
-    /// Density per length along the ray of controlVertex() at `distance`, for connections drawn without a response; a
-    /// function of the ray alone, for the balance heuristic.
-    [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance) const {
+    /// Density per length along the ray of controlVertex() at `distance`; a function of the ray alone, for the balance
+    /// heuristic.
+    [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance,
+                                         const ResponseAt& at = {}) const {
         // Of the connection through the point, from residual.low. The ends have the rounding of the excess lengths.
         const double rounding = 2e-7 * double(residual.excess);
         const double exact = double(residual.excess) - excessBeyond(residual, h, distance) - double(residual.low);
         if (!(exact >= -rounding && exact <= double(residual.width) + rounding)) return 0.0f;
         const float offset = std::clamp(float(exact), 0.0f, residual.width);
         const Ellipse<float> connection{residual.C, residual.low + offset, h};
-        return controlVertexPdf(connection, lengths(residual).pdf(offset));
+        return controlVertexPdf(connection,
+                                at.response ? pdfResponse(residual, offset, at) : lengths(residual).pdf(offset));
     }
 
-    /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the latest arrival.
+    /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the median length, or of the
+    /// latest arrival (Settings::medianLobe).
     template <typename Scatterer, typename View, typename Random>
     [[nodiscard]] DirectionSample sampleDirection(const Residual& residual, const ConnectionSample& connection,
                                                   const Scatterer& scatterer, const View& view, Random&& random) const {
@@ -216,7 +219,17 @@ class Guide {
         return {residual.exit, residual.latest(0), residual.axis, 0.0f};
     }
     [[nodiscard]] float directionExcess(const Residual& residual, const ConnectionSample& connection) const {
-        return settings_.lengthFirst ? connection.excess : residual.excess;
+        if (settings_.lengthFirst) return connection.excess;
+        if (!settings_.medianLobe || !(residual.width > 0)) return residual.excess;
+        return residual.low + lengths(residual).median();
+    }
+    /// Density per length of sampleResponse().
+    [[nodiscard]] static float pdfResponse(const Residual& residual, float offset, const ResponseAt& at) {
+        const double begin = at.elapsed + residual.shortest / at.speed;
+        const double low = at.response->distribution(begin),
+                     high = at.response->distribution(begin + double(residual.width) / at.speed);
+        if (!(high > low)) return 0.0f;
+        return float(at.response->pdf(begin + double(offset) / at.speed) / (at.speed * (high - low)));
     }
     [[nodiscard]] static ConnectionSample sampleResponse(const Residual& residual, float u, const ResponseAt& at) {
         const double begin = at.elapsed + residual.shortest / at.speed;

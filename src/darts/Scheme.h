@@ -35,6 +35,7 @@ struct Scheme {
             if (value) field = *value;
         };
         set(s.direction, direction);
+        if (direction) s.strata = false; // just what it names
         set(s.greens, greens);
         set(s.proposals, proposals);
         if (proposals) s.mixDenseOnly = s.exponentialOut = false;
@@ -58,7 +59,7 @@ namespace detail {
 
 template <typename Block>
 std::optional<int> candidateCount(const Block& block) {
-    constexpr const char* Text = "distances among which one is resampled";
+    constexpr const char* Text = "published: distances among which one is resampled";
     block.declare("candidates", "1, 4, 8 or 16", "", {"none", Text, switches::ByPreset});
     if (!block.has("candidates")) return std::nullopt;
     const auto count = block.integer("candidates", 8, {"none", Text});
@@ -71,22 +72,23 @@ template <typename Block>
 void readDistances(const Block& block, Scheme& scheme) {
     scheme.guideDistance =
         block.choice("distance", "guided", {"guided", "plain"},
-                     {"none", "distances are resampled from candidates, or plain free flights"}) == "guided" &&
+                     {"none", "distances by the light still to arrive from there, or plain free flights"}) ==
+            "guided" &&
         scheme.guideDistance;
     scheme.greens = switches::named<Greens>(
-        block, "greens_function", "what candidates are weighed by: the light still to arrive from there",
+        block, "greens_function", "the light still to arrive from there, which shapes distances",
         {{"none", Greens::None}, {"diffusion", Greens::Diffusion}, {"causal", Greens::Causal}});
-    scheme.proposals = switches::named<Proposals>(block, "proposals", "where candidates come from",
+    scheme.proposals = switches::named<Proposals>(block, "proposals", "published: where candidates come from",
                                                   {{"exponential", Proposals::Exponential},
                                                    {"mixed", Proposals::MixedUniform},
                                                    {"mixed_quarter", Proposals::MixedQuarter},
                                                    {"equiangular", Proposals::Equiangular}});
     scheme.candidates = candidateCount(block);
     scheme.floor =
-        switches::fraction(block, "floor", "added to the weight of candidates, relative to their mean", 0.05);
-    scheme.bounded = switches::flag(block, "bounded", "candidates end where no path can be in time any more");
+        switches::fraction(block, "floor", "added to what distances are good for, relative to its mean", 0.05);
+    scheme.bounded = switches::flag(block, "bounded", "distances end where no path can be in time any more");
     scheme.overlap =
-        switches::flag(block, "overlap", "candidates are weighed by the part of the gate still in reach, too");
+        switches::flag(block, "overlap", "distances are shaped by the part of the gate still in reach, too");
 }
 
 template <typename Block>
@@ -94,7 +96,7 @@ void readDirections(const Block& block, Scheme& scheme) {
     scheme.direction =
         switches::named<Direction>(block, "direction",
                                    "phase function alone; with the paper's table; with the connection's lobe in "
-                                   "closed form; or resampled from phase function and lobe",
+                                   "closed form; or (published) resampled from phase function and lobe",
                                    {{"phase", Direction::Phase},
                                     {"eda", Direction::Eda},
                                     {"connection", Direction::Connection},
@@ -102,9 +104,24 @@ void readDirections(const Block& block, Scheme& scheme) {
     scheme.alpha = switches::fraction(block, "alpha", "weight of the phase function against the guide", 1e6);
     scheme.focus =
         switches::fraction(block, "focus", "least share of guided directions drawn from the camera's view", 1.0);
-    scheme.lengthFirst =
-        switches::flag(block, "length_first", "a connection's length is drawn before the direction, shaping it");
+    scheme.lengthFirst = switches::flag(block, "length_first",
+                                        "published: a connection's length is drawn before the direction, shaping it");
     scheme.guideEmission = switches::flag(block, "guide_emission", "directions of emission are guided too");
+}
+
+/// What shapes resampling has no effect where densities are known.
+template <typename Block>
+void ignoreWithBest(const Block& block, Scheme& scheme) {
+    const auto ignore = [&](auto& value, const char* field, const std::string& what, const char* drawn) {
+        if (!value) return;
+        value.reset();
+        block.warn(field, what + "has no effect with the preset best, whose " + drawn +
+                              " have a density that is known: set \"preset\": \"published\"");
+    };
+    ignore(scheme.candidates, "candidates", "", "distances");
+    ignore(scheme.proposals, "proposals", "", "distances");
+    if (scheme.direction == Direction::Ris) ignore(scheme.direction, "direction", "ris ", "directions");
+    if (scheme.lengthFirst == true) ignore(scheme.lengthFirst, "length_first", "true ", "directions");
 }
 
 template <typename Block>
@@ -115,6 +132,7 @@ void readSwitches(const Block& block, Scheme& scheme) {
     readDirections(block, scheme);
     scheme.roulette = switches::fraction(
         block, "roulette", "part of their first usefulness below which walks end at random; 0: never", 1.0);
+    if (!scheme.published) ignoreWithBest(block, scheme);
 }
 
 } // namespace detail

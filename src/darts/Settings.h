@@ -54,13 +54,17 @@ struct Settings {
     Direction direction = Direction::Connection;
     Lobe lobe = Lobe::Path;
     float alpha = 0.1f;          ///< share of the phase function: gamma = (C/S) / (C/S + alpha) is the guide's
+    bool strata = false;         ///< peaked phase functions are multiplied with the guide (DirectionStrata), not mixed
     int directionCandidates = 4; ///< of Direction::Ris: half phase function, half lobe; even, at most 8
     bool lengthFirst = true;     ///< the connection's length is drawn before the direction, and shapes it
+    bool medianLobe = false;     ///< if it is not: directions suit its median length, instead of the longest one
     bool guideEmission = true;   ///< the emitted direction is guided as well
     float focus = 0.0f;          ///< share of the guided directions drawn from the camera's view, at least
     float thinFocus = 0.0f;      ///< at most: max(focus, min(thinFocus, 1.2 / (sigmaT S)))
 
-    bool bounded = true; ///< candidates end where no path can be in time any more
+    bool bounded = true; ///< distances end where no path can be in time any more
+    /// Distances are drawn by a density that is known (LogLinearDistance), instead of resampled from candidates.
+    bool logLinear = false;
     Greens greens = Greens::Causal;
     Proposals proposals = Proposals::MixedUniform;
     int candidates = 8;  ///< 1, 4, 8 or 16
@@ -81,9 +85,14 @@ struct Settings {
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
     bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
-    float surfaceOdds = 1.0f;   ///< factor on the odds of a surface in reach against scattering before it
-    float roulette = 0.1f;      ///< walks end at random below this part of their first usefulness; 0: never
-    float rouletteOut = 0.1f;   ///< the same on the way out of bodies
+    /// Every draw has a density that is known: what finds a path can be weighed against what else does.
+    [[nodiscard]] bool hasDensities() const {
+        return logLinear && bounded && !lengthFirst && direction != Direction::Ris;
+    }
+
+    float surfaceOdds = 1.0f; ///< factor on the odds of a surface in reach against scattering before it
+    float roulette = 0.1f;    ///< walks end at random below this part of their first usefulness; 0: never
+    float rouletteOut = 0.1f; ///< the same on the way out of bodies
 };
 
 /// The sampler of He et al. 2024: eight exponential candidates against the diffusion approximation, the EDA table mixed
@@ -104,15 +113,19 @@ inline Settings published(Mode mode) {
     return s;
 }
 
-/// What the study of sampling found best, for a phase function of mean cosine g; candidates, roulette and the
-/// camera's share as benchmarks/infinite_medium found them better still. What differs out of bodies: bench study
-/// bodies, and docs/notebook.md ("Drift and splits").
+/// What the study of sampling found best, for a phase function of mean cosine g; roulette and the camera's share as
+/// benchmarks/infinite_medium found them better still. Distances and directions have densities that are known, so that
+/// what finds a path can be weighed against what else does. What differs out of bodies: bench study bodies, and
+/// docs/notebook.md ("Drift and splits").
 inline Settings best(Mode mode, float g) {
     const bool peaked = std::abs(g) >= 0.5f;
     Settings s;
     s.mode = mode;
-    s.direction = peaked ? Direction::Ris : Direction::Connection;
-    s.peakLengths = peaked;
+    s.logLinear = true;
+    s.direction = Direction::Connection;
+    s.lengthFirst = false;
+    s.medianLobe = true;
+    s.peakLengths = s.strata = peaked;
     if (mode == Mode::Photon) {
         s.lobe = Lobe::Photon;
         s.alpha = 0.2f;

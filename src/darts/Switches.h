@@ -1,9 +1,10 @@
 #pragma once
 // Switches that leave to a preset what they do not set, read from any block of named fields.
 //
-// A `Block` has has, flag, number, integer, choice, isObject, block (an object in it) and problem, each by field name;
-// the reading ones also take a field's {unit, meaning, default in words}. declare() and describes() are for blocks that
-// collect these: the host's ObjectReader is one.
+// A `Block` has has, flag, number, integer, choice, isObject, block (an object in it), problem and warn, each by field
+// name; the reading ones also take a field's {unit, meaning, default in words}. What is wrong is a problem(field,
+// text), what has no effect a warn(field, text). declare() and describes() are for blocks that collect these: the
+// host's ObjectReader is one.
 
 #include <iomanip>
 #include <optional>

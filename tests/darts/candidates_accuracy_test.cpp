@@ -198,7 +198,9 @@ TEST(CandidatesAccuracy, MixturesOfDirections) {
         const Guide guide(best(Mode::Photon, 0.0f), medium);
         const double C = logUniform(s, 1e-2, 1e2), high = C * (1.0 + logUniform(s, 1e-4, 10.0));
         const Residual residual = Residual::of(directionAbout({0, 0, 1}, s.next1D(), s.next1D()) * float(C), {C, high});
-        const ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
+        // Directions suit the median length, whatever was drawn.
+        const ConnectionSample connection = guide.sampleConnection(residual, 0.5f);
+        const ConnectionSample drawn = guide.sampleConnection(residual, s.next1D());
         const Vec3 direction = directionAbout(residual.axis, float(logUniform(s, 1e-2, 2.0)), s.next1D());
         const HenyeyGreenstein phase{{0, 0, 1}, 0.3f};
         const Cap view{directionAbout(residual.axis * -1.0f, 0.3f, s.next1D()), 0.4f};
@@ -225,7 +227,7 @@ TEST(CandidatesAccuracy, MixturesOfDirections) {
         const Exact ratio = distance / S, share = ratio / (ratio + Exact(settings.alpha));
         const Exact exact = share * ((1 - focus) * lobe + focus * fromView) +
                             (1 - share) * henyeyGreenstein(Exact(phase.g), apart(direction, phase.before));
-        mixed.add(double(guide.pdfDirection(residual, connection, direction, phase, view)), exact);
+        mixed.add(double(guide.pdfDirection(residual, drawn, direction, phase, view)), exact);
     }
     EXPECT_TRUE(mixed.within(1.3e-6));
 }

@@ -82,6 +82,19 @@ TEST(ConnectionLength, SamplesFollowTheDensityOfForwardPeaks) {
             }
 }
 
+TEST(ConnectionLength, HalfOfThemAreShorterThanTheMedian) {
+    for (const double low : {0.0, 0.1})
+        for (const double needle : {0.0, 1e-5, 1e-3, 0.3})
+            for (const double sigmaT : {0.0, 0.5, 20.0, 1e4}) {
+                const ConnectionLength<double> length{low, 2.0, sigmaT, needle};
+                const double median = length.median();
+                EXPECT_EQ((ConnectionLength<float>{float(low), 2.0f, float(sigmaT), float(needle)}.median() > 0), true);
+                int shorter = 0;
+                for (int i = 0; i < 10000; ++i) shorter += length.sample((i + 0.5) / 10000).offset < median ? 1 : 0;
+                EXPECT_NEAR(shorter, 5000, 40) << low << " " << needle << " " << sigmaT;
+            }
+}
+
 using DoubleLobe = ConnectionLobe<double>;
 
 void testLobe(DoubleLobe (*make)(double C, double delta)) {

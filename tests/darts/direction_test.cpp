@@ -195,6 +195,7 @@ TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
             for (const float focus : {0.0f, 0.2f}) {
                 Settings settings = best(Mode::Photon, 0.7f);
                 settings.direction = Direction::Ris;
+                settings.strata = false;
                 settings.directionCandidates = count;
                 settings.focus = focus;
                 const DirectionSampler sampler(settings, coloured(c.g));

@@ -1,4 +1,4 @@
-// The resampled distances against quadrature, whatever their target and proposals.
+// Distances against quadrature, resampled, whatever their target and proposals, or by a density that is known.
 
 #include "darts/DistanceSampler.h"
 #include "darts/Stratification.h"
@@ -109,6 +109,13 @@ void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar
     }
 }
 
+/// The preset, but for distances resampled from candidates.
+Settings resampling(Mode mode) {
+    Settings settings = best(mode, 0.0f);
+    settings.logLinear = false;
+    return settings;
+}
+
 TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
     uint64_t seed = 100;
     for (const DistanceCase& c : DistanceCases)
@@ -116,7 +123,7 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
             for (const Proposals proposals :
                  {Proposals::Exponential, Proposals::MixedUniform, Proposals::MixedQuarter, Proposals::Equiangular})
                 for (const int candidates : {1, 4, 8, 16}) {
-                    Settings settings = best(Mode::Path, 0.0f);
+                    Settings settings = resampling(Mode::Path);
                     settings.greens = greens;
                     settings.proposals = proposals;
                     settings.candidates = candidates;
@@ -129,19 +136,24 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
 TEST(DistanceSampler, BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean) {
     uint64_t seed = 1500;
     for (const DistanceCase& c : DistanceCases)
-        for (const float odds : {0.3f, 4.0f}) {
-            Settings settings = best(Mode::Path, 0.0f);
-            settings.surfaceOdds = odds;
-            expectUnbiased(c, settings, false, ++seed);
-        }
-    Settings settings = best(Mode::Path, 0.0f);
-    settings.surfaceOdds = 4.0f;
-    const DistanceSampler sampler(settings, Medium{{0, 0, 0}, {1, 1, 1}, 0.0f});
-    const Residual residual = Residual::of({0, 0, 1}, {3.0, 3.1});
-    const float natural = std::exp(-0.8f), reached = 4 * natural / (4 * natural + 1 - natural);
-    for (const float event : {0.99f * reached, 1.01f * reached})
-        EXPECT_EQ(sampler.sample(residual, {{}, 1.0f}, 0.8f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, event}).surface,
-                  event < reached);
+        for (const float odds : {0.3f, 4.0f})
+            for (const bool logLinear : {false, true}) {
+                Settings settings = best(Mode::Path, 0.0f);
+                settings.surfaceOdds = odds;
+                settings.logLinear = logLinear;
+                expectUnbiased(c, settings, false, ++seed);
+            }
+    for (const bool logLinear : {false, true}) {
+        Settings settings = best(Mode::Path, 0.0f);
+        settings.surfaceOdds = 4.0f;
+        settings.logLinear = logLinear;
+        const DistanceSampler sampler(settings, Medium{{0, 0, 0}, {1, 1, 1}, 0.0f});
+        const Residual residual = Residual::of({0, 0, 1}, {3.0, 3.1});
+        const float natural = std::exp(-0.8f), reached = 4 * natural / (4 * natural + 1 - natural);
+        for (const float event : {0.99f * reached, 1.01f * reached})
+            EXPECT_EQ(sampler.sample(residual, {{}, 1.0f}, 0.8f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, event}).surface,
+                      event < reached);
+    }
 }
 TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     uint64_t seed = 900;
@@ -158,9 +170,57 @@ TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     }
 }
 
-TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
+TEST(DistanceSampler, MeansMatchQuadratureByDensitiesThatAreKnown) {
+    uint64_t seed = 2000;
+    for (const DistanceCase& c : DistanceCases)
+        for (const Greens greens : {Greens::None, Greens::Diffusion, Greens::Causal})
+            for (const bool overlap : {false, true})
+                for (const bool scalar : {false, true}) {
+                    Settings settings = best(Mode::Path, 0.0f);
+                    settings.greens = greens;
+                    settings.overlap = overlap;
+                    SCOPED_TRACE(testing::Message() << "greens " << int(greens) << " overlap " << overlap);
+                    expectUnbiased(c, settings, scalar, ++seed);
+                }
+}
+
+/// What a draw says of itself is what anyone else would say of it.
+TEST(DistanceSampler, DrawsKnowTheirDensity) {
+    const Vec3 throughput{0.3f, 1.0f, 0.7f};
+    for (const DistanceCase& c : DistanceCases)
+        for (const Greens greens : {Greens::None, Greens::Diffusion, Greens::Causal}) {
+            Settings settings = best(Mode::Path, 0.0f);
+            settings.greens = greens;
+            const DistanceSampler sampler(settings, c.medium);
+            const Residual residual = residualOf(c);
+            const Heading ray{{}, float(c.h)};
+            const DistanceDensity density = sampler.density(residual, ray, float(c.surface), throughput);
+            for (uint64_t i = 0; i < 1000; ++i) {
+                Sampler s(78, RandomStream::Test, 0, i);
+                const DistanceSample sample = sampler.sample(residual, ray, float(c.surface), throughput,
+                                                             {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+                ASSERT_EQ(sample.pdf, sample.surface ? density.surface() : density.pdf(sample.distance)) << c.name;
+                const float through = sampler.transmittance(sample.distance).x;
+                ASSERT_NEAR(sample.transmittanceOverPdf.x * sample.pdf, through, 1e-6f * through) << c.name;
+            }
+            const double bound = std::min(double(residual.latest(float(c.h)).firstLeg()), c.surface);
+            double integral = double(density.surface());
+            auto edges = tungsten::test::evenEdges(0.0, bound, 200);
+            for (size_t i = 0; i + 1 < edges.size(); ++i)
+                integral += tungsten::test::integrate<15>([&](double d) { return double(density.pdf(float(d))); },
+                                                          edges[i], edges[i + 1], 8, 1e-7);
+            EXPECT_NEAR(integral, 1.0, 2e-5) << c.name;
+        }
+}
+
+TEST(DistanceSampler, ResampledDrawsKnowNoDensity) {
+    const DistanceCase& c = DistanceCases[0];
+    const DistanceSampler sampler(resampling(Mode::Path), c.medium);
+    EXPECT_EQ(sampler.sample(residualOf(c), {{}, float(c.h)}, float(c.surface), {1, 1, 1}, {}).pdf, 0.0f);
+}
+
+void expectRegistersDrawTheSame(const Settings& settings) {
     for (const DistanceCase& c : DistanceCases) {
-        const Settings settings = best(Mode::Path, 0.0f);
         const DistanceSampler simd(settings, c.medium), scalar(settings, c.medium, true);
         for (uint64_t i = 0; i < 500; ++i) {
             Sampler s(77, RandomStream::Test, 0, i);
@@ -174,6 +234,11 @@ TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
             EXPECT_NEAR(a.transmittanceOverPdf.x, b.transmittanceOverPdf.x, 2e-4f * b.transmittanceOverPdf.x) << c.name;
         }
     }
+}
+
+TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
+    expectRegistersDrawTheSame(resampling(Mode::Path));
+    expectRegistersDrawTheSame(best(Mode::Path, 0.0f));
 }
 
 TEST(DistanceSampler, NothingScattersInAnAbsorber) {
@@ -196,6 +261,7 @@ TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
         Settings settings = best(Mode::Path, float(g));
         settings.greens = s.next1D() < 0.5f ? Greens::Causal : Greens::Diffusion;
         if (s.next1D() < 0.2f) settings = published(Mode::Path);
+        if (s.next1D() < 0.4f) settings.logLinear = false;
         const DistanceSampler sampler(settings, medium);
         const Residual residual = Residual::of({0, 0, float(C)}, {S * (1.0 - 1e-7), S});
         const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(s, 1e-12, 2.0));

@@ -107,6 +107,32 @@ TEST(Guide, LengthsBeforeASurfaceEndOnIt) {
     EXPECT_EQ(Guide::beforeSurface(residual, h, 100.0f).width, residual.width);
 }
 
+/// Directions suit the median of the lengths that are drawn, whichever was drawn.
+TEST(Guide, LobesAreOfTheMedianLength) {
+    for (const Way way : {Way::Through, Way::Unknown})
+        for (const float g : {0.0f, 0.8f})
+            for (const Geometry& geometry : Geometries) {
+                const Medium medium{{0.2f, 0.2f, 0.2f}, {2.8f, 2.8f, 2.8f}, g};
+                const Settings settings = best(Mode::Photon, g);
+                const Guide guide(settings, medium);
+                Residual residual = Residual::of({0, 0, float(geometry.C)}, {geometry.low, geometry.high});
+                residual.way = way;
+                std::vector<float> lengths;
+                for (int i = 0; i < 2001; ++i)
+                    lengths.push_back(guide.sampleConnection(residual, (float(i) + 0.5f) / 2001.0f).excess);
+                std::nth_element(lengths.begin(), lengths.begin() + 1000, lengths.end());
+                const DirectionSampler directions(settings, medium);
+                const HenyeyGreenstein phase{{0.6f, 0, 0.8f}, g};
+                for (const float h : {1e-4f, 0.02f, 1.0f}) {
+                    const Vec3 direction = directionAbout(residual.axis, h, 0.3f);
+                    const auto drawn = guide.sampleConnection(residual, 0.9f);
+                    const float expected = directions.pdf(residual, lengths[1000], direction, phase, NoView{});
+                    EXPECT_NEAR(guide.pdfDirection(residual, drawn, direction, phase, NoView{}) / expected, 1.0f, 0.02f)
+                        << int(way) << " " << g << " " << geometry.C << " " << geometry.low << " " << h;
+                }
+            }
+}
+
 /// Random configurations of every size: floats against extended precision.
 TEST(Guide, ControlVerticesStayExactAtTheHardCases) {
     uint64_t tested = 0;
@@ -154,6 +180,7 @@ TEST(Guide, DirectionsStayFiniteAtTheHardCases) {
         const auto d = guide.sampleDirection(residual, connection, phase, NoView{}, [&s] { return s.next1D(); });
         ASSERT_TRUE(std::isfinite(d.inversePdf) && d.inversePdf >= 0.0f) << C << " " << g;
         ASSERT_NEAR(length(d.direction), 1.0f, 1e-4f);
+        ASSERT_NEAR(d.inversePdf * guide.pdfDirection(residual, connection, d.direction, phase, NoView{}), 1.0f, 1e-3f);
         ASSERT_TRUE(d.h >= 0.0f && d.h <= 2.0f);
     }
 }

@@ -71,6 +71,8 @@ TEST(Inverse, ConnectionLobes) {
         ASSERT_NEAR(std::log1p(double(h) / kappa) / std::log1p(2 / kappa), double(u), 3e-6) << kappa << " " << u;
         ASSERT_LE(h, lobe.sample(larger)) << kappa << " " << u << " " << larger;
         ASSERT_TRUE(h >= 0.0f && h <= 2.0f);
+        ASSERT_NEAR(lobe.part(h), u, 3e-6f) << kappa << " " << u;
+        ASSERT_LE(lobe.part(h), lobe.part(std::min(1.0001f * h, 2.0f)) + 1e-7f);
     }
 }
 
@@ -87,6 +89,10 @@ TEST(Inverse, HenyeyGreenstein) {
         const double above = (1 - G * G) / (2 * G) * (1 / root - 1 / (1 + G));
         ASSERT_NEAR(above, double(u), 2e-6 + 2e-7 / G) << g << " " << u;
         ASSERT_GE(sign * phase.sample(larger, 0.3f).z, sign * direction.z) << g << " " << u << " " << larger;
+        const float quantile = phase.quantile(u);
+        ASSERT_TRUE(quantile >= 0.0f && quantile <= 2.0f && quantile <= phase.quantile(larger)) << g << " " << u;
+        ASSERT_NEAR(phase.part(quantile), u, 2e-6f) << g << " " << u;
+        ASSERT_NEAR(phase.pdfAt(quantile) / phase.pdf(directionAbout(phase.peak(), quantile, 0.3f)), 1.0f, 3e-5f);
     }
 }
 

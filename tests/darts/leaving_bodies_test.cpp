@@ -49,27 +49,33 @@ TEST(DirectionsOut, SampleTheirDensity) {
         expectDirectionsOf(Mode::Photon, p, 0.4f, true); // camera paths take the phase function
 }
 
-/// Resampled: E[F(w) inverse pdf] = the integral of F = phase (1 + w.a) over the sphere, 1 + g (before . a).
+/// By the product with the phase function, or mixed: E[F(w) inverse pdf] = the integral of F = phase (1 + w.a) over the
+/// sphere, 1 + g (before . a).
 TEST(LastTurns, MeansMatchTheIntegral) {
     const Vec3 before{0.6f, 0.0f, 0.8f}, a{0.2f, -0.9f, 0.3f};
     for (const double depth : {0.0, 0.03, 0.15})
-        for (const float g : {0.5f, 0.8f, 0.99f}) {
-            const DirectionSampler sampler(best(Mode::Path, g), thickMedium(g));
-            const Residual residual = outOf(depth, 3.0, 3.0 + depth + 0.06, 0.05);
-            EXPECT_TRUE(LastTurns::of(residual, thickMedium(g))) << depth << " " << g;
-            const HenyeyGreenstein phase{before, g};
-            double sum = 0.0, squares = 0.0;
-            constexpr int Count = 100000;
-            for (uint64_t i = 0; i < Count; ++i) {
-                Sampler s(36, RandomStream::Test, 0, i);
-                const auto sample = sampler.sample(residual, 0.02f, phase, NoView{}, [&s] { return s.next1D(); });
-                const double weight = double(phase.pdf(sample.direction)) * double(sample.inversePdf);
-                const double x = weight * (1.0 + double(dot(sample.direction, a)));
-                sum += x, squares += x * x;
+        for (const float g : {0.5f, 0.8f, 0.99f})
+            for (const bool strata : {true, false}) {
+                Settings settings = best(Mode::Path, g);
+                settings.strata = strata;
+                const DirectionSampler sampler(settings, thickMedium(g));
+                const Residual residual = outOf(depth, 3.0, 3.0 + depth + 0.06, 0.05);
+                EXPECT_TRUE(LastTurns::of(residual, thickMedium(g))) << depth << " " << g;
+                const HenyeyGreenstein phase{before, g};
+                double sum = 0.0, squares = 0.0;
+                constexpr int Count = 100000;
+                for (uint64_t i = 0; i < Count; ++i) {
+                    Sampler s(36, RandomStream::Test, 0, i);
+                    const auto sample = sampler.sample(residual, 0.02f, phase, NoView{}, [&s] { return s.next1D(); });
+                    const float pdf = sampler.pdf(residual, 0.02f, sample.direction, phase, NoView{});
+                    ASSERT_NEAR(sample.inversePdf * pdf, 1.0f, 1e-5f);
+                    const double weight = double(phase.pdf(sample.direction)) * double(sample.inversePdf);
+                    const double x = weight * (1.0 + double(dot(sample.direction, a)));
+                    sum += x, squares += x * x;
+                }
+                const double mean = sum / Count, error = std::sqrt((squares / Count - mean * mean) / Count);
+                EXPECT_NEAR(mean, 1.0 + double(g * dot(before, a)), 4.5 * error + 1e-5) << depth << " " << g;
             }
-            const double mean = sum / Count, error = std::sqrt((squares / Count - mean * mean) / Count);
-            EXPECT_NEAR(mean, 1.0 + double(g * dot(before, a)), 4.5 * error + 1e-5) << depth << " " << g;
-        }
 }
 
 TEST(LastTurns, AreForgottenDeepInside) {
@@ -84,7 +90,7 @@ TEST(LastTurns, AreTowardsTheTarget) {
     const Residual residual = outOf(0.03, 3.0, 3.06, 0.05);
     const Vec3 before = directionAbout(residual.axis, 1.0f, 0.0f); // across
     double share[2] = {0.0, 0.0};
-    for (const Direction direction : {Direction::Phase, Direction::Ris}) {
+    for (const Direction direction : {Direction::Phase, Direction::Connection}) {
         Settings settings = best(Mode::Path, 0.8f);
         settings.direction = direction;
         const DirectionSampler sampler(settings, thickMedium(0.8f));
@@ -92,7 +98,7 @@ TEST(LastTurns, AreTowardsTheTarget) {
             Sampler s(37, RandomStream::Test, 0, i);
             const auto sample =
                 sampler.sample(residual, 0.02f, HenyeyGreenstein{before, 0.8f}, NoView{}, [&s] { return s.next1D(); });
-            share[direction == Direction::Ris] += sample.h < 0.3f ? 1.0 / 20000.0 : 0.0;
+            share[direction == Direction::Connection] += sample.h < 0.3f ? 1.0 / 20000.0 : 0.0;
         }
     }
     EXPECT_GT(share[1], 2.0 * share[0]);
@@ -144,9 +150,10 @@ TEST(DistancesOut, MeansMatchQuadrature) {
 /// Light that goes deep with little length left is what half-spaces call useless: its weight is bounded by the floor,
 /// which fades with the scatterings to come.
 TEST(DistancesOut, StraysBoundWeights) {
-    const auto heaviest = [](float strays, double longest) {
+    const auto heaviest = [](float strays, double longest, bool logLinear = false) {
         Settings settings = best(Mode::Photon, 0.0f);
         settings.strays = strays;
+        settings.logLinear = logLinear;
         const DistanceSampler sampler(settings, thickMedium(0.0f));
         const Residual residual = outOf(0.5, 3.0, 3.5 + longest, 0.09);
         const Heading down{directionAbout(residual.axis, 1.9f, 0.3f), 1.9f};
@@ -164,13 +171,17 @@ TEST(DistancesOut, StraysBoundWeights) {
     EXPECT_LT(heaviest(0.2f, Short), 5.0f);    // 3.2
     EXPECT_LT(heaviest(0.2f, Long), 2.0f);
     EXPECT_LT(heaviest(0.0f, Long), 2.0f);
+    EXPECT_LT(heaviest(0.2f, Short, true), 0.5f * heaviest(0.0f, Short, true)); // 2.7, 9.2
+    EXPECT_LT(heaviest(0.2f, Long, true), 2.0f);
 }
 
 /// Where light leaves by refraction nothing is known of where: no weight is above that of a free flight, or twice that
 /// of a uniform proposal beside it.
 TEST(DistancesOut, NothingIsRareBehindRefraction) {
-    const auto heaviest = [](bool connects) {
-        const DistanceSampler sampler(best(Mode::Photon, 0.0f), thickMedium(0.0f));
+    const auto heaviest = [](bool connects, bool logLinear) {
+        Settings settings = best(Mode::Photon, 0.0f);
+        settings.logLinear = logLinear;
+        const DistanceSampler sampler(settings, thickMedium(0.0f));
         Residual residual = outOf(0.5, 3.0, 4.1, 0.09);
         residual.exit.connects = connects;
         float most = 0.0f;
@@ -183,15 +194,18 @@ TEST(DistancesOut, NothingIsRareBehindRefraction) {
         }
         return most;
     };
-    EXPECT_LE(heaviest(false), 2.0f);
-    EXPECT_GT(heaviest(true), 2.0f);
+    for (const bool logLinear : {false, true}) {
+        EXPECT_LE(heaviest(false, logLinear), 2.0f) << logLinear;
+        EXPECT_GT(heaviest(true, logLinear), 2.0f) << logLinear;
+    }
 }
 
 /// Deep in a body usefulness hardly varies within a flight: nor may weights, which multiply over hundreds of them.
 TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
-    const auto spread = [](bool exponential) {
+    const auto spread = [](bool exponential, bool logLinear = false) {
         Settings settings = best(Mode::Path, 0.0f);
         settings.exponentialOut = exponential;
+        settings.logLinear = logLinear;
         const DistanceSampler sampler(settings, thickMedium(0.0f));
         const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
         double squares = 0.0;
@@ -209,7 +223,9 @@ TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
     const double exponential = spread(best(Mode::Path, 0.0f).exponentialOut);
     RecordProperty("exponential", std::to_string(exponential));
     RecordProperty("mixed", std::to_string(spread(false)));
+    RecordProperty("log_linear", std::to_string(spread(true, true)));
     EXPECT_LT(exponential, 0.6 * spread(false));
+    EXPECT_LT(spread(true, true), 0.6 * exponential + 0.003);
 }
 
 } // namespace

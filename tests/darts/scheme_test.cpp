@@ -18,8 +18,9 @@ class Block {
     };
     using Value = std::variant<double, bool, std::string, std::shared_ptr<Block>>;
 
-    Block(std::map<std::string, Value> fields, std::vector<std::string>* problems)
-        : fields_(std::move(fields)), problems_(problems) {}
+    Block(std::map<std::string, Value> fields, std::vector<std::string>* problems,
+          std::vector<std::string>* warnings = nullptr)
+        : fields_(std::move(fields)), problems_(problems), warnings_(warnings) {}
 
     bool describes() const { return false; }
     void declare(const std::string&, const std::string&, const std::string&, const Meaning&) const {}
@@ -43,6 +44,9 @@ class Block {
         return otherwise;
     }
     void problem(const std::string& field, const std::string& what) const { problems_->push_back(field + ": " + what); }
+    void warn(const std::string& field, const std::string& what) const {
+        if (warnings_) warnings_->push_back(field + ": " + what);
+    }
     void refuseUnknown() const {}
 
   private:
@@ -52,7 +56,7 @@ class Block {
     }
 
     std::map<std::string, Value> fields_;
-    std::vector<std::string>* problems_;
+    std::vector<std::string>*problems_, *warnings_;
 };
 
 using Fields = std::map<std::string, Block::Value>;
@@ -63,10 +67,11 @@ struct Reading {
     explicit Reading(Fields fields) : scheme(readScheme(Block(std::move(fields), &problems))) {}
 };
 struct SwitchReading {
-    std::vector<std::string> problems;
+    std::vector<std::string> problems, warnings;
     Scheme scheme;
     explicit SwitchReading(Fields switches)
-        : scheme(readScheme(Block({{"darts", std::make_shared<Block>(std::move(switches), &problems)}}, &problems))) {}
+        : scheme(readScheme(
+              Block({{"darts", std::make_shared<Block>(std::move(switches), &problems, &warnings)}}, &problems))) {}
 };
 
 TEST(Scheme, PresetsAndFlags) {
@@ -81,24 +86,22 @@ TEST(Scheme, PresetsAndFlags) {
     EXPECT_FALSE(settings.bounded);
     // A phase function that does not ask for the table gets none.
     EXPECT_EQ(published.scheme.settings(Mode::Path, 0.0f, true, false).direction, Direction::Phase);
-    EXPECT_EQ(Reading(Fields{{"darts", "best"}}).scheme.settings(Mode::Photon, 0.7f, true, true).direction,
-              Direction::Ris);
+    const Settings peaked = Reading(Fields{{"darts", "best"}}).scheme.settings(Mode::Photon, 0.7f, true, true);
+    EXPECT_EQ(peaked.direction, Direction::Connection);
+    EXPECT_TRUE(peaked.strata && peaked.logLinear && peaked.medianLobe && !peaked.lengthFirst);
 }
 
 TEST(Scheme, EverySwitchWorksAlone) {
     const auto settings = [](Fields switches) {
         const SwitchReading reading(std::move(switches));
-        EXPECT_TRUE(reading.problems.empty());
+        EXPECT_TRUE(reading.problems.empty() && reading.warnings.empty());
         return reading.scheme.settings(Mode::Photon, 0.0f, false, false);
     };
     const Settings preset = best(Mode::Photon, 0.0f);
     EXPECT_EQ(settings({}).alpha, preset.alpha);
     EXPECT_EQ(settings({{"direction", "eda"}}).direction, Direction::Eda);
-    EXPECT_EQ(settings({{"direction", "ris"}}).direction, Direction::Ris);
+    EXPECT_EQ(settings({{"direction", "connection"}}).direction, Direction::Connection);
     EXPECT_EQ(settings({{"greens_function", "causal"}}).greens, Greens::Causal);
-    EXPECT_EQ(settings({{"proposals", "equiangular"}}).proposals, Proposals::Equiangular);
-    EXPECT_FALSE(settings({{"proposals", "mixed"}}).mixDenseOnly);
-    EXPECT_EQ(settings({{"candidates", 16.0}}).candidates, 16);
     EXPECT_EQ(settings({{"alpha", 0.7}}).alpha, 0.7f);
     EXPECT_EQ(settings({{"focus", 0.3}}).focus, 0.3f);
     EXPECT_EQ(settings({{"roulette", 0.25}}).roulette, 0.25f);
@@ -110,6 +113,54 @@ TEST(Scheme, EverySwitchWorksAlone) {
     const Settings plain = settings({{"distance", "plain"}});
     EXPECT_EQ(plain.greens, Greens::None);
     EXPECT_EQ(plain.candidates, 1);
+}
+
+TEST(Scheme, SwitchesOfResamplingWorkWithThePublishedPreset) {
+    const auto settings = [](Fields switches) {
+        switches["preset"] = "published";
+        const SwitchReading reading(std::move(switches));
+        EXPECT_TRUE(reading.problems.empty() && reading.warnings.empty());
+        return reading.scheme.settings(Mode::Photon, 0.0f, false, true);
+    };
+    EXPECT_EQ(settings({{"direction", "ris"}}).direction, Direction::Ris);
+    EXPECT_EQ(settings({{"proposals", "equiangular"}}).proposals, Proposals::Equiangular);
+    EXPECT_EQ(settings({{"candidates", 16.0}}).candidates, 16);
+    EXPECT_EQ(settings({{"candidates", 16.0}}).logLinear, false);
+    EXPECT_TRUE(settings({{"length_first", true}}).lengthFirst);
+}
+
+TEST(Scheme, SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout) {
+    const auto expectIgnored = [](const char* field, Block::Value value, const std::string& warning) {
+        for (const bool named : {true, false}) {
+            Fields switches{{field, value}};
+            if (named) switches["preset"] = "best";
+            const SwitchReading reading(std::move(switches));
+            EXPECT_TRUE(reading.problems.empty());
+            ASSERT_EQ(reading.warnings.size(), 1u) << field;
+            EXPECT_EQ(reading.warnings.front(),
+                      field + (": " + warning) + " have a density that is known: set \"preset\": \"published\"");
+            const Settings settings = reading.scheme.settings(Mode::Photon, 0.7f, true, true);
+            const Settings preset = best(Mode::Photon, 0.7f);
+            EXPECT_EQ(settings.candidates, preset.candidates);
+            EXPECT_EQ(settings.proposals, preset.proposals);
+            EXPECT_EQ(settings.direction, preset.direction);
+            EXPECT_EQ(settings.lengthFirst, preset.lengthFirst);
+            EXPECT_TRUE(settings.logLinear && settings.strata && settings.aloneBehindRefraction);
+        }
+    };
+    expectIgnored("candidates", 16.0, "has no effect with the preset best, whose distances");
+    expectIgnored("proposals", "mixed", "has no effect with the preset best, whose distances");
+    expectIgnored("direction", "ris", "ris has no effect with the preset best, whose directions");
+    expectIgnored("length_first", true, "true has no effect with the preset best, whose directions");
+}
+
+/// Peaked phase functions are multiplied with the guide only where nothing else is asked for.
+TEST(Scheme, DirectionsThatAreNamedAreJustThose) {
+    for (const char* direction : {"phase", "eda", "connection"}) {
+        const SwitchReading reading(Fields{{"direction", direction}});
+        EXPECT_FALSE(reading.scheme.settings(Mode::Path, 0.8f, true, true).strata) << direction;
+    }
+    EXPECT_TRUE(SwitchReading(Fields{}).scheme.settings(Mode::Path, 0.8f, true, true).strata);
 }
 
 TEST(Scheme, TheRendererReadsSwitchesOfItsOwnFromTheObject) {

@@ -66,8 +66,8 @@ TEST(Orders, PathModeMatchesVerifiedValues) {
             settings.bounded = true;
             const Route route{Camera, Source, Gate, Orders - 1};
             SCOPED_TRACE(testing::Message() << "g = " << verified.g << (best ? ", best" : ", published, bounded"));
-            expectOrders(radianceByOrder(settings, medium(verified.g), route, Along, 300000, 21), verified, 0,
-                         best ? 0.01 : 0.02);
+            expectOrders(radianceByOrder(settings, medium(verified.g), route, Along, best ? 900000 : 300000, 21),
+                         verified, 0, best ? 0.01 : 0.02);
         }
 }
 
@@ -94,8 +94,7 @@ TEST(Orders, PhotonModeMatchesVerifiedValues) {
             if (best) settings.focus = 0.5f;
             const Route route{Source, Camera, Gate, Orders - 1};
             SCOPED_TRACE(testing::Message() << "g = " << verified.g << (best ? ", best" : ", published, bounded"));
-            expectOrders(gatheredByOrder(settings, medium(verified.g), route, NarrowView{}, KernelRadius,
-                                         best ? 400000 : 1000000, 22),
+            expectOrders(gatheredByOrder(settings, medium(verified.g), route, NarrowView{}, KernelRadius, 1000000, 22),
                          verified, 0.01, best ? 0.05 : 0.2);
         }
 }

@@ -27,7 +27,7 @@ const Guiding Plain{"Plain", {}}, Published{"Published", {"integrator.darts=publ
     Phase{"Phase", {R"(integrator.darts={"direction": "phase"})"}},
     Eda{"Eda", {R"(integrator.darts={"direction": "eda"})"}},
     Connection{"Connection", {R"(integrator.darts={"direction": "connection"})"}},
-    Ris{"Ris", {R"(integrator.darts={"direction": "ris"})"}},
+    Ris{"Ris", {R"(integrator.darts={"preset": "published", "direction": "ris", "length_first": true})"}},
     IndirectView{"IndirectView", {R"(integrator.darts={"direct_view": "off"})"}},
     PublishedIndirectView{"PublishedIndirectView",
                           {R"(integrator.darts={"preset": "published", "direct_view": "off"})"}},
@@ -51,7 +51,8 @@ class GuidedOrders : public testing::TestWithParam<OrderCase> {};
 TEST_P(GuidedOrders, MatchVerifiedValues) {
     const test::OtherSeeds seeds{{"A1UnwarpedBoxPublished", 2},
                                  {"A2WarpedBoxPublishedIndirectView", 1},
-                                 {"A2WarpedDeltaBest", 1},
+                                 {"A2WarpedDeltaBest", 3},
+                                 {"A3WarpedDeltaBestBeams", 3},
                                  {"A1UnwarpedDeltaPlain", 8}};
     const OrderCase& c = GetParam();
     Overrides overrides = test::gateOf(c.value);

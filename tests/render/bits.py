@@ -88,16 +88,16 @@ def bodies_of_fog():
     yield Scene("nested-spheres", "hypervolumes", [thin, thick, medium("core", 1.0, 1.0, 0.5)],
                 [body("sphere", at(0, 0, 0, 0.9), "thin"), body("sphere", at(0, 0, 0, 0.6), "thick", "thin"),
                  body("sphere", at(0.1, 0, 0.1, 0.25), "core", "thick"), bulb()], view(reconstruction_filter="tent"), gate(6.2, 7.6),
-                {"direction": "ris", "candidates": 16}, {"film": {"batches": 2, "batch_block": 3}})
+                {"preset": "published", "direction": "ris", "candidates": 16, "bodies": True}, {"film": {"batches": 2, "batch_block": 3}})
     yield Scene("tissue-layers", "planes", [medium("skin", 6.0, 0.2, 0.8), medium("fat", 3.0, 0.05, 0.8)],
                 [body("cube", at(0, 0, 0, (1.6, 1.6, 1.2)), "fat"), body("cube", at(0, 0, 0.4, (1.59, 1.59, 0.3)), "skin", "fat"), bulb()],
-                view(), gate(6.0, 7.8, 48), {"greens_function": "diffusion", "proposals": "mixed"})
+                view(), gate(6.0, 7.8, 48), {"preset": "published", "greens_function": "diffusion", "proposals": "mixed"})
     yield Scene("cloud-in-haze", "mis_volumes_balls", [medium("haze", 0.1), medium("cloud", 8.0)],
                 [body("sphere", at(0, 0, 0, 0.6), "cloud", "haze"), lamp("point", at(*WHERE), 6.0, "haze")],
                 view(inside="haze", reconstruction_filter="gaussian"), gate(6.2, 7.6, 48))
     yield Scene("touching-cubes", "balls", [medium("left", 3.0, 0.02), medium("right", 6.0, 0.3, 0.6)],
                 [body("cube", at(-0.5, 0, 0), "left"), body("cube", at(0.5, 0, 0), "right"), bulb()], view(), gate(6.0, 24.0, 48),
-                {"proposals": "equiangular", "candidates": 1})
+                {"preset": "published", "proposals": "equiangular", "candidates": 1, "bodies": True})
     yield Scene("hole-in-fog", "volumes_balls", [medium("fog", 2.0, 0.05)], [body("cube", at(0, 0, 0, 1.6, 20), "fog"),
                 body("sphere", at(0, 0, 0.2, 0.4), None, "fog"), bulb((0.1, 0.1, 0.2), 0.15)], view(), gate(4.6, 6.0), {"bodies": False})
     yield Scene("camera-in-fog", "balls", [FOG], [body("mesh", at(0, 0, 0, (1.5, 1.4, 1.6), 30), "fog", file="ball.obj"),

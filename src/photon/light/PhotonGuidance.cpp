@@ -26,6 +26,8 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
             policy.sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
         const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
         if (width > tuning::WideGate && !choosesFrames_ && !policy.sampling.lengthFirst) settings.lengthFirst = false;
+        // On a delta gate directions suit the lengths that control vertices have there, not those of a kernel about it.
+        if (meetsDeltaGate() && !policy.sampling.published) settings.lengthFirst = true;
         if (unwarped_ || (!plan.mediaOutOfTime.empty() && plan.mediaOutOfTime[i])) {
             // Any place seen will do, or none: nothing to aim at, only the bound in time.
             settings.direction = darts::Direction::Phase;
