@@ -21,6 +21,12 @@ struct LengthsInGate {
     float low, high;
 };
 
+/// Logarithms of how densely guided paths come by a walk's way, over plain ones.
+struct LogRatios {
+    float there = 0.0f;  ///< up to the last vertex
+    float before = 0.0f; ///< up to the one before it
+};
+
 /// A view of the walk at hand and of what its visitor keeps.
 struct GuidedPath {
     const GuidedContext& context;
@@ -30,7 +36,11 @@ struct GuidedPath {
     StepsToEmitter& steps;
     Caches caches; ///< of state.last
     const std::optional<Approach>& approach;
+    const LogRatios& ratios;
 
+    /// Of paths whose last vertex is the surface ahead. Light vertices and reflected light find them from one and two
+    /// vertices before: what is weighed is then the way up to there.
+    [[nodiscard]] float logRatioOnSurface(LobeMask lobes) const;
     [[nodiscard]] const Scene& scene() const { return context.scene; }
     [[nodiscard]] const PathTarget& target() const { return steps.target(); }
     [[nodiscard]] float next() const { return state.random.next1D(); }

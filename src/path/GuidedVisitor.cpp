@@ -13,6 +13,12 @@ using transport::Flight;
 using transport::WalkVertex;
 using Passage = StepsToEmitter::Passage;
 
+float GuidedPath::logRatioOnSurface(LobeMask lobes) const {
+    const LightPaths& lightPaths = context.lightPaths;
+    if (!steps.hasDensities() || !lightPaths.vertices(target().index)) return steps.logRatioOnSurface();
+    return lightPaths.reflected(target().index) && reflectsSharply(lobes) ? ratios.before : ratios.there;
+}
+
 bool GuidedVisitor::ahead(PathState& path, StepsToEmitter& steps, const Ahead& ahead) {
     const GuidedPath guided = at(path, steps);
     switch (steps.passage()) {
@@ -43,12 +49,15 @@ void GuidedVisitor::approach(float pdf, const Vec3f& normal) {
 
 bool GuidedVisitor::arrive(PathState& path, StepsToEmitter& steps, const Ahead& ahead, const Flight& flight) {
     if (flight.event == Flight::Event::Surface) {
+        ratios_.before = std::exchange(ratios_.there, path.logRatio);
         // The format ends such a path at any surface, index-matched ones included.
         return limits().mayGoOn(path.interactions) && !limits().endsAtSurface(path.mediumScatters);
     }
     const Medium& medium = *ahead.medium;
-    const bool elliptical = steps.guideOf(path.region).settings().elliptical;
-    controlShare_ = elliptical ? ControlVertices::share(at(path, steps), medium, flight.distance) : 0.0f;
+    ratios_.before = std::exchange(ratios_.there, path.logRatio);
+    const GuidedPath guided = at(path, steps);
+    const bool connects = !steps.hasDensities() || guided.wayInTime(path.ray.origin, path.time);
+    inMedium_ = connects ? ControlVertices::ending(guided, medium, flight.distance) : StepsToEmitter::InMedium{1.0f};
     const float ends =
         caches_ == Caches::ReflectedLightToo ? context_->lightPaths.flights().pdf(flight.distance) : 0.0f;
     approach(path.last.pdf * ends / sqr(flight.distance), Vec3f(0.0f));
@@ -58,9 +67,9 @@ bool GuidedVisitor::arrive(PathState& path, StepsToEmitter& steps, const Ahead& 
 bool GuidedVisitor::vertex(PathState& path, StepsToEmitter& steps, const WalkVertex& vertex) {
     const transport::Vertex here = vertex.connectible(context_->scene, TransportMode::Radiance);
     if (vertex.medium) {
-        ConnectionsFromMedia::connect(at(path, steps), *vertex.medium, controlShare_);
-        // What is found next has a further vertex: lights that are met after a medium have been connected to.
-        if (!limits().mayGoOn(path.interactions + 1)) return false;
+        ConnectionsFromMedia::connect(at(path, steps), *vertex.medium, inMedium_);
+        // Where lights that are met after a medium have been connected to, what is found next has a further vertex.
+        if (!steps.hasDensities() && !limits().mayGoOn(path.interactions + 1)) return false;
     } else {
         const SurfaceHit& hit = vertex.surface->hit;
         approach(steps.surfaceGuide() ? ConnectionsFromSurfaces::density(at(path, steps), here, hit.t) : 0.0f,

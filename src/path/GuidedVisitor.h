@@ -24,7 +24,7 @@ class GuidedVisitor : public transport::VisitorBase {
   private:
     [[nodiscard]] const transport::BounceLimits& limits() const { return context_->settings.limits; }
     [[nodiscard]] GuidedPath at(PathState& path, StepsToEmitter& steps) const {
-        return {*context_, *sink_, *counters_, path, steps, caches_, approach_};
+        return {*context_, *sink_, *counters_, path, steps, caches_, approach_, ratios_};
     }
     /// At a vertex that the walk came to with this density, per area or volume; `normal` as in Approach. What has been
     /// connected to along the way is over.
@@ -37,7 +37,8 @@ class GuidedVisitor : public transport::VisitorBase {
     PathCounters* counters_;
     Caches caches_ = Caches::None;
     std::optional<Approach> approach_;
-    float controlShare_ = 0.0f; ///< of control vertices, in paths with a last vertex where the walk is
+    StepsToEmitter::InMedium inMedium_{}; ///< of paths whose last vertex is where the walk is
+    LogRatios ratios_;
 };
 
 /// Traces one camera path along `ray`, guided towards the target.

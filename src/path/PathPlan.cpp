@@ -78,6 +78,19 @@ Choice tablesOf(const Scene& scene, const PathSettings& settings, const EffectPl
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
 
+Choice balanceOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
+    if (!guidance.on) return {false, "paths are not guided"};
+    if (scene.transport.gate.delta) return {false, "no plain path meets a gate of width 0: paths are guided alone"};
+    const darts::Scheme& scheme = settings.policy.sampling;
+    const bool known = std::all_of(scene.media.begin(), scene.media.end(), [&](const Medium& medium) {
+        const auto of = scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
+        return !medium.scatters() || of.hasDensities();
+    });
+    if (!known)
+        return {false, "the published method, or switches that leave densities unknown: paths are guided alone"};
+    return {true, "plain paths beside guided ones, each weighed by how densely both find what it has found"};
+}
+
 Choice entryPointsOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
     if (!guidance.on) return {false, "paths are not guided"};
     if (!transport::WaysOut::make(scene, settings.policy))
@@ -95,6 +108,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
     PathPlan plan;
     plan.timeResolved = facts.timeResolved;
     plan.media = !scene.media.empty() || facts.everything;
+    plan.indexMatched = facts.forwardBoundaries;
     plan.forwardBoundaries = facts.forwardBoundaries || facts.everything;
     plan.lasers = std::any_of(scene.emitters.begin(), scene.emitters.end(),
                               [](const Emitter& emitter) { return emitter.isDelta(); });
@@ -110,6 +124,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
     plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
                                                                         : "off by default in time-resolved renders"};
     plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
+    plan.balance = balanceOf(scene, settings, plan.guidance);
     plan.entryPoints = entryPointsOf(scene, settings, plan.guidance);
     plan.refracted = refractedOf(scene, settings, facts);
     plan.chooseLightPaths(scene, settings, facts);
@@ -140,6 +155,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
         add("lights at detectors", detectorLight, {"camera"}, {"arrivals from lights at detectors"});
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
     add("guided paths", guidance, {"integrator.darts"}, {"control vertices"});
+    add("plain paths beside them", balance, {"integrator.darts"}, {"pilot paths"});
     add("light through walls", refracted, {"integrator.darts"}, {"ways through walls"});
     add("EDA table", edaTable, {"integrator.darts"}, {"direction tables"});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);

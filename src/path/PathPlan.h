@@ -19,6 +19,7 @@ struct PathPlan {
     Choice detectorLight;         ///< places of detectors are connected to lights that no ray meets
     Choice roulette;              ///< of plain paths, by throughput
     Choice guidance;              ///< walks aim at emitters inside the gate
+    Choice balance;               ///< beside plain ones
     Choice lightVertices;         ///< walks connect to surface points that light reaches first
     Choice reflectedLight;        ///< and to where glossy surfaces throw light
     Choice refracted;             ///< plain walks aim at emitters through the walls of sealed bodies
@@ -28,6 +29,7 @@ struct PathPlan {
     bool lasers = false; ///< some light starts in a single direction
     bool timeResolved = false;
     bool media = false;             ///< any: absorption alone needs free flights too, they carry the transmittance
+    bool indexMatched = false;      ///< some boundary is
     bool forwardBoundaries = false; ///< connections must look through index-matched surfaces
 
   private:

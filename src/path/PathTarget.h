@@ -3,6 +3,7 @@
 
 #include "path/PixelSink.h"
 
+#include "transport/Balance.h"
 #include "transport/Connection.h"
 #include "transport/PathState.h"
 
@@ -26,6 +27,12 @@ struct PathTarget : transport::PathEnd {
     /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;
+    }
+    /// Of light that arrives at `receiver` from the target's vertex along the unit `direction`: the part that is not
+    /// left to paths that meet the emitter, if they leave in directions of this density.
+    [[nodiscard]] float shareOfConnection(const Vec3f& receiver, float ownPdf) const {
+        const float pdf = pdfFrom(receiver, vertex.position(), vertex.margin().normal);
+        return pdf > 0.0f ? transport::powerHeuristic(pdf, ownPdf) : 1.0f;
     }
 };
 

@@ -1,11 +1,13 @@
 #include "path/PathTracer.h"
 
 #include "path/PathVisitor.h"
+#include "path/SharePilot.h"
 #include "path/Tuning.h"
 
 #include "tungsten/render/EarliestArrival.h"
 
 #include <tbb/blocked_range2d.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -17,12 +19,16 @@ namespace {
 constexpr size_t TileSide = 8;
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
+/// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
+constexpr double GoldenRatio = 0.6180339887498949;
 
 void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("camera paths", counters.paths);
     statistics.add("rays", counters.rays);
     statistics.add("shadow rays", counters.shadowRays);
     statistics.add("control vertices", counters.controlVertices);
+    statistics.add("plain paths beside guided ones", counters.plainPaths);
+    statistics.add("vertices with densities of guided paths", counters.densities);
     statistics.add("points of lights chosen anew", counters.pointsChosen);
     statistics.add("light vertex connections", counters.lightVertices);
     statistics.add("reflected light connections", counters.reflectedLight);
@@ -46,33 +52,6 @@ float radicalInverse(uint32_t index) {
     bits = ((bits & 0x33333333u) << 2) | ((bits & 0xCCCCCCCCu) >> 2);
     bits = ((bits & 0x55555555u) << 1) | ((bits & 0xAAAAAAAAu) >> 1);
     return float(bits >> 8) * 0x1p-24f;
-}
-
-PathGuides makeGuides(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan, const PassWatch& watch) {
-    PathGuides guides;
-    watch.stage("guides of media", scene.media.size());
-    for (size_t i = 0; i < scene.media.size(); ++i) {
-        watch.poll();
-        const Medium& medium = scene.media[i];
-        darts::Settings settings =
-            scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
-        // Directions are guided for the sake of control vertices.
-        if (!medium.scatters() || plan.isOutOfTime(i) || (!settings.elliptical && !scheme.direction))
-            settings.direction = darts::Direction::Phase;
-        const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
-        guides.media.emplace_back(settings, coefficients);
-        guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
-        darts::Settings view = settings, surface = settings, glossy = settings;
-        if (!scheme.published) {
-            view.surfaceOdds = tuning::ViewSurfaceOdds;
-            surface.alpha = std::max(surface.alpha, tuning::SurfaceAlpha);
-            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
-        }
-        guides.view.emplace_back(view, coefficients);
-        guides.surfaces.emplace_back(surface, coefficients);
-        guides.glossy.emplace_back(glossy, coefficients);
-    }
-    return guides;
 }
 
 } // namespace
@@ -103,21 +82,26 @@ void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statist
     }
     if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
-    guides_ = makeGuides(*scene_, settings_.policy.sampling, plan, watch);
+    guides_ = PathGuides::of(*scene_, settings_.policy.sampling, plan, watch);
     if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
     if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, watch, statistics);
+    if (plan_.balance.on) chooseShare(watch, statistics);
+    // Plain paths connect to the virtual sources of lasers alone.
+    if (balance_.guided == 0.0f) targets_.emplace(*scene_, Emitters::SingleDirections, plan.late);
 }
 
 void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    if (plan_.lightVertices.on) {
+    const bool guides = plan_.guidance.on && balance_.guided > 0.0f;
+    const bool lightVertices = guides && plan_.lightVertices.on;
+    if (lightVertices) {
         const StageTimer timer(statistics, "light paths");
         lightPaths_.trace(*scene_, *targets_, pass.part(0.0, LightPathsPart), statistics);
     }
     if (refracted_) refracted_->trace(pass.part(0.0, 0.0));
     const StageTimer timer(statistics, "camera pass");
-    const PassInfo rest = pass.part(plan_.lightVertices.on ? LightPathsPart : 0.0, 1.0);
-    if (plan_.guidance.on)
+    const PassInfo rest = pass.part(lightVertices ? LightPathsPart : 0.0, 1.0);
+    if (guides)
         renderGuided(rest, film, statistics);
     else if (plan_.timeResolved)
         plan_.media ? renderPlainly<true, true>(rest, film, statistics)
@@ -129,9 +113,10 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
 
 void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
                                   Sampler sampler) const {
+    sink.begin(Strategy::Alone, {});
     const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
         ++counters.intoDetectors;
-        sink.add(radiance, time, emitter);
+        sink.add(radiance, time, emitter, 0.0f);
     };
     detectorLight_->sample(size_t(column), sampler, watch, counters.shadowRays, put);
     if (!plan_.lasers) return;
@@ -150,9 +135,10 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
     const auto renderPixel = [&](int x, int y, PathCounters& counters) {
         PixelSink sink(film, sensor_, x, y, pass.samples, counters);
         const uint64_t pixel = size_t(y) * width + size_t(x);
-        // Consecutive samples of a pixel take the targets in turn.
-        const float rotation =
-            targets_->several() ? Sampler(pass.seed, RandomStream::Emitter, 0, pixel).next1D() : 0.0f;
+        // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
+        Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
+        const float rotation = targets_->several() ? turns.next1D() : 0.0f;
+        const double turn = balance_.both() ? turns.nextDouble() : 0.0;
         for (uint32_t s = 0; s < pass.samples; ++s) {
             // Keyed by the absolute sample: but for light vertices, each pass's own, the image does not depend on how
             // samples are cut into passes.
@@ -163,7 +149,8 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             float u = targets_->several() ? radicalInverse(sample) + rotation : 0.0f;
             u -= u >= 1.0f ? 1.0f : 0.0f;
             pass.watch.pollWithin(SamplesPerPoll, s + 1);
-            trace(ray, sink, counters, sampler, u);
+            const double place = turn + GoldenRatio * double(pass.firstSample + s);
+            trace(ray, sink, counters, sampler, u, float(place - std::floor(place)));
             if (detectorLight_)
                 addDetectorLight(x, u, sink, pass.watch, counters,
                                  {pass.seed, RandomStream::DetectorLight, sample, pixel});
@@ -182,12 +169,10 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
 
 template <bool TimeResolved, bool Media>
 void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const PathContext context{
-        *scene_,   settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries,
-        pass.watch};
-    const bool lasers = targets_->any();
+    const PathContext context = plainContext(pass.watch);
+    const bool lasers = plan_.lasers && targets_->any();
     renderTiles(pass, film, statistics,
-                [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
+                [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u, float) {
                     std::optional<PathTarget> source;
                     if (lasers) {
                         Sampler light = sampler.branch(RandomStream::Target, 0);
@@ -197,17 +182,124 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
                 });
 }
 
+GuidedContext PathTracer::guidedContext(const PassWatch& watch) const {
+    const TargetChoice* targets = plan_.entryPoints.on && !balance_.both() ? &*targets_ : nullptr;
+    return {
+        *scene_, settings_, sensor_, guides_, targets, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
+        watch,   balance_};
+}
+
+PathContext PathTracer::plainContext(const PassWatch& watch) const {
+    return {*scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries, watch};
+}
+
 void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const TargetChoice* targets = plan_.entryPoints.on ? &*targets_ : nullptr;
-    const GuidedContext context{
-        *scene_,   settings_, sensor_, guides_, targets, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
-        pass.watch};
-    renderTiles(pass, film, statistics,
-                [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u) {
-                    Sampler light = sampler.branch(RandomStream::Target, 0);
-                    const std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, counters);
-                    if (target) traceGuidedPath(context, sink, counters, sampler, *target, ray);
-                });
+    const GuidedContext guided = guidedContext(pass.watch);
+    const PathContext plain = plainContext(pass.watch);
+    tbb::enumerable_thread_specific<PlainTrail> trails;
+    const auto trace = [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u,
+                           float strategy) {
+        Sampler light = sampler.branch(RandomStream::Target, 0);
+        std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, counters);
+        if (!target) return;
+        if (!(strategy < balance_.plain)) {
+            sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_);
+            return traceGuidedPath(guided, sink, counters, sampler, *target, ray);
+        }
+        ++counters.plainPaths;
+        sink.begin(Strategy::Plain, balance_);
+        PlainTrail& trail = trails.local();
+        trail.start(guided, counters, *target);
+        tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
+    };
+    renderTiles(pass, film, statistics, trace);
+}
+
+double PathTracer::cost(const PathCounters& counters, const tuning::Rates& rates) const {
+    const double ray = rates.ray + tuning::RayCostByLog * std::log2(1.0 + double(scene_->geometry->triangleCount()));
+    return rates.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
+           ray * double(counters.rays + counters.shadowRays) + rates.connection * double(counters.connections) +
+           rates.controlVertex * double(counters.controlVertices);
+}
+
+PathCosts PathTracer::costs(const PathCounters& plain, const PathCounters& densities,
+                            const PathCounters& guided) const {
+    const double kept = tuning::TrailCost * double(plain.paths) +
+                        tuning::TrailVertexCost * double(plain.mediumEvents + plain.surfaceEvents);
+    return {cost(plain, tuning::PlainRates),
+            kept + tuning::DensityCost * double(densities.densities) +
+                cost(densities, {0.0, tuning::PlainRates.ray, 0.0, 0.0}),
+            cost(guided, tuning::GuidedRates)};
+}
+
+void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
+    const std::optional<float> asked = settings_.policy.plainShare;
+    if (asked && (*asked == 0.0f || *asked == 1.0f)) {
+        balance_ = {*asked, 1.0f - *asked};
+        return;
+    }
+    const StageTimer timer(statistics, "pilot of plain and guided paths");
+    watch.stage("pilot of plain and guided paths", tuning::MostPilotPixels);
+    constexpr uint64_t Key = 0x5EED0F511A5E5ull; // not the render's: all its parts must choose alike
+    balance_ = {0.5f, 0.5f};
+    if (plan_.lightVertices.on) {
+        Statistics ignored;
+        lightPaths_.trace(*scene_, *targets_, PassInfo{.seed = Key, .watch = watch}, ignored);
+    }
+    GuidedContext guided = guidedContext(watch);
+    PathContext plain = plainContext(watch);
+    guided.forwardBoundaries = plain.forwardBoundaries =
+        plan_.indexMatched; // what is counted must not differ otherwise
+    const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);
+    SharePilot pilot, alone;
+    PlainTrail trail;
+    PathCounters ofPlain, ofDensities, ofGuided;
+    Sampler places(Key, RandomStream::Pilot, 0, 0);
+    uint64_t traced = 0;
+    PathCosts costs;
+    for (size_t group = 0; group < tuning::MostPilotPixels; ++group) {
+        const uint64_t pixel = std::min(uint64_t(places.nextDouble() * double(pixels)), pixels - 1);
+        for (int i = 0; i < SharePilot::PathsOfPixel; ++i, ++traced) {
+            const bool guides = i % 2 == 1;
+            Sampler sampler(Key, RandomStream::Camera, uint32_t(traced), pixel);
+            const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+            const Ray ray = scene_->camera.generateRay({int(pixel % width), int(pixel / width)}, uFilter, uLens);
+            PathCounters& counters = guides ? ofGuided : ofPlain;
+            PixelSink sink(pilot, sensor_, counters);
+            pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
+            Sampler light = sampler.branch(RandomStream::Target, 0);
+            auto target = targets_->sample(radicalInverse(uint32_t(traced / 2)), light, watch, counters);
+            if (!target) continue;
+            if (!guides && targets_->several()) {
+                // Plain paths alone connect each vertex to a light of its own, and meet all of them.
+                PathCounters ignored;
+                PixelSink other(alone, sensor_, ignored);
+                alone.begin(Strategy::Alone);
+                const bool laser = target->index < 0;
+                tracePath<true, true>(plain, other, ignored, sampler, laser ? &*target : nullptr, ray);
+            }
+            if (guides) {
+                traceGuidedPath(guided, sink, counters, sampler, *target, ray);
+            } else {
+                trail.start(guided, ofDensities, *target);
+                tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
+            }
+        }
+        watch.poll();
+        costs = this->costs(ofPlain, ofDensities, ofGuided);
+        if (group + 1 < tuning::FewestPilotPixels) continue;
+        if (costs.plain + costs.densities + costs.guided > tuning::MostPilotCost) break;
+        if ((group & (group + 1)) == 0 && pilot.effective(Strategy::Plain) >= 10.0 * tuning::LeastEffective &&
+            pilot.effective(Strategy::Guided) >= 10.0 * tuning::LeastEffective)
+            break;
+    }
+    double gain = 1.0;
+    if (alone.effective(Strategy::Alone) >= tuning::LeastEffective &&
+        pilot.effective(Strategy::Plain) >= tuning::LeastEffective)
+        gain = std::clamp(alone.ownSecondMoment(Strategy::Alone) / pilot.ownSecondMoment(Strategy::Plain), 0.1, 1.0);
+    const double time = asked ? double(*asked) : pilot.choose(costs, gain);
+    balance_ = costs.ofTime(time);
+    statistics.add("pilot paths", traced);
 }
 
 } // namespace tungsten::path

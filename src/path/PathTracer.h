@@ -3,6 +3,9 @@
 
 #include "path/GuidedVisitor.h"
 #include "path/PathPlan.h"
+#include "path/PathVisitor.h"
+#include "path/SharePilot.h"
+#include "path/Tuning.h"
 #include "path/techniques/LightPaths.h"
 #include "path/techniques/RefractedLight.h"
 #include "transport/DetectorLight.h"
@@ -23,7 +26,16 @@ class PathTracer : public Integrator {
     template <bool TimeResolved, bool Media>
     void renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const;
     void renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const;
-    /// `trace(ray, sink, counters, sampler, u)` for every sample of every pixel; u chooses among targets.
+    [[nodiscard]] GuidedContext guidedContext(const PassWatch& watch) const;
+    [[nodiscard]] PathContext plainContext(const PassWatch& watch) const;
+    /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
+    void chooseShare(const PassWatch& watch, Statistics& statistics);
+    /// Of what was counted, in nanoseconds.
+    [[nodiscard]] double cost(const PathCounters& counters, const tuning::Rates& rates) const;
+    [[nodiscard]] PathCosts costs(const PathCounters& plain, const PathCounters& densities,
+                                  const PathCounters& guided) const;
+    /// `trace(ray, sink, counters, sampler, u, strategy)` for every sample of every pixel; u chooses among targets, and
+    /// strategy, uniform too, among strategies.
     template <typename Trace>
     void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const;
 
@@ -41,6 +53,7 @@ class PathTracer : public Integrator {
         targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> bound_;
     PathGuides guides_;
+    StrategyBalance balance_;
     std::unique_ptr<const transport::WaysOut> waysOut_;     ///< null: media are taken for infinite
     LightPaths lightPaths_;                                 ///< of the pass
     std::optional<RefractedLight> refracted_;               ///< of plain paths in sealed scenes

@@ -12,15 +12,16 @@ using transport::Vertex;
 using transport::WalkVertex;
 using transport::Way;
 
-template <bool TimeResolved>
-bool PathVisitor<TimeResolved>::ahead(PathState&, auto&, const Ahead& ahead) {
+template <bool TimeResolved, typename Beside>
+bool PathVisitor<TimeResolved, Beside>::ahead(PathState& path, auto&, const Ahead& ahead) {
+    beside_.fly(path, ahead);
     if (!context_->refracted || !ahead.medium || !ahead.medium->scatters()) return true;
     wayOut_.reset();
     return aimedAt_ < 0;
 }
 
-template <bool TimeResolved>
-bool PathVisitor<TimeResolved>::tooLate(const PathState& path) const {
+template <bool TimeResolved, typename Beside>
+bool PathVisitor<TimeResolved, Beside>::tooLate(const PathState& path) const {
     // Unwarped time starts where the camera's own specular chain ends, wherever that will be.
     if (!TimeResolved || !path.timed) return false;
     const Vec3f& position = path.ray.origin;
@@ -29,9 +30,10 @@ bool PathVisitor<TimeResolved>::tooLate(const PathState& path) const {
            !context_->bound.beforeEnd(path.time, (source_->vertex.position() - position).length(), source_->start);
 }
 
-template <bool TimeResolved>
-bool PathVisitor<TimeResolved>::arrive(PathState& path, auto&, const Ahead& ahead, const Flight& flight) {
+template <bool TimeResolved, typename Beside>
+bool PathVisitor<TimeResolved, Beside>::arrive(PathState& path, auto&, const Ahead& ahead, const Flight& flight) {
     if (tooLate(path)) return false;
+    beside_.arrive(path, ahead, flight);
     if (flight.event == Flight::Event::Surface) {
         const uint32_t shape = ahead.hit->shape;
         if (shape < scene().primitives.size() && scene().primitives[shape].emitter >= 0) addEmission(path, *ahead.hit);
@@ -40,14 +42,14 @@ bool PathVisitor<TimeResolved>::arrive(PathState& path, auto&, const Ahead& ahea
     return limits().mayGoOn(path.interactions);
 }
 
-template <bool TimeResolved>
-bool PathVisitor<TimeResolved>::vertex(PathState& path, auto& steps, const WalkVertex& at) {
+template <bool TimeResolved, typename Beside>
+bool PathVisitor<TimeResolved, Beside>::vertex(PathState& path, auto& steps, const WalkVertex& at) {
     const bool connects = at.medium ? settings().volumeLightSampling
                                     : settings().lightSampling && (at.surface->bsdf->lobes() & lobe::Smooth) != 0;
     if (connects) {
         const Vertex vertex = at.connectible(scene(), TransportMode::Radiance);
         // In sealed bodies no vertex is both smooth and in the open.
-        if (orderCounts(path) && !context_->refracted) connectToLight(path, vertex);
+        if (!Beside::Balanced && orderCounts(path) && !context_->refracted) connectToLight(path, vertex);
         if (source_) connectToSource(path, vertex);
     }
     if (context_->refracted && at.medium) {
@@ -57,8 +59,9 @@ bool PathVisitor<TimeResolved>::vertex(PathState& path, auto& steps, const WalkV
     return true;
 }
 
-template <bool TimeResolved>
-void PathVisitor<TimeResolved>::leave(PathState& path, auto& steps, const WalkVertex& at, const Way& way) {
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::leave(PathState& path, auto& steps, const WalkVertex& at, const Way& way) {
+    beside_.leave(way);
     if (!context_->refracted || at.medium) return;
     // A way out of a body begins, or has ended.
     steps.lobes = lobe::All;
@@ -72,8 +75,8 @@ void PathVisitor<TimeResolved>::leave(PathState& path, auto& steps, const WalkVe
     sealed_.reset();
 }
 
-template <bool TimeResolved>
-bool PathVisitor<TimeResolved>::sharesWithConnections(const PathState& path) const {
+template <bool TimeResolved, typename Beside>
+bool PathVisitor<TimeResolved, Beside>::sharesWithConnections(const PathState& path) const {
     using Kind = transport::LastVertex::Kind;
     switch (path.last.kind) {
     case Kind::Medium:
@@ -86,25 +89,36 @@ bool PathVisitor<TimeResolved>::sharesWithConnections(const PathState& path) con
     return false;
 }
 
-template <bool TimeResolved>
-void PathVisitor<TimeResolved>::addEmission(const PathState& path, const SurfaceHit& hit) {
+template <bool TimeResolved, typename Beside>
+float PathVisitor<TimeResolved, Beside>::shareOfMeeting(const PathState& path, int index, const SurfaceHit& hit) const {
+    const Emitter& emitter = scene().emitters[size_t(index)];
+    const bool shares = sharesWithConnections(path);
+    const float pdf = shares ? pdfDirect(emitter, path.last.position, hit.position, hit.ng) : 0.0f;
+    if constexpr (Beside::Balanced) {
+        // What guided paths count, too: their target's emitter alone.
+        if (index != source_->index) return 0.0f;
+        return (shares ? transport::powerHeuristic(path.last.pdf, pdf) : 1.0f) / source_->probability;
+    }
+    return shares ? transport::powerHeuristic(path.last.pdf, pdf * context_->lights.probability(index)) : 1.0f;
+}
+
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const SurfaceHit& hit) {
     const int index = scene().primitives[hit.shape].emitter;
     const Emitter& emitter = scene().emitters[size_t(index)];
     const Rgb radiance = emittedRadiance(emitter, hit.uv, hit.ng, -path.ray.direction);
     // The light is no interaction of its own path.
     if (isBlack(radiance) || !limits().renders(path.interactions - 1) || !orderCounts(path)) return;
-    float weight = 1.0f;
-    if (sharesWithConnections(path)) {
-        const float lightPdf =
-            pdfDirect(emitter, path.last.position, hit.position, hit.ng) * context_->lights.probability(index);
-        weight = transport::powerHeuristic(path.last.pdf, lightPdf);
-    }
+    const double time = path.time + emitter.emissionTime;
+    if (Beside::Balanced && !sink_->mayCount(time)) return;
+    float weight = shareOfMeeting(path, index, hit);
+    if (weight == 0.0f) return;
     if (context_->refracted) weight *= refractedShare(index);
-    sink_->add(path.throughput * radiance * weight, path.time + emitter.emissionTime, emitter);
+    sink_->add(path.throughput * radiance * weight, time, emitter, beside_.atLight(), Found::OnWay);
 }
 
-template <bool TimeResolved>
-void PathVisitor<TimeResolved>::addEnvironment(const PathState& path) {
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::addEnvironment(const PathState& path) {
     if (scene().infiniteEmitters.empty() || scene().medium(path.region) || !limits().renders(path.interactions) ||
         !orderCounts(path))
         return;
@@ -114,11 +128,11 @@ void PathVisitor<TimeResolved>::addEnvironment(const PathState& path) {
     if (sharesWithConnections(path))
         weight = transport::powerHeuristic(path.last.pdf, pdfDirectInfinite(emitter, path.ray.direction) *
                                                               context_->lights.probability(index));
-    sink_->add(path.throughput * environmentRadiance(emitter, path.ray.direction) * weight, Infinity, emitter);
+    sink_->add(path.throughput * environmentRadiance(emitter, path.ray.direction) * weight, Infinity, emitter, 0.0f);
 }
 
-template <bool TimeResolved>
-void PathVisitor<TimeResolved>::connectToLight(PathState& path, const Vertex& vertex) {
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::connectToLight(PathState& path, const Vertex& vertex) {
     path.random.at(path.interactions, Draw::Light);
     const auto choice = context_->lights.sample(path.random.next1D());
     if (!choice) return;
@@ -136,11 +150,11 @@ void PathVisitor<TimeResolved>::connectToLight(PathState& path, const Vertex& ve
     const float weight =
         pdf > 0.0f ? transport::powerHeuristic(pdf * choice->probability, vertex.pdf(direct->direction)) : 1.0f;
     sink_->add(connection->throughput * (weight / choice->probability),
-               path.time + connection->time + emitter.emissionTime, emitter);
+               path.time + connection->time + emitter.emissionTime, emitter, 0.0f);
 }
 
-template <bool TimeResolved>
-void PathVisitor<TimeResolved>::connectToSource(const PathState& path, const Vertex& vertex) {
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::connectToSource(const PathState& path, const Vertex& vertex) {
     if (!orderCounts(path, source_->mediumScatters)) return;
     const auto way = transport::straightWay(path.ray.origin, source_->vertex.position());
     if (!way) return;
@@ -150,11 +164,16 @@ void PathVisitor<TimeResolved>::connectToSource(const PathState& path, const Ver
     const auto connection =
         connector_.connect(vertex, path.throughput, transport::connectionEnd(*way, *source_), counters_->shadowRays);
     if (!connection || !limits().renders(path.interactions + connection->crossings + source_->interactions)) return;
-    sink_->add(connection->throughput, path.time + connection->time + source_->start, *source_->emitter);
+    // Surfaces that shine can be met, too.
+    float weight = 1.0f;
+    if constexpr (Beside::Balanced) weight *= source_->shareOfConnection(path.ray.origin, vertex.pdf(way->direction));
+    sink_->add(connection->throughput * weight, path.time + connection->time + source_->start, *source_->emitter,
+               beside_.atVertex(), Found::OnWay);
 }
 
-template <bool TimeResolved>
-void PathVisitor<TimeResolved>::aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const {
+template <bool TimeResolved, typename Beside>
+void PathVisitor<TimeResolved, Beside>::aimThroughWall(const PathState& path, const auto& steps,
+                                                       const Medium& medium) const {
     const RefractedLight& refracted = *context_->refracted;
     if (path.flights + 1 > medium.maxBounces) return;
     transport::Walk aimed{path, steps, *this};
@@ -180,8 +199,8 @@ void PathVisitor<TimeResolved>::aimThroughWall(const PathState& path, const auto
         aimed.run();
 }
 
-template <bool TimeResolved>
-float PathVisitor<TimeResolved>::refractedShare(int emitter) const {
+template <bool TimeResolved, typename Beside>
+float PathVisitor<TimeResolved, Beside>::refractedShare(int emitter) const {
     if (aimedAt_ >= 0) return emitter == aimedAt_ ? 1.0f : 0.0f;
     if (!wayOut_) return 1.0f;
     const float density = context_->refracted->density(wayOut_->from, wayOut_->direction, wayOut_->face, emitter);
@@ -198,6 +217,20 @@ void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counte
         PathState{
             .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
         Steps({scene, counters, context.watch}), PathVisitor<TimeResolved>(context, sink, counters, source)};
+    walk.steps.roulette = context.settings.russianRoulette;
+    walk.run();
+}
+
+void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelSink& sink,
+                            PathCounters& counters, const Sampler& sampler, const PathTarget& target, const Ray& ray) {
+    const Scene& scene = context.scene;
+    ++counters.paths;
+    using Steps = transport::PlainSteps<transport::PlainOptions{}>;
+    transport::Walk walk{
+        PathState{
+            .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
+        Steps({scene, counters, context.watch}),
+        PathVisitor<true, BesideGuided>(context, sink, counters, &target, beside)};
     walk.steps.roulette = context.settings.russianRoulette;
     walk.run();
 }

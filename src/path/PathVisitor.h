@@ -5,6 +5,7 @@
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
 #include "path/PixelSink.h"
+#include "path/PlainTrail.h"
 #include "path/techniques/RefractedLight.h"
 
 #include "transport/PlainSteps.h"
@@ -24,14 +25,38 @@ struct PathContext {
     const PassWatch& watch;
 };
 
-/// Light that starts in a single direction is found through the virtual point source `source`, if there is one.
-/// `TimeResolved` off leaves out every test of time.
-template <bool TimeResolved>
+/// What weighs a plain path's contributions beside guided ones: nothing, where all paths are plain.
+struct Alone {
+    static constexpr bool Balanced = false;
+    void fly(const PathState&, const transport::Ahead&) {}
+    void arrive(const PathState&, const transport::Ahead&, const transport::Flight&) {}
+    void leave(const transport::Way&) {}
+    [[nodiscard]] static float atVertex() { return 0.0f; }
+    [[nodiscard]] static float atLight() { return 0.0f; }
+};
+/// Guided paths, which aim at the path's own target.
+struct BesideGuided {
+    static constexpr bool Balanced = true;
+    PlainTrail* trail;
+    void fly(const PathState& start, const transport::Ahead& ahead) { trail->fly(start, ahead); }
+    void arrive(const PathState& at, const transport::Ahead& ahead, const transport::Flight& flight) {
+        trail->arrive(at, ahead, flight);
+    }
+    void leave(const transport::Way& way) { trail->leave(way); }
+    [[nodiscard]] float atVertex() const { return trail->atVertex(); }
+    [[nodiscard]] float atLight() const { return trail->atLight(); }
+};
+
+/// Light that starts in a single direction is found through the virtual point source `source`, if there is one; beside
+/// guided paths `source` is what the path aims at, and all that it connects to. `TimeResolved` off leaves out every
+/// test of time.
+template <bool TimeResolved, typename Beside = Alone>
 class PathVisitor : public transport::VisitorBase {
   public:
-    PathVisitor(const PathContext& context, PixelSink& sink, PathCounters& counters, const PathTarget* source)
+    PathVisitor(const PathContext& context, PixelSink& sink, PathCounters& counters, const PathTarget* source,
+                const Beside& beside = {})
         : context_(&context), sink_(&sink), counters_(&counters), connector_(context.scene, context.forwardBoundaries),
-          source_(source) {}
+          source_(source), beside_(beside) {}
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
     bool ahead(PathState& path, auto& steps, const transport::Ahead& ahead);
@@ -69,6 +94,8 @@ class PathVisitor : public transport::VisitorBase {
     // Sealed bodies.
     /// From the vertex: a walk that aims at an emitter through a face.
     void aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const;
+    /// Of light of an emitter that is met: the part that is not left to connections.
+    [[nodiscard]] float shareOfMeeting(const PathState& path, int emitter, const SurfaceHit& hit) const;
     /// Of light of an emitter that is met: the part that is not left to the other way of finding the same path.
     [[nodiscard]] float refractedShare(int emitter) const;
 
@@ -77,6 +104,7 @@ class PathVisitor : public transport::VisitorBase {
     PathCounters* counters_;
     transport::Connector connector_;
     const PathTarget* source_;
+    Beside beside_;
     std::optional<SealedVertex> sealed_; ///< the last vertex, if it is one of a sealed body
     std::optional<WayOut> wayOut_;
     int aimedAt_ = -1; ///< the emitter, of a walk that follows a drawn way out
@@ -86,5 +114,8 @@ class PathVisitor : public transport::VisitorBase {
 template <bool TimeResolved, bool Media>
 void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
                const PathTarget* source, const Ray& ray);
+/// The same beside guided paths; `target` is what the path aims at.
+void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelSink& sink,
+                            PathCounters& counters, const Sampler& sampler, const PathTarget& target, const Ray& ray);
 
 } // namespace tungsten::path

@@ -1,6 +1,8 @@
 #pragma once
 // Where a path's contributions go: the frame their time falls in, weighed as the sensor does.
 
+#include "path/StrategyBalance.h"
+
 #include "transport/Sensor.h"
 #include "transport/StepCounters.h"
 
@@ -11,38 +13,60 @@
 
 namespace tungsten::path {
 
+class SharePilot;
+
 /// What happened, counted by one worker.
 struct PathCounters : transport::StepCounters {
     uint64_t shadowRays = 0, paths = 0, controlVertices = 0, pointsChosen = 0, lightVertices = 0, reflectedLight = 0,
-             refracted = 0, connections = 0, intoDetectors = 0, nonFinite = 0;
+             refracted = 0, connections = 0, intoDetectors = 0, nonFinite = 0, densities = 0, plainPaths = 0;
     uint64_t arrivals = 0, timed = 0, laterFrames = 0, weighed = 0; ///< timed: at a sensor that is not always open
 };
+
+/// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided
+/// paths alone look.
+enum class Found { OnWay, Aside };
 
 /// Adds contributions to one pixel of the pass image. They are summed in double, the last few frames' here: paths of
 /// 10 000 bounces make so many equal ones that sums of floats would drift.
 class PixelSink {
   public:
     PixelSink(Film& film, const transport::Sensor& sensor, int x, int y, uint32_t samples, PathCounters& counters)
-        : film_(film), sensor_(sensor), x_(x), y_(y), scale_(float(1.0 / (double(samples) * sensor.evenWidth()))),
+        : film_(&film), sensor_(sensor), x_(x), y_(y), scale_(float(1.0 / (double(samples) * sensor.evenWidth()))),
           counters_(counters) {}
+    /// Adds nothing anywhere, but tells what paths find.
+    PixelSink(SharePilot& pilot, const transport::Sensor& sensor, PathCounters& counters)
+        : sensor_(sensor), x_(0), y_(0), scale_(1.0f), counters_(counters), pilot_(&pilot) {}
     PixelSink(const PixelSink&) = delete;
     PixelSink& operator=(const PixelSink&) = delete;
     ~PixelSink() {
         for (; used_ != 0; used_ &= used_ - 1) addToFilm(sums_[size_t(std::countr_zero(used_))]);
     }
 
-    /// Light of an emitter; `time` is the total time of flight, emission time included; ignored in steady state.
-    void add(const Rgb& radiance, double time, const Emitter& emitter) {
-        sensor_.spread(time, emitter, [&](int frame, float share) { put(radiance * share, time, frame); });
+    /// Who brings the next contributions, beside whom.
+    void begin(Strategy strategy, const StrategyBalance& balance) {
+        strategy_ = strategy;
+        balance_ = balance;
+    }
+    /// Light of an emitter, as the strategy's own estimate has it; `time` is the total time of flight, emission time
+    /// included; ignored in steady state. `logRatio`: StrategyBalance.
+    void add(const Rgb& radiance, double time, const Emitter& emitter, float logRatio, Found found = Found::Aside) {
+        sensor_.spread(time, emitter,
+                       [&](int frame, float share) { put(radiance * share, time, frame, logRatio, found); });
     }
     /// The same for a time that was drawn inside the gate: rounding at its ends drops nothing, and a delta gate, which
     /// no time meets, takes it with weight 1.
-    void addInside(const Rgb& radiance, double time, const Emitter& emitter) {
-        if (sensor_.delays.any()) return add(radiance, time, emitter);
-        put(radiance, time, sensor_.gate.frames > 1 ? sensor_.gate.nearestFrame(time) : 0);
+    void addInside(const Rgb& radiance, double time, const Emitter& emitter, float logRatio) {
+        if (sensor_.delays.any()) return add(radiance, time, emitter, logRatio);
+        put(radiance, time, sensor_.gate.frames > 1 ? sensor_.gate.nearestFrame(time) : 0, logRatio, Found::Aside);
+    }
+
+    /// Whether what arrives then counts.
+    [[nodiscard]] bool mayCount(double time) const {
+        return time >= sensor_.arrivals.start && time < sensor_.arrivals.end();
     }
 
   private:
+    void tellPilot(float value, int frame, float logRatio, Found found);
     void count(int frame) {
         ++counters_.arrivals;
         if (!sensor_.gate.steadyState) ++counters_.timed;
@@ -50,12 +74,14 @@ class PixelSink {
         if (frame > 0) ++counters_.laterFrames;
     }
 
-    void put(const Rgb& radiance, double time, int frame) {
+    void put(const Rgb& radiance, double time, int frame, float logRatio, Found found) {
         if (!isFinite(radiance)) {
             ++counters_.nonFinite;
             return;
         }
-        const float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
+        float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
+        if (pilot_) return tellPilot(meanComponent(radiance) * weight, frame, logRatio, found);
+        weight *= balance_.weight(strategy_, logRatio);
         if (weight > 0.0f) count(frame);
         const size_t place = size_t(frame) % MostFrames;
         FrameSum& sum = sums_[place];
@@ -73,14 +99,17 @@ class PixelSink {
         Vec3d value;
     };
     void addToFilm(const FrameSum& sum) {
-        film_.add(sum.frame, x_, y_, Rgb(float(sum.value.x), float(sum.value.y), float(sum.value.z)));
+        film_->add(sum.frame, x_, y_, Rgb(float(sum.value.x), float(sum.value.y), float(sum.value.z)));
     }
 
-    Film& film_;
+    Film* film_ = nullptr;
     const transport::Sensor& sensor_;
     int x_, y_;
     float scale_;
     PathCounters& counters_;
+    Strategy strategy_ = Strategy::Alone;
+    StrategyBalance balance_;
+    SharePilot* pilot_ = nullptr;
     static constexpr size_t MostFrames = 8;
     uint32_t used_ = 0; ///< bits of the sums below that hold something
     std::array<FrameSum, MostFrames> sums_;

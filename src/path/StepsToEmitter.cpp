@@ -1,7 +1,6 @@
 #include "path/StepsToEmitter.h"
 
 #include "path/Tuning.h"
-#include "path/techniques/ShellChord.h"
 
 #include "transport/PlainSteps.h"
 
@@ -35,6 +34,13 @@ struct SurfaceScatterer {
     }
 };
 
+/// What one of two ways to find a path never draws.
+constexpr float Least = 1e-30f;
+
+float logOf(float density) {
+    return std::log(std::max(density, Least));
+}
+
 } // namespace
 
 bool endsReflectedLight(LobeMask lobes) {
@@ -51,6 +57,10 @@ const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, co
     const auto& guides = diffuse ? guided_->guides.surfaces : guided_->guides.glossy;
     const darts::Guide& guide = guides[size_t(ahead.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
+}
+
+darts::ResponseAt StepsToEmitter::response(double time) const {
+    return {guided_->sensor.response.get(), time + target_->start, double(start_.region.speed)};
 }
 
 darts::ConnectionSample StepsToEmitter::drawConnection(PathState& path, const darts::Guide& guide,
@@ -124,6 +134,7 @@ void StepsToEmitter::chooseTarget(PathState& path) {
 
 bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
     surfaceGuide_ = nullptr;
+    if (guided_->balance.endsGuided(path.logRatio)) return false;
     if (path.timed) {
         lookAheadFrom(path, vertex.position);
         if (!reachable().alive()) return false;
@@ -145,27 +156,37 @@ bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
 
 // ---- Flights
 
-Ahead StepsToEmitter::ahead(PathState& path) {
-    if (std::exchange(startsAnew_, false) && path.timed) lookAheadFrom(path, path.ray.origin);
-    const Medium* medium = context_.scene.medium(path.region);
-    if (!medium || !medium->scatters()) return aheadInEmpty(path, medium);
-    return path.timed ? aheadInMedium(path, *medium) : aheadUntimed(path, *medium);
+std::optional<SurfaceHit> StepsToEmitter::see(const Ray& ray, const SurfaceHit* known) {
+    if (known) return known->t < ray.tMax ? std::optional(*known) : std::nullopt;
+    ++context_.counters.rays;
+    return context_.scene.geometry->intersect(ray);
 }
 
-Ahead StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium) {
+Ahead StepsToEmitter::ahead(PathState& path, const SurfaceHit* known) {
+    if (std::exchange(startsAnew_, false) && path.timed) lookAheadFrom(path, path.ray.origin);
+    const Medium* medium = context_.scene.medium(path.region);
+    const Ahead ahead = !medium || !medium->scatters() ? aheadInEmpty(path, medium, known)
+                        : path.timed                   ? aheadInMedium(path, *medium, known)
+                                                       : aheadUntimed(path, *medium, known);
+    start_ = path;
+    medium_ = medium;
+    reach_ = ahead.reach();
+    return ahead;
+}
+
+Ahead StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium, const SurfaceHit* known) {
     passage_ = Passage::Empty;
     if (path.timed) {
         if (!reachable().alive()) return {};
         path.ray.tMax = bound(path.ray.direction);
     }
-    ++context_.counters.rays;
-    Ahead ahead{true, medium, context_.scene.geometry->intersect(path.ray)};
+    Ahead ahead{true, medium, see(path.ray, known)};
     ahead.flies = ahead.hit.has_value();
     if (medium && ahead.flies) context_.counters.fly(*medium);
     return ahead;
 }
 
-Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium) {
+Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const SurfaceHit* known) {
     passage_ = Passage::Medium;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     lookOutFrom(path, transport::Start::along(path.ray));
@@ -175,81 +196,200 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium) {
     startRoulette(guide, path.region.medium, meanComponent(path.throughput));
     heading_ = headingOf(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
-    ++context_.counters.rays;
-    const Ahead ahead{true, &medium, context_.scene.geometry->intersect(path.ray)};
+    const Ahead ahead{true, &medium, see(path.ray, known)};
     // What the camera sees beyond the fog, or of lamps there, has been connected to by no vertex.
     if (ahead.hit && reachable().way == darts::Way::Out && reachable().exit.connects && path.mediumScatters > 0)
         leaveWithOdds(guided_->waysOut->leaveOdds(path.region, path.ray.direction, *ahead.hit));
+    if (hasDensities())
+        distances_.emplace(
+            guideOfFlight(path).distance().density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
     return ahead;
 }
 
-Ahead StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium) {
+Ahead StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium, const SurfaceHit* known) {
     passage_ = Passage::Untimed;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     lookAheadFrom(path, path.ray.origin);
-    ++context_.counters.rays;
-    return {true, &medium, context_.scene.geometry->intersect(path.ray)};
+    return {true, &medium, see(path.ray, known)};
+}
+
+const darts::Guide& StepsToEmitter::guideOfFlight(const PathState& path) const {
+    return path.mediumScatters == 0 ? guided_->guides.view[size_t(path.region.medium)] : guideOf(path.region);
 }
 
 Flight StepsToEmitter::flight(PathState& path, const Ahead& ahead) {
-    if (passage_ == Passage::Untimed) return flyUntimed(path, ahead);
-    if (passage_ == Passage::Empty)
-        return {Event::Surface, ahead.reach(), ahead.medium ? ahead.medium->transmittance(ahead.reach()) : Rgb(1.0f)};
-    const darts::Guide& guide =
-        path.mediumScatters == 0 ? guided_->guides.view[size_t(path.region.medium)] : guideOf(path.region);
+    Flight flight = passage_ == Passage::Untimed ? flyUntimed(path, ahead)
+                    : passage_ == Passage::Medium
+                        ? flyGuided(path, ahead)
+                        : Flight{Event::Surface, ahead.reach(),
+                                 ahead.medium ? ahead.medium->transmittance(ahead.reach()) : Rgb(1.0f)};
+    if (hasDensities() && flight.event != Event::Nothing) {
+        const FlightSample plain = plainly(flight);
+        path.logRatio = start_.logRatio + logOf(flight.pdf) - logOf(plain.pdf);
+        path.channels = plain.channels;
+    }
+    return flight;
+}
+
+Flight StepsToEmitter::flyGuided(PathState& path, const Ahead& ahead) {
+    const darts::Guide& guide = guideOfFlight(path);
     path.random.at(path.interactions + 1, Draw::Distance);
-    const darts::DistanceSample sample =
-        sampleDistance(guide, heading_, ahead.reach(), path.throughput, [&] { return path.random.next1D(); });
+    const auto random = [&] { return path.random.next1D(); };
+    darts::DistanceSample sample;
+    if (hasDensities()) {
+        const float event = random(), choice = random();
+        sample = guide.distance().sample(*distances_, ahead.reach(), event, choice);
+    } else {
+        sample = sampleDistance(guide, heading_, ahead.reach(), path.throughput, random);
+    }
     const Rgb weight = darts::to<Rgb>(sample.transmittanceOverPdf);
-    if (sample.surface) return {Event::Surface, ahead.reach(), weight, 0.0f};
-    return {Event::Collision, sample.distance, weight * ahead.medium->sigmaS(), 0.0f};
+    if (sample.surface) return {Event::Surface, ahead.reach(), weight, sample.pdf};
+    return {Event::Collision, sample.distance, weight * ahead.medium->sigmaS(), sample.pdf};
+}
+
+/// Only vertices in the medium must lie in the ball from which light is in time: mirrors farther away still count.
+StepsToEmitter::Untimed::Untimed(const Vec3f& toTarget, const Vec3f& direction, double reach, const Medium& medium,
+                                 float distance)
+    : chord(toTarget, direction, 0.0, reach, double(distance)), medium_(&medium) {
+    if (distance < Infinity) surface = chord.empty() ? 1.0f : meanComponent(medium.transmittance(distance));
+}
+
+double StepsToEmitter::Untimed::sample(double u, float half) const {
+    return half < 0.5f ? chord.begin() + flights().sample(u).offset : chord.sample(u);
+}
+
+double StepsToEmitter::Untimed::pdf(double t) const {
+    return chord.empty() ? 0.0 : (0.5 * flights().pdf(t - chord.begin()) + 0.5 * chord.pdf(t)) * double(1.0f - surface);
+}
+
+StepsToEmitter::Untimed StepsToEmitter::untimed(const Ray& ray, const Medium& medium, float distance) const {
+    return {target_->vertex.position() - ray.origin, ray.direction, double(reachable().C) + double(reachable().excess),
+            medium, distance};
 }
 
 /// The surface by its transmittance; in the medium a distance from which light may still arrive, half of them by
 /// transmittance, half by angle.
 Flight StepsToEmitter::flyUntimed(PathState& path, const Ahead& ahead) {
     const Medium& medium = *ahead.medium;
-    const float surface = ahead.reach();
-    // Only vertices in the medium must lie in the ball from which light is in time: mirrors farther away still count.
-    const double reach = double(reachable().C) + double(reachable().excess);
-    const ShellChord chord(target_->vertex.position() - path.ray.origin, path.ray.direction, 0.0, reach,
-                           double(surface));
-    float staying = 1.0f;
+    const Untimed distances = untimed(path.ray, medium, ahead.reach());
     if (ahead.hit) {
-        const Rgb reaching = medium.transmittance(surface);
-        const float probability = chord.empty() ? 1.0f : meanComponent(reaching);
         path.random.at(path.interactions + 1, Draw::Flight);
-        if (path.random.next1D() < probability) return {Event::Surface, surface, reaching / probability, probability};
-        staying = 1.0f - probability;
+        if (path.random.next1D() < distances.surface)
+            return {Event::Surface, ahead.reach(), medium.transmittance(ahead.reach()) / distances.surface,
+                    distances.surface};
     }
-    if (chord.empty()) return {};
-    const darts::ConnectionLength<double> flights{chord.begin(), chord.end() - chord.begin(),
-                                                  double(meanComponent(medium.sigmaT()))};
+    if (distances.chord.empty()) return {};
     path.random.at(path.interactions + 1, Draw::Distance);
-    const double u = path.random.nextDouble();
-    const double t = path.random.next1D() < 0.5f ? chord.begin() + flights.sample(u).offset : chord.sample(u);
-    const double pdf = (0.5 * flights.pdf(t - chord.begin()) + 0.5 * chord.pdf(t)) * double(staying);
+    const double u = path.random.nextDouble(), t = distances.sample(u, path.random.next1D()), pdf = distances.pdf(t);
     if (!(pdf > 0.0)) return {};
     const auto distance = float(t);
     return {Event::Collision, distance, medium.sigmaS() * medium.transmittance(distance) * float(1.0 / pdf),
             float(pdf)};
 }
 
+// ---- Densities of the flight at hand
+
+float StepsToEmitter::vertexDensity(float distance) const {
+    if (passage_ == Passage::Medium) return distances_->pdf(distance);
+    return passage_ == Passage::Untimed ? float(untimed(start_.ray, *medium_, reach_).pdf(double(distance))) : 0.0f;
+}
+
+float StepsToEmitter::surfaceProbability() const {
+    if (passage_ == Passage::Medium) return distances_->surface();
+    return passage_ == Passage::Untimed ? untimed(start_.ray, *medium_, reach_).surface : 1.0f;
+}
+
+float StepsToEmitter::plainSurfaceProbability() const {
+    return medium_ ? probabilityFlightExits(*medium_, reach_, start_.channels) : 1.0f;
+}
+
+FlightSample StepsToEmitter::plainly(const Flight& flight) const {
+    if (!medium_) return {flight.distance, true, Rgb(1.0f), 1.0f, start_.channels};
+    return flight.event == Event::Collision ? flightThatCollides(*medium_, flight.distance, start_.channels)
+                                            : flightThatExits(*medium_, flight.distance, start_.channels);
+}
+
+float StepsToEmitter::controlVertexDensity(float distance) const {
+    const darts::Guide& guide = guideOf(start_.region);
+    if (!guide.settings().elliptical || guided_->sensor.gate.delta) return 0.0f;
+    const Vec3f place = start_.ray.at(distance);
+    float density = 0.0f;
+    if (passage_ == Passage::Untimed) {
+        density = float(controlChord(start_.ray, start_.region, reach_).pdf(double(distance)));
+    } else if (passage_ == Passage::Medium && residual().alive()) {
+        const darts::Residual before = darts::Guide::beforeSurface(residual(), heading_.h, reach_);
+        if (before.alive()) density = guide.pdfControlVertex(before, heading_.h, distance, response(start_.time));
+    }
+    const auto way = transport::straightWay(place, target_->vertex.position());
+    if (!(density > 0.0f) || !way) return 0.0f;
+    return density * chance({distance, way->distance, 1.0f / density}, way->direction);
+}
+
+float StepsToEmitter::chance(const darts::ControlVertex& vertex, const Vec3f& onward) const {
+    const Vec3f& direction = start_.ray.direction;
+    return guideOf(start_.region)
+        .chance(residual(), darts::vec3(direction), vertex, medium_->phase.eval(direction, onward));
+}
+
+ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, float surface) const {
+    const TimeGate& gate = guided_->sensor.arrivals;
+    const double speed = double(region.speed);
+    return {target_->vertex.position() - ray.origin, ray.direction, speed * (gate.start - target_->start),
+            speed * (gate.end() - target_->start), double(surface)};
+}
+
+auto StepsToEmitter::inMedium(float distance) const -> InMedium {
+    const float plain = logOf(pdfFlight(*medium_, distance, start_.channels));
+    InMedium ending{vertexDensity(distance), controlVertexDensity(distance)};
+    // Own vertices that guided paths do not go on from do not connect either.
+    if ((passage_ == Passage::Medium && residual().way == darts::Way::Through && guided_->bound.oneSpeed()) ||
+        guided_->balance.endsGuided(start_.logRatio + logOf(ending.own) - plain))
+        ending.own = 0.0f;
+    ending.logRatio = start_.logRatio + logOf(ending.own + ending.control) - plain;
+    return ending;
+}
+
+float StepsToEmitter::logRatioOnSurface() const {
+    return start_.logRatio - logOf(plainSurfaceProbability());
+}
+
+float StepsToEmitter::logRatioThere(const Flight& flight) const {
+    const float own = flight.event == Event::Collision ? vertexDensity(flight.distance) : surfaceProbability();
+    return start_.logRatio + logOf(own) - logOf(flight.pdf);
+}
+
 // ---- Roulette, splitting, directions
 
-bool StepsToEmitter::passesRoulette(PathState& path, const darts::Guide& guide) {
-    const float survival = GuidedSteps::survival(guide, path.region.medium, meanComponent(path.throughput));
-    if (survival >= 1.0f) return true;
-    path.random.at(path.interactions, Draw::Roulette);
-    if (!(path.random.next1D() < survival)) return false;
-    path.throughput = path.throughput / survival;
-    return true;
+auto StepsToEmitter::onward(const PathState& path, const WalkVertex& vertex) -> Onward {
+    if (vertex.surface && !guidesSurface()) return {};
+    const darts::Guide& guide = vertex.surface ? *surfaceGuide_ : guideOf(path.region);
+    Onward onward;
+    onward.survival = GuidedSteps::survival(guide, path.region.medium, meanComponent(path.throughput));
+    if (vertex.medium) onward.copies = copiesBy(guide);
+    return onward;
 }
 
 int StepsToEmitter::copies(PathState& path, const WalkVertex& vertex) {
-    if (vertex.surface) return guidesSurface() && !passesRoulette(path, *surfaceGuide_) ? 0 : 1;
-    const darts::Guide& guide = guideOf(path.region);
-    return passesRoulette(path, guide) ? copiesBy(guide) : 0;
+    const auto [survival, copies] = onward(path, vertex);
+    if (survival < 1.0f) {
+        path.random.at(path.interactions, Draw::Roulette);
+        if (!(path.random.next1D() < survival)) return 0;
+        path.throughput = path.throughput / survival;
+    }
+    if (hasDensities()) path.logRatio += std::log(survival * float(copies));
+    return copies;
+}
+
+float StepsToEmitter::expectedCopies(const PathState& path, const WalkVertex& vertex) {
+    const auto [survival, copies] = onward(path, vertex);
+    return survival * float(copies);
+}
+
+bool StepsToEmitter::survives(PathState& path) {
+    if (hasDensities() && guided_->settings.russianRoulette)
+        path.logRatio -= logOf(transport::survivalByThroughput(
+            path.throughput * std::exp(std::min(path.logRatio, 80.0f)), path.interactions));
+    return true;
 }
 
 template <typename Scatterer>
@@ -281,6 +421,7 @@ transport::Way StepsToEmitter::leaveMedium(PathState& path, const WalkVertex& ve
     const darts::DirectionSample sample = draw(path, guide, darts::PhaseScatterer{phase, vertex.before});
     const Vec3f direction = darts::to<Vec3f>(sample.direction);
     const float own = phase.eval(vertex.before, direction);
+    if (hasDensities()) path.logRatio -= logOf(own * sample.inversePdf);
     return {Ray{vertex.position, direction}, path.region, Rgb(own * sample.inversePdf), own};
 }
 
@@ -289,8 +430,9 @@ transport::Way StepsToEmitter::leaveGuided(PathState& path, const WalkVertex& ve
     const darts::DirectionSample sample = draw(path, *surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random});
     const Ray ray = vertex.surface->hit.leave(darts::to<Vec3f>(sample.direction));
     const transport::Vertex here = vertex.connectible(context_.scene, TransportMode::Radiance);
-    return {ray, path.region, here.scattering(ray.direction) * sample.inversePdf, here.pdf(ray.direction),
-            lobe::DiffuseReflection};
+    const float own = here.pdf(ray.direction);
+    if (hasDensities()) path.logRatio -= logOf(own * sample.inversePdf);
+    return {ray, path.region, here.scattering(ray.direction) * sample.inversePdf, own, lobe::DiffuseReflection};
 }
 
 std::optional<transport::Way> StepsToEmitter::leavePlainly(PathState& path, const WalkVertex& vertex) {
@@ -304,6 +446,28 @@ std::optional<transport::Way> StepsToEmitter::leavePlainly(PathState& path, cons
         startWay();
     startsAnew_ = true;
     return way;
+}
+
+void StepsToEmitter::leaveAlong(PathState& path, const WalkVertex& vertex, const transport::Way& way) {
+    if (vertex.surface && !guidesSurface()) {
+        if (way.straight() && way.region.speed == path.region.speed)
+            passBoundary(vertex.surface->hit.t);
+        else
+            startWay();
+        startsAnew_ = true;
+        return;
+    }
+    startWay();
+    const auto pdf = [&](const darts::Guide& guide, const auto& scatterer) {
+        return guide.pdfDirection(residual(), {}, darts::vec3(way.ray.direction), scatterer, darts::NoView{});
+    };
+    if (vertex.surface) {
+        path.logRatio += logOf(pdf(*surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random})) - logOf(way.pdf);
+        return;
+    }
+    const darts::Guide& guide = guideOf(path.region);
+    if (!residual().alive() || guide.settings().direction == darts::Direction::Phase) return;
+    path.logRatio += logOf(pdf(guide, darts::PhaseScatterer{vertex.medium->phase, vertex.before})) - logOf(way.pdf);
 }
 
 } // namespace tungsten::path

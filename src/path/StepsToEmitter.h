@@ -3,9 +3,13 @@
 // directions in media and from surfaces that reflect smoothly, elsewhere as the scene has them.
 
 #include "path/ArrivalBound.h"
+#include "path/PathGuides.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
+#include "path/StrategyBalance.h"
+#include "path/techniques/ShellChord.h"
 
+#include "transport/Balance.h"
 #include "transport/GuidedSteps.h"
 #include "transport/Sensor.h"
 #include "transport/Walk.h"
@@ -13,26 +17,9 @@
 namespace tungsten::path {
 
 class LightPaths;
-class ShellChord;
 
 /// Surfaces that light may be followed to: all lobes smooth, none transmits.
 bool endsReflectedLight(LobeMask lobes);
-
-/// Sampling by medium.
-struct PathGuides {
-    std::vector<darts::Guide> media;    ///< for scattering in it, and flights
-    std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
-    std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
-    std::vector<darts::Guide> view;     ///< for flights from the camera
-    std::vector<darts::Guide> plain;    ///< bounds in time alone, where refraction hides where light goes
-
-    /// Of directions, in use: one for every medium that has one.
-    [[nodiscard]] size_t tables() const {
-        return size_t(std::count_if(media.begin(), media.end(), [](const darts::Guide& guide) {
-            return guide.settings().direction == darts::Direction::Eda;
-        }));
-    }
-};
 
 /// What guided paths share.
 struct GuidedContext {
@@ -46,6 +33,7 @@ struct GuidedContext {
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite
     bool forwardBoundaries;            ///< connections must look through index-matched surfaces
     const PassWatch& watch;
+    StrategyBalance balance{}; ///< of guided paths beside plain ones
 };
 
 class StepsToEmitter : public transport::GuidedSteps {
@@ -58,12 +46,42 @@ class StepsToEmitter : public transport::GuidedSteps {
           choosesTarget_(guided.targets != nullptr) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
-    transport::Ahead ahead(PathState& path);
+    transport::Ahead ahead(PathState& path) { return ahead(path, nullptr); }
     transport::Flight flight(PathState& path, const transport::Ahead& ahead);
     bool canArrive(PathState& path, const transport::WalkVertex& vertex);
     int copies(PathState& path, const transport::WalkVertex& vertex);
     std::optional<transport::Way> way(PathState& path, const transport::WalkVertex& vertex);
-    bool survives(PathState&) { return true; }
+    bool survives(PathState& path);
+
+    // The same steps asked of a plain path (PlainTrail): where it went, and how densely guided ones would have. `path`
+    // has the throughput that a guided path would have there.
+    /// ahead(), where the surface that ends the flight may be known.
+    transport::Ahead ahead(PathState& path, const SurfaceHit* known);
+    [[nodiscard]] bool hasDensities() const { return guided_->balance.both(); }
+    /// What copies() is on the average, without drawing.
+    float expectedCopies(const PathState& path, const transport::WalkVertex& vertex);
+    /// way(), for the direction in which a plain path left: adds to the path's logRatio.
+    void leaveAlong(PathState& path, const transport::WalkVertex& vertex, const transport::Way& way);
+
+    // Of the flight at hand, and of paths that end on it: logarithms of densities, guided over plain.
+    /// Of paths whose last vertex is in the medium, at one distance: per length, of own vertices that connect and of
+    /// control vertices that are traced; and the logarithm.
+    struct InMedium {
+        float own = 0.0f, control = 0.0f, logRatio = 0.0f;
+        [[nodiscard]] float shareOfControl() const { return transport::balance(control, own); }
+    };
+    [[nodiscard]] InMedium inMedium(float distance) const;
+    /// Of one whose last vertex is the surface ahead, which guided paths see whether or not they go there.
+    [[nodiscard]] float logRatioOnSurface() const;
+    /// Of a plain path's way up to the end of its flight.
+    [[nodiscard]] float logRatioThere(const transport::Flight& flight) const;
+    /// Per length, of control vertices that are traced, and of the path's own vertices.
+    [[nodiscard]] float controlVertexDensity(float distance) const;
+    [[nodiscard]] float vertexDensity(float distance) const;
+    /// The probability that a control vertex there is traced; `onward` is the direction of its connection.
+    [[nodiscard]] float chance(const darts::ControlVertex& vertex, const Vec3f& onward) const;
+    /// Where control vertices of a flight that takes no time may be.
+    [[nodiscard]] ShellChord controlChord(const Ray& ray, const Region& region, float surface) const;
 
     [[nodiscard]] const PathTarget& target() const { return *target_; }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
@@ -97,10 +115,35 @@ class StepsToEmitter : public transport::GuidedSteps {
 
   private:
     // What lies ahead.
-    transport::Ahead aheadInEmpty(PathState& path, const Medium* medium);
-    transport::Ahead aheadInMedium(PathState& path, const Medium& medium);
-    transport::Ahead aheadUntimed(PathState& path, const Medium& medium);
+    transport::Ahead aheadInEmpty(PathState& path, const Medium* medium, const SurfaceHit* known);
+    transport::Ahead aheadInMedium(PathState& path, const Medium& medium, const SurfaceHit* known);
+    transport::Ahead aheadUntimed(PathState& path, const Medium& medium, const SurfaceHit* known);
+    /// The surface ahead, up to the end of the ray.
+    std::optional<SurfaceHit> see(const Ray& ray, const SurfaceHit* known);
     transport::Flight flyUntimed(PathState& path, const transport::Ahead& ahead);
+    transport::Flight flyGuided(PathState& path, const transport::Ahead& ahead);
+    /// Distances of a flight that takes no time: the surface by its transmittance; in the medium one from which light
+    /// may still arrive, half of them by transmittance, half by angle.
+    struct Untimed {
+        /// `distance`: of the surface.
+        Untimed(const Vec3f& toTarget, const Vec3f& direction, double reach, const Medium& medium, float distance);
+        [[nodiscard]] double sample(double u, float half) const;
+        [[nodiscard]] double pdf(double t) const; ///< per length
+
+        ShellChord chord;     ///< in the medium
+        float surface = 0.0f; ///< its probability
+
+      private:
+        [[nodiscard]] darts::ConnectionLength<double> flights() const {
+            return {chord.begin(), chord.end() - chord.begin(), double(meanComponent(medium_->sigmaT()))};
+        }
+        const Medium* medium_;
+    };
+    [[nodiscard]] Untimed untimed(const Ray& ray, const Medium& medium, float distance) const;
+    [[nodiscard]] float surfaceProbability() const;
+    [[nodiscard]] float plainSurfaceProbability() const;
+    /// The flight as plain paths have it.
+    [[nodiscard]] FlightSample plainly(const transport::Flight& flight) const;
 
     /// What may still come from `position`, at the present time and in the present region.
     void lookAheadFrom(const PathState& path, const Vec3f& position);
@@ -110,7 +153,14 @@ class StepsToEmitter : public transport::GuidedSteps {
     void chooseTarget(PathState& path);
     /// The target's usefulness from the ray's origin, per area of its emitter; logarithm, NoUse if there is none.
     [[nodiscard]] float logUsefulTarget(const PathState& path);
-    bool passesRoulette(PathState& path, const darts::Guide& guide);
+    /// How many copies go on: with a probability, or as many.
+    struct Onward {
+        float survival = 1.0f;
+        int copies = 1;
+    };
+    Onward onward(const PathState& path, const transport::WalkVertex& vertex);
+    [[nodiscard]] darts::ResponseAt response(double time) const;
+    [[nodiscard]] const darts::Guide& guideOfFlight(const PathState& path) const;
     [[nodiscard]] bool guidesSurface() const { return surfaceGuide_ && residual().alive(); }
 
     transport::Way leaveMedium(PathState& path, const transport::WalkVertex& vertex);
@@ -127,8 +177,13 @@ class StepsToEmitter : public transport::GuidedSteps {
     bool choosesTarget_;     ///< until it is final
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;
-    darts::Heading heading_{};
     const darts::Guide* surfaceGuide_ = nullptr;
+    // The flight at hand.
+    darts::Heading heading_{};
+    const Medium* medium_ = nullptr;
+    float reach_ = 0.0f;                                      ///< of the surface ahead
+    PathState start_{Sampler(0, RandomStream::Camera, 0, 0)}; ///< of the path, where it begins
+    std::optional<darts::DistanceDensity> distances_;
 };
 
 } // namespace tungsten::path

@@ -35,6 +35,26 @@ inline constexpr float LeastPoint = 0.3f;
 /// Bench: study bodies
 inline constexpr float WidestGate = 8.0f;
 
+// --- Plain and guided paths side by side -----------------------------------------------------------------------------
+
+/// Contributions, as many of one size as are worth them, by which a pilot may choose; another share than one half must
+/// be so much better; below this one only where plain paths have found as many themselves. (Without the second a pilot
+/// of 10 ms loses up to 11 times, with it 2.7.)
+inline constexpr double LeastEffective = 20.0, BetterThanHalf = 1.0 / 1.1, LeastUnjudged = 0.2;
+/// Pixels of a pilot, of four paths each: at first, and at most; it ends where LeastEffective has been found ten times.
+inline constexpr size_t FewestPilotPixels = 1024, MostPilotPixels = 8192;
+/// And its counted cost at most, in nanoseconds.
+inline constexpr double MostPilotCost = 1e8;
+/// What paths cost, in nanoseconds: of plain and guided ones. Rays are dearer by so much for each doubling of the
+/// number of triangles. Bench: counted over CPU seconds, which statistics report ("counted cost").
+struct Rates {
+    double vertex, ray, connection, controlVertex;
+};
+inline constexpr Rates PlainRates{95.0, 110.0, 20.0, 0.0}, GuidedRates{290.0, 210.0, 115.0, 400.0};
+inline constexpr double RayCostByLog = 12.0;
+/// And to keep a plain path and its vertices, and of the densities of one of them.
+inline constexpr double TrailCost = 80.0, TrailVertexCost = 40.0, DensityCost = 550.0;
+
 // --- Light paths -----------------------------------------------------------------------------------------------------
 
 /// Light paths of a pass, a quarter of its samples within these. Bench: study cbox-128

@@ -27,6 +27,7 @@ struct PathState {
     Region region{};      ///< medium and speed along it
     Rgb throughput{1.0f}; ///< the path's contribution per channel over its density; walks from lights may hold power
     ChannelDensities channels{1.0f}; ///< of plain flights
+    float logRatio = 0.0f;           ///< log of the density of guided paths up to here over that of plain ones
     double time = 0.0;               ///< of flight so far; stands still while `timed` is false
     int interactions = 0;            ///< surfaces met, index-matched ones included, and scatterings in media
     int flights = 0;                 ///< in scattering media since the last surface

@@ -9,7 +9,7 @@ namespace tungsten::test {
 namespace {
 
 Method switched(const std::string& name, const std::string& fields) {
-    return guidedPathMethod(name, {R"(darts={"preset": "best", )" + fields + "}"}, 5);
+    return guidedPathMethod(name, {R"(darts={"preset": "best", "plain_share": 0, )" + fields + "}"}, 5);
 }
 
 void expectAgreement(const AgreementScene& scene, const Method& method, const BlockMeans& reference) {
@@ -20,7 +20,9 @@ void expectAgreement(const AgreementScene& scene, const Method& method, const Bl
 }
 
 const Method Plain = pathMethod("plain", {}, 1),
-             Best = guidedPathMethod("best", {"darts=best"}, 4, 0.125); // hardly noisier than plain ones
+             // Hardly noisier than plain ones; beside plain ones, in between.
+    Best = guidedPathMethod("best", {R"(darts={"plain_share": 0})"}, 4, 0.125),
+             BesidePlain = guidedPathMethod("beside plain", {R"(darts={"plain_share": 0.2})"}, 8, 0.6);
 
 class SwitchesAlone : public testing::TestWithParam<const char*> {};
 
@@ -38,8 +40,10 @@ TEST_P(SwitchesAlone, AgreeWithPlainPaths) {
                                 switched("diffusion", R"("greens_function": "diffusion")")};
     if (!glass) {
         expectAgreement(scene, guidedPathMethod("guiding only", {"enable_guiding=true"}, 2), reference);
-        for (const char* direction : {"phase", "eda", "ris"})
+        for (const char* direction : {"phase", "eda"})
             methods.push_back(switched(direction, R"("direction": ")" + std::string(direction) + "\""));
+        methods.push_back(guidedPathMethod(
+            "ris", {R"(darts={"preset": "published", "direction": "ris", "length_first": true, "bounded": true})"}, 5));
     }
     // Through glass they are as noisy as plain paths, else much less so.
     if (!glass) scene.effort.pathSamples /= 4;
@@ -102,7 +106,8 @@ TEST_P(GuidedRoom, AgreesWithPlainPaths) {
     AgreementScene scene = builtScene(GetParam().name, fogRoom(GetParam().light), 0.1, {32, 32, 0, 0});
     scene.overrides = GetParam().overrides;
     for (const std::string& field : GetParam().settings) scene.overrides.push_back("integrator." + field);
-    expectAgreement(scene, Best, renderBlocks(scene, Plain));
+    const BlockMeans reference = renderBlocks(scene, Plain);
+    for (const Method& method : {Best, BesidePlain}) expectAgreement(scene, method, reference);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, GuidedRoom, testing::ValuesIn(roomCases()),

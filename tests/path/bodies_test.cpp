@@ -7,6 +7,8 @@
 namespace tungsten::path {
 namespace {
 
+const std::string GuidedAlone = R"(integrator.darts={"plain_share": 0})";
+
 using test::renderPaths;
 
 /// A block of unit mean free path, 60 wide, lit and seen from far above; frames of 10 from `start` after the light that
@@ -94,8 +96,8 @@ TEST(Bodies, GuidedPathsAgreeWithPlainOnesSeenFromAfar) {
         const std::string scene = cubeScene(c.medium, c.haze);
         double mean[2], error[2];
         for (const bool guided : {false, true}) {
-            const auto rendered = renderPaths(
-                scene, {{guided ? "integrator.darts=best" : "integrator.darts=off"}, guided ? 48u : 128u, 16, 7});
+            const auto rendered =
+                renderPaths(scene, {{guided ? GuidedAlone : "integrator.darts=off"}, guided ? 48u : 128u, 16, 7});
             const Image variance = rendered->film.standardError(0);
             double sum = 0.0;
             for (const Rgb& pixel : variance.pixels) sum += double(meanComponent(pixel)) * double(meanComponent(pixel));
@@ -126,9 +128,8 @@ TEST(Bodies, PathsThatEnterChooseAmongPointsOfALampUnlessTheGateIsWide) {
     for (const double width : {0.05, 0.5}) { // 2 and 20 transport mean free paths
         double mean[2], error[2];
         for (const bool guided : {false, true}) {
-            const auto rendered =
-                renderPaths(underALamp(width),
-                            {{guided ? "integrator.darts=best" : "integrator.darts=off"}, guided ? 64u : 512u, 16, 8});
+            const auto rendered = renderPaths(
+                underALamp(width), {{guided ? GuidedAlone : "integrator.darts=off"}, guided ? 64u : 512u, 16, 8});
             mean[guided] = rendered->mean();
             error[guided] = rendered->pixelError(0) / 3.0;
             for (const char* counter : {"points of lights chosen anew", "control vertices"})
@@ -180,7 +181,7 @@ TEST(Bodies, GuidedControlVerticesThatRouletteKeepsAreWeighedUp) {
         "integrator": {"type": "path_tracer", "min_bounces": 4, "max_bounces": 5, "transient_time_center": 1094,
                        "transient_time_width": 8}, "renderer": {}})");
     const auto plain = test::renderPathFile(scene, {{"integrator.darts=off"}, 16, 5000, 9});
-    const auto guided = test::renderPathFile(scene, {{"integrator.darts=best"}, 16, 12000, 9});
+    const auto guided = test::renderPathFile(scene, {{GuidedAlone}, 16, 12000, 9});
     EXPECT_GT(guided->statistics.counter("control vertices"), 0u);
     const double error = std::hypot(plain->pixelError(), guided->pixelError());
     EXPECT_NEAR(guided->mean(), plain->mean(), 4.5 * error);

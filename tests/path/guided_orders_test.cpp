@@ -16,16 +16,24 @@ using test::VerifiedValue;
 struct Sampling {
     std::string name;
     std::vector<std::string> fields;
-    /// Relative allowance beside the standard error: directions that ignore the connection's weight have a heavy tail.
+    /// Relative allowance beside the standard error: directions that ignore the connection's weight have a heavy tail,
+    /// and guides alone, whose directions suit its median length, where the gate holds the straight way; beside plain
+    /// paths they have none.
     double slack;
     uint32_t samples = 5000; ///< per pass
 };
 
-std::string switches(const std::string& fields) {
-    return R"(integrator.darts={"preset": "best", )" + fields + "}";
+/// Guided paths alone, unless `plainShare` says so.
+std::string switches(const std::string& fields, const std::string& preset = "best",
+                     const std::string& plainShare = "0") {
+    return R"(integrator.darts={"preset": ")" + preset + R"(", "plain_share": )" + plainShare +
+           (fields.empty() ? "" : ", " + fields) + "}";
 }
 
-const std::vector<Sampling> Presets{{"Best", {"integrator.darts=best"}, 0.0},
+const std::vector<Sampling> Presets{{"Best", {switches("")}, 0.01},
+                                    {"BesideFewPlain", {switches("", "best", "0.1")}, 0.01},
+                                    {"BesidePlain", {switches("", "best", "0.5")}, 0.01},
+                                    {"BestByPilot", {"integrator.darts=best"}, 0.01},
                                     {"Published", {"integrator.darts=published"}, 0.01}};
 
 const std::vector<Sampling> Switches{
@@ -33,14 +41,16 @@ const std::vector<Sampling> Switches{
     {"EllipticalOnly", {"integrator.enable_elliptical=true"}, 0.02},
     {"PhaseDirections", {switches(R"("direction": "phase")")}, 0.02, 40000},
     {"EdaDirections", {switches(R"("direction": "eda")")}, 0.01},
-    {"ConnectionLobe", {switches(R"("direction": "connection")")}, 0.0},
-    {"DirectionRis", {switches(R"("direction": "ris")")}, 0.0},
-    {"Unbounded", {switches(R"("bounded": false)")}, 0.0},
-    {"PlainDistances", {switches(R"("distance": "plain")")}, 0.0},
-    {"Causal", {switches(R"("greens_function": "causal")")}, 0.0},
-    {"Diffusion", {switches(R"("greens_function": "diffusion")")}, 0.0},
-    {"LengthLast", {switches(R"("length_first": false)")}, 0.01},
-    {"NoRoulette", {switches(R"("roulette": 0)")}, 0.0},
+    {"ConnectionLobe", {switches(R"("direction": "connection")")}, 0.01},
+    {"DirectionRis",
+     {switches(R"("direction": "ris", "length_first": true, "bounded": true, "overlap": true)", "published")},
+     0.0},
+    {"Unbounded", {switches(R"("bounded": false)")}, 0.01},
+    {"PlainDistances", {switches(R"("distance": "plain")")}, 0.01},
+    {"Causal", {switches(R"("greens_function": "causal")")}, 0.01},
+    {"Diffusion", {switches(R"("greens_function": "diffusion")")}, 0.01},
+    {"LengthFirst", {switches(R"("direction": "connection", "length_first": true)", "published")}, 0.01},
+    {"NoRoulette", {switches(R"("roulette": 0)")}, 0.01},
 };
 
 std::unique_ptr<test::Rendered> renderOrder(const VerifiedValue& value, const Sampling& sampling) {

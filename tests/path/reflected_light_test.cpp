@@ -110,8 +110,8 @@ TEST_P(WithReflectedLight, MeansAreAsWithout) {
     // Three vertices are the fewest that reflected light takes part in.
     const std::vector<std::string> limits{"integrator.min_bounces=3", "integrator.max_bounces=4"};
     std::vector<std::string> with = limits, without = limits;
-    with.push_back(R"(integrator.darts={"preset": "best"})");
-    without.push_back(R"(integrator.darts={"preset": "best", "surface_connections": false})");
+    with.push_back(R"(integrator.darts={"plain_share": 0})");
+    without.push_back(R"(integrator.darts={"plain_share": 0, "surface_connections": false})");
     const std::string scene = corner(room.light, room.thick);
     const Estimate a = estimate(scene, with, 200), b = estimate(scene, without, 400);
     const double error = std::hypot(a.error, b.error);

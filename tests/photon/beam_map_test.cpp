@@ -126,7 +126,7 @@ TEST_F(CornellFog, BeamsAgreeWithPathsAndPoints) {
     const test::OtherSeeds seeds(1);
     const auto beams = photons("beams", 26);
     // Plain paths are as noisy with four times as many samples.
-    expectSame(*beams, *paths("best", 20, 1024), 0.02, 0.15);
+    expectSame(*beams, *paths(R"({"plain_share": 0})", 20, 1024), 0.02, 0.15);
     // The same seed gives the same light paths and surface photons: only the fog's estimate differs.
     expectSame(*beams, *photons("points", 26), 0.01, 0.15);
     EXPECT_GT(beams->statistics.counter("gathered beams"), 100000u);

@@ -196,16 +196,18 @@ TEST(GlossySurfaces, ShowFog) {
                           "integrator.max_bounces=3",
                           "integrator.volume_gather_radius=0.1"};
     Overrides best = foggy;
-    best.push_back(BestPreset); // of plain paths the variance is infinite
+    best.push_back(BestPreset);
+    Overrides alone = foggy; // of plain paths the variance is infinite
+    alone.push_back(R"(integrator.darts={"plain_share": 0})");
     const auto [expected, pathError] = meanOverSeeds([&](uint64_t seed) {
-        return renderPaths(json, {best, 4, 64, seed});
+        return renderPaths(json, {alone, 8, 64, seed});
     });
     for (const char* primitive : {"points", "beams"}) {
         SCOPED_TRACE(primitive);
         Overrides maps = best;
         maps.push_back(std::string("integrator.volume_photon_type=") + primitive);
         const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
-            return renderPhotons(json, {maps, 10, 1, seed});
+            return renderPhotons(json, {maps, 24, 1, seed});
         });
         EXPECT_NEAR(mean, expected, 5.0 * std::hypot(error, pathError) + 0.02 * expected);
         EXPECT_LT(std::hypot(error, pathError), 0.05 * expected) << "the test would not see a wrong value";

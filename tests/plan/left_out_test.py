@@ -168,7 +168,7 @@ class LeftOut(unittest.TestCase):
 
     def test_all_shows_the_same(self):
         """Within errors where a lamp is left out; bit for bit where none is."""
-        for kind in ({}, {"type": "light_tracer"}, {"darts": "best"}, {"type": "transient_photon_map", **COUNTS}):
+        for kind in ({}, {"type": "light_tracer"}, {"darts": {"plain_share": 0}}, {"type": "transient_photon_map", **COUNTS}):
             scene = self.scene(**kind)
             self.assertEqual(self.effects(scene)["late emitters left out"]["causes"], ["primitives[1]"])
             self.assertFalse(self.effects(scene, "--effects", "all")["late emitters left out"]["on"])

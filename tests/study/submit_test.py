@@ -45,7 +45,7 @@ class Submit(unittest.TestCase):
         subprocess.run([TUNGSTEN, "--quiet", "-t", "2", "--resolution", "16x16", "-d", self.folder, "-o", "reference.png", "-e",
                         "reference.exr", "--set", "integrator.type=path_tracer", "--spp", "64", SCENE], check=True)
         (self.folder / "tiny.json").write_text(json.dumps({
-            "title": "Tiny", "baseline": "paths", "seconds": 0.1, "block": 4, "seeds": 3, "threads": 1,
+            "title": "Tiny", "baseline": "paths", "seconds": 0.6, "block": 4, "seeds": 3, "threads": 1,
             "scenes": [{"name": "fog", "path": str(SCENE), "resolution": [16, 16], "gate": [5.45, 5.75],
                         "reference": str(self.folder / "reference.exr")}],
             "methods": [{"name": "paths", "set": ["integrator.type=path_tracer"]},

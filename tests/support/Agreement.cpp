@@ -47,7 +47,7 @@ std::vector<Method> methodsUnderTest() {
         pathMethod("plain paths", {}, 1),
         photonMethod("plain points", {"volume_photon_type=points"}, 2),
         guidedPhotonMethod("published points", {"darts=published"}, 3, 0.3),
-        guidedPhotonMethod("best points", {"darts=best"}, 14, 0.15),
+        guidedPhotonMethod("best points", {"darts=best"}, 14, 0.25),
         beamMethod(photonMethod("plain beams", {}, 5), 0.15),
         beamMethod(guidedPhotonMethod("published beams", {"darts=published"}, 6), 0.12),
         beamMethod(guidedPhotonMethod("best beams", {"darts=best"}, 7), 0.08),

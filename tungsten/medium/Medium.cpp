@@ -44,6 +44,13 @@ FlightSample flightThatExits(const Homogeneous& medium, float distance, const Ch
     return {distance, true, transmittance / probability, probability, channels * transmittance / probability};
 }
 
+FlightSample flightThatCollides(const Homogeneous& medium, float distance, const ChannelDensities& channels) {
+    const Rgb sigma = medium.sigmaT(), transmittance = medium.transmittance(distance), density = sigma * transmittance;
+    if (medium.isGrey()) return {distance, false, medium.sigmaS() / sigma, density.x, channels};
+    const float pdf = meanComponent(channels * density);
+    return {distance, false, medium.sigmaS() * transmittance / pdf, pdf, channels * density / pdf};
+}
+
 /// A channel in proportion to the densities, and a number in [0, 1) of what is left of the random one.
 struct ChosenChannel {
     int index;
@@ -65,11 +72,7 @@ FlightSample sampleFlight(const Homogeneous& medium, float tMax, const ChannelDe
         medium.isGrey() ? ChosenChannel{0, float(bits >> 8) * 0x1p-24f} : chooseChannel(channels, bits);
     const Rgb sigma = medium.sigmaT();
     const float t = sigma[chosen] > 0.0f ? -std::log1p(-u) / sigma[chosen] : Infinity;
-    if (t >= tMax) return flightThatExits(medium, tMax, channels);
-    const Rgb density = sigma * medium.transmittance(t);
-    if (medium.isGrey()) return {t, false, medium.sigmaS() / sigma, density.x, channels};
-    const float pdf = meanComponent(channels * density);
-    return {t, false, medium.sigmaS() * medium.transmittance(t) / pdf, pdf, channels * density / pdf};
+    return t >= tMax ? flightThatExits(medium, tMax, channels) : flightThatCollides(medium, t, channels);
 }
 
 } // namespace
@@ -80,6 +83,10 @@ FlightSample sampleFlight(const Medium& medium, float tMax, const ChannelDensiti
 
 FlightSample flightThatExits(const Medium& medium, float distance, const ChannelDensities& channels) {
     return std::visit([&](const auto& m) { return flightThatExits(m, distance, channels); }, medium.model);
+}
+
+FlightSample flightThatCollides(const Medium& medium, float distance, const ChannelDensities& channels) {
+    return std::visit([&](const auto& m) { return flightThatCollides(m, distance, channels); }, medium.model);
 }
 
 float pdfFlight(const Medium& medium, float distance, const ChannelDensities& channels) {

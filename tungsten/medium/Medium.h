@@ -91,6 +91,8 @@ struct FlightSample {
 FlightSample sampleFlight(const Medium& medium, float tMax, const ChannelDensities& channels, Sampler& sampler);
 /// The same flight without a collision up to `distance`, where its end is known to lie beyond.
 FlightSample flightThatExits(const Medium& medium, float distance, const ChannelDensities& channels);
+/// The same flight with a collision at `distance`.
+FlightSample flightThatCollides(const Medium& medium, float distance, const ChannelDensities& channels);
 /// Density per length of a collision at `distance`.
 float pdfFlight(const Medium& medium, float distance, const ChannelDensities& channels = ChannelDensities(1.0f));
 /// Probability of passing `distance` without collision.

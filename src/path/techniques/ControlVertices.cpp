@@ -3,8 +3,6 @@
 #include "path/techniques/EmitterConnections.h"
 #include "path/techniques/ShellChord.h"
 
-#include "transport/Balance.h"
-
 namespace tungsten::path {
 
 namespace {
@@ -20,21 +18,21 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
     const Rgb light = path.target().intensity(-way->direction);
     if (isBlack(light)) return;
     const float phase = medium.phase.eval(state.ray.direction, way->direction);
-    const float chance =
-        path.steps.guideOf(state.region).chance(path.steps.residual(), darts::vec3(state.ray.direction), vertex, phase);
+    const float chance = path.steps.chance(vertex, way->direction);
     state.random.at(state.interactions + 1, Draw::ControlVertex);
     if (chance < 1.0f && !(path.next() < chance)) return;
     const float clear = path.target().vertex.margin().before(way->direction, way->distance);
     const Visibility visibility = path.connector().visibility({position, way->direction, 0.0f, clear}, way->distance,
                                                               state.region, path.counters.shadowRays);
     if (isBlack(visibility.transmittance) || !visibility.oneSpeed || !path.counts(1 + visibility.crossings, 1)) return;
-    const float share = ControlVertices::share(path, medium, vertex.distance);
-    const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * share / chance;
+    const auto ending = ControlVertices::ending(path, medium, vertex.distance);
+    const float weight = phase / sqr(vertex.toTarget) * vertex.inversePdf * ending.shareOfControl() / chance *
+                         ConnectionsFromMedia::share(path, position, phase);
     const Rgb radiance = state.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * light *
                          visibility.transmittance * weight;
     // A delta gate is one of time, the connection's weight dt/dS one of length.
     path.sink.addInside(path.context.sensor.gate.delta ? radiance * state.region.speed : radiance, arrival,
-                        *path.target().emitter);
+                        *path.target().emitter, ending.logRatio);
 }
 
 } // namespace
@@ -58,10 +56,8 @@ void ControlVertices::sampleUntimed(const GuidedPath& path, const transport::Ahe
     if (!path.steps.guideOf(state.region).settings().elliptical) return;
     const TimeGate& gate = path.context.sensor.arrivals;
     const PathTarget& target = path.target();
-    const double speed = double(state.region.speed), low = speed * (gate.start - target.start),
-                 high = speed * (gate.end() - target.start);
-    const ShellChord chord(target.vertex.position() - state.ray.origin, state.ray.direction, low, high,
-                           double(ahead.reach()));
+    const double speed = double(state.region.speed), low = speed * (gate.start - target.start);
+    const ShellChord chord = path.steps.controlChord(state.ray, state.region, ahead.reach());
     const auto addAt = [&](double t, double inversePdf) {
         const double toTarget = double((target.vertex.position() - state.ray.at(float(t))).length());
         add(path, *ahead.medium, {float(t), float(toTarget), float(inversePdf)}, toTarget / speed + target.start);
@@ -77,9 +73,12 @@ void ControlVertices::sampleUntimed(const GuidedPath& path, const transport::Ahe
     }
 }
 
-float ControlVertices::share(const GuidedPath& path, const Medium& medium, float distance) {
-    const auto own = density(path, distance);
-    return own ? transport::balance(*own, ConnectionsFromMedia::density(medium, distance)) : 1.0f;
+StepsToEmitter::InMedium ControlVertices::ending(const GuidedPath& path, const Medium& medium, float distance) {
+    if (path.steps.hasDensities()) return path.steps.inMedium(distance);
+    if (!path.steps.guideOf(path.state.region).settings().elliptical) return {1.0f, 0.0f};
+    const auto control = path.steps.controlVertexPdf(distance);
+    return control ? StepsToEmitter::InMedium{ConnectionsFromMedia::density(medium, distance), *control}
+                   : StepsToEmitter::InMedium{0.0f, 1.0f};
 }
 
 } // namespace tungsten::path

@@ -26,9 +26,11 @@ float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float
 
 } // namespace
 
-void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium, float controlShare) {
+void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
+                                   const StepsToEmitter::InMedium& ending) {
     PathState& state = path.state;
     if (path.steps.residual().exit.sealed) return;
+    const float controlShare = ending.shareOfControl();
     if (controlShare == 1.0f && path.context.bound.oneSpeed()) return; // control vertices find it
     ++path.counters.connections;
     const auto way = path.wayInTime(state.ray.origin, state.time);
@@ -37,10 +39,15 @@ void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
     const auto connection = path.connector().connect(
         vertex, state.throughput, transport::connectionEnd(*way, path.target()), path.counters.shadowRays);
     if (!connection || !path.counts(connection->crossings, 0)) return;
-    const float share = connection->oneSpeed ? 1.0f - controlShare : 1.0f;
+    const float share = (connection->oneSpeed ? 1.0f - controlShare : 1.0f) *
+                        ConnectionsFromMedia::share(path, state.ray.origin, vertex.pdf(way->direction));
     if (share > 0.0f)
         path.sink.add(connection->throughput * share, state.time + connection->time + path.target().start,
-                      *path.target().emitter);
+                      *path.target().emitter, ending.logRatio, Found::OnWay);
+}
+
+float ConnectionsFromMedia::share(const GuidedPath& path, const Vec3f& position, float pdf) {
+    return path.steps.hasDensities() ? path.target().shareOfConnection(position, pdf) : 1.0f;
 }
 
 void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
@@ -55,10 +62,10 @@ void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& 
         path.connector().connect(vertex, throughput, transport::connectionEnd(*way, target), path.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
-    const float lightPdf = target.pdfFrom(hit.position, target.vertex.position(), target.vertex.margin().normal);
-    float weight = lightPdf > 0.0f ? transport::powerHeuristic(lightPdf, vertex.pdf(way->direction)) : 1.0f;
+    float weight = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
     if (connection->crossings == 0) weight *= shareOfWalk(path, vertex, hit.t, *way);
-    path.sink.add(connection->throughput * weight, time + connection->time + target.start, *target.emitter);
+    path.sink.add(connection->throughput * weight, time + connection->time + target.start, *target.emitter,
+                  path.logRatioOnSurface(vertex.lobes()));
 }
 
 float ConnectionsFromSurfaces::density(const GuidedPath& path, const transport::Vertex& vertex, float length) {
@@ -68,16 +75,17 @@ float ConnectionsFromSurfaces::density(const GuidedPath& path, const transport::
 void EmittersMet::add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput) {
     const PathTarget& target = path.target();
     if (target.index < 0 || path.scene().primitives[hit.shape].emitter != target.index) return;
-    if (path.state.last.kind == transport::LastVertex::Kind::Medium || !path.counts(0, 0))
+    using Kind = transport::LastVertex::Kind;
+    if ((path.state.last.kind == Kind::Medium && !path.steps.hasDensities()) || !path.counts(0, 0))
         return; // connections from media find it
     const Rgb radiance = emittedRadiance(*target.emitter, hit.uv, hit.ng, -path.state.ray.direction);
     if (isBlack(radiance)) return;
     float weight = 1.0f;
-    if (path.state.last.kind == transport::LastVertex::Kind::Surface)
+    if (path.state.last.kind != Kind::Specular)
         weight =
             transport::powerHeuristic(density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng));
     path.sink.add(throughput * radiance * (weight / target.probability), path.state.timeAfter(hit.t) + target.start,
-                  *target.emitter);
+                  *target.emitter, path.steps.logRatioOnSurface());
 }
 
 } // namespace tungsten::path

@@ -10,7 +10,9 @@ namespace tungsten::path {
 /// From vertices in media.
 struct ConnectionsFromMedia {
     /// From the ray's origin, less the share of control vertices.
-    static void connect(const GuidedPath& path, const Medium& medium, float controlShare);
+    static void connect(const GuidedPath& path, const Medium& medium, const StepsToEmitter::InMedium& ending);
+    /// The part of connections that is not left to emitters that are met; `pdf` is the phase function's.
+    [[nodiscard]] static float share(const GuidedPath& path, const Vec3f& position, float pdf);
     /// Per length, for weights, of the walk's flights that end at `distance`.
     [[nodiscard]] static float density(const Medium& medium, float distance) {
         return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
@@ -29,7 +31,7 @@ struct ConnectionsFromSurfaces {
 struct EmittersMet {
     /// Light that the surface at the end of the ray emits, if it is the target's; `throughput` includes the way there.
     static void add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
-    /// Per solid angle at the last vertex, a surface.
+    /// Per solid angle at the last vertex, by its own distribution.
     [[nodiscard]] static float density(const GuidedPath& path) { return path.state.last.pdf; }
 };
 

@@ -56,7 +56,7 @@ void ReflectedConnections::connect(const GuidedPath& path, const transport::Vert
     if (inMedium) transmittance = transmittance * path.scene().medium(state.region)->sigmaS();
     const double time = connection->time + double(light.length()) / double(state.region.speed);
     path.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                  state.time + time + path.target().start, *path.target().emitter);
+                  state.time + time + path.target().start, *path.target().emitter, path.ratios.there);
 }
 
 float ReflectedConnections::density(const GuidedPath& path, float pdf, const transport::Straight& way, float areaPdf) {

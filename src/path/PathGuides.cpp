@@ -1,0 +1,35 @@
+#include "path/PathGuides.h"
+
+#include "path/Tuning.h"
+
+namespace tungsten::path {
+
+PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan,
+                          const PassWatch& watch) {
+    PathGuides guides;
+    watch.stage("guides of media", scene.media.size());
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        watch.poll();
+        const Medium& medium = scene.media[i];
+        darts::Settings settings =
+            scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
+        // Directions are guided for the sake of control vertices.
+        if (!medium.scatters() || plan.isOutOfTime(i) || (!settings.elliptical && !scheme.direction))
+            settings.direction = darts::Direction::Phase;
+        const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
+        guides.media.emplace_back(settings, coefficients);
+        guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
+        darts::Settings view = settings, surface = settings, glossy = settings;
+        if (!scheme.published) {
+            view.surfaceOdds = tuning::ViewSurfaceOdds;
+            surface.alpha = std::max(surface.alpha, tuning::SurfaceAlpha);
+            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
+        }
+        guides.view.emplace_back(view, coefficients);
+        guides.surfaces.emplace_back(surface, coefficients);
+        guides.glossy.emplace_back(glossy, coefficients);
+    }
+    return guides;
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,36 @@
+#pragma once
+// How guided camera paths sample in each medium, and from surfaces before it.
+
+#include "darts/Guide.h"
+#include "darts/Scheme.h"
+
+#include "tungsten/render/EffectPlan.h"
+#include "tungsten/render/PassWatch.h"
+#include "tungsten/scene/Scene.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace tungsten::path {
+
+/// Sampling by medium.
+struct PathGuides {
+    /// `plan`: media that light is out of time in are not guided in.
+    static PathGuides of(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan,
+                         const PassWatch& watch);
+
+    std::vector<darts::Guide> media;    ///< for scattering in it, and flights
+    std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
+    std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
+    std::vector<darts::Guide> view;     ///< for flights from the camera
+    std::vector<darts::Guide> plain;    ///< bounds in time alone, where refraction hides where light goes
+
+    /// Of directions, in use: one for every medium that has one.
+    [[nodiscard]] size_t tables() const {
+        return size_t(std::count_if(media.begin(), media.end(), [](const darts::Guide& guide) {
+            return guide.settings().direction == darts::Direction::Eda;
+        }));
+    }
+};
+
+} // namespace tungsten::path

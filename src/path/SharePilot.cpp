@@ -1,0 +1,102 @@
+#include "path/SharePilot.h"
+
+#include "path/Tuning.h"
+
+#include <unordered_map>
+
+namespace tungsten::path {
+
+void PixelSink::tellPilot(float value, int frame, float logRatio, Found found) {
+    if (value != 0.0f) pilot_->tell(value, frame, logRatio, found);
+}
+
+StrategyBalance PathCosts::ofTime(double plainTime) const {
+    if (plainTime >= 1.0) return {1.0f, 0.0f};
+    const double ofPlain = plainTime / (plain + densities), ofGuided = (1.0 - plainTime) / guided;
+    const auto share = float(ofPlain / (ofPlain + ofGuided));
+    return {share, 1.0f - share};
+}
+
+double PathCosts::mean(const StrategyBalance& balance) const {
+    if (balance.guided == 0.0f) return plain;
+    return double(balance.plain) * (plain + densities) + double(balance.guided) * guided;
+}
+
+double SharePilot::effective(Strategy strategy) const {
+    double sum = 0.0, squares = 0.0;
+    for (size_t i = 0; i < paths_.size(); ++i) {
+        if (strategy != Strategy::Alone && paths_[i].strategy != strategy) continue;
+        for (size_t k = paths_[i].first; k < end(i); ++k) {
+            const double value = weighed(found_[k], paths_[i].strategy, Halves);
+            sum += value;
+            squares += value * value;
+        }
+    }
+    return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+/// Second moments at other shares, from contributions c at the pilot's own: E[sum c_k c'_k + 2 sum_(j<k) c_k c'_j],
+/// where c' are those at the shares in question, since pairs on one way are found as densely as the longer path. What
+/// guided paths find beside their way they find in pairs alone. Less the squares of means, by independent halves.
+double SharePilot::variance(const StrategyBalance& balance) const {
+    struct Before {
+        double onWay = 0.0, aside = 0.0; ///< of what the path has found in this frame
+    };
+    std::unordered_map<int, Before> before;
+    std::unordered_map<int, std::array<double, 2>> halves;
+    double seconds = 0.0, squaredMeans = 0.0;
+    const double guidedFactor = double(balance.guided) / double(Halves.guided);
+    for (size_t i = 0; i < paths_.size(); ++i) {
+        const Strategy strategy = paths_[i].strategy;
+        before.clear();
+        if (i % PathsOfPixel == 0) halves.clear();
+        for (size_t k = paths_[i].first; k < end(i); ++k) {
+            const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
+            Before& frame = before[found_[k].frame];
+            seconds += here * there + 2.0 * here * frame.onWay + 2.0 * there * frame.aside;
+            if (found_[k].found == Found::OnWay)
+                frame.onWay += there;
+            else
+                frame.aside += there * guidedFactor;
+            halves[found_[k].frame][(i % PathsOfPixel) / 2] += 0.5 * here;
+        }
+        if (i % PathsOfPixel == PathsOfPixel - 1)
+            for (const auto& [frame, half] : halves) squaredMeans += half[0] * half[1] * double(PathsOfPixel);
+    }
+    return std::max(seconds - squaredMeans, 0.01 * seconds) / std::max(double(paths_.size()), 1.0);
+}
+
+double SharePilot::ownSecondMoment(Strategy strategy) const {
+    std::unordered_map<int, double> frames;
+    double squares = 0.0, paths = 0.0;
+    for (size_t i = 0; i < paths_.size(); ++i) {
+        if (paths_[i].strategy != strategy) continue;
+        paths += 1.0;
+        frames.clear();
+        for (size_t k = paths_[i].first; k < end(i); ++k) frames[found_[k].frame] += double(found_[k].value);
+        for (const auto& [frame, sum] : frames) squares += sum * sum;
+    }
+    return paths > 0.0 ? squares / paths : 0.0;
+}
+
+double SharePilot::choose(const PathCosts& costs, double alone) const {
+    constexpr double Half = 0.5;
+    if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;
+    const bool plainIsJudged = effective(Strategy::Plain) >= tuning::LeastEffective;
+    const auto score = [&](double time) {
+        const StrategyBalance balance = costs.ofTime(time);
+        return variance(balance) * costs.mean(balance) * (time == 1.0 ? alone : 1.0);
+    };
+    const double half = score(Half);
+    double best = Half, least = tuning::BetterThanHalf * half;
+    for (const double time : Times) {
+        if (time == Half || (time < tuning::LeastUnjudged && !plainIsJudged)) continue;
+        if (const double other = score(time); other < least) {
+            least = other;
+            best = time;
+        }
+    }
+    return best;
+}
+
+} // namespace tungsten::path

@@ -1,0 +1,74 @@
+#pragma once
+// How much time plain and guided paths get: a few paths of both, before the first pass, tell what either costs and how
+// much the image would vary at any share (docs/method.md, section 11).
+
+#include "path/PixelSink.h"
+
+#include <array>
+#include <vector>
+
+namespace tungsten::path {
+
+/// What a plain path costs alone, what its densities cost, and what a guided path costs; in one unit.
+struct PathCosts {
+    double plain = 1.0, densities = 0.0, guided = 1.0;
+
+    /// Plain's share of the paths if it has this share of the time.
+    [[nodiscard]] StrategyBalance ofTime(double plainTime) const;
+    /// Of a path, on the average.
+    [[nodiscard]] double mean(const StrategyBalance& balance) const;
+};
+
+class SharePilot {
+  public:
+    /// Of the time, that plain paths may get; 1: all paths are plain, and nothing is weighed.
+    static constexpr std::array<double, 5> Times{1.0, 0.75, 0.5, 0.25, 0.1};
+
+    /// Another path, of the pixel at hand; they come in groups of PathsOfPixel: plain, guided, plain, guided.
+    static constexpr int PathsOfPixel = 4;
+    void begin(Strategy strategy) { paths_.push_back({strategy, found_.size()}); }
+    /// By the strategy's own estimate.
+    void tell(float value, int frame, float logRatio, Found found) {
+        found_.push_back({value, logRatio, frame, found});
+    }
+
+    /// How many contributions of their mean would have the same spread, of all that one strategy, or both together,
+    /// found.
+    [[nodiscard]] double effective(Strategy strategy) const;
+    /// Of the squared error of the image, per path and up to a factor.
+    [[nodiscard]] double variance(const StrategyBalance& balance) const;
+
+    /// E[squares of what a path of the strategy finds in a frame], by its own estimate and its own paths.
+    [[nodiscard]] double ownSecondMoment(Strategy strategy) const;
+
+    /// The share of time with the least variance x cost, unless too little has been found to tell. One half is safe;
+    /// less is only given to plain paths where they have found enough to be judged.
+    /// `alone`: the variance of plain paths that need no guided ones beside them, over that of those here.
+    [[nodiscard]] double choose(const PathCosts& costs, double alone = 1.0) const;
+
+  private:
+    struct Path {
+        Strategy strategy;
+        size_t first; ///< of what it found
+    };
+    struct Contribution {
+        float value, logRatio;
+        int frame;
+        Found found;
+    };
+    /// Both strategies have half of the pilot's paths.
+    static constexpr StrategyBalance Halves{0.5f, 0.5f};
+
+    [[nodiscard]] size_t end(size_t path) const {
+        return path + 1 < paths_.size() ? paths_[path + 1].first : found_.size();
+    }
+    [[nodiscard]] double weighed(const Contribution& contribution, Strategy strategy,
+                                 const StrategyBalance& balance) const {
+        return double(contribution.value) * double(balance.weight(strategy, contribution.logRatio));
+    }
+
+    std::vector<Path> paths_;
+    std::vector<Contribution> found_;
+};
+
+} // namespace tungsten::path

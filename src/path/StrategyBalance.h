@@ -1,0 +1,41 @@
+#pragma once
+// Plain and guided paths side by side, each weighed by how densely both together find what it has found
+// (docs/method.md, section 11).
+
+#include <algorithm>
+#include <cmath>
+
+namespace tungsten::path {
+
+enum class Strategy { Alone, Plain, Guided };
+
+/// Shares of the paths that are plain and guided, and weights of what they bring. A path X is found by plain paths with
+/// the density lambda_P, by guided ones with lambda_G = lambda_P e^L; either adds f / (plain lambda_P + guided
+/// lambda_G), which is its own estimate f / lambda times a weight. No contribution exceeds what plain paths bring, over
+/// `plain`.
+struct StrategyBalance {
+    float plain = 0.0f, guided = 1.0f; ///< sum 1
+
+    [[nodiscard]] bool both() const { return plain > 0.0f && guided > 0.0f; }
+    /// Of what a plain path has found, as its own estimate alone would have it; `logRatio` is L.
+    [[nodiscard]] float weightOfPlain(float logRatio) const {
+        return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));
+    }
+    [[nodiscard]] float weightOfGuided(float logRatio) const {
+        return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);
+    }
+    [[nodiscard]] float weight(Strategy strategy, float logRatio) const {
+        if (strategy == Strategy::Alone) return 1.0f;
+        return strategy == Strategy::Plain ? weightOfPlain(logRatio) : weightOfGuided(logRatio);
+    }
+    /// Guided paths end where plain ones are so much denser, which hardly ever happens (Markov: at most e^-EarlyOut of
+    /// them in each generation); plain paths that go where they do not need no densities from there on.
+    [[nodiscard]] bool endsGuided(float logRatio) const { return both() && logRatio < -EarlyOut; }
+
+    static constexpr float EarlyOut = 8.0f;
+
+  private:
+    static constexpr float Most = 80.0f; ///< of exponents
+};
+
+} // namespace tungsten::path

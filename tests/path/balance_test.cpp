@@ -1,0 +1,141 @@
+// Plain paths beside guided ones: what one of them finds, whoever it is, is weighed by how densely both find it.
+
+#include "path/SharePilot.h"
+
+#include "support/PathsAndPhotons.h"
+#include "support/Render.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::path {
+namespace {
+
+TEST(StrategyBalance, WeightsOfBothAddUpToTheContributionOverBothDensities) {
+    const StrategyBalance balance{0.25f, 0.75f};
+    for (const float logRatio : {-200.0f, -8.0f, -1.0f, 0.0f, 2.0f, 60.0f, 500.0f}) {
+        const double ratio = std::exp(std::clamp(double(logRatio), -80.0, 80.0)), both = 0.25 + 0.75 * ratio;
+        EXPECT_NEAR(balance.weight(Strategy::Plain, logRatio), 1.0 / both, 1e-5 / both);
+        EXPECT_NEAR(balance.weight(Strategy::Guided, logRatio), ratio / both, 1e-5 * ratio / both);
+        // In expectation each strategy brings its share of one.
+        EXPECT_NEAR(0.25 * double(balance.weight(Strategy::Plain, logRatio)) +
+                        0.75 * double(balance.weight(Strategy::Guided, logRatio)),
+                    1.0, 1e-5);
+        EXPECT_LE(balance.weight(Strategy::Plain, logRatio), 4.0001f);
+    }
+    EXPECT_EQ(balance.weight(Strategy::Alone, 3.0f), 1.0f);
+}
+
+TEST(PathCosts, SharesOfTimeAreThoseOfPathsByTheirCosts) {
+    const PathCosts costs{1.0, 0.5, 6.0};
+    const StrategyBalance balance = costs.ofTime(0.5);
+    EXPECT_NEAR(balance.plain * 1.5, balance.guided * 6.0, 1e-6);
+    EXPECT_NEAR(balance.plain + balance.guided, 1.0, 1e-6);
+    EXPECT_EQ(costs.ofTime(1.0).guided, 0.0f);
+    EXPECT_EQ(costs.mean(costs.ofTime(1.0)), 1.0) << "nothing is weighed where all paths are plain";
+    EXPECT_NEAR(costs.mean(balance), double(balance.plain) * 1.5 + double(balance.guided) * 6.0, 1e-6);
+}
+
+/// A pilot of paths that find X with the densities plain and guided ones have there: by a known distribution.
+SharePilot pilotOf(double plainFinds, double guidedFinds, int groups) {
+    SharePilot pilot;
+    const auto logRatio = float(std::log(guidedFinds / plainFinds));
+    for (int i = 0; i < groups * SharePilot::PathsOfPixel; ++i) {
+        Sampler sampler(1, RandomStream::Test, 0, uint64_t(i));
+        const bool guided = i % 2 == 1;
+        const double finds = guided ? guidedFinds : plainFinds;
+        pilot.begin(guided ? Strategy::Guided : Strategy::Plain);
+        if (double(sampler.next1D()) < finds) pilot.tell(float(1.0 / finds), 0, logRatio, Found::OnWay);
+    }
+    return pilot;
+}
+
+TEST(SharePilot, KnowsTheVarianceOfAnyShare) {
+    // A contribution of 1 / (a plain + b guided) with the probability a plain + b guided.
+    const SharePilot pilot = pilotOf(0.02, 0.3, 40000);
+    for (const StrategyBalance balance : {StrategyBalance{1.0f, 0.0f}, {0.5f, 0.5f}, {0.1f, 0.9f}}) {
+        const double finds = double(balance.plain) * 0.02 + double(balance.guided) * 0.3;
+        EXPECT_NEAR(pilot.variance(balance), 1.0 / finds - 1.0, 0.1 * (1.0 / finds - 1.0));
+    }
+}
+
+TEST(SharePilot, ChoosesByVarianceTimesCost) {
+    const PathCosts costs{1.0, 0.3, 5.0};
+    EXPECT_EQ(pilotOf(0.3, 0.25, 4000).choose(costs), 1.0) << "guides are of no use";
+    EXPECT_EQ(pilotOf(0.02, 0.6, 4000).choose(costs), 0.1) << "guides find nearly everything";
+    EXPECT_EQ(pilotOf(0.001, 0.6, 4000).choose(costs), 0.25) << "plain paths have found too little to be judged";
+    EXPECT_EQ(pilotOf(0.001, 0.002, 100).choose(costs), 0.5) << "nothing has been found to judge by";
+    EXPECT_EQ(SharePilot().choose(costs), 0.5);
+}
+
+/// Where guides do not go, or go too densely, or both strategies find light by several techniques: the mean is the same
+/// whoever has how many of the paths.
+struct BalancedCase {
+    const char* name;
+    std::string scene;
+};
+
+std::string bodies(const std::string& media, const std::string& lights, const std::string& more,
+                   const std::string& integrator) {
+    return R"({"media": [)" + media +
+           R"(], "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"},
+        "transform": {"rotation": [10, 20, 0]}}, )" +
+           lights + more + R"(],
+      "camera": {"resolution": 1, "fov": 20, "transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
+      "integrator": {"type": "path_tracer", "max_bounces": 64, )" +
+           integrator + R"(}, "renderer": {}})";
+}
+
+std::vector<BalancedCase> balancedCases() {
+    const std::string Fog = R"({"name": "fog", "type": "homogeneous", "sigma_s": 4, "sigma_a": 0.1})",
+                      Peaked = R"({"name": "fog", "type": "homogeneous", "sigma_s": 20, "sigma_a": 0,
+                          "phase_function": {"type": "henyey_greenstein", "g": 0.9}})",
+                      Coloured = R"({"name": "fog", "type": "homogeneous", "sigma_s": [2, 4, 8], "sigma_a": 0.1})",
+                      Ball = R"({"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
+                          "transform": {"position": [0.3, 0.4, -1.4], "scale": 0.4}})",
+                      Beside = R"({"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
+                          "transform": {"position": [1.2, 0.9, 0.8], "scale": 0.3}})",
+                      Inside =
+                          R"({"type": "sphere", "emission": 9, "bsdf": {"type": "null"}, "transform": {"scale": 0.1}})",
+                      Floor = R"(, {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.6},
+                          "transform": {"position": [0, -0.9, 0], "scale": 6}})",
+                      Glossy =
+                          R"(, {"type": "quad", "bsdf": {"type": "rough_conductor", "material": "Al", "roughness": 0.2},
+                          "transform": {"position": [0, -0.9, 0], "scale": 6}})",
+                      Gate = R"("transient_time_center": 7.6, "transient_time_width": 1.5)";
+    return {
+        {"LampBehindAPeak", bodies(Peaked, Ball, "", R"("transient_time_center": 6.7, "transient_time_width": 1)")},
+        {"LampBeside", bodies(Fog, Beside, "", Gate)},
+        {"LampInside", bodies(Fog, Inside, "", R"("transient_time_center": 6, "transient_time_width": 1)")},
+        {"ColouredFog", bodies(Coloured, Beside, "", Gate)},
+        {"Floor", bodies(Fog, Beside, Floor, Gate)},
+        {"GlossyFloor", bodies(Fog, Beside, Glossy, Gate)},
+        {"TwoLamps", bodies(Fog, Beside + ", " + Ball, "", Gate)},
+        {"Roulette", bodies(Fog, Beside, Floor, Gate + R"(, "enable_rr": true)")},
+        {"Unwarped", bodies(Fog, Beside, "",
+                            R"("camera_unwarped": true, "transient_time_center": 2.6, "transient_time_width": 1.5)")},
+        {"Response",
+         bodies(Fog, Beside, "", R"("temporal_response": {"type": "gaussian", "center": 7.6, "sigma": 0.15})")}};
+}
+
+class Balanced : public testing::TestWithParam<BalancedCase> {};
+
+TEST_P(Balanced, MeansAreTheSameAtAnyShare) {
+    const auto render = [&](const std::string& darts, uint32_t samples) {
+        return test::renderPaths(GetParam().scene, {{"integrator.darts=" + darts}, 32, samples, 11});
+    };
+    const auto plain = render("off", 10000);
+    ASSERT_GT(plain->mean(), 0.0);
+    for (const char* share : {"0.6", "0.15"}) {
+        const auto both = render(R"({"plain_share": )" + std::string(share) + "}", 12000);
+        EXPECT_GT(both->statistics.counter("plain paths beside guided ones"), 0u);
+        const double error = std::hypot(plain->pixelError(0), both->pixelError(0));
+        EXPECT_NEAR(both->mean(), plain->mean(), 4.5 * error) << share;
+        EXPECT_LT(error, 0.05 * plain->mean()) << share << ": the test would not see a wrong weight";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Balanced, testing::ValuesIn(balancedCases()),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+} // namespace
+} // namespace tungsten::path

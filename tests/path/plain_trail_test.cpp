@@ -1,0 +1,152 @@
+// What guided steps say of a way afterwards is what they summed while they drew it.
+
+#include "path/GuidedVisitor.h"
+#include "path/PathPlan.h"
+#include "path/PlainTrail.h"
+#include "path/techniques/LightPaths.h"
+
+#include "support/SceneFile.h"
+
+#include "tungsten/scene/SceneLoader.h"
+
+#include <gtest/gtest.h>
+
+namespace tungsten::path {
+namespace {
+
+using transport::Ahead;
+using transport::Flight;
+using transport::WalkVertex;
+using transport::Way;
+
+/// Follows a guided path as if it were a plain one, and compares.
+class Replay : public transport::VisitorBase {
+  public:
+    Replay(const GuidedContext& context, PathCounters& counters, PathTarget& target) : context_(&context) {
+        trail_.start(context, counters, target);
+    }
+
+    [[nodiscard]] bool mayGoOn(const PathState& path) const {
+        return context_->settings.limits.mayGoOn(path.interactions) && path.interactions < 60;
+    }
+    bool ahead(PathState& path, StepsToEmitter&, const Ahead& ahead) {
+        before_ = path.channels;
+        trail_.fly(plainly(path), ahead);
+        return true;
+    }
+    bool arrive(PathState& path, StepsToEmitter& steps, const Ahead& ahead, const Flight& flight) {
+        const bool collided = flight.event == Flight::Event::Collision;
+        Flight plain = flight;
+        plain.pdf = !ahead.medium ? 1.0f
+                    : collided    ? flightThatCollides(*ahead.medium, flight.distance, before_).pdf
+                                  : flightThatExits(*ahead.medium, ahead.reach(), before_).pdf;
+        const float ending = collided ? steps.inMedium(flight.distance).logRatio : steps.logRatioOnSurface();
+        trail_.arrive(plainly(path), ahead, plain);
+        const float tolerance = 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(path.logRatio));
+        EXPECT_NEAR(trail_.atVertex(), ending, tolerance) << path.interactions;
+        EXPECT_NEAR(trail_.there(), path.logRatio, tolerance) << path.interactions;
+        ++compared;
+        largest = std::max(largest, std::abs(path.logRatio));
+        return true;
+    }
+    void leave(PathState&, StepsToEmitter&, const WalkVertex& vertex, const Way& way) {
+        Way plain = way;
+        if (vertex.medium) plain.weight = Rgb(1.0f);
+        trail_.leave(plain);
+    }
+
+    static inline int compared = 0;
+    static inline float largest = 0.0f;
+
+  private:
+    static PathState plainly(const PathState& path) {
+        PathState plain = path;
+        plain.throughput = path.throughput * std::exp(path.logRatio);
+        return plain;
+    }
+
+    const GuidedContext* context_;
+    PlainTrail trail_; ///< a value: copies of a path that is split have one each
+    ChannelDensities before_{1.0f};
+};
+
+std::string sceneOf(const std::string& medium, const std::string& more, const std::string& integrator) {
+    return R"({"media": [{"name": "fog", "type": "homogeneous", )" + medium + R"(}],
+      "primitives": [{"type": "cube", "int_medium": "fog", "bsdf": {"type": "forward"}, "transform": {"rotation": [10, 20, 0]}},
+                     {"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
+                      "transform": {"position": [1.2, 0.9, 0.8], "scale": 0.3}})" +
+           more + R"(],
+      "camera": {"resolution": 1, "fov": 15, "transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
+      "integrator": {"type": "path_tracer", "max_bounces": 128, "darts": "best", )" +
+           integrator + R"(}, "renderer": {}})";
+}
+
+void replay(const std::string& json) {
+    const test::SceneFile file(json);
+    const LoadedScene loaded = loadScene(file.path());
+    const Scene& scene = *loaded.scene;
+    const PathSettings settings = readPathSettings(loaded.integratorSettings, scene);
+    EffectPlan effects = analyseScene(scene);
+    effects.late.resize(scene.emitters.size());
+    const PassWatch watch;
+    const transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
+    const PathGuides guides = PathGuides::of(scene, settings.policy.sampling, effects, watch);
+    const LightPaths none;
+    const ArrivalBound bound(scene, effects);
+    const auto waysOut = transport::WaysOut::make(scene, settings.policy);
+    const TargetChoice targets(scene, TargetChoice::Emitters::All);
+    const GuidedContext context{scene, settings,      sensor, guides, nullptr,     none,
+                                bound, waysOut.get(), true,   watch,  {0.5f, 0.5f}};
+    Replay::compared = 0;
+    Replay::largest = 0.0f;
+    for (uint64_t i = 0; i < 300; ++i) {
+        PathCounters counters;
+        const Sampler sampler(1, RandomStream::Test, 0, i);
+        Sampler light = sampler.branch(RandomStream::Target, 0);
+        auto target = targets.sample(0.3f, light, watch, counters);
+        ASSERT_TRUE(target);
+        Sampler lens = sampler;
+        const Ray ray = scene.camera.generateRay({0, 0}, lens.next2D(), lens.next2D());
+        transport::Walk walk{
+            PathState{
+                .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
+            StepsToEmitter(context, counters, *target), Replay(context, counters, *target)};
+        walk.run();
+    }
+    EXPECT_GT(Replay::compared, 500);
+    EXPECT_GT(Replay::largest, 1.0f) << "guided paths go as plain ones do: nothing is tested";
+}
+
+const std::string Gate = R"("transient_time_center": 7.6, "transient_time_width": 1.5)",
+                  Floor = R"(, {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.6},
+                      "transform": {"position": [0, -0.9, 0], "scale": 6}})",
+                  Glossy = R"(, {"type": "quad", "bsdf": {"type": "plastic", "albedo": 0.5},
+                      "transform": {"position": [0, -0.9, 0], "scale": 6}})";
+
+TEST(PlainTrail, AsksForWhatGuidedPathsHaveSummed) {
+    for (const std::string& medium :
+         {std::string(R"("sigma_s": 4, "sigma_a": 0.1)"), std::string(R"("sigma_s": 60, "sigma_a": 0)"),
+          std::string(R"("sigma_s": [2, 4, 8], "sigma_a": [0.3, 0.1, 0])"),
+          std::string(R"("sigma_s": 20, "sigma_a": 0, "phase_function": {"type": "henyey_greenstein", "g": 0.9})"),
+          std::string(R"("sigma_s": 4, "sigma_a": 0, "phase_function": {"type": "henyey_greenstein", "g": 0.4})")}) {
+        SCOPED_TRACE(medium);
+        replay(sceneOf(medium, "", Gate));
+    }
+}
+
+TEST(PlainTrail, AsksOnSurfacesToo) {
+    for (const std::string& surface : {Floor, Glossy})
+        replay(sceneOf(R"("sigma_s": 4, "sigma_a": 0.1)", surface, Gate));
+}
+
+TEST(PlainTrail, AsksWhereTimeStartsAtTheFirstVertex) {
+    replay(sceneOf(R"("sigma_s": 4, "sigma_a": 0.1)", "",
+                   R"("camera_unwarped": true, "transient_time_center": 2.6, "transient_time_width": 1.5)"));
+}
+
+TEST(PlainTrail, AsksWithRoulette) {
+    replay(sceneOf(R"("sigma_s": 4, "sigma_a": 3)", "", Gate + R"(, "enable_rr": true)"));
+}
+
+} // namespace
+} // namespace tungsten::path
