@@ -287,8 +287,10 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
         }
         watch.poll();
         costs = this->costs(ofPlain, ofDensities, ofGuided);
+        if (group + 1 >= tuning::LeastPilotPixels &&
+            costs.plain + costs.densities + costs.guided > tuning::MostPilotCost)
+            break;
         if (group + 1 < tuning::FewestPilotPixels) continue;
-        if (costs.plain + costs.densities + costs.guided > tuning::MostPilotCost) break;
         if ((group & (group + 1)) == 0 && pilot.effective(Strategy::Plain) >= 10.0 * tuning::LeastEffective &&
             pilot.effective(Strategy::Guided) >= 10.0 * tuning::LeastEffective)
             break;
