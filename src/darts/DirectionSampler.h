@@ -191,6 +191,14 @@ class DirectionSampler {
             if (settings_.strata) return scatterer.asHenyeyGreenstein();
         return std::nullopt;
     }
+    /// The density, per solid angle, of the last turn of a connection that leaves in this direction.
+    [[nodiscard]] auto lastTurn(const Residual& residual, float excess, const Vec3& direction, float h) const {
+        return [=, this, &residual] {
+            const Ellipse<float> e{residual.C, excess, h};
+            const Vec3 onward = residual.axis * residual.C - direction * e.firstLeg();
+            return HenyeyGreenstein{direction, g_}.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
+        };
+    }
     template <typename Guided>
     [[nodiscard]] DirectionStrata<Guided> strata(const HenyeyGreenstein& phase, const Guided& guided,
                                                  const Residual& residual, float excess) const {
@@ -216,14 +224,6 @@ class DirectionSampler {
     [[nodiscard]] ConnectionLobe<float> connectionLobe(float C, float excess) const {
         return settings_.lobe == Lobe::Path ? ConnectionLobe<float>::path(C, excess)
                                             : ConnectionLobe<float>::photon(C, excess);
-    }
-    /// The density, per solid angle, of the last turn of a connection that leaves in this direction.
-    [[nodiscard]] auto lastTurn(const Residual& residual, float excess, const Vec3& direction, float h) const {
-        return [=, this, &residual] {
-            const Ellipse<float> e{residual.C, excess, h};
-            const Vec3 onward = residual.axis * residual.C - direction * e.firstLeg();
-            return HenyeyGreenstein{direction, g_}.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
-        };
     }
     /// use(the vertex's guided distribution).
     template <typename View, typename Use>
