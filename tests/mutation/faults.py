@@ -265,8 +265,6 @@ FAULTS = [
      [("transport_tests", "Scripted.EndsWhereAHookSaysSo")]),  # arrive() cannot end a walk
     ("src/transport/Walk.h", "if (!steps.canArrive(path, vertex) || !visitor.vertex(path, steps, vertex)) return false;", "if (!visitor.vertex(path, steps, vertex)) return false;",
      [("transport_tests", "Scripted.HooksComeInOrder")]),  # nothing looks whether anything can be in time
-    ("src/transport/Walk.h", "if (!ahead.flies || !visitor.ahead(path, steps, ahead)) break;", "if (!visitor.ahead(path, steps, ahead)) break;",
-     [("transport_tests", "OwnSteps.OfAMediumAreAsManyAsItAllows:Scripted.EndsWhereAHookSaysSo")]),  # limits of flights do not end a walk
     ("src/transport/Walk.h", "return !isBlack(path.throughput) && steps.survives(path);", "return !isBlack(path.throughput);",
      [("transport_tests", "Scripted.EndsWhereAHookSaysSo")]),  # roulette by the throughput is never played
     ("src/transport/Walk.h", "visitor.leave(path, steps, vertex, *way);", ";",
@@ -322,12 +320,8 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
     ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOf(flight.pdf) - logOf(plain.pdf);", "path.logRatio = start_.logRatio + logOf(2.0f * flight.pdf) - logOf(plain.pdf);",
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
-    ("src/path/StepsToEmitter.cpp", "path.channels = plain.channels;", ";",
-     [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(guided_->expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
-    ("src/path/PathVisitor.cpp", "if constexpr (Beside::Balanced) weight *= source_->shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
-     [("path_tests", "Scenes/Balanced.*")]),  # lamps that are met and connected to count twice
     ("src/path/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
     ("src/path/SharePilot.cpp", "const auto share = float(ofPlain / (ofPlain + ofGuided));", "const auto share = float(plainTime);",
