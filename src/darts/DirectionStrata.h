@@ -10,23 +10,23 @@ namespace darts {
 
 /// Two distributions of directions, a phase function's (Henyey-Greenstein) and a guide's about its own axis, are each
 /// cut into strata that are equally likely: by the angle to the axis, and in halves towards and away from the other
-/// axis. One direction in each tells how much is wanted of its stratum; W_cj = wanted / mixture there. A stratum is
-/// chosen in proportion to W and a direction drawn in it by its own distribution q_c:
+/// axis. One direction in each tells how much is importance of its stratum; W_cj = importance / mixture there. A
+/// stratum is chosen in proportion to W and a direction drawn in it by its own distribution q_c:
 ///   p(w) = sum over c of M q_c(w) W_{c, j_c(w)} / sum W.
 /// A Guide has axis, pdf(h) per solid angle, quantile(f) -> h = 1 - cos and part(h) -> f, its inverse.
 template <typename Guide>
 class DirectionStrata {
   public:
-    /// `wanted(direction, h, own, guided)`: up to a factor; h from the guide's axis, both densities there.
-    template <typename Wanted>
-    DirectionStrata(const HenyeyGreenstein& phase, const Guide& guide, const Wanted& wanted)
+    /// `importance(direction, h, own, guided)`: up to a factor; h from the guide's axis, both densities there.
+    template <typename Importance>
+    DirectionStrata(const HenyeyGreenstein& phase, const Guide& guide, const Importance& importance)
         : phase_(phase), guide_(guide), aboutPhase_(phase.peak(), guide.axis), aboutGuide_(guide.axis, phase.peak()) {
         for (size_t c = 0; c < 2; ++c)
             for (int j = 0; j < Strata; ++j) {
                 const Vec3 direction = at(c, j, 0.5f, 0.5f);
                 const float h = oneMinusCosine(direction, guide.axis), own = phase.pdf(direction),
                             guided = guide.pdf(h);
-                const float weight = wanted(direction, h, own, guided) / (0.5f * (own + guided));
+                const float weight = importance(direction, h, own, guided) / (0.5f * (own + guided));
                 weights_[c * Strata + size_t(j)] = weight;
                 sum_ += weight;
             }

@@ -66,7 +66,7 @@ DistanceSampler::DistanceSampler(const Settings& settings, const Medium& medium,
     : settings_(settings), medium_(medium), sigmaT_(medium.sigmaT()), meanSigmaT_(mean(sigmaT_)),
       grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernels_(chooseKernels(settings, grey_, scalar)) {
     for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal, Shape::FirstPassage})
-        usefulness_[size_t(shape)] = LogLinearDistance::logUsefulness(shape, grey_, scalar);
+        usefulness_[size_t(shape)] = LogLinearDistance::logImportance(shape, grey_, scalar);
 }
 
 Vec3 DistanceSampler::transmittance(float distance) const {

@@ -29,7 +29,7 @@ class DistanceDensity {
   public:
     /// Nothing in the medium: every draw is the surface, if `surface` is a probability above 0.
     explicit DistanceDensity(float surface) : surface_(surface) {}
-    DistanceDensity(float surface, const CandidateDraw& draw, LogLinearDistance::LogUsefulness usefulness)
+    DistanceDensity(float surface, const CandidateDraw& draw, LogLinearDistance::LogImportance usefulness)
         : surface_(surface), medium_(std::in_place, draw, usefulness) {}
 
     /// Probability of the surface; the rest is the medium's, unless nothing there can be in time.
@@ -105,7 +105,7 @@ class DistanceSampler {
     float meanSigmaT_;
     bool grey_, scatters_;
     Kernels kernels_;
-    std::array<LogLinearDistance::LogUsefulness, 4> usefulness_; ///< by shape
+    std::array<LogLinearDistance::LogImportance, 4> usefulness_; ///< by shape
 };
 
 } // namespace darts

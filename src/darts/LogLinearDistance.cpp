@@ -21,7 +21,7 @@ constexpr float LeastLog = -57.5f;
 constexpr float LeastMass = 0x1p-24f;
 
 template <typename Batch, Shape G, int Channels>
-void logUsefulnessOf(const CandidateDraw& draw, const float* distances, float* logs) {
+void logImportanceOf(const CandidateDraw& draw, const float* distances, float* logs) {
     using std::max;
     constexpr int Width = lanes::Width<Batch>;
     for (int first = 0; first < LogLinearDistance::Nodes; first += Width) {
@@ -44,29 +44,29 @@ void logUsefulnessOf(const CandidateDraw& draw, const float* distances, float* l
 }
 
 template <Shape G>
-LogLinearDistance::LogUsefulness usefulnessOf(bool grey, bool scalar) {
-    if (scalar) return grey ? logUsefulnessOf<float, G, 1> : logUsefulnessOf<float, G, 3>;
+LogLinearDistance::LogImportance importanceOf(bool grey, bool scalar) {
+    if (scalar) return grey ? logImportanceOf<float, G, 1> : logImportanceOf<float, G, 3>;
     using Batch = RegisterOf<LogLinearDistance::Nodes>;
-    return grey ? logUsefulnessOf<Batch, G, 1> : logUsefulnessOf<Batch, G, 3>;
+    return grey ? logImportanceOf<Batch, G, 1> : logImportanceOf<Batch, G, 3>;
 }
 
 } // namespace
 
-LogLinearDistance::LogUsefulness LogLinearDistance::logUsefulness(Shape shape, bool grey, bool scalar) {
+LogLinearDistance::LogImportance LogLinearDistance::logImportance(Shape shape, bool grey, bool scalar) {
     switch (shape) {
     case Shape::TimeBound:
-        return usefulnessOf<Shape::TimeBound>(grey, scalar);
+        return importanceOf<Shape::TimeBound>(grey, scalar);
     case Shape::Diffusion:
-        return usefulnessOf<Shape::Diffusion>(grey, scalar);
+        return importanceOf<Shape::Diffusion>(grey, scalar);
     case Shape::Causal:
-        return usefulnessOf<Shape::Causal>(grey, scalar);
+        return importanceOf<Shape::Causal>(grey, scalar);
     case Shape::FirstPassage:
-        return usefulnessOf<Shape::FirstPassage>(grey, scalar);
+        return importanceOf<Shape::FirstPassage>(grey, scalar);
     }
     throw std::invalid_argument("unknown shape of usefulness");
 }
 
-LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogUsefulness usefulness) {
+LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance usefulness) {
     const float end = draw.bound;
     // A surface ends what is in time; else usefulness falls to nothing there.
     const bool endsInTime = !(end < draw.firstLeg);

@@ -1,5 +1,5 @@
 #pragma once
-// Distances by a density that is known: its logarithm is linear between a few nodes, at which usefulness is evaluated.
+// Distances by a density that is known: its logarithm is linear between a few nodes, at which importance is evaluated.
 
 #include "darts/CandidateUsefulness.h"
 
@@ -7,8 +7,8 @@
 
 namespace darts {
 
-/// Density per length on [0, bound), in proportion to usefulness (DistanceSampler) at its nodes and log-linear between
-/// them:
+/// Density per length on [0, bound), in proportion to importance (usefulness, of DistanceSampler) at its nodes and
+/// log-linear between them:
 ///   p(d) = (e^{L_i + (L_{i+1} - L_i) (d - b_i) / (b_{i+1} - b_i)} + f) / (f bound + sum m),
 ///   m_i = (b_{i+1} - b_i) (e^{L_{i+1}} - e^{L_i}) / (L_{i+1} - L_i),
 /// f the floor, of the nodes' mean: kept apart, for the sum of both is not log-linear over long intervals.
@@ -16,15 +16,15 @@ namespace darts {
 /// reachable begins to shrink. Positive everywhere; one random number a draw.
 class LogLinearDistance {
   public:
-    static constexpr int Nodes = 8; ///< at which usefulness is evaluated: one register
+    static constexpr int Nodes = 8; ///< at which importance is evaluated: one register
 
-    /// Logarithms of usefulness at so many distances, up to a constant.
-    using LogUsefulness = void (*)(const CandidateDraw& draw, const float* distances, float* logs);
-    /// Of a shape of usefulness, in registers, or one by one (`scalar`).
-    static LogUsefulness logUsefulness(Shape shape, bool grey, bool scalar = false);
+    /// Logarithms of importance at so many distances, up to a constant.
+    using LogImportance = void (*)(const CandidateDraw& draw, const float* distances, float* logs);
+    /// Of a shape of importance, in registers, or one by one (`scalar`).
+    static LogImportance logImportance(Shape shape, bool grey, bool scalar = false);
 
     /// `draw.bound` > 0.
-    LogLinearDistance(const CandidateDraw& draw, LogUsefulness usefulness);
+    LogLinearDistance(const CandidateDraw& draw, LogImportance importance);
 
     /// u in [0, 1) -> distance in [0, bound).
     [[nodiscard]] float sample(float u) const;
@@ -35,7 +35,7 @@ class LogLinearDistance {
     [[nodiscard]] float slope(int i) const { return logs_[size_t(i) + 1] - logs_[size_t(i)]; }
 
     std::array<float, Nodes + 1> nodes_; ///< ascending, from 0 to the bound
-    std::array<float, Nodes + 1> logs_;  ///< of usefulness, the highest at 0
+    std::array<float, Nodes + 1> logs_;  ///< of importance, the highest at 0
     std::array<float, Nodes> masses_;    ///< of the intervals
     int intervals_;
     float lift_; ///< f, on the scale of the logarithms

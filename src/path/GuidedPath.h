@@ -27,6 +27,27 @@ struct LogRatios {
     float before = 0.0f; ///< up to the one before it
 };
 
+/// What techniques need of the way behind a walk, or behind a plain path that guided ones are compared with.
+struct WayBehind {
+    Caches caches = Caches::None;     ///< of the last vertex
+    std::optional<Approach> approach; ///< to it
+    LogRatios ratios;
+
+    /// The walk comes to another vertex; `logRatio` is that of the way up to there.
+    void arrive(float logRatio) { ratios.before = std::exchange(ratios.there, logRatio); }
+    /// Which is in a medium, after a flight of this length.
+    void approachInMedium(const GuidedContext& context, const PathState& path, float distance);
+    /// Or on a surface, from which `steps` may have a guide.
+    void approachOnSurface(const StepsToEmitter& steps, const PathState& path, const transport::Vertex& here,
+                           const SurfaceHit& hit);
+    /// And may connect to light vertices of this emitter, and to reflected light.
+    void connect(const GuidedContext& context, int emitter, const PathState& path);
+
+  private:
+    /// By so many per area or volume; `normal` as in Approach. What has been connected to along the way is over.
+    void approachBy(float pdf, const Vec3f& normal);
+};
+
 /// A view of the walk at hand and of what its visitor keeps.
 struct GuidedPath {
     const GuidedContext& context;
@@ -34,13 +55,11 @@ struct GuidedPath {
     PathCounters& counters;
     PathState& state;
     StepsToEmitter& steps;
-    Caches caches; ///< of state.last
-    const std::optional<Approach>& approach;
-    const LogRatios& ratios;
+    const WayBehind& behind;
 
-    /// Of paths whose last vertex is the surface ahead. Light vertices and reflected light find them from one and two
-    /// vertices before: what is weighed is then the way up to there.
-    [[nodiscard]] float logRatioOnSurface(LobeMask lobes) const;
+    /// Of paths whose last vertex is this surface ahead, where light vertices, or reflected light, find them too and
+    /// leave the walk this share. What is weighed is the way up to one or two vertices before, where these connect.
+    [[nodiscard]] float logRatioByLightPaths(const transport::Vertex& surface, float shareOfWalk) const;
     [[nodiscard]] const Scene& scene() const { return context.scene; }
     [[nodiscard]] const PathTarget& target() const { return steps.target(); }
     [[nodiscard]] float next() const { return state.random.next1D(); }

@@ -13,12 +13,6 @@ using transport::Flight;
 using transport::WalkVertex;
 using Passage = StepsToEmitter::Passage;
 
-float GuidedPath::logRatioOnSurface(LobeMask lobes) const {
-    const LightPaths& lightPaths = context.lightPaths;
-    if (!steps.hasDensities() || !lightPaths.vertices(target().index)) return steps.logRatioOnSurface();
-    return lightPaths.reflected(target().index) && reflectsSharply(lobes) ? ratios.before : ratios.there;
-}
-
 bool GuidedVisitor::ahead(PathState& path, StepsToEmitter& steps, const Ahead& ahead) {
     const GuidedPath guided = at(path, steps);
     switch (steps.passage()) {
@@ -41,26 +35,16 @@ bool GuidedVisitor::ahead(PathState& path, StepsToEmitter& steps, const Ahead& a
     return true;
 }
 
-void GuidedVisitor::approach(float pdf, const Vec3f& normal) {
-    approach_.reset();
-    if (caches_ == Caches::ReflectedLightToo && pdf > 0.0f) approach_ = Approach{pdf, normal};
-    caches_ = Caches::None;
-}
-
 bool GuidedVisitor::arrive(PathState& path, StepsToEmitter& steps, const Ahead& ahead, const Flight& flight) {
-    if (flight.event == Flight::Event::Surface) {
-        ratios_.before = std::exchange(ratios_.there, path.logRatio);
-        // The format ends such a path at any surface, index-matched ones included.
+    behind_.arrive(path.logRatio);
+    // The format ends such a path at any surface, index-matched ones included.
+    if (flight.event == Flight::Event::Surface)
         return limits().mayGoOn(path.interactions) && !limits().endsAtSurface(path.mediumScatters);
-    }
-    const Medium& medium = *ahead.medium;
-    ratios_.before = std::exchange(ratios_.there, path.logRatio);
     const GuidedPath guided = at(path, steps);
     const bool connects = !steps.hasDensities() || guided.wayInTime(path.ray.origin, path.time);
-    inMedium_ = connects ? ControlVertices::ending(guided, medium, flight.distance) : StepsToEmitter::InMedium{1.0f};
-    const float ends =
-        caches_ == Caches::ReflectedLightToo ? context_->lightPaths.flights().pdf(flight.distance) : 0.0f;
-    approach(path.last.pdf * ends / sqr(flight.distance), Vec3f(0.0f));
+    inMedium_ =
+        connects ? ControlVertices::ending(guided, *ahead.medium, flight.distance) : StepsToEmitter::InMedium{1.0f};
+    behind_.approachInMedium(*context_, path, flight.distance);
     return true;
 }
 
@@ -71,9 +55,7 @@ bool GuidedVisitor::vertex(PathState& path, StepsToEmitter& steps, const WalkVer
         // Where lights that are met after a medium have been connected to, what is found next has a further vertex.
         if (!steps.hasDensities() && !limits().mayGoOn(path.interactions + 1)) return false;
     } else {
-        const SurfaceHit& hit = vertex.surface->hit;
-        approach(steps.surfaceGuide() ? ConnectionsFromSurfaces::density(at(path, steps), here, hit.t) : 0.0f,
-                 vertex.before.dot(hit.ng) < 0.0f ? hit.ng : -hit.ng);
+        behind_.approachOnSurface(steps, path, here, vertex.surface->hit);
         if (!steps.surfaceGuide()) return true;
     }
     connectToLightPaths(at(path, steps), here);
@@ -81,17 +63,12 @@ bool GuidedVisitor::vertex(PathState& path, StepsToEmitter& steps, const WalkVer
 }
 
 void GuidedVisitor::connectToLightPaths(const GuidedPath& path, const transport::Vertex& here) {
-    const Medium* medium = path.scene().medium(path.state.region);
-    const LightPaths& lightPaths = context_->lightPaths;
-    const LightVertexCache* vertices = lightPaths.vertices(path.target().index);
-    if (!vertices || !path.mayFly(medium)) return;
-    caches_ = Caches::LightVertices;
-    LightVertexConnections::connect(path, here, *vertices);
-    // Wherever reflected light ends, a walk would connect to light vertices.
-    const ReflectedLightCache* reflected = lightPaths.reflected(path.target().index);
-    if (!reflected || !medium || path.state.flights + 1 >= medium->maxBounces) return;
-    caches_ = Caches::ReflectedLightToo;
-    ReflectedConnections::connect(path, here, *reflected);
+    const int emitter = path.target().index;
+    behind_.connect(*context_, emitter, path.state);
+    if (behind_.caches == Caches::None) return;
+    LightVertexConnections::connect(path, here, *context_->lightPaths.vertices(emitter));
+    if (behind_.caches == Caches::ReflectedLightToo)
+        ReflectedConnections::connect(path, here, *context_->lightPaths.reflected(emitter));
 }
 
 void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,

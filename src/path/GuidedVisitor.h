@@ -24,21 +24,16 @@ class GuidedVisitor : public transport::VisitorBase {
   private:
     [[nodiscard]] const transport::BounceLimits& limits() const { return context_->settings.limits; }
     [[nodiscard]] GuidedPath at(PathState& path, StepsToEmitter& steps) const {
-        return {*context_, *sink_, *counters_, path, steps, caches_, approach_, ratios_};
+        return {*context_, *sink_, *counters_, path, steps, behind_};
     }
-    /// At a vertex that the walk came to with this density, per area or volume; `normal` as in Approach. What has been
-    /// connected to along the way is over.
-    void approach(float pdf, const Vec3f& normal);
     /// By light vertices and reflected light, from the vertex at the ray's origin.
     void connectToLightPaths(const GuidedPath& path, const transport::Vertex& here);
 
     const GuidedContext* context_;
     PixelSink* sink_;
     PathCounters* counters_;
-    Caches caches_ = Caches::None;
-    std::optional<Approach> approach_;
+    WayBehind behind_;
     StepsToEmitter::InMedium inMedium_{}; ///< of paths whose last vertex is where the walk is
-    LogRatios ratios_;
 };
 
 /// Traces one camera path along `ray`, guided towards the target.

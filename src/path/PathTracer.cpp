@@ -209,7 +209,7 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
         ++counters.plainPaths;
         sink.begin(Strategy::Plain, balance_);
         PlainTrail& trail = trails.local();
-        trail.start(guided, counters, *target);
+        trail.start(guided, sink, counters, *target);
         tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
     };
     renderTiles(pass, film, statistics, trace);
@@ -224,8 +224,7 @@ double PathTracer::cost(const PathCounters& counters, const tuning::Rates& rates
 
 PathCosts PathTracer::costs(const PathCounters& plain, const PathCounters& densities,
                             const PathCounters& guided) const {
-    const double kept = tuning::TrailCost * double(plain.paths) +
-                        tuning::TrailVertexCost * double(plain.mediumEvents + plain.surfaceEvents);
+    const double kept = tuning::TrailCost * double(plain.mediumEvents + plain.surfaceEvents);
     return {cost(plain, tuning::PlainRates),
             kept + tuning::DensityCost * double(densities.densities) +
                 cost(densities, {0.0, tuning::PlainRates.ray, 0.0, 0.0}),
@@ -281,16 +280,14 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
             if (guides) {
                 traceGuidedPath(guided, sink, counters, sampler, *target, ray);
             } else {
-                trail.start(guided, ofDensities, *target);
+                trail.start(guided, sink, ofDensities, *target);
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
             }
         }
         watch.poll();
         costs = this->costs(ofPlain, ofDensities, ofGuided);
-        if (group + 1 >= tuning::LeastPilotPixels &&
-            costs.plain + costs.densities + costs.guided > tuning::MostPilotCost)
-            break;
-        if (group + 1 < tuning::FewestPilotPixels) continue;
+        if (group + 1 < tuning::LeastPilotPixels) continue;
+        if (costs.plain + costs.densities + costs.guided > tuning::MostPilotCost) break;
         if ((group & (group + 1)) == 0 && pilot.effective(Strategy::Plain) >= 10.0 * tuning::LeastEffective &&
             pilot.effective(Strategy::Guided) >= 10.0 * tuning::LeastEffective)
             break;

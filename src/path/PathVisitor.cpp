@@ -168,7 +168,7 @@ void PathVisitor<TimeResolved, Beside>::connectToSource(const PathState& path, c
     float weight = 1.0f;
     if constexpr (Beside::Balanced) weight *= source_->shareOfConnection(path.ray.origin, vertex.pdf(way->direction));
     sink_->add(connection->throughput * weight, path.time + connection->time + source_->start, *source_->emitter,
-               beside_.atVertex(), Found::OnWay);
+               beside_.atVertex(connection->crossings == 0), Found::OnWay);
 }
 
 template <bool TimeResolved, typename Beside>

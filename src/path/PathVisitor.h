@@ -31,7 +31,7 @@ struct Alone {
     void fly(const PathState&, const transport::Ahead&) {}
     void arrive(const PathState&, const transport::Ahead&, const transport::Flight&) {}
     void leave(const transport::Way&) {}
-    [[nodiscard]] static float atVertex() { return 0.0f; }
+    [[nodiscard]] static float atVertex(bool) { return 0.0f; }
     [[nodiscard]] static float atLight() { return 0.0f; }
 };
 /// Guided paths, which aim at the path's own target.
@@ -43,7 +43,7 @@ struct BesideGuided {
         trail->arrive(at, ahead, flight);
     }
     void leave(const transport::Way& way) { trail->leave(way); }
-    [[nodiscard]] float atVertex() const { return trail->atVertex(); }
+    [[nodiscard]] float atVertex(bool open) const { return trail->atVertex(open); }
     [[nodiscard]] float atLight() const { return trail->atLight(); }
 };
 

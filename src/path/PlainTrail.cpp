@@ -1,5 +1,6 @@
 #include "path/PlainTrail.h"
 
+#include "path/techniques/EmitterConnections.h"
 #include "path/techniques/LightPaths.h"
 
 #include "transport/Roulette.h"
@@ -38,6 +39,12 @@ void PlainTrail::pass(const Step& step) {
                             guided.region};
     alive_ = guided_->canArrive(guided, vertex);
     if (!alive_) return;
+    const transport::Vertex here = vertex.connectible(context_->scene, TransportMode::Radiance);
+    if (vertex.medium)
+        behind_.approachInMedium(*context_, guided, step.flight.distance);
+    else
+        behind_.approachOnSurface(*guided_, guided, here, vertex.surface->hit);
+    if (vertex.medium || guided_->surfaceGuide()) behind_.connect(*context_, guided_->target().index, guided);
     guided.logRatio += std::log(guided_->expectedCopies(guided, vertex));
     guided_->leaveAlong(guided, vertex, *step.way);
     if (context_->settings.russianRoulette)
@@ -46,18 +53,21 @@ void PlainTrail::pass(const Step& step) {
     logRatio_ = guided.logRatio;
 }
 
-float PlainTrail::onSurface(size_t step) const {
-    const LightPaths& lightPaths = context_->lightPaths;
-    const int emitter = guided_->target().index;
-    if (!lightPaths.vertices(emitter)) return guided_->logRatioOnSurface();
-    const size_t before =
-        lightPaths.reflected(emitter) && reflectsSharply(context_->scene.bsdfOf(*steps_[step].hit).lobes()) ? 2 : 1;
-    return step >= before ? steps_[step - before].there : 0.0f;
+float PlainTrail::byLightPaths(const Step& step) {
+    const float alone = guided_->logRatioOnSurface();
+    if (behind_.caches == Caches::None) return alone;
+    PathState state = step.start;
+    const GuidedPath path{*context_, *sink_, *counters_, state, *guided_, behind_};
+    const transport::Vertex vertex = path.vertexOn(makeInteraction(context_->scene, *step.hit, state.ray.direction));
+    const auto way = transport::straightWay(step.hit->position, path.target().vertex.position());
+    if (!way) return alone;
+    const float share = ConnectionsFromSurfaces::shareOfWalk(path, vertex, step.hit->t, *way);
+    return share < 1.0f ? path.logRatioByLightPaths(vertex, share) : alone;
 }
 
 void PlainTrail::follow(size_t index) {
     Step& step = steps_[index];
-    step.ending = step.light = step.there = Never;
+    step.ending = step.openEnding = step.light = step.there = Never;
     if (!alive_) return;
     if (index > 0) pass(steps_[index - 1]);
     if (!alive_) return;
@@ -74,8 +84,10 @@ void PlainTrail::follow(size_t index) {
     alive_ = ahead.flies && (!hits || ahead.hit);
     if (!alive_) return;
     step.light = hits ? guided_->logRatioOnSurface() : Never;
-    step.ending = hits ? onSurface(index) : guided_->inMedium(step.flight.distance).logRatio;
+    step.ending = hits ? step.light : guided_->inMedium(step.flight.distance).logRatio;
+    step.openEnding = hits ? byLightPaths(step) : step.ending;
     step.there = logRatio_ = guided_->logRatioThere(step.flight);
+    behind_.arrive(logRatio_);
 }
 
 } // namespace tungsten::path

@@ -2,7 +2,7 @@
 // How densely guided paths find what a plain path finds: asked of the guided steps, along the way that the plain one
 // took.
 
-#include "path/StepsToEmitter.h"
+#include "path/GuidedPath.h"
 
 namespace tungsten::path {
 
@@ -12,11 +12,13 @@ namespace tungsten::path {
 class PlainTrail {
   public:
     /// A new path, towards a target; `counters` of what densities cost.
-    void start(const GuidedContext& context, PathCounters& counters, PathTarget& target) {
+    void start(const GuidedContext& context, PixelSink& sink, PathCounters& counters, PathTarget& target) {
         steps_.clear();
         guided_.emplace(context, counters, target);
         context_ = &context;
+        sink_ = &sink;
         counters_ = &counters;
+        behind_ = {};
         next_ = 0;
         logRatio_ = 0.0f;
         alive_ = true;
@@ -36,8 +38,12 @@ class PlainTrail {
     void leave(const transport::Way& way) { steps_.back().way = way; }
 
     // Logarithms of densities, guided over plain, of paths that end in light.
-    /// With the vertex at which the path is.
-    [[nodiscard]] float atVertex() { return at(steps_.size() - 1).ending; }
+    /// With the vertex at which the path is. `open`: no boundary is crossed on the way to the target, so that light
+    /// paths may find the same.
+    [[nodiscard]] float atVertex(bool open) {
+        const Step& step = at(steps_.size() - 1);
+        return open ? step.openEnding : step.ending;
+    }
     /// Of the way up to there, once one of the others has been asked.
     [[nodiscard]] float there() const { return steps_.back().there; }
     /// With light that the flight at hand has met.
@@ -52,15 +58,15 @@ class PlainTrail {
         const Medium* medium = nullptr; ///< where it scatters; null on surfaces
         std::optional<transport::Way> way{};
         // Logarithms, once they are known.
-        float ending = 0.0f; ///< of paths whose last vertex is this one
-        float light = 0.0f;  ///< of those that meet light here
-        float there = 0.0f;  ///< of the way up to here
+        float ending = 0.0f, openEnding = 0.0f; ///< of paths whose last vertex is this one
+        float light = 0.0f;                     ///< of those that meet light here
+        float there = 0.0f;                     ///< of the way up to here
     };
 
     /// The step, followed.
     const Step& at(size_t step);
-    /// Of paths whose last vertex is the surface that ends this step.
-    float onSurface(size_t step) const;
+    /// Of paths whose last vertex is the surface that ends this step, and which light paths may find.
+    float byLightPaths(const Step& step);
     /// Follows a flight, from the end of the one before.
     void follow(size_t index);
     /// The guided steps do what guided paths do at the vertex that ends the step, and leave it.
@@ -70,7 +76,9 @@ class PlainTrail {
     size_t next_ = 0;                      ///< flight that has not been followed yet
     std::optional<StepsToEmitter> guided_; ///< at the flight before
     const GuidedContext* context_ = nullptr;
+    PixelSink* sink_ = nullptr;
     PathCounters* counters_ = nullptr;
+    WayBehind behind_;      ///< of the vertex where that flight begins
     float logRatio_ = 0.0f; ///< at the end of that flight
     bool alive_ = true;     ///< guided paths may come there
 };

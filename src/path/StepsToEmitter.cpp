@@ -322,10 +322,10 @@ float StepsToEmitter::controlVertexDensity(float distance) const {
     }
     const auto way = transport::straightWay(place, target_->vertex.position());
     if (!(density > 0.0f) || !way) return 0.0f;
-    return density * chance({distance, way->distance, 1.0f / density}, way->direction);
+    return density * shadowRayProbability({distance, way->distance, 1.0f / density}, way->direction);
 }
 
-float StepsToEmitter::chance(const darts::ControlVertex& vertex, const Vec3f& onward) const {
+float StepsToEmitter::shadowRayProbability(const darts::ControlVertex& vertex, const Vec3f& onward) const {
     const Vec3f& direction = start_.ray.direction;
     return guideOf(start_.region)
         .chance(residual(), darts::vec3(direction), vertex, medium_->phase.eval(direction, onward));

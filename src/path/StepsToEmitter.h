@@ -79,7 +79,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     [[nodiscard]] float controlVertexDensity(float distance) const;
     [[nodiscard]] float vertexDensity(float distance) const;
     /// The probability that a control vertex there is traced; `onward` is the direction of its connection.
-    [[nodiscard]] float chance(const darts::ControlVertex& vertex, const Vec3f& onward) const;
+    [[nodiscard]] float shadowRayProbability(const darts::ControlVertex& vertex, const Vec3f& onward) const;
     /// Where control vertices of a flight that takes no time may be.
     [[nodiscard]] ShellChord controlChord(const Ray& ray, const Region& region, float surface) const;
 

@@ -41,9 +41,8 @@ inline constexpr float WidestGate = 8.0f;
 /// be so much better; below this one only where plain paths have found as many themselves. (Without the second a pilot
 /// of 10 ms loses up to 11 times, with it 2.7.)
 inline constexpr double LeastEffective = 20.0, BetterThanHalf = 1.0 / 1.1, LeastUnjudged = 0.2;
-/// Pixels of a pilot, of four paths each: unless they cost too much, and at most; it ends where LeastEffective has been
-/// found ten times. However dear, so many.
-inline constexpr size_t FewestPilotPixels = 1024, MostPilotPixels = 8192, LeastPilotPixels = 64;
+/// Pixels of a pilot, of four paths each, at least and at most; it ends where LeastEffective has been found ten times.
+inline constexpr size_t LeastPilotPixels = 64, MostPilotPixels = 8192;
 /// And its counted cost at most, in nanoseconds.
 inline constexpr double MostPilotCost = 1e8;
 /// What paths cost, in nanoseconds: of plain and guided ones. Rays are dearer by so much for each doubling of the
@@ -54,8 +53,8 @@ struct Rates {
 };
 inline constexpr Rates PlainRates{95.0, 110.0, 20.0, 0.0}, GuidedRates{290.0, 210.0, 115.0, 400.0};
 inline constexpr double RayCostByLog = 12.0;
-/// And to keep a plain path and its vertices, and of the densities of one of them.
-inline constexpr double TrailCost = 80.0, TrailVertexCost = 40.0, DensityCost = 550.0;
+/// And to keep a vertex of a plain path, and of its densities.
+inline constexpr double TrailCost = 80.0, DensityCost = 550.0;
 
 // --- Light paths -----------------------------------------------------------------------------------------------------
 

@@ -43,7 +43,7 @@ struct Drawn {
     Drawn& operator=(const Drawn&) = delete;
 
     LogLinearDistance distance(Shape shape, bool scalar = false) const {
-        return {draw, LogLinearDistance::logUsefulness(shape, medium.isGrey(), scalar)};
+        return {draw, LogLinearDistance::logImportance(shape, medium.isGrey(), scalar)};
     }
 };
 
@@ -163,7 +163,7 @@ TEST(LogLinearDistance, NodesKnowThePartOfTheGateStillInReach) {
         Drawn drawn(true, 1.0f, 1.0f, 0.0f);
         alignas(64) std::array<float, LogLinearDistance::Nodes> at{}, with{}, without{};
         for (size_t j = 0; j < at.size(); ++j) at[j] = drawn.draw.firstLeg * (1.0f - std::exp2(-float(j)));
-        const auto usefulness = LogLinearDistance::logUsefulness(shape, true);
+        const auto usefulness = LogLinearDistance::logImportance(shape, true);
         usefulness(drawn.draw, at.data(), with.data());
         drawn.draw.overlap = false;
         usefulness(drawn.draw, at.data(), without.data());
@@ -186,7 +186,7 @@ TEST(LogLinearDistance, IsInProportionToUsefulnessAtItsNodes) {
             const float gone = -std::expm1(-depth);
             for (size_t j = 0; j < 3; ++j)
                 at[j + 1] = -std::log1p(-gone * float(j + 1) / 4.0f) * drawn.draw.bound / depth;
-            LogLinearDistance::logUsefulness(shape, true)(drawn.draw, at.data(), logs.data());
+            LogLinearDistance::logImportance(shape, true)(drawn.draw, at.data(), logs.data());
             for (size_t j = 0; j < 4; ++j)
                 EXPECT_NEAR(std::log(distance.pdf(at[j]) / distance.pdf(0.0f)), logs[j] - logs[0], 2e-4f)
                     << int(shape) << " " << depth << " " << j;

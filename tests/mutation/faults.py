@@ -312,6 +312,12 @@ FAULTS = [
     ("src/path/GuidedPath.h", "elapsed = state.time + target().start;", "elapsed = state.time;",
      [("path_tests", "ManyLights.PulsesOfDifferentTimesShownByFogAboveAFloor")]),  # window of light vertices ignores emission times
     # Plain paths beside guided ones
+    ("src/transport/Walk.h", "if (!ahead.flies || !visitor.ahead(path, steps, ahead)) break;", "if (!visitor.ahead(path, steps, ahead)) break;",
+     [("transport_tests", "Scripted.EndsWhereAHookSaysSo")]),  # limits of flights do not end a walk
+    ("src/path/StepsToEmitter.cpp", "path.channels = plain.channels;", ";",
+     [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
+    ("src/path/PathVisitor.cpp", "if constexpr (Beside::Balanced) weight *= source_->shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
+     [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lamps that are met and connected to count twice
     ("src/path/StrategyBalance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # plain paths bring all of what both find
     ("src/path/StrategyBalance.h", "return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);", "return 1.0f / guided;",

@@ -89,6 +89,8 @@ std::vector<BalancedCase> balancedCases() {
     const std::string Fog = R"({"name": "fog", "type": "homogeneous", "sigma_s": 4, "sigma_a": 0.1})",
                       Peaked = R"({"name": "fog", "type": "homogeneous", "sigma_s": 20, "sigma_a": 0,
                           "phase_function": {"type": "henyey_greenstein", "g": 0.9}})",
+                      Thin = R"({"name": "fog", "type": "homogeneous", "sigma_s": 1, "sigma_a": 0,
+                          "phase_function": {"type": "henyey_greenstein", "g": 0.95}})",
                       Coloured = R"({"name": "fog", "type": "homogeneous", "sigma_s": [2, 4, 8], "sigma_a": 0.1})",
                       Ball = R"({"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
                           "transform": {"position": [0.3, 0.4, -1.4], "scale": 0.4}})",
@@ -104,6 +106,8 @@ std::vector<BalancedCase> balancedCases() {
                       Gate = R"("transient_time_center": 7.6, "transient_time_width": 1.5)";
     return {
         {"LampBehindAPeak", bodies(Peaked, Ball, "", R"("transient_time_center": 6.7, "transient_time_width": 1)")},
+        {"LampMetAndConnectedTo", bodies(Thin, Ball, "", R"("min_bounces": 3, "transient_time_center": 6.5,
+                                             "transient_time_width": 1)")},
         {"LampBeside", bodies(Fog, Beside, "", Gate)},
         {"LampInside", bodies(Fog, Inside, "", R"("transient_time_center": 6, "transient_time_width": 1)")},
         {"ColouredFog", bodies(Coloured, Beside, "", Gate)},

@@ -3,6 +3,7 @@
 #include "path/GuidedVisitor.h"
 #include "path/PathPlan.h"
 #include "path/PlainTrail.h"
+#include "path/SharePilot.h"
 #include "path/techniques/LightPaths.h"
 
 #include "support/SceneFile.h"
@@ -22,8 +23,9 @@ using transport::Way;
 /// Follows a guided path as if it were a plain one, and compares.
 class Replay : public transport::VisitorBase {
   public:
-    Replay(const GuidedContext& context, PathCounters& counters, PathTarget& target) : context_(&context) {
-        trail_.start(context, counters, target);
+    Replay(const GuidedContext& context, PixelSink& sink, PathCounters& counters, PathTarget& target)
+        : context_(&context) {
+        trail_.start(context, sink, counters, target);
     }
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const {
@@ -40,10 +42,14 @@ class Replay : public transport::VisitorBase {
         plain.pdf = !ahead.medium ? 1.0f
                     : collided    ? flightThatCollides(*ahead.medium, flight.distance, before_).pdf
                                   : flightThatExits(*ahead.medium, ahead.reach(), before_).pdf;
+        if (collided) {
+            const ChannelDensities channels = flightThatCollides(*ahead.medium, flight.distance, before_).channels;
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(path.channels[c], channels[c], 1e-5f);
+        }
         const float ending = collided ? steps.inMedium(flight.distance).logRatio : steps.logRatioOnSurface();
         trail_.arrive(plainly(path), ahead, plain);
         const float tolerance = 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(path.logRatio));
-        EXPECT_NEAR(trail_.atVertex(), ending, tolerance) << path.interactions;
+        EXPECT_NEAR(trail_.atVertex(false), ending, tolerance) << path.interactions;
         EXPECT_NEAR(trail_.there(), path.logRatio, tolerance) << path.interactions;
         ++compared;
         largest = std::max(largest, std::abs(path.logRatio));
@@ -101,6 +107,8 @@ void replay(const std::string& json) {
     Replay::largest = 0.0f;
     for (uint64_t i = 0; i < 300; ++i) {
         PathCounters counters;
+        SharePilot pilot;
+        PixelSink sink(pilot, sensor, counters);
         const Sampler sampler(1, RandomStream::Test, 0, i);
         Sampler light = sampler.branch(RandomStream::Target, 0);
         auto target = targets.sample(0.3f, light, watch, counters);
@@ -110,7 +118,7 @@ void replay(const std::string& json) {
         transport::Walk walk{
             PathState{
                 .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
-            StepsToEmitter(context, counters, *target), Replay(context, counters, *target)};
+            StepsToEmitter(context, counters, *target), Replay(context, sink, counters, *target)};
         walk.run();
     }
     EXPECT_GT(Replay::compared, 500);

@@ -35,7 +35,7 @@ struct Script {
     float distance = 2.0f;
     double length = 3.0; ///< not quite the distance, to tell them apart
     Rgb flightWeight{0.5f};
-    bool looks = true, visits = true, survives = true;
+    bool flies = true, looks = true, visits = true, survives = true;
     int copies = 1;
     LobeMask lobe = lobe::DiffuseReflection; ///< None: no way on, but in media
     bool hasWay = true;
@@ -83,7 +83,7 @@ struct ScriptedSteps {
     Ahead ahead(PathState& path) {
         log->add("steps.ahead", path);
         if (size_t(path.interactions) >= script->size()) return {};
-        Ahead result{true, walkContext.scene.medium(path.region), floor};
+        Ahead result{now(path.interactions).flies, walkContext.scene.medium(path.region), floor};
         if (now(path.interactions).event == Event::Escape) result.hit.reset();
         return result;
     }
@@ -210,6 +210,7 @@ TEST_F(Scripted, EndsWhereAHookSaysSo) {
         hooks.emplace_back("end");
         expectHooks(hooks);
     };
+    expectEndAfter("steps.ahead", {.flies = false});
     expectEndAfter("flight", {.event = Event::Nothing});
     expectEndAfter("flight", {.flightWeight = Rgb(0.0f)});
     expectEndAfter("canArrive", {.looks = false});
@@ -222,7 +223,7 @@ TEST_F(Scripted, EndsWhereAHookSaysSo) {
     expectEndAfter("arrive", {});
     most_ = 0;
     expectEndAfter("mayGoOn", {});
-    EXPECT_EQ(counters_.steps, 9u) << "none where the walk may not go on";
+    EXPECT_EQ(counters_.steps, 10u) << "none where the walk may not go on";
 }
 
 TEST_F(Scripted, ArrivesWithTheFlightsWeightAndTimeAndLeavesWithTheWaysWeight) {

@@ -18,7 +18,7 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
     const Rgb light = path.target().intensity(-way->direction);
     if (isBlack(light)) return;
     const float phase = medium.phase.eval(state.ray.direction, way->direction);
-    const float chance = path.steps.chance(vertex, way->direction);
+    const float chance = path.steps.shadowRayProbability(vertex, way->direction);
     state.random.at(state.interactions + 1, Draw::ControlVertex);
     if (chance < 1.0f && !(path.next() < chance)) return;
     const float clear = path.target().vertex.margin().before(way->direction, way->distance);

@@ -7,25 +7,6 @@
 
 namespace tungsten::path {
 
-namespace {
-
-/// The part of a connection from the surface at the end of the ray, `length` long, that is not left to light vertices
-/// and reflected light.
-float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
-                  const transport::Straight& way) {
-    if (path.caches == Caches::None || !holdsLightVertices(vertex.lobes()) || !vertex.reflects(way.direction))
-        return 1.0f;
-    const Vec3f& direction = path.state.ray.direction;
-    const float areaPdf = vertex.areaDensity(path.target().vertex.pdf(-way.direction), way.direction, way.distance);
-    float reflected = 0.0f;
-    if (ReflectedConnections::mayFind(path, vertex))
-        reflected = ReflectedConnections::density(path, vertex.pdfReverse(way.direction), {direction, length}, areaPdf);
-    return transport::balance(ConnectionsFromSurfaces::density(path, vertex, length),
-                              LightVertexConnections::density(areaPdf), reflected);
-}
-
-} // namespace
-
 void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
                                    const StepsToEmitter::InMedium& ending) {
     PathState& state = path.state;
@@ -62,10 +43,23 @@ void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& 
         path.connector().connect(vertex, throughput, transport::connectionEnd(*way, target), path.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
-    float weight = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
-    if (connection->crossings == 0) weight *= shareOfWalk(path, vertex, hit.t, *way);
-    path.sink.add(connection->throughput * weight, time + connection->time + target.start, *target.emitter,
-                  path.logRatioOnSurface(vertex.lobes()));
+    const float weight = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
+    const float share = connection->crossings == 0 ? shareOfWalk(path, vertex, hit.t, *way) : 1.0f;
+    const float logRatio = share < 1.0f ? path.logRatioByLightPaths(vertex, share) : path.steps.logRatioOnSurface();
+    path.sink.add(connection->throughput * (weight * share), time + connection->time + target.start, *target.emitter,
+                  logRatio);
+}
+
+float ConnectionsFromSurfaces::shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
+                                           const transport::Straight& way) {
+    if (path.behind.caches == Caches::None || !holdsLightVertices(vertex.lobes()) || !vertex.reflects(way.direction))
+        return 1.0f;
+    const Vec3f& direction = path.state.ray.direction;
+    const float areaPdf = vertex.areaDensity(path.target().vertex.pdf(-way.direction), way.direction, way.distance);
+    float reflected = 0.0f;
+    if (ReflectedConnections::mayFind(path, vertex))
+        reflected = ReflectedConnections::density(path, vertex.pdfReverse(way.direction), {direction, length}, areaPdf);
+    return transport::balance(density(path, vertex, length), LightVertexConnections::density(areaPdf), reflected);
 }
 
 float ConnectionsFromSurfaces::density(const GuidedPath& path, const transport::Vertex& vertex, float length) {

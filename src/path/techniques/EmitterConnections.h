@@ -23,6 +23,10 @@ struct ConnectionsFromMedia {
 struct ConnectionsFromSurfaces {
     /// `throughput` includes the way there.
     static void connect(const GuidedPath& path, const SurfaceHit& hit, const Rgb& throughput);
+    /// The part of a connection from the surface at the end of the ray, `length` long, that is not left to light
+    /// vertices and reflected light; `way` is the connection.
+    [[nodiscard]] static float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
+                                           const transport::Straight& way);
     /// Per area, of the surface point at the end of the ray, `length` long, as the walk's next vertex.
     [[nodiscard]] static float density(const GuidedPath& path, const transport::Vertex& vertex, float length);
 };

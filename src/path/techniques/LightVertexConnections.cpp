@@ -1,6 +1,5 @@
 #include "path/techniques/LightVertexConnections.h"
 
-#include "path/techniques/LightPaths.h"
 #include "path/techniques/ReflectedConnections.h"
 
 #include "transport/Balance.h"
@@ -29,15 +28,14 @@ void LightVertexConnections::connect(const GuidedPath& path, const transport::Ve
     if (ReflectedConnections::mayFind(path, light.vertex))
         reflected = ReflectedConnections::density(path, light.vertex.pdf(-direction), *way, light.areaPdf);
     const float share = transport::balance(density(light.areaPdf), walk, reflected);
-    const bool sharply =
-        path.context.lightPaths.reflected(path.target().index) && reflectsSharply(light.vertex.lobes());
-    const float weighed = sharply ? path.ratios.before : path.ratios.there;
+    const float logRatio =
+        path.logRatioByLightPaths(light.vertex, transport::balance(walk, density(light.areaPdf), reflected));
     Rgb transmittance(1.0f);
     if (const Medium* beyond = path.scene().medium(light.vertex.regionTowards(-direction, state.region)))
         transmittance = beyond->transmittance(light.distance);
     const double time = connection->time + double(light.distance) / double(state.region.speed);
     path.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                  state.time + time + path.target().start, *path.target().emitter, weighed);
+                  state.time + time + path.target().start, *path.target().emitter, logRatio);
 }
 
 } // namespace tungsten::path

@@ -50,23 +50,27 @@ void ReflectedConnections::connect(const GuidedPath& path, const transport::Vert
     const float arrives = end.areaDensity(here.pdf(way->direction), way->direction, way->distance) *
                           (inMedium ? path.context.lightPaths.flights().pdf(way->distance) : 1.0f);
     const float goesOn = end.pdfReverse(-way->direction) * light.perAreaAtGlossy;
-    const float walk = arrives * (goesOn + LightVertexConnections::density(light.glossy.areaPdf));
-    const float share = transport::balance(cache.candidates() * light.density, walk);
+    const float connects = LightVertexConnections::density(light.glossy.areaPdf),
+                found = cache.candidates() * light.density;
+    const float share = transport::balance(found, arrives * (goesOn + connects));
+    // As the walk has it at the glossy surface, two vertices on: GuidedPath::logRatioByLightPaths.
+    const float ofWalk = transport::balance(arrives * goesOn, arrives * connects, found);
+    const float logRatio = path.behind.ratios.there - std::log(std::max(ofWalk, 1e-30f));
     Rgb transmittance = transmittanceOf(path, light, end, way->direction);
     if (inMedium) transmittance = transmittance * path.scene().medium(state.region)->sigmaS();
     const double time = connection->time + double(light.length()) / double(state.region.speed);
     path.sink.add(connection->throughput * transmittance * (choice.weight * share),
-                  state.time + time + path.target().start, *path.target().emitter, path.ratios.there);
+                  state.time + time + path.target().start, *path.target().emitter, logRatio);
 }
 
 float ReflectedConnections::density(const GuidedPath& path, float pdf, const transport::Straight& way, float areaPdf) {
-    const bool inMedium = isBlack(path.approach->normal);
-    const float cosine = way.direction.dot(path.approach->normal);
+    const bool inMedium = isBlack(path.behind.approach->normal);
+    const float cosine = way.direction.dot(path.behind.approach->normal);
     if (!inMedium && !(cosine > 0.0f)) return 0.0f;
     const LightPaths& lightPaths = path.context.lightPaths;
     const float end = inMedium ? lightPaths.flights().pdf(way.distance) : cosine;
     return lightPaths.reflected(path.target().index)->candidates() * areaPdf * pdf * end / sqr(way.distance) /
-           path.approach->pdf;
+           path.behind.approach->pdf;
 }
 
 } // namespace tungsten::path

@@ -11,7 +11,7 @@ struct ReflectedConnections {
     static void connect(const GuidedPath& path, const transport::Vertex& here, const ReflectedLightCache& cache);
     /// Whether one vertex before reflected light was connected to that may have come by way of `glossy`.
     [[nodiscard]] static bool mayFind(const GuidedPath& path, const transport::Vertex& glossy) {
-        return path.approach && reflectsSharply(glossy.lobes());
+        return path.behind.approach && reflectsSharply(glossy.lobes());
     }
     /// Of the reflected light that one vertex before was connected to (mayFind), at the ray's origin and at a light
     /// vertex of density `areaPdf` at the end of `way`, over the walk's density at the ray's origin. `pdf` is light's
