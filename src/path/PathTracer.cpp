@@ -96,7 +96,10 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
     const bool lightVertices = guides && plan_.lightVertices.on;
     if (lightVertices) {
         const StageTimer timer(statistics, "light paths");
-        lightPaths_.trace(*scene_, *targets_, pass.part(0.0, LightPathsPart), statistics);
+        const Vec2i resolution = scene_->camera.resolution;
+        const double paths = double(resolution.x) * double(resolution.y) * double(pass.samples);
+        lightPaths_.trace(*scene_, *targets_, size_t(std::ceil(paths * double(balance_.guided))),
+                          pass.part(0.0, LightPathsPart), statistics);
     }
     if (refracted_) refracted_->trace(pass.part(0.0, 0.0));
     const StageTimer timer(statistics, "camera pass");
@@ -243,7 +246,8 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
     balance_ = {0.5f, 0.5f};
     if (plan_.lightVertices.on) {
         Statistics ignored;
-        lightPaths_.trace(*scene_, *targets_, PassInfo{.seed = Key, .watch = watch}, ignored);
+        constexpr size_t GuidedPaths = tuning::MostPilotPixels * SharePilot::PathsOfPixel / 2;
+        lightPaths_.trace(*scene_, *targets_, GuidedPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
     }
     GuidedContext guided = guidedContext(watch);
     PathContext plain = plainContext(watch);

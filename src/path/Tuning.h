@@ -58,7 +58,7 @@ inline constexpr double TrailCost = 80.0, DensityCost = 550.0;
 
 // --- Light paths -----------------------------------------------------------------------------------------------------
 
-/// Light paths of a pass, a quarter of its samples within these. Bench: study cbox-128
+/// Light paths of a pass, a quarter of its guided paths within these, and no more than they are. Bench: study cbox-128
 inline constexpr size_t FewestPaths = 4096, MostPaths = 32768;
 /// Scenes with more lights have none of these: each would be reached by few. Variance x CPU with over without them, in
 /// gates of 0.05 and 0.3: 0.92 and 0.73 under 1 light, 0.92 and 0.87 under 4, 0.94 and 1.13 under 8, 1.33 and 1.33

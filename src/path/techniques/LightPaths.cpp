@@ -46,21 +46,20 @@ void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, const 
     }
 }
 
-void LightPaths::trace(const Scene& scene, const TargetChoice& targets, const PassInfo& pass, Statistics& statistics) {
-    const size_t samples = size_t(scene.camera.resolution.x) * size_t(scene.camera.resolution.y) * pass.samples;
-    const auto all = float(std::clamp(samples / 4, tuning::FewestPaths, tuning::MostPaths));
-    const auto reflected = float(std::clamp(samples / 4, tuning::FewestPaths, tuning::MostPaths));
+void LightPaths::trace(const Scene& scene, const TargetChoice& targets, size_t guidedPaths, const PassInfo& pass,
+                       Statistics& statistics) {
+    const auto all = float(std::clamp(guidedPaths / 4, std::min(guidedPaths, tuning::FewestPaths), tuning::MostPaths));
     uint64_t paths = 0;
     for (size_t i = 0; i < vertices_.size(); ++i) {
         const float probability = targets.probability(i);
         if (!(probability > 0.0f) || scene.emitters[i].isDelta()) continue;
         const Emitter& emitter = scene.emitters[i];
-        const auto share = [&](float number) { return size_t(number * probability) + tuning::Candidates; };
-        vertices_[i].trace(scene, emitter, probability, share(all), pass);
-        paths += share(all);
+        const size_t share = size_t(all * probability) + tuning::Candidates;
+        vertices_[i].trace(scene, emitter, probability, share, pass);
+        paths += share;
         if (reflected_[i].empty()) continue;
-        reflected_[i].trace(scene, emitter, probability, share(reflected), pass, flights_);
-        paths += share(reflected);
+        reflected_[i].trace(scene, emitter, probability, share, pass, flights_);
+        paths += share;
     }
     statistics.add("light paths", paths);
     statistics.add("rays", paths);

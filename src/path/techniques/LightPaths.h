@@ -14,7 +14,9 @@ class LightPaths {
     [[nodiscard]] static bool reflectedIn(const Scene& scene);
 
     void prepare(const Scene& scene, const TargetChoice& targets, const PassWatch& watch, Statistics& statistics);
-    void trace(const Scene& scene, const TargetChoice& targets, const PassInfo& pass, Statistics& statistics);
+    /// A quarter as many light paths as guided paths of the pass, within limits of Tuning.h, and no more than those.
+    void trace(const Scene& scene, const TargetChoice& targets, size_t guidedPaths, const PassInfo& pass,
+               Statistics& statistics);
     /// None for emitters without light vertices.
     [[nodiscard]] const LightVertexCache* vertices(int emitter) const {
         return emitter >= 0 && size_t(emitter) < vertices_.size() ? &vertices_[size_t(emitter)] : nullptr;
