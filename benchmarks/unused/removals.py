@@ -63,7 +63,6 @@ REMOVALS = [
     ]),
     ("light that leaves bodies", GUIDED, [
         ("src/path/StepsToEmitter.cpp", "if (hasLookedOut() || !guided_->waysOut) return;", "if (true) return;"),
-        ("src/path/StepsToEmitter.cpp", "if (choosesTarget_ && reachable().way == darts::Way::Out) chooseTarget(path);", ""),
         ("src/path/StepsToEmitter.cpp",
          "if (ahead.hit && reachable().way == darts::Way::Out && reachable().exit.connects && path.mediumScatters > 0)", "if (false)"),
         ("src/photon/light/StepsToCamera.cpp", "const bool out = residual().way == darts::Way::Out;", "constexpr bool out = false;"),

@@ -72,7 +72,7 @@ void GuidedVisitor::connectToLightPaths(const GuidedPath& path, const transport:
 }
 
 void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
-                     PathTarget target, const Ray& ray) {
+                     const PathTarget& target, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
     transport::Walk walk{

@@ -38,6 +38,6 @@ class GuidedVisitor : public transport::VisitorBase {
 
 /// Traces one camera path along `ray`, guided towards the target.
 void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
-                     PathTarget target, const Ray& ray);
+                     const PathTarget& target, const Ray& ray);
 
 } // namespace tungsten::path

@@ -29,11 +29,7 @@ std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, c
     if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
     if (noConnection(scene, settings, facts))
         return "all that scatters lies behind walls that refract: no connection is complete";
-    const TimeGate& gate = scene.transport.gate;
-    const bool wide = settings.policy.followsBodies() && !facts.surfaceScattering && !gate.delta &&
-                      gate.frames == 1 && // each of many is short
-                      transport::gateInBodies(scene).transport > tuning::WidestGate;
-    return wide ? "a gate so wide that most light which leaves the bodies is in time" : "";
+    return {};
 }
 
 Choice refractedOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
@@ -91,17 +87,6 @@ Choice balanceOf(const Scene& scene, const PathSettings& settings, const Choice&
     return {true, "plain paths beside guided ones, each weighed by how densely both find what it has found"};
 }
 
-Choice entryPointsOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
-    if (!guidance.on) return {false, "paths are not guided"};
-    if (!transport::WaysOut::make(scene, settings.policy))
-        return {false, "no body of a scattering medium that light must leave, or left alone"};
-    if (!transport::looksFromOutside(scene, transport::bodiesOf(scene)))
-        return {false, "camera or lights are in what scatters: light gets into bodies by way of it, too"};
-    const bool any = std::any_of(scene.emitters.begin(), scene.emitters.end(), TargetChoice::hasOthers);
-    return {any, any ? "paths choose again where they enter a body, by what of their light gets out in time"
-                     : "lights are points, or infinite, or of a single direction"};
-}
-
 } // namespace
 
 PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
@@ -125,7 +110,6 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
                                                                         : "off by default in time-resolved renders"};
     plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
     plan.balance = balanceOf(scene, settings, plan.guidance);
-    plan.entryPoints = entryPointsOf(scene, settings, plan.guidance);
     plan.refracted = refractedOf(scene, settings, facts);
     plan.chooseLightPaths(scene, settings, facts);
     return plan;
@@ -159,7 +143,6 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, Effect
     add("light through walls", refracted, {"integrator.darts"}, {"ways through walls"});
     add("EDA table", edaTable, {"integrator.darts"}, {"direction tables"});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);
-    add("points of lights", entryPoints, {"integrator.darts"}, {"points of lights chosen anew"});
     add("light vertices", lightVertices, {"integrator.darts"}, {"light vertex connections", "light paths"});
     add("reflected light", reflectedLight, lobeUses(scene, lobe::GlossyReflection | lobe::SpecularReflection).causes(),
         {"reflected light connections"});

@@ -23,7 +23,6 @@ struct PathPlan {
     Choice lightVertices;         ///< walks connect to surface points that light reaches first
     Choice reflectedLight;        ///< and to where glossy surfaces throw light
     Choice refracted;             ///< plain walks aim at emitters through the walls of sealed bodies
-    Choice entryPoints;           ///< points of lights are chosen anew where walks enter bodies
     Choice edaTable;              ///< directions come from tables of media
 
     bool lasers = false; ///< some light starts in a single direction

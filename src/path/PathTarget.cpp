@@ -40,17 +40,6 @@ std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, const 
     return target;
 }
 
-bool TargetChoice::hasOthers(const Emitter& emitter) {
-    return !emitter.isDelta() && !emitter.isInfinite() && boundingSphere(emitter).radius > 0.0f;
-}
-
-std::optional<PathTarget> TargetChoice::another(const PathTarget& target, Sampler& sampler) const {
-    if (target.index < 0 || !(target.reach > 0.0f)) return std::nullopt;
-    PathTarget other = target;
-    other.vertex = {scene_, *target.emitter, sampleEmissionPoint(*target.emitter, sampler.next2D())};
-    return other;
-}
-
 namespace {
 
 /// Light on its straight or specular way from an emitter becomes a virtual source where it scatters first; where it may

@@ -50,10 +50,6 @@ class TargetChoice {
     /// `u` chooses the emitter. None when light that starts in a single direction is absorbed or escapes.
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const PassWatch& watch,
                                                    PathCounters& counters) const;
-    /// The emitter has more than one point to choose.
-    [[nodiscard]] static bool hasOthers(const Emitter& emitter);
-    /// Another point of the target's emitter, drawn as it was. None if there is no other, or for virtual sources.
-    [[nodiscard]] std::optional<PathTarget> another(const PathTarget& target, Sampler& sampler) const;
 
   private:
     std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, const Sampler& sampler,

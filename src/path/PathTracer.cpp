@@ -29,7 +29,6 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("control vertices", counters.controlVertices);
     statistics.add("plain paths beside guided ones", counters.plainPaths);
     statistics.add("vertices with densities of guided paths", counters.densities);
-    statistics.add("points of lights chosen anew", counters.pointsChosen);
     statistics.add("light vertex connections", counters.lightVertices);
     statistics.add("reflected light connections", counters.reflectedLight);
     statistics.add("ways through walls", counters.refracted);
@@ -186,10 +185,8 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
 }
 
 GuidedContext PathTracer::guidedContext(const PassWatch& watch) const {
-    const TargetChoice* targets = plan_.entryPoints.on && !balance_.both() ? &*targets_ : nullptr;
-    return {
-        *scene_, settings_, sensor_, guides_, targets, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
-        watch,   balance_};
+    return {*scene_, settings_, sensor_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
+            watch,   balance_};
 }
 
 PathContext PathTracer::plainContext(const PassWatch& watch) const {

@@ -12,7 +12,7 @@ namespace tungsten::path {
 class PlainTrail {
   public:
     /// A new path, towards a target; `counters` of what densities cost.
-    void start(const GuidedContext& context, PixelSink& sink, PathCounters& counters, PathTarget& target) {
+    void start(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const PathTarget& target) {
         steps_.clear();
         guided_.emplace(context, counters, target);
         context_ = &context;

@@ -4,8 +4,6 @@
 
 #include "transport/PlainSteps.h"
 
-#include <numeric>
-
 namespace tungsten::path {
 
 using transport::Ahead;
@@ -14,9 +12,6 @@ using transport::WalkVertex;
 using Event = transport::Flight::Event;
 
 namespace {
-
-/// Logarithm of what is too little to matter.
-constexpr float NoUse = -1e30f;
 
 /// A surface whose lobes are all smooth and reflect. Directions into it stand for absorption: their density is 0.
 struct SurfaceScatterer {
@@ -91,47 +86,6 @@ void StepsToEmitter::lookOutFrom(const PathState& path, const transport::Start& 
     lookOut(*guided_->waysOut, start, path.region, aim, context_.counters.rays);
 }
 
-float StepsToEmitter::logUsefulTarget(const PathState& path) {
-    lookAheadFrom(path, path.ray.origin);
-    if (!reachable().alive()) return NoUse;
-    lookOutFrom(path, transport::Start::along(path.ray));
-    const darts::Residual& residual = reachable();
-    if (residual.way != darts::Way::Out) return NoUse;
-    const float light = meanComponent(target_->intensity(-darts::to<Vec3f>(residual.axis)));
-    return light > 0.0f ? guideOf(path.region).logUsefulness(residual, light / sqr(residual.C)) : NoUse;
-}
-
-/// Resampled importance sampling: for any weights the estimate of whatever depends on the point stays exact.
-void StepsToEmitter::chooseTarget(PathState& path) {
-    constexpr size_t Points = tuning::EntryPoints;
-    PathTarget& target = *target_;
-    choosesTarget_ = false;
-    if (path.scattered || !TargetChoice::hasOthers(*target.emitter)) return;
-    std::array<std::optional<PathTarget>, Points> points;
-    std::array<float, Points> weights;
-    points[0] = target;
-    Sampler others = path.random.branch(RandomStream::EntryPoint, uint64_t(path.interactions));
-    for (size_t i = 0; i < Points; ++i) {
-        if (i > 0) points[i] = guided_->targets->another(target, others);
-        if (!points[i]) return;
-        target = *points[i];
-        weights[i] = logUsefulTarget(path);
-    }
-    const float highest = *std::max_element(weights.begin(), weights.end());
-    for (float& weight : weights) weight = std::exp(weight - highest); // alike if there is no use
-    float sum = std::accumulate(weights.begin(), weights.end(), 0.0f);
-    const float least = tuning::LeastPoint * sum / float(Points);
-    sum += least * float(Points);
-    float rest = others.next1D() * sum;
-    size_t chosen = 0;
-    while (chosen + 1 < Points && (rest -= weights[chosen] + least) >= 0.0f) ++chosen;
-    target = *points[chosen];
-    lookAheadFrom(path, path.ray.origin);
-    lookOutFrom(path, transport::Start::along(path.ray));
-    path.throughput = path.throughput * (sum / (float(Points) * (weights[chosen] + least)));
-    ++counters_->pointsChosen;
-}
-
 bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
     surfaceGuide_ = nullptr;
     if (guided_->balance.endsGuided(path.logRatio)) return false;
@@ -190,7 +144,6 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
     passage_ = Passage::Medium;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     lookOutFrom(path, transport::Start::along(path.ray));
-    if (choosesTarget_ && reachable().way == darts::Way::Out) chooseTarget(path);
     if (!reachable().alive()) return {};
     const darts::Guide& guide = guideOf(path.region);
     startRoulette(guide, path.region.medium, meanComponent(path.throughput));

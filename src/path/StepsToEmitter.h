@@ -27,7 +27,6 @@ struct GuidedContext {
     const PathSettings& settings;
     const transport::Sensor& sensor;
     const PathGuides& guides;
-    const TargetChoice* targets; ///< among whose points paths choose where they enter bodies, or null
     const LightPaths& lightPaths;
     const ArrivalBound& bound;
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite
@@ -40,10 +39,8 @@ class StepsToEmitter : public transport::GuidedSteps {
   public:
     static constexpr bool Timed = true;
 
-    /// Where a path enters a body it may replace `target` by another point of its emitter.
-    StepsToEmitter(const GuidedContext& guided, PathCounters& counters, PathTarget& target)
-        : context_{guided.scene, counters, guided.watch}, guided_(&guided), counters_(&counters), target_(&target),
-          choosesTarget_(guided.targets != nullptr) {}
+    StepsToEmitter(const GuidedContext& guided, PathCounters& counters, const PathTarget& target)
+        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(&target) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
     transport::Ahead ahead(PathState& path) { return ahead(path, nullptr); }
@@ -149,10 +146,6 @@ class StepsToEmitter : public transport::GuidedSteps {
     void lookAheadFrom(const PathState& path, const Vec3f& position);
     /// How light gets from here to the target; once, before anything is sampled.
     void lookOutFrom(const PathState& path, const transport::Start& start);
-    /// A walk that enters a body chooses among points of its emitter by how much of their light gets out to it in time.
-    void chooseTarget(PathState& path);
-    /// The target's usefulness from the ray's origin, per area of its emitter; logarithm, NoUse if there is none.
-    [[nodiscard]] float logUsefulTarget(const PathState& path);
     /// How many copies go on: with a probability, or as many.
     struct Onward {
         float survival = 1.0f;
@@ -172,9 +165,7 @@ class StepsToEmitter : public transport::GuidedSteps {
 
     transport::WalkContext context_;
     const GuidedContext* guided_;
-    PathCounters* counters_;
-    PathTarget* target_;     ///< shared with copies: chosen before anything scatters, and so before splits
-    bool choosesTarget_;     ///< until it is final
+    const PathTarget* target_;
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;
     const darts::Guide* surfaceGuide_ = nullptr;

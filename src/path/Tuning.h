@@ -23,18 +23,6 @@ inline constexpr float GlossyAlpha = 5.0f;
 /// staircase-160
 inline constexpr float ViewSurfaceOdds = 4.0f;
 
-/// Points of its emitter among which a walk that enters a body chooses, and the least weight of one, relative to their
-/// mean: light may take other ways. Variance x CPU of paths, dense cube 300 and layered tissue: 2.3 and 25 at 1, 1.5
-/// and 24 at 4, 1.6 and 15 at 8, 1.1 and 14 at 16; at least weights of 0.1 and 0.3: 1.08 and 1.01, 14 and 14, dense
-/// cube 10 0.193 and 0.182. Bench: study bodies
-inline constexpr size_t EntryPoints = 8;
-inline constexpr float LeastPoint = 0.3f;
-/// Gates above, in transport mean free paths of the densest body, let most light that leaves the bodies pass, so that
-/// plain paths, whose steps take a tenth of the time, do better. Variance x CPU of guided over plain paths: layered
-/// tissue, 0.24 at 0.2, 0.5 at 2, 0.76 at 4, 1.15 at 9, 1.7 at 17; dense cube 300, 0.7 at 6, 1 at 15, 2.7 at 150.
-/// Bench: study bodies
-inline constexpr float WidestGate = 8.0f;
-
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 
 /// Contributions, as many of one size as are worth them, by which a pilot may choose; another share than one half must

@@ -94,8 +94,7 @@ Choice framesOneByOneOf(const Given& given, bool exact) {
 
 Choice boundsAloneOf(const Given& given, const PhotonPlan& plan) {
     const bool on = plan.guidance.on && given.policy().followsBodies() && !given.facts.surfaceScattering &&
-                    !given.delta() && !given.unwarped() &&
-                    transport::gateInBodies(given.scene).collisions > tuning::WidestGate;
+                    !given.delta() && !given.unwarped() && transport::gateInBodies(given.scene) > tuning::WidestGate;
     return {on, on ? "a gate so wide that most light which leaves the bodies is in time"
                    : "only for long gates over bodies that are seen and lit from outside, without surfaces"};
 }

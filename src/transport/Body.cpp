@@ -122,25 +122,20 @@ std::vector<Body> bodiesOf(const Scene& scene) {
     return bodies;
 }
 
-bool looksFromOutside(const Scene& scene, const std::vector<Body>& bodies) {
-    const auto scatters = [&](int medium) { return medium >= 0 && bodies[size_t(medium)].scatters(); };
-    return !scatters(scene.cameraRegion.medium) &&
-           std::none_of(scene.emitters.begin(), scene.emitters.end(),
-                        [&](const Emitter& emitter) { return scatters(emitter.medium); });
-}
-
-GateInBodies gateInBodies(const Scene& scene) {
+float gateInBodies(const Scene& scene) {
     const std::vector<Body> bodies = bodiesOf(scene);
-    GateInBodies longest;
-    if (!looksFromOutside(scene, bodies)) return longest;
+    const auto scatters = [&](int medium) { return medium >= 0 && bodies[size_t(medium)].scatters(); };
+    if (scatters(scene.cameraRegion.medium) ||
+        std::any_of(scene.emitters.begin(), scene.emitters.end(),
+                    [&](const Emitter& emitter) { return scatters(emitter.medium); }))
+        return 0.0f;
     const TimeGate& gate = scene.transport.gate;
+    float longest = 0.0f;
     for (const Primitive& primitive : scene.primitives)
         for (const Region& region : {primitive.inside, primitive.outside}) {
             if (!primitive.boundsMedium || region.medium < 0 || !bodies[size_t(region.medium)].scatters()) continue;
             const float length = float(gate.end() - gate.start) * region.speed;
-            const float sigmaT = meanComponent(scene.media[size_t(region.medium)].sigmaT());
-            longest.collisions = std::max(longest.collisions, length * sigmaT);
-            longest.transport = std::max(longest.transport, length * bodies[size_t(region.medium)].reducedSigmaT);
+            longest = std::max(longest, length * meanComponent(scene.media[size_t(region.medium)].sigmaT()));
         }
     return longest;
 }

@@ -60,15 +60,9 @@ struct BodySphere {
 };
 std::vector<BodySphere> spheresAboutBodies(const Scene& scene);
 
-/// Camera and lights are all outside what scatters.
-bool looksFromOutside(const Scene& scene, const std::vector<Body>& bodies);
-
-/// The length of the gate, all its frames, in the body where it is the most mean free paths; of collisions, and of
-/// transport. 0 unless the scene looks from outside.
-struct GateInBodies {
-    float collisions = 0.0f, transport = 0.0f;
-};
-GateInBodies gateInBodies(const Scene& scene);
+/// The length of the gate, all its frames, in mean free paths of the body where these are the most. 0 unless camera and
+/// lights are all outside what scatters.
+float gateInBodies(const Scene& scene);
 
 /// All that scatters is sealed by walls that refract, without an emitter inside: no connection from there is complete.
 bool isSealed(const Scene& scene);

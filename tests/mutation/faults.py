@@ -337,8 +337,6 @@ FAULTS = [
     # Camera paths, guided
     ("src/path/StepsToEmitter.cpp", "{gate.start - target.start, gate.end() - target.start}", "{gate.start - target.start, gate.end()}",
      [("path_tests", "BoxGates/GuidedOrders.MatchVerifiedValues/Published_C2WarpedBox")]),  # guided walks take late light of delayed emitters into the gate
-    ("src/path/StepsToEmitter.cpp", "(float(Points) * (weights[chosen] + least))", "(float(Points) * weights[chosen])",
-     [("path_tests", "Bodies.PathsThatEnterChooseAmongPointsOfALampUnlessTheGateIsWide")]),  # points of lights chosen anew: weight is not over their probability
     ("src/path/StepsToEmitter.cpp", "* double(1.0f - surface);", "/ double(1.0f - surface);",
      [("agreement_tests", "Cases/GuidedRoom.AgreesWithPlainPaths/*")]),  # unwarped paths: media before surfaces too dark
     ("src/path/StepsToEmitter.cpp", "0.5 * flights().pdf(t - chord.begin())", "0.5 * flights().pdf(t)",

@@ -23,7 +23,7 @@ using transport::Way;
 /// Follows a guided path as if it were a plain one, and compares.
 class Replay : public transport::VisitorBase {
   public:
-    Replay(const GuidedContext& context, PixelSink& sink, PathCounters& counters, PathTarget& target)
+    Replay(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const PathTarget& target)
         : context_(&context) {
         trail_.start(context, sink, counters, target);
     }
@@ -101,8 +101,7 @@ void replay(const std::string& json) {
     const ArrivalBound bound(scene, effects);
     const auto waysOut = transport::WaysOut::make(scene, settings.policy);
     const TargetChoice targets(scene, TargetChoice::Emitters::All);
-    const GuidedContext context{scene, settings,      sensor, guides, nullptr,     none,
-                                bound, waysOut.get(), true,   watch,  {0.5f, 0.5f}};
+    const GuidedContext context{scene, settings, sensor, guides, none, bound, waysOut.get(), true, watch, {0.5f, 0.5f}};
     Replay::compared = 0;
     Replay::largest = 0.0f;
     for (uint64_t i = 0; i < 300; ++i) {

@@ -29,7 +29,6 @@ enum class RandomStream : uint32_t {
     DetectorLight = 14,
     // Branches of a path's stream (Sampler::branch).
     Target = 15,     ///< the point of a light that a camera path aims at
-    EntryPoint = 16, ///< others of its points
     Aimed = 17,      ///< a walk that is aimed through a wall
     Record = 18,     ///< of photons, thinned and drawn by themselves
     Connection = 19, ///< from a vertex to many surfaces
