@@ -52,21 +52,13 @@ Shape shapeOf(Greens greens) {
 
 } // namespace
 
-DistanceSampler::Kernels DistanceSampler::chooseKernels(const Settings& settings, bool grey, bool scalar) {
-    const auto kernel = [&](Shape shape) { return kernelFor(shape, settings.candidates, grey, scalar); };
-    const bool alone = settings.aloneBehindRefraction;
-    // Without a Green's function nothing but the bound in time is wanted.
-    const bool shaped = settings.greens != Greens::None;
-    const Kernel out = kernel(shaped ? Shape::FirstPassage : Shape::TimeBound);
-    return {kernel(shapeOf(settings.greens)), out, alone ? kernelFor(Shape::TimeBound, 1, grey, scalar) : out,
-            kernel(Shape::TimeBound)};
-}
-
 DistanceSampler::DistanceSampler(const Settings& settings, const Medium& medium, bool scalar)
     : settings_(settings), medium_(medium), sigmaT_(medium.sigmaT()), meanSigmaT_(mean(sigmaT_)),
-      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0), kernels_(chooseKernels(settings, grey_, scalar)) {
-    for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal, Shape::FirstPassage})
+      grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0) {
+    for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal, Shape::FirstPassage}) {
+        kernels_[size_t(shape)] = kernelFor(shape, settings.candidates, grey_, scalar);
         usefulness_[size_t(shape)] = LogLinearDistance::logImportance(shape, grey_, scalar);
+    }
 }
 
 Vec3 DistanceSampler::transmittance(float distance) const {
@@ -87,7 +79,7 @@ Shape DistanceSampler::shapeFor(const Residual& residual) const {
     if (settings_.greens == Greens::None || residual.way == Way::Unknown) return Shape::TimeBound;
     if (residual.way == Way::Through) return shapeOf(settings_.greens);
     // Behind refraction light leaves where it is not known.
-    return residual.exit.connects || !settings_.aloneBehindRefraction ? Shape::FirstPassage : Shape::TimeBound;
+    return residual.exit.connects ? Shape::FirstPassage : Shape::TimeBound;
 }
 
 auto DistanceSampler::surfaceEvent(const Residual& residual, float surface, float firstLeg,
@@ -108,8 +100,6 @@ CandidateDraw DistanceSampler::drawOf(const Residual& residual, const Heading& r
     draw.bound = bound;
     draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
     draw.proposals = settings_.proposals;
-    if (residual.way == Way::Out ? settings_.exponentialOut : settings_.mixDenseOnly && meanSigmaT_ * residual.C < 4.0f)
-        draw.proposals = Proposals::Exponential;
     draw.overlap = settings_.overlap;
     draw.floor = floor(residual);
     draw.throughput = throughput;
@@ -155,10 +145,7 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
     if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return sample;
     CandidateDraw draw = drawOf(residual, ray, latest, bound, throughput);
     draw.probability = 1.0f - event.probability;
-    const Kernel kernel = residual.way == Way::Through ? kernels_.through
-                          : residual.way == Way::Out   ? residual.exit.connects ? kernels_.out : kernels_.refracted
-                                                       : kernels_.unknown;
-    sample.distance = kernel(draw, random, sample.transmittanceOverPdf);
+    sample.distance = kernels_[size_t(shapeFor(residual))](draw, random, sample.transmittanceOverPdf);
     return sample;
 }
 

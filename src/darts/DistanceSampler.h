@@ -88,24 +88,20 @@ class DistanceSampler {
                                        float bound, const Vec3& throughput) const;
     [[nodiscard]] Shape shapeFor(const Residual& residual) const;
     using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3& transmittanceOverPdf);
-    /// By how light gets to the target.
-    struct Kernels {
-        Kernel through = nullptr, out = nullptr, refracted = nullptr, unknown = nullptr;
-    };
     /// Of usefulness, relative to the candidates' mean. Diffusion knows little of the last few scatterings in a body:
     /// what it calls useless still shows, too bright for its odds. Over a long way a constant floor would lead every
     /// walk astray; this one leads `strays` flights of each.
     [[nodiscard]] float floor(const Residual& residual) const;
     static constexpr float MostFloor = 0.05f;
-    static Kernels chooseKernels(const Settings& settings, bool grey, bool scalar);
 
     Settings settings_;
     Medium medium_;
     Vec3 sigmaT_;
     float meanSigmaT_;
     bool grey_, scatters_;
-    Kernels kernels_;
-    std::array<LogLinearDistance::LogImportance, 4> usefulness_; ///< by shape
+    // By shape.
+    std::array<Kernel, 4> kernels_;
+    std::array<LogLinearDistance::LogImportance, 4> usefulness_;
 };
 
 } // namespace darts

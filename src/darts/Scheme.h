@@ -38,9 +38,7 @@ struct Scheme {
         if (direction) s.strata = false; // just what it names
         set(s.greens, greens);
         set(s.proposals, proposals);
-        if (proposals) s.mixDenseOnly = s.exponentialOut = false;
         set(s.candidates, candidates);
-        if (candidates) s.aloneBehindRefraction = false;
         set(s.alpha, alpha);
         set(s.focus, focus);
         set(s.thinFocus, focus);

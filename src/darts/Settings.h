@@ -71,16 +71,8 @@ struct Settings {
     bool overlap = true; ///< usefulness includes the part of the gate that is still reachable
     float floor = 0.0f;  ///< added to usefulness, relative to the candidates' mean; at most 0.05
     float strays = 0.0f; ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
-    /// Out of bodies by refraction a single candidate: where light leaves is not known, and what resampling takes for
-    /// useless is a rare bright sample where it shows. Variance x CPU of milk behind glass, beams 1.2 with eight
-    /// candidates, 0.7 with one; points 0.33 and 0.31. Bench: study bodies
-    bool aloneBehindRefraction = false;
     bool splitsHeavyOut = false; ///< out of bodies walks that are too heavy split too, not by the way left alone
     bool scattererOut = false;   ///< out of bodies directions are the scatterer's own
-    bool mixDenseOnly = false;   ///< MixedUniform only where sigmaT C > 4, Exponential elsewhere
-    /// Out of bodies candidates are Exponential: usefulness hardly varies within a flight there, and each of many
-    /// flights would multiply the walk's weight by the noise of a mixture that reaches up to the bound.
-    bool exponentialOut = false;
 
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
@@ -133,11 +125,9 @@ inline Settings best(Mode mode, float g) {
         s.thinFocus = peaked ? 0.1f : 0.3f;
         s.roulette = s.rouletteOut = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
-        s.mixDenseOnly = !peaked;
         s.strays = 0.2f;
-        s.aloneBehindRefraction = s.splitsHeavyOut = true;
+        s.splitsHeavyOut = true;
     } else {
-        s.exponentialOut = true;
         s.scattererOut = peaked;
         s.candidates = 16;
         s.roulette = 0.03f;
@@ -152,7 +142,7 @@ inline Settings plainFlights(Settings s) {
     s.greens = Greens::None;
     s.proposals = Proposals::Exponential;
     s.candidates = 1;
-    s.overlap = s.mixDenseOnly = false;
+    s.overlap = false;
     s.strays = 0.0f;
     return s;
 }

@@ -145,7 +145,7 @@ TEST(Scheme, SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout) {
             EXPECT_EQ(settings.proposals, preset.proposals);
             EXPECT_EQ(settings.direction, preset.direction);
             EXPECT_EQ(settings.lengthFirst, preset.lengthFirst);
-            EXPECT_TRUE(settings.logLinear && settings.strata && settings.aloneBehindRefraction);
+            EXPECT_TRUE(settings.logLinear && settings.strata);
         }
     };
     expectIgnored("candidates", 16.0, "has no effect with the preset best, whose distances");
