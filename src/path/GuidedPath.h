@@ -80,6 +80,11 @@ struct GuidedPath {
             return std::nullopt;
         return transport::Connector(scene(), false).connect(here, state.throughput, end, counters.shadowRays);
     }
+    /// The probability that a plain path's flight of this length into the region at hand, or one like it, passes.
+    [[nodiscard]] float plainlyPasses(const Region& region, float distance) const {
+        const Medium* medium = scene().medium(region);
+        return medium ? probabilityFlightExits(*medium, distance, state.channels) : 1.0f;
+    }
     /// The last vertex of what the camera sees, as it is met by the ray.
     [[nodiscard]] transport::Vertex vertexOn(const SurfaceInteraction& surface) const {
         return {scene(), surface, state.ray.direction, TransportMode::Radiance, state.region};

@@ -48,14 +48,14 @@ class PixelSink {
         balance_ = balance;
     }
     /// Light of an emitter, as the strategy's own estimate has it; `time` is the total time of flight, emission time
-    /// included; ignored in steady state. `logRatio`: StrategyBalance.
-    void add(const Rgb& radiance, double time, const Emitter& emitter, float logRatio, Found found = Found::Aside) {
+    /// included; ignored in steady state.
+    void add(const Rgb& radiance, double time, const Emitter& emitter, LogRatio logRatio, Found found = Found::Aside) {
         sensor_.spread(time, emitter,
                        [&](int frame, float share) { put(radiance * share, time, frame, logRatio, found); });
     }
     /// The same for a time that was drawn inside the gate: rounding at its ends drops nothing, and a delta gate, which
     /// no time meets, takes it with weight 1.
-    void addInside(const Rgb& radiance, double time, const Emitter& emitter, float logRatio) {
+    void addInside(const Rgb& radiance, double time, const Emitter& emitter, LogRatio logRatio) {
         if (sensor_.delays.any()) return add(radiance, time, emitter, logRatio);
         put(radiance, time, sensor_.gate.frames > 1 ? sensor_.gate.nearestFrame(time) : 0, logRatio, Found::Aside);
     }
@@ -66,7 +66,7 @@ class PixelSink {
     }
 
   private:
-    void tellPilot(float value, int frame, float logRatio, Found found);
+    void tellPilot(float value, int frame, LogRatio logRatio, Found found);
     void count(int frame) {
         ++counters_.arrivals;
         if (!sensor_.gate.steadyState) ++counters_.timed;
@@ -74,14 +74,14 @@ class PixelSink {
         if (frame > 0) ++counters_.laterFrames;
     }
 
-    void put(const Rgb& radiance, double time, int frame, float logRatio, Found found) {
+    void put(const Rgb& radiance, double time, int frame, LogRatio logRatio, Found found) {
         if (!isFinite(radiance)) {
             ++counters_.nonFinite;
             return;
         }
         float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
         if (pilot_) return tellPilot(meanComponent(radiance) * weight, frame, logRatio, found);
-        weight *= balance_.weight(strategy_, logRatio);
+        weight *= balance_.weight(strategy_, logRatio.weighed);
         if (weight > 0.0f) count(frame);
         const size_t place = size_t(frame) % MostFrames;
         FrameSum& sum = sums_[place];

@@ -6,7 +6,7 @@
 
 namespace tungsten::path {
 
-void PixelSink::tellPilot(float value, int frame, float logRatio, Found found) {
+void PixelSink::tellPilot(float value, int frame, LogRatio logRatio, Found found) {
     if (value != 0.0f) pilot_->tell(value, frame, logRatio, found);
 }
 
@@ -20,6 +20,13 @@ StrategyBalance PathCosts::ofTime(double plainTime) const {
 double PathCosts::mean(const StrategyBalance& balance) const {
     if (balance.guided == 0.0f) return plain;
     return double(balance.plain) * (plain + densities) + double(balance.guided) * guided;
+}
+
+double SharePilot::weighed(const Contribution& contribution, Strategy strategy, const StrategyBalance& balance) const {
+    const auto value = double(contribution.value);
+    if (strategy == Strategy::Guided && balance.guided == 0.0f)
+        return value * std::exp(std::min(double(contribution.logRatio.plainToEstimate), 80.0));
+    return value * double(balance.weight(strategy, contribution.logRatio.weighed));
 }
 
 double SharePilot::effective(Strategy strategy) const {
@@ -37,8 +44,9 @@ double SharePilot::effective(Strategy strategy) const {
 
 /// Second moments at other shares, from contributions c at the pilot's own: E[sum c_k c'_k + 2 sum_(j<k) c_k c'_j],
 /// where c' are those at the shares in question, since pairs on one way are found as densely as the longer path. What
-/// guided paths find beside their way they find in pairs alone. Less the squares of means, by independent halves.
-double SharePilot::variance(const StrategyBalance& balance) const {
+/// guided paths find beside their way they find in pairs alone; pairs of plain paths alone are those that these find.
+/// Less the squares of means, by independent halves.
+auto SharePilot::moments(const StrategyBalance& balance) const -> Moments {
     struct Before {
         double onWay = 0.0, aside = 0.0; ///< of what the path has found in this frame
     };
@@ -53,7 +61,10 @@ double SharePilot::variance(const StrategyBalance& balance) const {
         for (size_t k = paths_[i].first; k < end(i); ++k) {
             const double here = weighed(found_[k], strategy, Halves), there = weighed(found_[k], strategy, balance);
             Before& frame = before[found_[k].frame];
-            seconds += here * there + 2.0 * here * frame.onWay + 2.0 * there * frame.aside;
+            const double inPairs = balance.guided > 0.0f         ? here
+                                   : strategy == Strategy::Plain ? there / double(Halves.plain)
+                                                                 : 0.0;
+            seconds += here * there + 2.0 * inPairs * frame.onWay + 2.0 * there * frame.aside;
             if (found_[k].found == Found::OnWay)
                 frame.onWay += there;
             else
@@ -63,7 +74,13 @@ double SharePilot::variance(const StrategyBalance& balance) const {
         if (i % PathsOfPixel == PathsOfPixel - 1)
             for (const auto& [frame, half] : halves) squaredMeans += half[0] * half[1] * double(PathsOfPixel);
     }
-    return std::max(seconds - squaredMeans, 0.01 * seconds) / std::max(double(paths_.size()), 1.0);
+    const double paths = std::max(double(paths_.size()), 1.0);
+    return {seconds / paths, squaredMeans / paths};
+}
+
+double SharePilot::variance(const StrategyBalance& balance) const {
+    const auto [second, squaredMean] = moments(balance);
+    return std::max(second - squaredMean, 0.01 * second);
 }
 
 double SharePilot::ownSecondMoment(Strategy strategy) const {

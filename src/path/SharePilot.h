@@ -28,13 +28,15 @@ class SharePilot {
     static constexpr int PathsOfPixel = 4;
     void begin(Strategy strategy) { paths_.push_back({strategy, found_.size()}); }
     /// By the strategy's own estimate.
-    void tell(float value, int frame, float logRatio, Found found) {
+    void tell(float value, int frame, LogRatio logRatio, Found found) {
         found_.push_back({value, logRatio, frame, found});
     }
 
     /// How many contributions of their mean would have the same spread, of all that one strategy, or both together,
     /// found.
     [[nodiscard]] double effective(Strategy strategy) const;
+    /// E[squares of what a path finds in a frame] at this balance.
+    [[nodiscard]] double secondMoment(const StrategyBalance& balance) const { return moments(balance).second; }
     /// Of the squared error of the image, per path and up to a factor.
     [[nodiscard]] double variance(const StrategyBalance& balance) const;
 
@@ -52,7 +54,8 @@ class SharePilot {
         size_t first; ///< of what it found
     };
     struct Contribution {
-        float value, logRatio;
+        float value;
+        LogRatio logRatio;
         int frame;
         Found found;
     };
@@ -62,10 +65,13 @@ class SharePilot {
     [[nodiscard]] size_t end(size_t path) const {
         return path + 1 < paths_.size() ? paths_[path + 1].first : found_.size();
     }
+    struct Moments {
+        double second, squaredMean;
+    };
+    [[nodiscard]] Moments moments(const StrategyBalance& balance) const;
+    /// At the balance; of plain paths alone, what they would bring in the contribution's place.
     [[nodiscard]] double weighed(const Contribution& contribution, Strategy strategy,
-                                 const StrategyBalance& balance) const {
-        return double(contribution.value) * double(balance.weight(strategy, contribution.logRatio));
-    }
+                                 const StrategyBalance& balance) const;
 
     std::vector<Path> paths_;
     std::vector<Contribution> found_;

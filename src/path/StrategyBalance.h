@@ -9,6 +9,16 @@ namespace tungsten::path {
 
 enum class Strategy { Alone, Plain, Guided };
 
+/// How densely guided paths find what one has found, over plain ones; logarithms.
+struct LogRatio {
+    float weighed;         ///< as both strategies weigh it: StrategyBalance
+    float plainToEstimate; ///< plain paths' own estimate over the one at hand
+
+    /// The same, unless an estimate is random: what light paths bring is weighed by the way up to them.
+    LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
+    LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
+};
+
 /// Shares of the paths that are plain and guided, and weights of what they bring. A path X is found by plain paths with
 /// the density lambda_P, by guided ones with lambda_G = lambda_P e^L; either adds f / (plain lambda_P + guided
 /// lambda_G), which is its own estimate f / lambda times a weight. No contribution exceeds what plain paths bring, over

@@ -330,6 +330,8 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
     ("src/path/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
+    ("src/path/SharePilot.cpp", "contribution.logRatio.plainToEstimate", "contribution.logRatio.weighed",
+     [("path_tests", "SharePilot.JudgesPlainPathsByWhatTheyWouldBring")]),  # random estimates of light paths are taken for what plain ones bring
     ("src/path/SharePilot.cpp", "const auto share = float(ofPlain / (ofPlain + ofGuided));", "const auto share = float(plainTime);",
      [("path_tests", "PathCosts.*")]),  # shares of time are taken for shares of paths
     ("tungsten/geometry/SceneGeometry.h", "onward.tMax = float(length);", "onward.tMax = ray.tMax - t;",

@@ -1,6 +1,6 @@
 // Plain paths beside guided ones: what one of them finds, whoever it is, is weighed by how densely both find it.
 
-#include "path/SharePilot.h"
+#include "path/guided_setup.h"
 
 #include "support/PathsAndPhotons.h"
 #include "support/Render.h"
@@ -65,6 +65,57 @@ TEST(SharePilot, ChoosesByVarianceTimesCost) {
     EXPECT_EQ(pilotOf(0.001, 0.6, 4000).choose(costs), 0.25) << "plain paths have found too little to be judged";
     EXPECT_EQ(pilotOf(0.001, 0.002, 100).choose(costs), 0.5) << "nothing has been found to judge by";
     EXPECT_EQ(SharePilot().choose(costs), 0.5);
+}
+
+/// Fog between a floor and a wall, under a lamp.
+std::string roomOf(const std::string& bsdf) {
+    return R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.4, "sigma_a": 0.05}],
+      "primitives": [{"type": "quad", "bsdf": )" +
+           bsdf + R"(, "transform": {"scale": 4}},
+                     {"type": "quad", "bsdf": {"type": "lambert", "albedo": 0.7}, "transform": {"position": [0, 2, -1],
+                      "rotation": [90, 0, 0], "scale": 4}},
+                     {"type": "quad", "emission": 20, "bsdf": {"type": "null"}, "ext_medium": "fog",
+                      "transform": {"position": [0.4, 2, 0.3], "rotation": [180, 0, 0], "scale": 0.8}}],
+      "camera": {"resolution": 1, "fov": 20, "medium": "fog", "transform": {"position": [0, 1, 4], "look_at": [0, 0.8, 0]}},
+      "integrator": {"type": "path_tracer", "max_bounces": 16, "darts": "best", "transient_time_center": 8.5,
+                     "transient_time_width": 3}, "renderer": {}})";
+}
+
+/// What light paths bring of what plain paths hardly find is random: it tells what these would bring, not what it is.
+TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
+    for (const char* bsdf : {R"({"type": "lambert", "albedo": 0.7})",
+                             R"({"type": "rough_conductor", "material": "Al", "roughness": 0.3})"}) {
+        GuidedSetup setup(roomOf(bsdf));
+        Statistics ignored;
+        setup.lightPaths.prepare(setup.scene, setup.targets, setup.watch, ignored);
+        setup.lightPaths.trace(setup.scene, setup.targets, 8192, PassInfo{.seed = 1, .watch = setup.watch}, ignored);
+        const GuidedContext guided = setup.guided();
+        const PathContext plain = setup.plain();
+        PathCounters counters;
+        SharePilot pilot;
+        PlainTrail trail;
+        for (uint64_t i = 0; i < 200000; ++i) {
+            const bool guides = i % 2 == 1;
+            PixelSink sink(pilot, setup.sensor, counters);
+            pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
+            Sampler sampler(3, RandomStream::Test, 0, i);
+            const Vec2f film = sampler.next2D();
+            const Ray ray = setup.scene.camera.generateRay({0, 0}, film, sampler.next2D());
+            Sampler light = sampler.branch(RandomStream::Target, 0);
+            const auto target = setup.targets.sample(0.5f, light, setup.watch, counters);
+            ASSERT_TRUE(target);
+            if (guides) {
+                traceGuidedPath(guided, sink, counters, sampler, *target, ray);
+            } else {
+                trail.start(guided, sink, counters, *target);
+                tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
+            }
+        }
+        EXPECT_GT(counters.lightVertices, 10000u);
+        const double own = pilot.ownSecondMoment(Strategy::Plain), judged = pilot.secondMoment({1.0f, 0.0f});
+        RecordProperty("judged_over_own", std::to_string(judged / own));
+        EXPECT_NEAR(judged, own, 0.25 * own) << bsdf;
+    }
 }
 
 /// Where guides do not go, or go too densely, or both strategies find light by several techniques: the mean is the same

@@ -1,14 +1,6 @@
 // What guided steps say of a way afterwards is what they summed while they drew it.
 
-#include "path/GuidedVisitor.h"
-#include "path/PathPlan.h"
-#include "path/PlainTrail.h"
-#include "path/SharePilot.h"
-#include "path/techniques/LightPaths.h"
-
-#include "support/SceneFile.h"
-
-#include "tungsten/scene/SceneLoader.h"
+#include "path/guided_setup.h"
 
 #include <gtest/gtest.h>
 
@@ -88,29 +80,18 @@ std::string sceneOf(const std::string& medium, const std::string& more, const st
 }
 
 void replay(const std::string& json) {
-    const test::SceneFile file(json);
-    const LoadedScene loaded = loadScene(file.path());
-    const Scene& scene = *loaded.scene;
-    const PathSettings settings = readPathSettings(loaded.integratorSettings, scene);
-    EffectPlan effects = analyseScene(scene);
-    effects.late.resize(scene.emitters.size());
-    const PassWatch watch;
-    const transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
-    const PathGuides guides = PathGuides::of(scene, settings.policy.sampling, effects, watch);
-    const LightPaths none;
-    const ArrivalBound bound(scene, effects);
-    const auto waysOut = transport::WaysOut::make(scene, settings.policy);
-    const TargetChoice targets(scene, TargetChoice::Emitters::All);
-    const GuidedContext context{scene, settings, sensor, guides, none, bound, waysOut.get(), true, watch, {0.5f, 0.5f}};
+    const GuidedSetup setup(json);
+    const Scene& scene = setup.scene;
+    const GuidedContext context = setup.guided();
     Replay::compared = 0;
     Replay::largest = 0.0f;
     for (uint64_t i = 0; i < 300; ++i) {
         PathCounters counters;
         SharePilot pilot;
-        PixelSink sink(pilot, sensor, counters);
+        PixelSink sink(pilot, setup.sensor, counters);
         const Sampler sampler(1, RandomStream::Test, 0, i);
         Sampler light = sampler.branch(RandomStream::Target, 0);
-        auto target = targets.sample(0.3f, light, watch, counters);
+        auto target = setup.targets.sample(0.3f, light, setup.watch, counters);
         ASSERT_TRUE(target);
         Sampler lens = sampler;
         const Ray ray = scene.camera.generateRay({0, 0}, lens.next2D(), lens.next2D());

@@ -45,7 +45,9 @@ void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& 
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
     const float weight = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
     const float share = connection->crossings == 0 ? shareOfWalk(path, vertex, hit.t, *way) : 1.0f;
-    const float logRatio = share < 1.0f ? path.logRatioByLightPaths(vertex, share) : path.steps.logRatioOnSurface();
+    LogRatio logRatio = path.steps.logRatioOnSurface();
+    if (share < 1.0f)
+        logRatio = {path.logRatioByLightPaths(vertex, share), logRatio.weighed - std::log(std::max(share, 1e-30f))};
     path.sink.add(connection->throughput * (weight * share), time + connection->time + target.start, *target.emitter,
                   logRatio);
 }

@@ -28,8 +28,10 @@ void LightVertexConnections::connect(const GuidedPath& path, const transport::Ve
     if (ReflectedConnections::mayFind(path, light.vertex))
         reflected = ReflectedConnections::density(path, light.vertex.pdf(-direction), *way, light.areaPdf);
     const float share = transport::balance(density(light.areaPdf), walk, reflected);
-    const float logRatio =
-        path.logRatioByLightPaths(light.vertex, transport::balance(walk, density(light.areaPdf), reflected));
+    const float ofWalk = transport::balance(walk, density(light.areaPdf), reflected);
+    const float plain = walk * path.plainlyPasses(state.region, distance);
+    const LogRatio logRatio{path.logRatioByLightPaths(light.vertex, ofWalk),
+                            path.behind.ratios.there + std::log(light.areaPdf / (plain * choice.weight * share))};
     Rgb transmittance(1.0f);
     if (const Medium* beyond = path.scene().medium(light.vertex.regionTowards(-direction, state.region)))
         transmittance = beyond->transmittance(light.distance);

@@ -53,9 +53,15 @@ void ReflectedConnections::connect(const GuidedPath& path, const transport::Vert
     const float connects = LightVertexConnections::density(light.glossy.areaPdf),
                 found = cache.candidates() * light.density;
     const float share = transport::balance(found, arrives * (goesOn + connects));
+    const float flies = inMedium ? pdfFlight(*path.scene().medium(state.region), way->distance, state.channels)
+                                 : path.plainlyPasses(state.region, way->distance);
+    const float plain = end.areaDensity(here.pdf(way->direction), way->direction, way->distance) * flies * goesOn *
+                        path.plainlyPasses(end.regionTowards(-way->direction, state.region), light.flight.distance);
     // As the walk has it at the glossy surface, two vertices on: GuidedPath::logRatioByLightPaths.
     const float ofWalk = transport::balance(arrives * goesOn, arrives * connects, found);
-    const float logRatio = path.behind.ratios.there - std::log(std::max(ofWalk, 1e-30f));
+    const float there = path.behind.ratios.there;
+    const LogRatio logRatio{there - std::log(std::max(ofWalk, 1e-30f)),
+                            there + std::log(light.density / (plain * choice.weight * share))};
     Rgb transmittance = transmittanceOf(path, light, end, way->direction);
     if (inMedium) transmittance = transmittance * path.scene().medium(state.region)->sigmaS();
     const double time = connection->time + double(light.length()) / double(state.region.speed);

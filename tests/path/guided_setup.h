@@ -1,0 +1,46 @@
+#pragma once
+// Everything that a guided path, and a plain one beside it, needs of a scene.
+
+#include "path/GuidedVisitor.h"
+#include "path/PathPlan.h"
+#include "path/PathVisitor.h"
+#include "path/PlainTrail.h"
+#include "path/SharePilot.h"
+#include "path/techniques/LightPaths.h"
+
+#include "support/SceneFile.h"
+
+#include "tungsten/scene/SceneLoader.h"
+
+namespace tungsten::path {
+
+
+
+struct GuidedSetup {
+    explicit GuidedSetup(const std::string& json) : file(json), loaded(loadScene(file.path())) {
+        effects.late.resize(scene.emitters.size());
+    }
+    GuidedSetup(const GuidedSetup&) = delete;
+    GuidedSetup& operator=(const GuidedSetup&) = delete;
+
+    [[nodiscard]] GuidedContext guided() const {
+        return {scene, settings, sensor, guides, lightPaths, bound, waysOut.get(), true, watch, {0.5f, 0.5f}};
+    }
+    [[nodiscard]] PathContext plain() const { return {scene, settings, lights, bound, nullptr, true, watch}; }
+
+    test::SceneFile file;
+    LoadedScene loaded;
+    const Scene& scene = *loaded.scene;
+    PathSettings settings = readPathSettings(loaded.integratorSettings, scene);
+    EffectPlan effects = analyseScene(scene);
+    PassWatch watch;
+    transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
+    PathGuides guides = PathGuides::of(scene, settings.policy.sampling, effects, watch);
+    LightPaths lightPaths; ///< none
+    ArrivalBound bound{scene, effects};
+    std::unique_ptr<const transport::WaysOut> waysOut = transport::WaysOut::make(scene, settings.policy);
+    TargetChoice targets{scene, TargetChoice::Emitters::All};
+    LightChoice lights{scene, std::vector<bool>(scene.emitters.size())};
+};
+
+} // namespace tungsten::path
