@@ -134,8 +134,8 @@ template <typename Trace>
 void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const {
     const Camera& camera = scene_->camera;
     const auto width = size_t(camera.resolution.x), height = size_t(camera.resolution.y);
-    const auto renderPixel = [&](int x, int y, PathCounters& counters) {
-        PixelSink sink(film, sensor_, x, y, pass.samples, counters);
+    const auto renderPixel = [&](int x, int y, StrategyCounters& counters) {
+        PixelSink sink(film, sensor_, x, y, pass.samples, counters.plain);
         const uint64_t pixel = size_t(y) * width + size_t(x);
         // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
         Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
@@ -154,18 +154,19 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             const double place = turn + GoldenRatio * double(pass.firstSample + s);
             trace(ray, sink, counters, sampler, u, float(place - std::floor(place)));
             if (detectorLight_)
-                addDetectorLight(x, u, sink, pass.watch, counters,
+                addDetectorLight(x, u, sink, pass.watch, counters.plain,
                                  {pass.seed, RandomStream::DetectorLight, sample, pixel});
         }
     };
     pass.watch.stage("camera paths", width * height);
     tbb::parallel_for(tbb::blocked_range2d<size_t>(0, height, TileSide, 0, width, TileSide), [&](const auto& tile) {
-        PathCounters counters;
+        StrategyCounters counters;
         for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y) {
             for (size_t x = tile.cols().begin(); x < tile.cols().end(); ++x) renderPixel(int(x), int(y), counters);
             pass.watch.poll(tile.cols().size());
         }
-        report(counters, statistics);
+        for (const PathCounters& of : {counters.plain, counters.densities, counters.guided}) report(of, statistics);
+        statistics.add("counted nanoseconds of camera paths", uint64_t(costs(counters).sum()));
     });
 }
 
@@ -174,13 +175,14 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
     const PathContext context = plainContext(pass.watch);
     const bool lasers = plan_.lasers && targets_->any();
     renderTiles(pass, film, statistics,
-                [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u, float) {
+                [&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u, float) {
                     std::optional<PathTarget> source;
                     if (lasers) {
                         Sampler light = sampler.branch(RandomStream::Target, 0);
-                        source = targets_->sample(u, light, pass.watch, counters);
+                        source = targets_->sample(u, light, pass.watch, counters.plain);
                     }
-                    tracePath<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr, ray);
+                    tracePath<TimeResolved, Media>(context, sink, counters.plain, sampler, source ? &*source : nullptr,
+                                                   ray);
                 });
 }
 
@@ -197,38 +199,42 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
     const GuidedContext guided = guidedContext(pass.watch);
     const PathContext plain = plainContext(pass.watch);
     tbb::enumerable_thread_specific<PlainTrail> trails;
-    const auto trace = [&](const Ray& ray, PixelSink& sink, PathCounters& counters, Sampler& sampler, float u,
+    const auto trace = [&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u,
                            float strategy) {
+        const bool plainly = strategy < balance_.plain;
+        PathCounters& own = plainly ? counters.plain : counters.guided;
         Sampler light = sampler.branch(RandomStream::Target, 0);
-        std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, counters);
+        std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, own);
         if (!target) return;
-        if (!(strategy < balance_.plain)) {
+        if (!plainly) {
             sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_);
-            return traceGuidedPath(guided, sink, counters, sampler, *target, ray);
+            return traceGuidedPath(guided, sink, own, sampler, *target, ray);
         }
-        ++counters.plainPaths;
+        ++own.plainPaths;
         sink.begin(Strategy::Plain, balance_);
         PlainTrail& trail = trails.local();
-        trail.start(guided, sink, counters, *target);
-        tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
+        trail.start(guided, sink, counters.densities, *target);
+        tracePlainBesideGuided(plain, {&trail}, sink, own, sampler, *target, ray);
     };
     renderTiles(pass, film, statistics, trace);
 }
 
 double PathTracer::cost(const PathCounters& counters, const tuning::Rates& rates) const {
-    const double ray = rates.ray + tuning::RayCostByLog * std::log2(1.0 + double(scene_->geometry->triangleCount()));
+    // Whole numbers all: sums do not depend on how samples are cut into tiles and passes.
+    const double ray =
+        std::round(rates.ray + tuning::RayCostByLog * std::log2(1.0 + double(scene_->geometry->triangleCount())));
     return rates.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
            ray * double(counters.rays + counters.shadowRays) + rates.connection * double(counters.connections) +
            rates.controlVertex * double(counters.controlVertices);
 }
 
-PathCosts PathTracer::costs(const PathCounters& plain, const PathCounters& densities,
-                            const PathCounters& guided) const {
-    const double kept = tuning::TrailCost * double(plain.mediumEvents + plain.surfaceEvents);
+PathCosts PathTracer::costs(const StrategyCounters& counters) const {
+    const PathCounters& plain = counters.plain;
+    const double kept = balance_.both() ? tuning::TrailCost * double(plain.mediumEvents + plain.surfaceEvents) : 0.0;
     return {cost(plain, tuning::PlainRates),
-            kept + tuning::DensityCost * double(densities.densities) +
-                cost(densities, {0.0, tuning::PlainRates.ray, 0.0, 0.0}),
-            cost(guided, tuning::GuidedRates)};
+            kept + tuning::DensityCost * double(counters.densities.densities) +
+                cost(counters.densities, {0.0, tuning::PlainRates.ray, 0.0, 0.0}),
+            cost(counters.guided, tuning::GuidedRates)};
 }
 
 void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
@@ -253,7 +259,7 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
     const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);
     SharePilot pilot, alone;
     PlainTrail trail;
-    PathCounters ofPlain, ofDensities, ofGuided;
+    StrategyCounters counted;
     Sampler places(Key, RandomStream::Pilot, 0, 0);
     uint64_t traced = 0;
     PathCosts costs;
@@ -264,7 +270,7 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
             Sampler sampler(Key, RandomStream::Camera, uint32_t(traced), pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = scene_->camera.generateRay({int(pixel % width), int(pixel / width)}, uFilter, uLens);
-            PathCounters& counters = guides ? ofGuided : ofPlain;
+            PathCounters& counters = guides ? counted.guided : counted.plain;
             PixelSink sink(pilot, sensor_, counters);
             pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
             Sampler light = sampler.branch(RandomStream::Target, 0);
@@ -281,14 +287,14 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
             if (guides) {
                 traceGuidedPath(guided, sink, counters, sampler, *target, ray);
             } else {
-                trail.start(guided, sink, ofDensities, *target);
+                trail.start(guided, sink, counted.densities, *target);
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
             }
         }
         watch.poll();
-        costs = this->costs(ofPlain, ofDensities, ofGuided);
+        costs = this->costs(counted);
         if (group + 1 < tuning::LeastPilotPixels) continue;
-        if (costs.plain + costs.densities + costs.guided > tuning::MostPilotCost) break;
+        if (costs.sum() > tuning::MostPilotCost) break;
         if ((group & (group + 1)) == 0 && pilot.effective(Strategy::Plain) >= 10.0 * tuning::LeastEffective &&
             pilot.effective(Strategy::Guided) >= 10.0 * tuning::LeastEffective)
             break;

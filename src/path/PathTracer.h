@@ -32,8 +32,7 @@ class PathTracer : public Integrator {
     void chooseShare(const PassWatch& watch, Statistics& statistics);
     /// Of what was counted, in nanoseconds.
     [[nodiscard]] double cost(const PathCounters& counters, const tuning::Rates& rates) const;
-    [[nodiscard]] PathCosts costs(const PathCounters& plain, const PathCounters& densities,
-                                  const PathCounters& guided) const;
+    [[nodiscard]] PathCosts costs(const StrategyCounters& counters) const;
     /// `trace(ray, sink, counters, sampler, u, strategy)` for every sample of every pixel; u chooses among targets, and
     /// strategy, uniform too, among strategies.
     template <typename Trace>

@@ -9,12 +9,18 @@
 
 namespace tungsten::path {
 
+/// What was counted, by whose work it was: of plain paths, of their densities, of guided paths.
+struct StrategyCounters {
+    PathCounters plain, densities, guided;
+};
+
 /// What a plain path costs alone, what its densities cost, and what a guided path costs; in one unit.
 struct PathCosts {
     double plain = 1.0, densities = 0.0, guided = 1.0;
 
     /// Plain's share of the paths if it has this share of the time.
     [[nodiscard]] StrategyBalance ofTime(double plainTime) const;
+    [[nodiscard]] double sum() const { return plain + densities + guided; }
     /// Of a path, on the average.
     [[nodiscard]] double mean(const StrategyBalance& balance) const;
 };

@@ -183,6 +183,8 @@ TEST_P(Balanced, MeansAreTheSameAtAnyShare) {
     for (const char* share : {"0.6", "0.15"}) {
         const auto both = render(R"({"plain_share": )" + std::string(share) + "}", 12000);
         EXPECT_GT(both->statistics.counter("plain paths beside guided ones"), 0u);
+        EXPECT_GT(both->statistics.counter("counted nanoseconds of camera paths"),
+                  100 * both->statistics.counter("camera paths"));
         const double error = std::hypot(plain->pixelError(0), both->pixelError(0));
         EXPECT_NEAR(both->mean(), plain->mean(), 4.5 * error) << share;
         EXPECT_LT(error, 0.05 * plain->mean()) << share << ": the test would not see a wrong weight";

@@ -14,8 +14,6 @@
 
 namespace tungsten::path {
 
-
-
 struct GuidedSetup {
     explicit GuidedSetup(const std::string& json) : file(json), loaded(loadScene(file.path())) {
         effects.late.resize(scene.emitters.size());
