@@ -19,24 +19,26 @@ Distribution1D targetDistribution(const Scene& scene, TargetChoice::Emitters emi
 
 } // namespace
 
-TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vector<bool>& leftOut)
-    : scene_(scene), distribution_(targetDistribution(scene, emitters, leftOut)) {
+TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vector<bool>& leftOut, bool ofVertices)
+    : scene_(scene), distribution_(targetDistribution(scene, emitters, leftOut)), ofVertices_(ofVertices) {
     for (const Emitter& emitter : scene.emitters) radii_.push_back(2.0f * boundingSphere(emitter).radius);
-    for (size_t i = 0; any() && i < radii_.size(); ++i) count_ += probability(i) > 0.0f ? 1 : 0;
+    for (size_t i = 0; any() && i < radii_.size(); ++i) {
+        if (!(probability(i) > 0.0f)) continue;
+        ++count_;
+        if (scene.emitters[i].isDelta()) singleDirections_.push_back(i);
+    }
 }
 
-std::optional<PathTarget> TargetChoice::sample(float u, Sampler& sampler, const PassWatch& watch,
-                                               PathCounters& counters) const {
-    if (!any()) return std::nullopt;
-    const auto chosen = distribution_.sample(u);
-    const Emitter& emitter = scene_.emitters[chosen.index];
-    const float probability = chosen.probability;
+std::optional<PathTarget> TargetChoice::of(size_t index, Sampler& sampler, const PassWatch& watch,
+                                           PathCounters& counters) const {
+    const Emitter& emitter = scene_.emitters[index];
     const Vec2f uPosition = sampler.next2D();
     const transport::Vertex point(scene_, emitter, sampleEmissionPoint(emitter, uPosition));
-    PathTarget target{{point, Rgb(1.0f / probability)}, &emitter, int(chosen.index), probability, emitter.emissionTime};
+    PathTarget target{
+        {point, Rgb(1.0f / probability(index))}, &emitter, int(index), choice(index), emitter.emissionTime};
     if (emitter.isDelta())
         return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, watch, counters);
-    target.reach = radii_[chosen.index];
+    target.reach = radii_[index];
     return target;
 }
 
@@ -87,7 +89,7 @@ std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const Em
     const PathState start{.random = sampler,
                           .ray = emission.ray,
                           .region = scene_.regionOf(*target.emitter),
-                          .throughput = emission.power / target.probability,
+                          .throughput = emission.power / target.choice.ofPath,
                           .time = target.start};
     if (isBlack(start.throughput)) return std::nullopt;
     transport::StepCounters own; // what happens on light's own path is not counted

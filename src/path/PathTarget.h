@@ -13,20 +13,26 @@ namespace tungsten::path {
 
 using transport::PathState;
 
+/// Probabilities with which an emitter is chosen.
+struct EmitterChoice {
+    float ofPath = 1.0f;   ///< by a guided path, for all its vertices
+    float ofVertex = 1.0f; ///< by a vertex of plain paths beside guided ones; 1 without these
+};
+
 /// The last vertex of light's own path: a point of an emitter; for light that starts in a single direction, the first
 /// vertex that scatters it: a virtual point source.
 struct PathTarget : transport::PathEnd {
     const Emitter* emitter;
     int index;              ///< of the emitter; -1 for virtual sources, which cannot be hit
-    float probability;      ///< of the emitter's choice
+    EmitterChoice choice;   ///< of the emitter
     double start;           ///< when light leaves the vertex
     float reach = 0.0f;     ///< distance from the vertex to the emitter's farthest point
     int interactions = 0;   ///< of the light's own path so far, the virtual source included
     int mediumScatters = 0; ///< of these, in media
 
-    /// Density per solid angle, seen from `receiver`, of points chosen like this one (0 for points without a surface).
+    /// Density per solid angle, seen from `receiver`, of points that a vertex chooses (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
-        return index >= 0 ? pdfDirect(*emitter, receiver, position, ng) : 0.0f;
+        return index >= 0 ? choice.ofVertex * pdfDirect(*emitter, receiver, position, ng) : 0.0f;
     }
     /// Of light that arrives at `receiver` from the target's vertex along the unit `direction`: the part that is not
     /// left to paths that meet the emitter, if they leave in directions of this density.
@@ -40,16 +46,28 @@ struct PathTarget : transport::PathEnd {
 class TargetChoice {
   public:
     enum class Emitters { All, SingleDirections };
-    /// `leftOut`: by emitter; empty: none.
-    TargetChoice(const Scene& scene, Emitters emitters, const std::vector<bool>& leftOut = {});
+    /// `leftOut`: by emitter; empty: none. `ofVertices`: plain paths choose at each vertex, too.
+    TargetChoice(const Scene& scene, Emitters emitters, const std::vector<bool>& leftOut = {}, bool ofVertices = false);
 
     /// Several emitters to choose from.
     [[nodiscard]] bool several() const { return count_ > 1; }
     [[nodiscard]] bool any() const { return distribution_.total() > 0.0; }
     [[nodiscard]] float probability(size_t emitter) const { return distribution_.probability(emitter); }
-    /// `u` chooses the emitter. None when light that starts in a single direction is absorbed or escapes.
+    [[nodiscard]] EmitterChoice choice(size_t emitter) const {
+        return {probability(emitter), ofVertices_ ? probability(emitter) : 1.0f};
+    }
+    /// Of these emitters, those whose light starts in a single direction.
+    [[nodiscard]] const std::vector<size_t>& singleDirections() const { return singleDirections_; }
+    /// `u` chooses the emitter, if there is any().
+    [[nodiscard]] size_t choose(float u) const { return distribution_.sample(u).index; }
+    /// A point of this emitter, as its choice has it. None when light that starts in a single direction is absorbed or
+    /// escapes.
+    [[nodiscard]] std::optional<PathTarget> of(size_t emitter, Sampler& sampler, const PassWatch& watch,
+                                               PathCounters& counters) const;
     [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const PassWatch& watch,
-                                                   PathCounters& counters) const;
+                                                   PathCounters& counters) const {
+        return any() ? of(choose(u), sampler, watch, counters) : std::nullopt;
+    }
 
   private:
     std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, const Sampler& sampler,
@@ -58,7 +76,9 @@ class TargetChoice {
     const Scene& scene_;
     Distribution1D distribution_;
     std::vector<float> radii_; ///< of a ball about any of its points that holds the emitter, by emitter
+    bool ofVertices_;
     int count_ = 0;
+    std::vector<size_t> singleDirections_;
 };
 
 } // namespace tungsten::path

@@ -73,7 +73,8 @@ void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statist
     bound_.emplace(*scene_, plan);
     lights_.emplace(*scene_, plan.late);
     using Emitters = TargetChoice::Emitters;
-    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late);
+    const bool beside = plan_.balance.on && settings_.policy.plainShare != 0.0f;
+    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late, beside);
     if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, plan, settings_.limits);
     if (plan_.refracted.on) {
         const StageTimer timer(statistics, "light through walls");
@@ -201,20 +202,19 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
     tbb::enumerable_thread_specific<PlainTrail> trails;
     const auto trace = [&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u,
                            float strategy) {
-        const bool plainly = strategy < balance_.plain;
-        PathCounters& own = plainly ? counters.plain : counters.guided;
-        Sampler light = sampler.branch(RandomStream::Target, 0);
-        std::optional<PathTarget> target = targets_->sample(u, light, pass.watch, own);
-        if (!target) return;
-        if (!plainly) {
+        if (!targets_->any()) return;
+        if (!(strategy < balance_.plain)) {
             sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_);
-            return traceGuidedPath(guided, sink, own, sampler, *target, ray);
+            Sampler light = sampler.branch(RandomStream::Target, 0);
+            if (const auto target = targets_->sample(u, light, pass.watch, counters.guided))
+                traceGuidedPath(guided, sink, counters.guided, sampler, *target, ray);
+            return;
         }
-        ++own.plainPaths;
+        ++counters.plain.plainPaths;
         sink.begin(Strategy::Plain, balance_);
         PlainTrail& trail = trails.local();
-        trail.start(guided, sink, counters.densities, *target);
-        tracePlainBesideGuided(plain, {&trail}, sink, own, sampler, *target, ray);
+        trail.start(guided, *targets_, sink, counters.densities, sampler);
+        tracePlainBesideGuided(plain, {&trail}, sink, counters.plain, sampler, ray);
     };
     renderTiles(pass, film, statistics, trace);
 }
@@ -256,8 +256,9 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
     PathContext plain = plainContext(watch);
     guided.forwardBoundaries = plain.forwardBoundaries =
         plan_.indexMatched; // what is counted must not differ otherwise
+    if (!targets_->any()) return;
     const auto width = uint64_t(scene_->camera.resolution.x), pixels = width * uint64_t(scene_->camera.resolution.y);
-    SharePilot pilot, alone;
+    SharePilot pilot;
     PlainTrail trail;
     StrategyCounters counted;
     Sampler places(Key, RandomStream::Pilot, 0, 0);
@@ -273,22 +274,13 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
             PathCounters& counters = guides ? counted.guided : counted.plain;
             PixelSink sink(pilot, sensor_, counters);
             pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
-            Sampler light = sampler.branch(RandomStream::Target, 0);
-            auto target = targets_->sample(radicalInverse(uint32_t(traced / 2)), light, watch, counters);
-            if (!target) continue;
-            if (!guides && targets_->several()) {
-                // Plain paths alone connect each vertex to a light of its own, and meet all of them.
-                PathCounters ignored;
-                PixelSink other(alone, sensor_, ignored);
-                alone.begin(Strategy::Alone);
-                const bool laser = target->index < 0;
-                tracePath<true, true>(plain, other, ignored, sampler, laser ? &*target : nullptr, ray);
-            }
             if (guides) {
-                traceGuidedPath(guided, sink, counters, sampler, *target, ray);
+                Sampler light = sampler.branch(RandomStream::Target, 0);
+                if (const auto target = targets_->sample(radicalInverse(uint32_t(traced / 2)), light, watch, counters))
+                    traceGuidedPath(guided, sink, counters, sampler, *target, ray);
             } else {
-                trail.start(guided, sink, counted.densities, *target);
-                tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
+                trail.start(guided, *targets_, sink, counted.densities, sampler);
+                tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);
             }
         }
         watch.poll();
@@ -299,11 +291,7 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
             pilot.effective(Strategy::Guided) >= 10.0 * tuning::LeastEffective)
             break;
     }
-    double gain = 1.0;
-    if (alone.effective(Strategy::Alone) >= tuning::LeastEffective &&
-        pilot.effective(Strategy::Plain) >= tuning::LeastEffective)
-        gain = std::clamp(alone.ownSecondMoment(Strategy::Alone) / pilot.ownSecondMoment(Strategy::Plain), 0.1, 1.0);
-    const double time = asked ? double(*asked) : pilot.choose(costs, gain);
+    const double time = asked ? double(*asked) : pilot.choose(costs);
     balance_ = costs.ofTime(time);
     statistics.add("pilot paths", traced);
 }

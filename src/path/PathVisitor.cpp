@@ -26,8 +26,16 @@ bool PathVisitor<TimeResolved, Beside>::tooLate(const PathState& path) const {
     if (!TimeResolved || !path.timed) return false;
     const Vec3f& position = path.ray.origin;
     if (context_->bound.mayArrive(position, path.time)) return false;
-    return !source_ ||
-           !context_->bound.beforeEnd(path.time, (source_->vertex.position() - position).length(), source_->start);
+    const auto late = [&](const PathTarget* source) {
+        return !source ||
+               !context_->bound.beforeEnd(path.time, (source->vertex.position() - position).length(), source->start);
+    };
+    if constexpr (Beside::Balanced) {
+        const TargetChoice& targets = beside_.trail->targets();
+        return std::all_of(targets.singleDirections().begin(), targets.singleDirections().end(),
+                           [&](size_t emitter) { return late(beside_.trail->target(emitter)); });
+    }
+    return late(source_);
 }
 
 template <bool TimeResolved, typename Beside>
@@ -48,9 +56,16 @@ bool PathVisitor<TimeResolved, Beside>::vertex(PathState& path, auto& steps, con
                                     : settings().lightSampling && (at.surface->bsdf->lobes() & lobe::Smooth) != 0;
     if (connects) {
         const Vertex vertex = at.connectible(scene(), TransportMode::Radiance);
-        // In sealed bodies no vertex is both smooth and in the open.
-        if (!Beside::Balanced && orderCounts(path) && !context_->refracted) connectToLight(path, vertex);
-        if (source_) connectToSource(path, vertex);
+        if constexpr (Beside::Balanced) {
+            path.random.at(path.interactions, Draw::Light);
+            const size_t emitter = beside_.trail->targets().choose(path.random.next1D());
+            if (const PathTarget* target = beside_.trail->target(emitter))
+                connectToTarget(path, vertex, *target, emitter);
+        } else {
+            // In sealed bodies no vertex is both smooth and in the open.
+            if (orderCounts(path) && !context_->refracted) connectToLight(path, vertex);
+            if (source_) connectToTarget(path, vertex, *source_);
+        }
     }
     if (context_->refracted && at.medium) {
         sealed_ = SealedVertex{at.position, at.before, path.time, path.region, path.channels};
@@ -94,12 +109,12 @@ float PathVisitor<TimeResolved, Beside>::shareOfMeeting(const PathState& path, i
     const Emitter& emitter = scene().emitters[size_t(index)];
     const bool shares = sharesWithConnections(path);
     const float pdf = shares ? pdfDirect(emitter, path.last.position, hit.position, hit.ng) : 0.0f;
-    if constexpr (Beside::Balanced) {
-        // What guided paths count, too: their target's emitter alone.
-        if (index != source_->index) return 0.0f;
-        return (shares ? transport::powerHeuristic(path.last.pdf, pdf) : 1.0f) / source_->probability;
-    }
-    return shares ? transport::powerHeuristic(path.last.pdf, pdf * context_->lights.probability(index)) : 1.0f;
+    float probability = 0.0f;
+    if constexpr (Beside::Balanced)
+        probability = beside_.trail->targets().probability(size_t(index));
+    else
+        probability = context_->lights.probability(index);
+    return shares ? transport::powerHeuristic(path.last.pdf, pdf * probability) : 1.0f;
 }
 
 template <bool TimeResolved, typename Beside>
@@ -114,7 +129,12 @@ void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const
     float weight = shareOfMeeting(path, index, hit);
     if (weight == 0.0f) return;
     if (context_->refracted) weight *= refractedShare(index);
-    sink_->add(path.throughput * radiance * weight, time, emitter, beside_.atLight(), Found::OnWay);
+    float logRatio = 0.0f;
+    if constexpr (Beside::Balanced) {
+        const bool aimedAt = beside_.trail->targets().probability(size_t(index)) > 0.0f;
+        logRatio = aimedAt ? beside_.trail->atLight(size_t(index)) : StrategyBalance::Never;
+    }
+    sink_->add(path.throughput * radiance * weight, time, emitter, logRatio, Found::OnWay);
 }
 
 template <bool TimeResolved, typename Beside>
@@ -154,21 +174,25 @@ void PathVisitor<TimeResolved, Beside>::connectToLight(PathState& path, const Ve
 }
 
 template <bool TimeResolved, typename Beside>
-void PathVisitor<TimeResolved, Beside>::connectToSource(const PathState& path, const Vertex& vertex) {
-    if (!orderCounts(path, source_->mediumScatters)) return;
-    const auto way = transport::straightWay(path.ray.origin, source_->vertex.position());
+void PathVisitor<TimeResolved, Beside>::connectToTarget(const PathState& path, const Vertex& vertex,
+                                                        const PathTarget& target, [[maybe_unused]] size_t emitter) {
+    if (!orderCounts(path, target.mediumScatters)) return;
+    const auto way = transport::straightWay(path.ray.origin, target.vertex.position());
     if (!way) return;
     ++counters_->connections;
     if constexpr (TimeResolved)
-        if (!context_->bound.mayConnect(path.time, way->distance, source_->start)) return;
+        if (!context_->bound.mayConnect(path.time, way->distance, target.start)) return;
     const auto connection =
-        connector_.connect(vertex, path.throughput, transport::connectionEnd(*way, *source_), counters_->shadowRays);
-    if (!connection || !limits().renders(path.interactions + connection->crossings + source_->interactions)) return;
-    // Surfaces that shine can be met, too.
-    float weight = 1.0f;
-    if constexpr (Beside::Balanced) weight *= source_->shareOfConnection(path.ray.origin, vertex.pdf(way->direction));
-    sink_->add(connection->throughput * weight, path.time + connection->time + source_->start, *source_->emitter,
-               beside_.atVertex(connection->crossings == 0), Found::OnWay);
+        connector_.connect(vertex, path.throughput, transport::connectionEnd(*way, target), counters_->shadowRays);
+    if (!connection || !limits().renders(path.interactions + connection->crossings + target.interactions)) return;
+    float weight = 1.0f, logRatio = 0.0f;
+    if constexpr (Beside::Balanced) {
+        // Surfaces that shine can be met, too.
+        weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));
+        logRatio = beside_.trail->atVertex(emitter, connection->crossings == 0);
+    }
+    sink_->add(connection->throughput * weight, path.time + connection->time + target.start, *target.emitter, logRatio,
+               Found::OnWay);
 }
 
 template <bool TimeResolved, typename Beside>
@@ -222,7 +246,7 @@ void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counte
 }
 
 void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelSink& sink,
-                            PathCounters& counters, const Sampler& sampler, const PathTarget& target, const Ray& ray) {
+                            PathCounters& counters, const Sampler& sampler, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
     using Steps = transport::PlainSteps<transport::PlainOptions{}>;
@@ -230,7 +254,7 @@ void tracePlainBesideGuided(const PathContext& context, const BesideGuided& besi
         PathState{
             .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
         Steps({scene, counters, context.watch}),
-        PathVisitor<true, BesideGuided>(context, sink, counters, &target, beside)};
+        PathVisitor<true, BesideGuided>(context, sink, counters, nullptr, beside)};
     walk.steps.roulette = context.settings.russianRoulette;
     walk.run();
 }

@@ -31,10 +31,8 @@ struct Alone {
     void fly(const PathState&, const transport::Ahead&) {}
     void arrive(const PathState&, const transport::Ahead&, const transport::Flight&) {}
     void leave(const transport::Way&) {}
-    [[nodiscard]] static float atVertex(bool) { return 0.0f; }
-    [[nodiscard]] static float atLight() { return 0.0f; }
 };
-/// Guided paths, which aim at the path's own target.
+/// Guided paths, which aim at a point of one emitter each.
 struct BesideGuided {
     static constexpr bool Balanced = true;
     PlainTrail* trail;
@@ -43,12 +41,10 @@ struct BesideGuided {
         trail->arrive(at, ahead, flight);
     }
     void leave(const transport::Way& way) { trail->leave(way); }
-    [[nodiscard]] float atVertex(bool open) const { return trail->atVertex(open); }
-    [[nodiscard]] float atLight() const { return trail->atLight(); }
 };
 
-/// Light that starts in a single direction is found through the virtual point source `source`, if there is one; beside
-/// guided paths `source` is what the path aims at, and all that it connects to. `TimeResolved` off leaves out every
+/// Light that starts in a single direction is found through the virtual point source `source`, if there is one. Beside
+/// guided paths vertices connect to the trail's targets, which are of any kind. `TimeResolved` off leaves out every
 /// test of time.
 template <bool TimeResolved, typename Beside = Alone>
 class PathVisitor : public transport::VisitorBase {
@@ -89,7 +85,8 @@ class PathVisitor : public transport::VisitorBase {
     void addEnvironment(const PathState& path);
     // Light that connections of the vertex bring: of an emitter, and of the virtual source.
     void connectToLight(PathState& path, const transport::Vertex& vertex);
-    void connectToSource(const PathState& path, const transport::Vertex& vertex);
+    void connectToTarget(const PathState& path, const transport::Vertex& vertex, const PathTarget& target,
+                         size_t emitter = 0);
 
     // Sealed bodies.
     /// From the vertex: a walk that aims at an emitter through a face.
@@ -114,8 +111,8 @@ class PathVisitor : public transport::VisitorBase {
 template <bool TimeResolved, bool Media>
 void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
                const PathTarget* source, const Ray& ray);
-/// The same beside guided paths; `target` is what the path aims at.
+/// The same beside guided paths, whose trail has been started.
 void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelSink& sink,
-                            PathCounters& counters, const Sampler& sampler, const PathTarget& target, const Ray& ray);
+                            PathCounters& counters, const Sampler& sampler, const Ray& ray);
 
 } // namespace tungsten::path

@@ -14,8 +14,7 @@ using Event = Flight::Event;
 
 namespace {
 
-/// Where guided paths do not come.
-constexpr float Never = -80.0f;
+constexpr float Never = StrategyBalance::Never;
 
 /// Of the same path, found by guided steps.
 Rgb guidedThroughput(const Rgb& plain, float logRatio) {
@@ -24,40 +23,68 @@ Rgb guidedThroughput(const Rgb& plain, float logRatio) {
 
 } // namespace
 
-auto PlainTrail::at(size_t step) -> const Step& {
-    while (next_ <= step) follow(next_++);
-    return steps_[step];
+void PlainTrail::start(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink,
+                       PathCounters& counters, const Sampler& light) {
+    steps_.clear();
+    for (; used_ > 0; --used_) slots_[followers_[used_ - 1]->emitter] = 0;
+    slots_.resize(context.scene.emitters.size(), 0);
+    context_ = &context;
+    targets_ = &targets;
+    sink_ = &sink;
+    counters_ = &counters;
+    light_ = light;
 }
 
-void PlainTrail::pass(const Step& step) {
+auto PlainTrail::follower(size_t emitter) -> Follower& {
+    if (const uint32_t slot = slots_[emitter]; slot > 0) return *followers_[slot - 1];
+    if (used_ == followers_.size()) followers_.emplace_back();
+    Follower& follower = followers_[used_++].emplace();
+    follower.emitter = emitter;
+    slots_[emitter] = uint32_t(used_);
+    Sampler random = light_->branch(RandomStream::Target, emitter);
+    const auto target = targets_->of(emitter, random, context_->watch, *counters_);
+    if (target) follower.steps.emplace(*context_, *counters_, *target);
+    follower.alive = target.has_value();
+    return follower;
+}
+
+auto PlainTrail::now(size_t emitter) -> const Logs& {
+    Follower& follower = this->follower(emitter);
+    while (follower.next < steps_.size()) follow(follower, follower.next++);
+    return follower.logs;
+}
+
+void PlainTrail::pass(Follower& follower, const Step& step) {
     PathState guided = step.at;
-    guided.logRatio = logRatio_;
-    guided.throughput = guidedThroughput(step.at.throughput, logRatio_);
+    guided.logRatio = follower.logRatio;
+    guided.throughput = guidedThroughput(step.at.throughput, follower.logRatio);
     std::optional<SurfaceInteraction> surface;
     if (!step.medium) surface.emplace(makeInteraction(context_->scene, *step.hit, guided.ray.direction));
     const WalkVertex vertex{step.medium, surface ? &*surface : nullptr, guided.ray.origin, guided.ray.direction,
                             guided.region};
-    alive_ = guided_->canArrive(guided, vertex);
-    if (!alive_) return;
+    StepsToEmitter& steps = *follower.steps;
+    WayBehind& behind = follower.behind;
+    follower.alive = steps.canArrive(guided, vertex);
+    if (!follower.alive) return;
     const transport::Vertex here = vertex.connectible(context_->scene, TransportMode::Radiance);
     if (vertex.medium)
-        behind_.approachInMedium(*context_, guided, step.flight.distance);
+        behind.approachInMedium(*context_, guided, step.flight.distance);
     else
-        behind_.approachOnSurface(*guided_, guided, here, vertex.surface->hit);
-    if (vertex.medium || guided_->surfaceGuide()) behind_.connect(*context_, guided_->target().index, guided);
-    guided.logRatio += std::log(guided_->expectedCopies(guided, vertex));
-    guided_->leaveAlong(guided, vertex, *step.way);
+        behind.approachOnSurface(steps, guided, here, vertex.surface->hit);
+    if (vertex.medium || steps.surfaceGuide()) behind.connect(*context_, steps.target().index, guided);
+    guided.logRatio += std::log(steps.expectedCopies(guided, vertex));
+    steps.leaveAlong(guided, vertex, *step.way);
     if (context_->settings.russianRoulette)
         guided.logRatio -=
             std::log(transport::survivalByThroughput(step.at.throughput * step.way->weight, step.at.interactions));
-    logRatio_ = guided.logRatio;
+    follower.logRatio = guided.logRatio;
 }
 
-float PlainTrail::byLightPaths(const Step& step) {
-    const float alone = guided_->logRatioOnSurface();
-    if (behind_.caches == Caches::None) return alone;
+float PlainTrail::byLightPaths(Follower& follower, const Step& step) {
+    const float alone = follower.steps->logRatioOnSurface();
+    if (follower.behind.caches == Caches::None) return alone;
     PathState state = step.start;
-    const GuidedPath path{*context_, *sink_, *counters_, state, *guided_, behind_};
+    const GuidedPath path{*context_, *sink_, *counters_, state, *follower.steps, follower.behind};
     const transport::Vertex vertex = path.vertexOn(makeInteraction(context_->scene, *step.hit, state.ray.direction));
     const auto way = transport::straightWay(step.hit->position, path.target().vertex.position());
     if (!way) return alone;
@@ -65,29 +92,30 @@ float PlainTrail::byLightPaths(const Step& step) {
     return share < 1.0f ? path.logRatioByLightPaths(vertex, share) : alone;
 }
 
-void PlainTrail::follow(size_t index) {
-    Step& step = steps_[index];
-    step.ending = step.openEnding = step.light = step.there = Never;
-    if (!alive_) return;
-    if (index > 0) pass(steps_[index - 1]);
-    if (!alive_) return;
+void PlainTrail::follow(Follower& follower, size_t index) {
+    const Step& step = steps_[index];
+    Logs& logs = follower.logs;
+    logs = {Never, Never, Never, Never};
+    if (follower.alive && index > 0) pass(follower, steps_[index - 1]);
+    if (!follower.alive) return;
     ++counters_->densities;
     PathState guided = step.start;
-    guided.logRatio = logRatio_;
-    guided.throughput = guidedThroughput(step.start.throughput, logRatio_);
+    guided.logRatio = follower.logRatio;
+    guided.throughput = guidedThroughput(step.start.throughput, follower.logRatio);
     guided.ray.tMax = Infinity;
     const Medium* medium = context_->scene.medium(guided.region);
     if (medium && medium->scatters()) --guided.flights;
     const bool hits = step.flight.event == Event::Surface;
-    const Ahead ahead = guided_->ahead(guided, hits ? &*step.hit : nullptr);
+    StepsToEmitter& steps = *follower.steps;
+    const Ahead ahead = steps.ahead(guided, hits ? &*step.hit : nullptr);
     // Beyond the bound in time guided paths do not fly.
-    alive_ = ahead.flies && (!hits || ahead.hit);
-    if (!alive_) return;
-    step.light = hits ? guided_->logRatioOnSurface() : Never;
-    step.ending = hits ? step.light : guided_->inMedium(step.flight.distance).logRatio;
-    step.openEnding = hits ? byLightPaths(step) : step.ending;
-    step.there = logRatio_ = guided_->logRatioThere(step.flight);
-    behind_.arrive(logRatio_);
+    follower.alive = ahead.flies && (!hits || ahead.hit);
+    if (!follower.alive) return;
+    logs.light = hits ? steps.logRatioOnSurface() : Never;
+    logs.ending = hits ? logs.light : steps.inMedium(step.flight.distance).logRatio;
+    logs.openEnding = hits ? byLightPaths(follower, step) : logs.ending;
+    logs.there = follower.logRatio = steps.logRatioThere(step.flight);
+    follower.behind.arrive(follower.logRatio);
 }
 
 } // namespace tungsten::path

@@ -4,25 +4,19 @@
 
 #include "path/GuidedPath.h"
 
+#include <deque>
+
 namespace tungsten::path {
 
-/// What a plain path has passed, from where densities have been asked for last. They are only where it finds light in
-/// time: the guided steps then go the same way, with the throughput that a guided path would have, up to there. Memory
-/// is kept from path to path.
+/// What a plain path has passed, and the targets that its vertices connect to: one of each emitter, drawn when it is
+/// asked for first. Densities are only asked for where the path finds light in time: the guided steps towards the
+/// light's target then go the same way, with the throughput that a guided path would have, from where they were led
+/// last. Memory is kept from path to path.
 class PlainTrail {
   public:
-    /// A new path, towards a target; `counters` of what densities cost.
-    void start(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const PathTarget& target) {
-        steps_.clear();
-        guided_.emplace(context, counters, target);
-        context_ = &context;
-        sink_ = &sink;
-        counters_ = &counters;
-        behind_ = {};
-        next_ = 0;
-        logRatio_ = 0.0f;
-        alive_ = true;
-    }
+    /// A new path; `counters` of what densities cost, `light` of the targets.
+    void start(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink, PathCounters& counters,
+               const Sampler& light);
 
     // What the path does, in order.
     void fly(const PathState& start, const transport::Ahead& ahead) {
@@ -37,17 +31,26 @@ class PlainTrail {
     }
     void leave(const transport::Way& way) { steps_.back().way = way; }
 
-    // Logarithms of densities, guided over plain, of paths that end in light.
+    [[nodiscard]] const TargetChoice& targets() const { return *targets_; }
+    /// The path's point of an emitter that is a target of guided paths; null if its light gets nowhere.
+    [[nodiscard]] const PathTarget* target(size_t emitter) {
+        const auto& steps = follower(emitter).steps;
+        return steps ? &steps->target() : nullptr;
+    }
+
+    // Logarithms of densities, guided over plain, of paths that end in light of an emitter with a target.
     /// With the vertex at which the path is. `open`: no boundary is crossed on the way to the target, so that light
     /// paths may find the same.
-    [[nodiscard]] float atVertex(bool open) {
-        const Step& step = at(steps_.size() - 1);
-        return open ? step.openEnding : step.ending;
+    [[nodiscard]] float atVertex(size_t emitter, bool open) {
+        const Logs& logs = now(emitter);
+        return open ? logs.openEnding : logs.ending;
     }
-    /// Of the way up to there, once one of the others has been asked.
-    [[nodiscard]] float there() const { return steps_.back().there; }
-    /// With light that the flight at hand has met.
-    [[nodiscard]] float atLight() { return at(steps_.size() - 1).light; }
+    /// Of the way up to there.
+    [[nodiscard]] float there(size_t emitter) { return now(emitter).there; }
+    /// With light that the flight at hand has met: guided paths count it if it is their target's.
+    [[nodiscard]] float atLight(size_t emitter) {
+        return now(emitter).light + std::log(targets_->probability(emitter));
+    }
 
   private:
     struct Step {
@@ -57,30 +60,42 @@ class PlainTrail {
         transport::Flight flight{};
         const Medium* medium = nullptr; ///< where it scatters; null on surfaces
         std::optional<transport::Way> way{};
-        // Logarithms, once they are known.
-        float ending = 0.0f, openEnding = 0.0f; ///< of paths whose last vertex is this one
-        float light = 0.0f;                     ///< of those that meet light here
-        float there = 0.0f;                     ///< of the way up to here
+    };
+    struct Logs {
+        float ending, openEnding; ///< of paths whose last vertex is that at the end of a step
+        float light;              ///< of those that meet light there
+        float there;              ///< of the way up to there
+    };
+    /// Guided steps towards one target.
+    struct Follower {
+        size_t emitter = 0;
+        std::optional<StepsToEmitter> steps; ///< at the flight that has been followed last; none: there is no target
+        size_t next = 0;                     ///< flight that has not been followed yet
+        WayBehind behind;                    ///< of the vertex where the last one begins
+        float logRatio = 0.0f;               ///< at its end
+        bool alive = true;                   ///< guided paths may come there
+        Logs logs{};                         ///< of it
     };
 
-    /// The step, followed.
-    const Step& at(size_t step);
+    [[nodiscard]] Follower& follower(size_t emitter);
+    /// Of the last step, followed.
+    [[nodiscard]] const Logs& now(size_t emitter);
     /// Of paths whose last vertex is the surface that ends this step, and which light paths may find.
-    float byLightPaths(const Step& step);
+    float byLightPaths(Follower& follower, const Step& step);
     /// Follows a flight, from the end of the one before.
-    void follow(size_t index);
+    void follow(Follower& follower, size_t index);
     /// The guided steps do what guided paths do at the vertex that ends the step, and leave it.
-    void pass(const Step& step);
+    void pass(Follower& follower, const Step& step);
 
     std::vector<Step> steps_;
-    size_t next_ = 0;                      ///< flight that has not been followed yet
-    std::optional<StepsToEmitter> guided_; ///< at the flight before
+    std::deque<std::optional<Follower>> followers_; ///< the first `used_`, of this path
+    size_t used_ = 0;
+    std::vector<uint32_t> slots_; ///< by emitter: one above its follower's place, 0 if it has none
     const GuidedContext* context_ = nullptr;
+    const TargetChoice* targets_ = nullptr;
     PixelSink* sink_ = nullptr;
     PathCounters* counters_ = nullptr;
-    WayBehind behind_;      ///< of the vertex where that flight begins
-    float logRatio_ = 0.0f; ///< at the end of that flight
-    bool alive_ = true;     ///< guided paths may come there
+    std::optional<Sampler> light_;
 };
 
 } // namespace tungsten::path

@@ -96,13 +96,13 @@ double SharePilot::ownSecondMoment(Strategy strategy) const {
     return paths > 0.0 ? squares / paths : 0.0;
 }
 
-double SharePilot::choose(const PathCosts& costs, double alone) const {
+double SharePilot::choose(const PathCosts& costs) const {
     constexpr double Half = 0.5;
     if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;
     const bool plainIsJudged = effective(Strategy::Plain) >= tuning::LeastEffective;
     const auto score = [&](double time) {
         const StrategyBalance balance = costs.ofTime(time);
-        return variance(balance) * costs.mean(balance) * (time == 1.0 ? alone : 1.0);
+        return variance(balance) * costs.mean(balance);
     };
     const double half = score(Half);
     double best = Half, least = tuning::BetterThanHalf * half;

@@ -51,8 +51,7 @@ class SharePilot {
 
     /// The share of time with the least variance x cost, unless too little has been found to tell. One half is safe;
     /// less is only given to plain paths where they have found enough to be judged.
-    /// `alone`: the variance of plain paths that need no guided ones beside them, over that of those here.
-    [[nodiscard]] double choose(const PathCosts& costs, double alone = 1.0) const;
+    [[nodiscard]] double choose(const PathCosts& costs) const;
 
   private:
     struct Path {

@@ -55,21 +55,21 @@ const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, co
 }
 
 darts::ResponseAt StepsToEmitter::response(double time) const {
-    return {guided_->sensor.response.get(), time + target_->start, double(start_.region.speed)};
+    return {guided_->sensor.response.get(), time + target_.start, double(start_.region.speed)};
 }
 
 darts::ConnectionSample StepsToEmitter::drawConnection(PathState& path, const darts::Guide& guide,
                                                        const darts::Residual& residual) const {
     return guide.sampleConnection(
         residual, path.random.next1D(),
-        {guided_->sensor.response.get(), path.time + target_->start, double(path.region.speed)});
+        {guided_->sensor.response.get(), path.time + target_.start, double(path.region.speed)});
 }
 
 // ---- Looking
 
 void StepsToEmitter::lookAheadFrom(const PathState& path, const Vec3f& position) {
     const TimeGate& gate = guided_->sensor.arrivals;
-    const PathTarget& target = *target_;
+    const PathTarget& target = target_;
     const float speed = path.region.speed;
     const darts::TimeGate open{gate.start - target.start, gate.end() - target.start};
     const auto range = darts::ResidualRange::of(open, path.time, double(speed));
@@ -80,7 +80,7 @@ void StepsToEmitter::lookAheadFrom(const PathState& path, const Vec3f& position)
 
 void StepsToEmitter::lookOutFrom(const PathState& path, const transport::Start& start) {
     if (hasLookedOut() || !guided_->waysOut) return;
-    const PathTarget& target = *target_;
+    const PathTarget& target = target_;
     const transport::Aim aim{target.vertex.position(), target.vertex.region().medium, target.vertex.margin(), nullptr,
                              true};
     lookOut(*guided_->waysOut, start, path.region, aim, context_.counters.rays);
@@ -216,7 +216,7 @@ double StepsToEmitter::Untimed::pdf(double t) const {
 }
 
 StepsToEmitter::Untimed StepsToEmitter::untimed(const Ray& ray, const Medium& medium, float distance) const {
-    return {target_->vertex.position() - ray.origin, ray.direction, double(reachable().C) + double(reachable().excess),
+    return {target_.vertex.position() - ray.origin, ray.direction, double(reachable().C) + double(reachable().excess),
             medium, distance};
 }
 
@@ -273,7 +273,7 @@ float StepsToEmitter::controlVertexDensity(float distance) const {
         const darts::Residual before = darts::Guide::beforeSurface(residual(), heading_.h, reach_);
         if (before.alive()) density = guide.pdfControlVertex(before, heading_.h, distance, response(start_.time));
     }
-    const auto way = transport::straightWay(place, target_->vertex.position());
+    const auto way = transport::straightWay(place, target_.vertex.position());
     if (!(density > 0.0f) || !way) return 0.0f;
     return density * shadowRayProbability({distance, way->distance, 1.0f / density}, way->direction);
 }
@@ -287,8 +287,8 @@ float StepsToEmitter::shadowRayProbability(const darts::ControlVertex& vertex, c
 ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, float surface) const {
     const TimeGate& gate = guided_->sensor.arrivals;
     const double speed = double(region.speed);
-    return {target_->vertex.position() - ray.origin, ray.direction, speed * (gate.start - target_->start),
-            speed * (gate.end() - target_->start), double(surface)};
+    return {target_.vertex.position() - ray.origin, ray.direction, speed * (gate.start - target_.start),
+            speed * (gate.end() - target_.start), double(surface)};
 }
 
 auto StepsToEmitter::inMedium(float distance) const -> InMedium {

@@ -40,7 +40,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     static constexpr bool Timed = true;
 
     StepsToEmitter(const GuidedContext& guided, PathCounters& counters, const PathTarget& target)
-        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(&target) {}
+        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(target) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
     transport::Ahead ahead(PathState& path) { return ahead(path, nullptr); }
@@ -80,7 +80,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     /// Where control vertices of a flight that takes no time may be.
     [[nodiscard]] ShellChord controlChord(const Ray& ray, const Region& region, float surface) const;
 
-    [[nodiscard]] const PathTarget& target() const { return *target_; }
+    [[nodiscard]] const PathTarget& target() const { return target_; }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
         const bool connects = residual().exit.connects;
         return (connects ? guided_->guides.media : guided_->guides.plain)[size_t(region.medium)];
@@ -165,7 +165,7 @@ class StepsToEmitter : public transport::GuidedSteps {
 
     transport::WalkContext context_;
     const GuidedContext* guided_;
-    const PathTarget* target_;
+    PathTarget target_;
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;
     const darts::Guide* surfaceGuide_ = nullptr;

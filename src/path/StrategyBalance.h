@@ -43,6 +43,8 @@ struct StrategyBalance {
     [[nodiscard]] bool endsGuided(float logRatio) const { return both() && logRatio < -EarlyOut; }
 
     static constexpr float EarlyOut = 8.0f;
+    /// L where guided paths do not come.
+    static constexpr float Never = -80.0f;
 
   private:
     static constexpr float Most = 80.0f; ///< of exponents

@@ -330,6 +330,10 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
     ("src/path/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
+    ("src/path/PlainTrail.h", "now(emitter).light + std::log(targets_->probability(emitter));", "now(emitter).light;",
+     [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # plain paths that meet a lamp take it for that of all guided ones
+    ("src/path/PathTarget.h", "index >= 0 ? choice.ofVertex * pdfDirect", "index >= 0 ? pdfDirect",
+     [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # guided paths share lamps that are met otherwise than plain ones
     ("src/path/SharePilot.cpp", "contribution.logRatio.plainToEstimate", "contribution.logRatio.weighed",
      [("path_tests", "SharePilot.JudgesPlainPathsByWhatTheyWouldBring")]),  # random estimates of light paths are taken for what plain ones bring
     ("src/path/SharePilot.cpp", "const auto share = float(ofPlain / (ofPlain + ofGuided));", "const auto share = float(plainTime);",

@@ -101,14 +101,14 @@ TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
             Sampler sampler(3, RandomStream::Test, 0, i);
             const Vec2f film = sampler.next2D();
             const Ray ray = setup.scene.camera.generateRay({0, 0}, film, sampler.next2D());
-            Sampler light = sampler.branch(RandomStream::Target, 0);
-            const auto target = setup.targets.sample(0.5f, light, setup.watch, counters);
-            ASSERT_TRUE(target);
             if (guides) {
+                Sampler light = sampler.branch(RandomStream::Target, 0);
+                const auto target = setup.targets.sample(0.5f, light, setup.watch, counters);
+                ASSERT_TRUE(target);
                 traceGuidedPath(guided, sink, counters, sampler, *target, ray);
             } else {
-                trail.start(guided, sink, counters, *target);
-                tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, *target, ray);
+                trail.start(guided, setup.targets, sink, counters, sampler);
+                tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);
             }
         }
         EXPECT_GT(counters.lightVertices, 10000u);
@@ -165,6 +165,11 @@ std::vector<BalancedCase> balancedCases() {
         {"Floor", bodies(Fog, Beside, Floor, Gate)},
         {"GlossyFloor", bodies(Fog, Beside, Glossy, Gate)},
         {"TwoLamps", bodies(Fog, Beside + ", " + Ball, "", Gate)},
+        {"LampAndLaser", bodies(Fog, Beside + R"(, {"type": "collimated", "radius": 0.2, "emission": 20,
+                                    "transform": {"position": [0, 2, 0], "look_at": [0, 0, 0], "up": [1, 0, 0]}})",
+                                "", R"("transient_time_center": 7.6, "transient_time_width": 2.5)")},
+        {"TwoLampsMetAndConnectedTo", bodies(Thin, Beside + ", " + Ball, "", R"("min_bounces": 3,
+                                   "transient_time_center": 6.5, "transient_time_width": 1)")},
         {"Roulette", bodies(Fog, Beside, Floor, Gate + R"(, "enable_rr": true)")},
         {"Unwarped", bodies(Fog, Beside, "",
                             R"("camera_unwarped": true, "transient_time_center": 2.6, "transient_time_width": 1.5)")},

@@ -37,7 +37,7 @@ struct GuidedSetup {
     LightPaths lightPaths; ///< none
     ArrivalBound bound{scene, effects};
     std::unique_ptr<const transport::WaysOut> waysOut = transport::WaysOut::make(scene, settings.policy);
-    TargetChoice targets{scene, TargetChoice::Emitters::All};
+    TargetChoice targets{scene, TargetChoice::Emitters::All, {}, true};
     LightChoice lights{scene, std::vector<bool>(scene.emitters.size())};
 };
 

@@ -44,7 +44,7 @@ TEST(LightVertices, FindTheLightOfASurfaceInsideALengthRange) {
         constexpr int Caches = 60, Draws = 2000;
         for (uint32_t pass = 0; pass < Caches; ++pass) {
             LightVertexCache cache;
-            cache.trace(*scene, scene->emitters[0], 1.0f, 2000, {pass, 0, 1, 5});
+            cache.trace(*scene, scene->emitters[0], {}, 2000, {pass, 0, 1, 5});
             double mean = 0.0;
             for (int i = 0; i < Draws; ++i) {
                 Sampler sampler(3, RandomStream::Test, pass, uint64_t(i));
@@ -83,7 +83,7 @@ TEST(LightVertices, TheirDensityIsWhatWalksWeighAgainst) {
         const auto scene = floorUnder(light);
         const Emitter& emitter = scene->emitters[0];
         LightVertexCache cache;
-        cache.trace(*scene, emitter, 1.0f, 4000, {0, 0, 1, 5});
+        cache.trace(*scene, emitter, {}, 4000, {0, 0, 1, 5});
         int seen = 0;
         for (int i = 0; i < 500; ++i) {
             Sampler sampler(4, RandomStream::Test, 0, uint64_t(i));
@@ -114,7 +114,7 @@ TEST(LightVertices, OnlyOpaqueSmoothSurfacesSeenFromTheLightsSide) {
     const auto scene = floorUnder(Point);
     Sampler sampler(5, RandomStream::Test, 0, 0);
     std::optional<LightVertex> vertex;
-    while (!vertex) vertex = traceLightVertex(*scene, scene->emitters[0], 1.0f, sampler);
+    while (!vertex) vertex = traceLightVertex(*scene, scene->emitters[0], {}, sampler);
     EXPECT_GT(vertex->weighedIntensity({0.6f, 0.8f, 0.0f}).y, 0.0f);
     EXPECT_EQ(vertex->weighedIntensity({0.6f, -0.8f, 0.0f}).y, 0.0f);
 }

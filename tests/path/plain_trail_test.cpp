@@ -15,9 +15,11 @@ using transport::Way;
 /// Follows a guided path as if it were a plain one, and compares.
 class Replay : public transport::VisitorBase {
   public:
-    Replay(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const PathTarget& target)
+    Replay(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink, PathCounters& counters,
+           const PathTarget& target, const Sampler& light)
         : context_(&context) {
-        trail_.start(context, sink, counters, target);
+        emitter_ = size_t(target.index);
+        trail_.start(context, targets, sink, counters, light);
     }
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const {
@@ -41,8 +43,8 @@ class Replay : public transport::VisitorBase {
         const float ending = collided ? steps.inMedium(flight.distance).logRatio : steps.logRatioOnSurface();
         trail_.arrive(plainly(path), ahead, plain);
         const float tolerance = 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(path.logRatio));
-        EXPECT_NEAR(trail_.atVertex(false), ending, tolerance) << path.interactions;
-        EXPECT_NEAR(trail_.there(), path.logRatio, tolerance) << path.interactions;
+        EXPECT_NEAR(trail_.atVertex(emitter_, false), ending, tolerance) << path.interactions;
+        EXPECT_NEAR(trail_.there(emitter_), path.logRatio, tolerance) << path.interactions;
         ++compared;
         largest = std::max(largest, std::abs(path.logRatio));
         return true;
@@ -65,6 +67,7 @@ class Replay : public transport::VisitorBase {
 
     const GuidedContext* context_;
     PlainTrail trail_; ///< a value: copies of a path that is split have one each
+    size_t emitter_ = 0;
     ChannelDensities before_{1.0f};
 };
 
@@ -91,14 +94,15 @@ void replay(const std::string& json) {
         PixelSink sink(pilot, setup.sensor, counters);
         const Sampler sampler(1, RandomStream::Test, 0, i);
         Sampler light = sampler.branch(RandomStream::Target, 0);
-        auto target = setup.targets.sample(0.3f, light, setup.watch, counters);
+        const auto target = setup.targets.of(0, light, setup.watch, counters);
         ASSERT_TRUE(target);
         Sampler lens = sampler;
         const Ray ray = scene.camera.generateRay({0, 0}, lens.next2D(), lens.next2D());
         transport::Walk walk{
             PathState{
                 .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
-            StepsToEmitter(context, counters, *target), Replay(context, sink, counters, *target)};
+            StepsToEmitter(context, counters, *target),
+            Replay(context, setup.targets, sink, counters, *target, sampler)};
         walk.run();
     }
     EXPECT_GT(Replay::compared, 500);

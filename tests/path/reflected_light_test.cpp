@@ -60,7 +60,7 @@ std::array<Estimate, 2> overPaths(const Scene& scene, const Values& values) {
     std::array<double, 2> sum{}, squares{};
     path::ReflectedLightCache cache;
     for (uint32_t pass = 0; pass < Passes; ++pass) {
-        cache.trace(scene, scene.emitters[0], 1.0f, Paths, {.index = pass, .seed = 3}, {0.8f});
+        cache.trace(scene, scene.emitters[0], {}, Paths, {.index = pass, .seed = 3}, {0.8f});
         std::array<double, 2> mean{};
         for (const path::ReflectedVertex& vertex : cache.vertices()) {
             const std::array<double, 2> found = values(vertex);

@@ -80,8 +80,8 @@ void EmittersMet::add(const GuidedPath& path, const SurfaceHit& hit, const Rgb& 
     if (path.state.last.kind != Kind::Specular)
         weight =
             transport::powerHeuristic(density(path), target.pdfFrom(path.state.last.position, hit.position, hit.ng));
-    path.sink.add(throughput * radiance * (weight / target.probability), path.state.timeAfter(hit.t) + target.start,
-                  *target.emitter, path.steps.logRatioOnSurface());
+    path.sink.add(throughput * radiance * (weight / target.choice.ofPath), path.state.timeAfter(hit.t) + target.start,
+                  *target.emitter, path.steps.logRatioOnSurface() + std::log(target.choice.ofPath));
 }
 
 } // namespace tungsten::path

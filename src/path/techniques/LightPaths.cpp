@@ -51,14 +51,14 @@ void LightPaths::trace(const Scene& scene, const TargetChoice& targets, size_t g
     const auto all = float(std::clamp(guidedPaths / 4, std::min(guidedPaths, tuning::FewestPaths), tuning::MostPaths));
     uint64_t paths = 0;
     for (size_t i = 0; i < vertices_.size(); ++i) {
-        const float probability = targets.probability(i);
-        if (!(probability > 0.0f) || scene.emitters[i].isDelta()) continue;
+        const EmitterChoice choice = targets.choice(i);
+        if (!(choice.ofPath > 0.0f) || scene.emitters[i].isDelta()) continue;
         const Emitter& emitter = scene.emitters[i];
-        const size_t share = size_t(all * probability) + tuning::Candidates;
-        vertices_[i].trace(scene, emitter, probability, share, pass);
+        const size_t share = size_t(all * choice.ofPath) + tuning::Candidates;
+        vertices_[i].trace(scene, emitter, choice, share, pass);
         paths += share;
         if (reflected_[i].empty()) continue;
-        reflected_[i].trace(scene, emitter, probability, share, pass, flights_);
+        reflected_[i].trace(scene, emitter, choice, share, pass, flights_);
         paths += share;
     }
     statistics.add("light paths", paths);

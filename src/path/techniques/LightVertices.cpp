@@ -8,7 +8,7 @@ bool holdsLightVertices(LobeMask lobes) {
     return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Through) == 0;
 }
 
-std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, float probability,
+std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice,
                                             Sampler& sampler) {
     const Vec2f uPosition = sampler.next2D();
     const EmissionSample emission = sampleEmission(emitter, uPosition, sampler.next2D());
@@ -20,10 +20,10 @@ std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& e
     const SurfaceInteraction surface = makeInteraction(scene, *hit, direction);
     if (!surface.consistent(-direction, scene.transport.consistencyChecks)) return std::nullopt;
     const transport::Vertex vertex(scene, surface, direction, TransportMode::Photons, scene.regionOf(emitter));
-    return LightVertex{{vertex, emission.power / probability},
+    return LightVertex{{vertex, emission.power / choice.ofPath},
                        hit->t,
                        vertex.areaDensity(emission.pdfDirection, direction, hit->t),
-                       pdfDirect(emitter, hit->position, emission.ray.origin, emission.normal),
+                       choice.ofVertex * pdfDirect(emitter, hit->position, emission.ray.origin, emission.normal),
                        incidence};
 }
 
@@ -33,12 +33,12 @@ Rgb LightVertex::weighedIntensity(const Vec3f& direction) const {
     return lightPdf > 0.0f ? value * transport::powerHeuristic(lightPdf, vertex.pdfReverse(direction)) : value;
 }
 
-void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths,
+void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, size_t paths,
                              const PassInfo& pass) {
     const auto stream = uint64_t(&emitter - scene.emitters.data()) << 32;
     window_.fill(paths, "light paths", pass.watch, [&](size_t i, std::vector<LightVertex>& vertices) {
         Sampler sampler(pass.seed, RandomStream::LightVertex, pass.index, stream | i);
-        if (auto vertex = traceLightVertex(scene, emitter, probability, sampler)) vertices.push_back(*vertex);
+        if (auto vertex = traceLightVertex(scene, emitter, choice, sampler)) vertices.push_back(*vertex);
     });
 }
 

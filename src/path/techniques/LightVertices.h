@@ -13,7 +13,7 @@ namespace tungsten::path {
 struct LightVertex : transport::PathEnd {
     float distance;  ///< from the light
     float areaPdf;   ///< density per area of this point
-    float lightPdf;  ///< density per solid angle of the emitter's point, chosen by area, seen from here; 0: points
+    float lightPdf;  ///< density per solid angle of the emitter's point, as PathTarget::pdfFrom here; 0: points
     float incidence; ///< |cos| of light's direction and the geometric normal
 
     [[nodiscard]] Vec3f position() const { return vertex.position(); }
@@ -25,7 +25,7 @@ struct LightVertex : transport::PathEnd {
 /// Surfaces that may have light vertices: they scatter smoothly and transmit nothing.
 bool holdsLightVertices(LobeMask lobes);
 /// The light path `sampler` draws from the emitter, as far as its first surface; none where that is no light vertex.
-std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, float probability,
+std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice,
                                             Sampler& sampler);
 /// Light vertices of one emitter.
 class LightVertexCache {
@@ -35,7 +35,8 @@ class LightVertexCache {
     /// A candidate whose light, going on straight to `position`, arrives after a length in [low, high).
     [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
 
-    void trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths, const PassInfo& pass);
+    void trace(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, size_t paths,
+               const PassInfo& pass);
 
   private:
     ArrivalWindow<LightVertex> window_;

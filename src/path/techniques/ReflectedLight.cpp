@@ -11,9 +11,9 @@ namespace {
 constexpr uint32_t PilotPass = std::numeric_limits<uint32_t>::max();
 
 /// Adds up to two ends of one light path: where it meets the next surface, and a point before.
-void traceReflection(const Scene& scene, const Emitter& emitter, float probability, const Flights& flights,
+void traceReflection(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, const Flights& flights,
                      Sampler sampler, std::vector<ReflectedVertex>& vertices) {
-    const auto glossy = traceLightVertex(scene, emitter, probability, sampler);
+    const auto glossy = traceLightVertex(scene, emitter, choice, sampler);
     if (!glossy || !reflectsSharply(glossy->vertex.lobes())) return;
     const SurfaceInteraction& from = *glossy->vertex.surface();
     const Vec2f uDirection = sampler.next2D();
@@ -55,17 +55,17 @@ bool reflectsSharply(LobeMask lobes) {
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights,
                                   const PassWatch& watch) {
-    trace(scene, emitter, 1.0f, tuning::PilotPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
+    trace(scene, emitter, {}, tuning::PilotPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
     candidates_ =
         vertices().empty() ? 0.0f : float(tuning::Candidates) * float(tuning::PilotPaths) / float(vertices().size());
 }
 
-void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths,
+void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, size_t paths,
                                 const PassInfo& pass, const Flights& flights) {
     const auto stream = uint64_t(&emitter - scene.emitters.data()) << 32;
     window_.fill(paths, "reflected light", pass.watch, [&](size_t i, std::vector<ReflectedVertex>& vertices) {
         const Sampler sampler(pass.seed, RandomStream::ReflectedLight, pass.index, stream | i);
-        traceReflection(scene, emitter, probability, flights, sampler, vertices);
+        traceReflection(scene, emitter, choice, flights, sampler, vertices);
     });
 }
 

@@ -52,8 +52,8 @@ class ReflectedLightCache {
     /// How many light paths are a vertex's candidates, on the average.
     [[nodiscard]] float candidates() const { return candidates_; }
 
-    void trace(const Scene& scene, const Emitter& emitter, float probability, size_t paths, const PassInfo& pass,
-               const Flights& flights);
+    void trace(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, size_t paths,
+               const PassInfo& pass, const Flights& flights);
     /// A candidate whose light, going on straight to `position`, arrives after a length in [low, high).
     [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
     [[nodiscard]] const std::vector<ReflectedVertex>& vertices() const { return window_.ends(); }
