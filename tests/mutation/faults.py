@@ -79,7 +79,7 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),
     ("src/path/PathVisitor.cpp", "return false; // emitters", "return settings().lightSampling; // emitters",
      [("path_tests", "Energy.RoomOfHalfMirrors")]),
-    ("src/path/PathVisitor.cpp", "path.time + connection->time + source_->start", "path.time + connection->time",
+    ("src/path/PathVisitor.cpp", "path.time + connection->time + target.start", "path.time + connection->time",
      [("agreement_tests", "Cases/GuidedRoom.AgreesWithPlainPaths/Laser")]),
     ("src/path/PathTarget.cpp", "target_->start = path.time;", ";",
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),
@@ -296,7 +296,7 @@ FAULTS = [
      [("path_tests", "RefractedLight.AgreesBesideAWideLamp")]),  # light through refracting walls is counted twice
     ("src/path/PathVisitor.cpp", "pdfDirect(emitter, path.last.position, hit.position, hit.ng)", "pdfDirect(emitter, hit.position, path.last.position, hit.ng)",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # swapped ends: emitters that are met get the wrong share
-    ("src/path/PathVisitor.cpp", "limits().renders(path.interactions + connection->crossings + source_->interactions)", "limits().renders(path.interactions + connection->crossings)",
+    ("src/path/PathVisitor.cpp", "limits().renders(path.interactions + connection->crossings + target.interactions)", "limits().renders(path.interactions + connection->crossings)",
      [("path_tests", "Bounces.WhatALaser*")]),  # min_bounces and max_bounces do not count a laser's own path
     # src/path
     ("src/path/PathTracer.cpp", "const auto sample = uint32_t(pass.firstSample + s);", "const auto sample = uint32_t(s);",
@@ -316,7 +316,7 @@ FAULTS = [
      [("transport_tests", "Scripted.EndsWhereAHookSaysSo")]),  # limits of flights do not end a walk
     ("src/path/StepsToEmitter.cpp", "path.channels = plain.channels;", ";",
      [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
-    ("src/path/PathVisitor.cpp", "if constexpr (Beside::Balanced) weight *= source_->shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
+    ("src/path/PathVisitor.cpp", "weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lamps that are met and connected to count twice
     ("src/path/StrategyBalance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # plain paths bring all of what both find
@@ -326,7 +326,7 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
     ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOf(flight.pdf) - logOf(plain.pdf);", "path.logRatio = start_.logRatio + logOf(2.0f * flight.pdf) - logOf(plain.pdf);",
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
-    ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(guided_->expectedCopies(guided, vertex));", ";",
+    ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
     ("src/path/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
@@ -361,13 +361,13 @@ FAULTS = [
     ("src/path/light/CameraConnections.cpp", "connection.throughput * float(context_->sensor.density(time))", "connection.throughput",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),  # light tracer: not divided by the frame's width, response ignored
     # src/path/techniques
-    ("src/path/techniques/EmitterConnections.cpp", "(weight / target.probability)", "weight",
+    ("src/path/techniques/EmitterConnections.cpp", "(weight / target.choice.ofPath)", "weight",
      [("path_tests", "ManyLights.*")]),  # emitters met by guided paths lack 1 / probability of their choice
     ("src/path/techniques/ReflectedConnections.cpp", "* transmittance * (choice.weight * share),", "* transmittance * choice.weight,",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light of glossy reflections is counted twice
     ("src/path/techniques/ReflectedLight.cpp", "vertices.back().power = reflected / (pdf * density);", "vertices.back().power = reflected / pdf;",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/Point")]),  # glossy light in fog lacks the density of its flight
-    ("src/path/techniques/LightVertices.cpp", "LightVertex{{vertex, emission.power / probability},", "LightVertex{{vertex, emission.power},",
+    ("src/path/techniques/LightVertices.cpp", "LightVertex{{vertex, emission.power / choice.ofPath},", "LightVertex{{vertex, emission.power},",
      [("path_tests", "ManyLights.ShownByFogAboveAFloor")]),  # light paths too dark where there are several lights
     ("src/path/techniques/LightVertexConnections.cpp", "transport::balance(density(light.areaPdf), walk, reflected);", "transport::balance(density(light.areaPdf), walk);",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light vertices take the share of reflected light, too
