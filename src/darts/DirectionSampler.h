@@ -123,7 +123,6 @@ class DirectionSampler {
                     return draw(residual, strata(*phase, *turns, residual, excess), random);
                 return mix(residual, TurnsShare, scatterer, *turns, random);
             }
-            if (settings_.scattererOut) return fromScatterer(residual, scatterer, random);
             const DirectionsOut out(residual, least(residual, excess), medium_);
             return mix(residual, out.share(), scatterer, out, random);
         }
@@ -152,7 +151,6 @@ class DirectionSampler {
                     return strata(*phase, *turns, residual, excess).pdf(direction, h);
                 return mixture(TurnsShare, *turns);
             }
-            if (settings_.scattererOut) return scatterer.pdf(direction);
             const DirectionsOut out(residual, least(residual, excess), medium_);
             return mixture(out.share(), out);
         }

@@ -72,7 +72,6 @@ struct Settings {
     float floor = 0.0f;  ///< added to usefulness, relative to the candidates' mean; at most 0.05
     float strays = 0.0f; ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
     bool splitsHeavyOut = false; ///< out of bodies walks that are too heavy split too, not by the way left alone
-    bool scattererOut = false;   ///< out of bodies directions are the scatterer's own
 
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
@@ -128,7 +127,6 @@ inline Settings best(Mode mode, float g) {
         s.strays = 0.2f;
         s.splitsHeavyOut = true;
     } else {
-        s.scattererOut = peaked;
         s.candidates = 16;
         s.roulette = 0.03f;
         s.rouletteOut = 0.3f;
