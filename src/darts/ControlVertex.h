@@ -74,6 +74,37 @@ struct ConnectionLength {
     }
 };
 
+/// The same for a connection whose direction is known: half of the lengths are drawn in proportion to
+/// 1 / ((low + offset)^2 + a^2), as the weight of a connection at 1 - cos = h goes with a^2 = 2 S C h.
+template <typename Real>
+struct LengthAlong {
+    ConnectionLength<Real> lengths;
+    Real a; ///< above 0
+
+    /// u in [0, 1).
+    [[nodiscard]] typename ConnectionLength<Real>::Draw sample(Real u) const {
+        const Real offset =
+            u < Real(0.5) ? lengths.sample(2 * u).offset : std::min(sampleAngle((2 * u - 1) * angle()), lengths.width);
+        return {offset, 1 / pdf(offset)};
+    }
+    /// Density per length.
+    [[nodiscard]] Real pdf(Real offset) const {
+        if (!(offset >= 0) || offset > lengths.width) return 0;
+        const Real excess = lengths.low + offset;
+        return Real(0.5) * (lengths.pdf(offset) + a / ((excess * excess + a * a) * angle()));
+    }
+
+  private:
+    /// Between the ends, seen from beside `low` = 0 at the distance a.
+    [[nodiscard]] Real angle() const {
+        return std::atan2(lengths.width * a, a * a + lengths.low * (lengths.low + lengths.width));
+    }
+    [[nodiscard]] Real sampleAngle(Real turn) const {
+        const Real sine = std::sin(turn);
+        return sine * (a * a + lengths.low * lengths.low) / (a * std::cos(turn) - lengths.low * sine);
+    }
+};
+
 /// Density per length along the ray of the vertex of a connection whose length has density `lengthPdf`:
 /// p(t) = p(S) dS/dt = p(S) (S - C cos) / (S - t). (The ratio is printed upside down in He et al. 2024.)
 template <typename Real>

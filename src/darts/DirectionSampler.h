@@ -232,6 +232,10 @@ class DirectionSampler {
                 GuidedDirections(AboutTarget{lobe, residual.axis}, residual, delta, view, focus<View>(C + delta)));
         };
         if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
+        // All lengths at once, of which `excess` is the median.
+        if (settings_.medianLobe && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
+            excess > residual.low)
+            return about(GateLobe<float>(C, residual.low, 2.0f * (excess - residual.low)));
         return about(connectionLobe(C, delta));
     }
     /// Share of the view's directions for connections of length S: long chains of scatterings forget where they began.

@@ -75,6 +75,13 @@ class Guide {
         const auto [offset, inversePdf] = lengths(residual).sample(u);
         return {residual.low + offset, inversePdf};
     }
+    /// The same along a ray, h = 1 - cos of the angle to the target's direction: for lengths drawn after the direction.
+    [[nodiscard]] ConnectionSample sampleConnectionAlong(const Residual& residual, float h, float u,
+                                                         const ResponseAt& at = {}) const {
+        if (at.response || !suitsDirection(residual)) return sampleConnection(residual, u, at);
+        const auto [offset, inversePdf] = lengthsAlong(residual, h).sample(u);
+        return {residual.low + offset, inversePdf};
+    }
     /// The part of the residual range whose connections along the ray end before the surface: for lengths drawn after
     /// the direction.
     [[nodiscard]] static Residual beforeSurface(const Residual& residual, float h, float surface) {
@@ -118,8 +125,8 @@ class Guide {
         return count;
     }
 
-    /// Density per length along the ray of controlVertex() at `distance`; a function of the ray alone, for the balance
-    /// heuristic.
+    /// Density per length along the ray of controlVertex() at `distance`, of a connection drawn along it where the
+    /// direction comes first; a function of the ray alone, for the balance heuristic.
     [[nodiscard]] float pdfControlVertex(const Residual& residual, float h, float distance,
                                          const ResponseAt& at = {}) const {
         // Of the connection through the point, from residual.low. The ends have the rounding of the excess lengths.
@@ -128,8 +135,9 @@ class Guide {
         if (!(exact >= -rounding && exact <= double(residual.width) + rounding)) return 0.0f;
         const float offset = std::clamp(float(exact), 0.0f, residual.width);
         const Ellipse<float> connection{residual.C, residual.low + offset, h};
-        return controlVertexPdf(connection,
-                                at.response ? pdfResponse(residual, offset, at) : lengths(residual).pdf(offset));
+        return controlVertexPdf(connection, at.response                ? pdfResponse(residual, offset, at)
+                                            : suitsDirection(residual) ? lengthsAlong(residual, h).pdf(offset)
+                                                                       : lengths(residual).pdf(offset));
     }
 
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the median length, or of the
@@ -198,6 +206,15 @@ class Guide {
     [[nodiscard]] ConnectionLength<float> lengths(const Residual& residual) const {
         if (residual.way == Way::Through) return {residual.low, residual.width, connectionSigmaT_};
         return {residual.low, residual.width, OutsideRate * connectionSigmaT_, needle_};
+    }
+    /// Camera paths whose directions are drawn first, for all lengths: these suit the direction afterwards.
+    [[nodiscard]] bool suitsDirection(const Residual& residual) const {
+        return settings_.medianLobe && settings_.lobe == Lobe::Path && !settings_.lengthFirst &&
+               residual.way == Way::Through && residual.width > 0 && !(needle_ > 0);
+    }
+    [[nodiscard]] LengthAlong<float> lengthsAlong(const Residual& residual, float h) const {
+        const float S = residual.C + residual.low + 0.5f * residual.width;
+        return {lengths(residual), std::max(std::sqrt(2.0f * S * residual.C * h), 1e-6f * (S - residual.C))};
     }
     // Bench: study bodies, paths.
     static constexpr float OutsideRate = 0.5f;

@@ -59,10 +59,10 @@ darts::ResponseAt StepsToEmitter::response(double time) const {
 }
 
 darts::ConnectionSample StepsToEmitter::drawConnection(PathState& path, const darts::Guide& guide,
-                                                       const darts::Residual& residual) const {
-    return guide.sampleConnection(
-        residual, path.random.next1D(),
-        {guided_->sensor.response.get(), path.time + target_.start, double(path.region.speed)});
+                                                       const darts::Residual& residual, const float* h) const {
+    const darts::ResponseAt at{guided_->sensor.response.get(), path.time + target_.start, double(path.region.speed)};
+    const float u = path.random.next1D();
+    return h ? guide.sampleConnectionAlong(residual, *h, u, at) : guide.sampleConnection(residual, u, at);
 }
 
 // ---- Looking

@@ -91,9 +91,10 @@ class StepsToEmitter : public transport::GuidedSteps {
                                                const Region& region) const;
     /// The same of the surface that the path is at.
     [[nodiscard]] const darts::Guide* surfaceGuide() const { return surfaceGuide_; }
-    /// Of a connection from a vertex with this residual.
+    /// Of a connection from a vertex with this residual; along a way, if `h` says which.
     [[nodiscard]] darts::ConnectionSample drawConnection(PathState& path, const darts::Guide& guide,
-                                                         const darts::Residual& residual) const;
+                                                         const darts::Residual& residual,
+                                                         const float* h = nullptr) const;
 
     /// Ordinary connections share with control vertices: in bodies that light must leave, whose directions do not
     /// follow the connections' weights so closely.

@@ -22,7 +22,7 @@ void expectAgreement(const AgreementScene& scene, const Method& method, const Bl
 const Method Plain = pathMethod("plain", {}, 1),
              // Hardly noisier than plain ones; beside plain ones, in between.
     Best = guidedPathMethod("best", {R"(darts={"plain_share": 0})"}, 4, 0.125),
-             BesidePlain = guidedPathMethod("beside plain", {R"(darts={"plain_share": 0.2})"}, 8, 0.6);
+             BesidePlain = guidedPathMethod("beside plain", {R"(darts={"plain_share": 0.2})"}, 18, 0.6);
 
 class SwitchesAlone : public testing::TestWithParam<const char*> {};
 

@@ -63,6 +63,24 @@ TEST(ConnectionLength, SamplesFollowTheDensity) {
     }
 }
 
+TEST(LengthAlong, SamplesFollowTheDensity) {
+    for (const double low : {0.0, 1e-4, 1.0, 100.0})
+        for (const double a : {1e-4, 0.1, 3.0, 1e3})
+            for (const double sigmaT : {0.0, 4.0}) {
+                const LengthAlong<double> length{{low, 2.0, sigmaT}, a};
+                // Evenly in the logarithm: half of the lengths may be within a of 0.
+                const double first = std::log(1e-9), last = std::log(2.0);
+                const auto cumulative = [&](double x) {
+                    const auto integrand = [&](double y) { return length.pdf(std::exp(y)) * std::exp(y); };
+                    return x > 1e-9 ? tungsten::test::integrate<61>(integrand, first, std::log(x), 12, 1e-9) : 0.0;
+                };
+                EXPECT_NEAR(cumulative(std::exp(last) * (1.0 - 1e-12)), 1.0, 2e-5) << low << " " << a << " " << sigmaT;
+                const double p = tungsten::test::chiSquareUniform(
+                    [&](Sampler& s) { return cumulative(length.sample(s.nextDouble()).offset); }, 12, 3000);
+                EXPECT_GT(p, tungsten::test::SmallestPValue) << low << " " << a << " " << sigmaT;
+            }
+}
+
 TEST(ConnectionLength, SamplesFollowTheDensityOfForwardPeaks) {
     for (const double low : {0.0, 0.1})
         for (const double needle : {1e-3, 0.3})
@@ -97,10 +115,11 @@ TEST(ConnectionLength, HalfOfThemAreShorterThanTheMedian) {
 
 using DoubleLobe = ConnectionLobe<double>;
 
-void testLobe(DoubleLobe (*make)(double C, double delta)) {
+template <typename Make>
+void testLobe(const Make& make) {
     for (const double C : {1e-9, 0.5, 1.0, 1e4})
         for (const double delta : {1e-6, 1e-2, 1.0, 1e3}) {
-            const DoubleLobe lobe = make(C, delta);
+            const auto lobe = make(C, delta);
             // Uniform after mapping by the density's own integral over h (2 pi per unit of h).
             const auto cumulative = [&](double h) {
                 const auto integrand = [&](double x) { return TwoPi * lobe.pdf(std::exp(x)) * std::exp(x); };
@@ -123,6 +142,24 @@ TEST(ConnectionLobe, PathLobeSamplesItsDensity) {
 }
 TEST(ConnectionLobe, PhotonLobeSamplesItsDensity) {
     testLobe(DoubleLobe::photon);
+}
+
+TEST(ConnectionLobe, LobesOfAllLengthsSampleTheirDensity) {
+    testLobe([](double C, double delta) { return OpenGateLobe<double>(C, C + 0.5 * delta, delta); });
+    for (const double low : {0.0, 0.1, 20.0})
+        testLobe([low](double C, double delta) { return GateLobe<double>(C, low * delta, delta); });
+}
+
+/// Of lengths evenly up to a width, integrated over them.
+TEST(ConnectionLobe, TheOpenGatesIsTheMeanOfPathLobesWeights) {
+    const double C = 1.3, width = 0.02, S = C + 0.5 * width;
+    const OpenGateLobe<double> lobe(C, S, width);
+    double least = INFINITY, most = 0.0;
+    for (const double h : {1e-10, 1e-7, 1e-5, 1e-4, 1e-3, 0.1, 2.0}) {
+        const double a = std::sqrt(2.0 * S * C * h), ratio = lobe.pdf(h) * a / std::atan(width / a);
+        least = std::min(least, ratio), most = std::max(most, ratio);
+    }
+    EXPECT_LT(most, 1.3 * least);
 }
 
 TEST(ConnectionLobe, PathLobeCancelsTheConnectionWeight) {

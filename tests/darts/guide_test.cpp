@@ -41,7 +41,7 @@ void expectOnceScattered(const Settings& settings, const Geometry& geometry, uin
         const HenyeyGreenstein isotropic{{1, 0, 0}, 0.0f};
         ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
         const DirectionSample d = guide.sampleDirection(residual, connection, isotropic, NoView{}, random);
-        if (!settings.lengthFirst) connection = guide.sampleConnection(residual, s.next1D());
+        if (!settings.lengthFirst) connection = guide.sampleConnectionAlong(residual, d.h, s.next1D());
         double value = 0.0;
         if (const auto v = guide.controlVertex(residual, connection, d.h, INFINITY)) {
             const double S = double(residual.C) + double(connection.excess), r = double(v->toTarget);
@@ -82,7 +82,7 @@ TEST(Guide, ControlVerticesFollowTheirDensityAlongTheRay) {
                 const double end = double(residual.latest(h).firstLeg());
                 const double p = tungsten::test::chiSquareInterval(
                     [&](Sampler& s) {
-                        const auto connection = guide.sampleConnection(residual, s.next1D());
+                        const auto connection = guide.sampleConnectionAlong(residual, h, s.next1D());
                         const auto vertex = guide.controlVertex(residual, connection, h, INFINITY);
                         return vertex ? double(vertex->distance) : -1.0;
                     },

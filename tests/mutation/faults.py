@@ -330,6 +330,10 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
     ("src/path/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
+    ("src/darts/ControlVertex.h", "return Real(0.5) * (lengths.pdf(offset) + a /", "return (lengths.pdf(offset) + a /",
+     [("darts_tests", "LengthAlong.SamplesFollowTheDensity")]),  # connections along a way are twice as dense as they are
+    ("src/darts/ConnectionLobe.h", "share_ * open_.pdf(h) + (1 - share_) * middle_.pdf(h)", "middle_.pdf(h)",
+     [("darts_tests", "ConnectionLobe.LobesOfAllLengthsSampleTheirDensity")]),  # the open gate's directions are drawn, and no density knows of it
     ("src/path/PlainTrail.h", "now(emitter).light + std::log(targets_->probability(emitter));", "now(emitter).light;",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # plain paths that meet a lamp take it for that of all guided ones
     ("src/path/PathTarget.h", "index >= 0 ? choice.ofVertex * pdfDirect", "index >= 0 ? pdfDirect",

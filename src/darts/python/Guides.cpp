@@ -82,7 +82,7 @@ class GuideOfMedium {
             darts::ConnectionSample connection = guide_.sampleConnection(residual, random());
             const darts::DirectionSample ray =
                 guide_.sampleDirection(residual, connection, phase, darts::NoView{}, random);
-            if (!guide_.settings().lengthFirst) connection = guide_.sampleConnection(residual, random());
+            if (!guide_.settings().lengthFirst) connection = guide_.sampleConnectionAlong(residual, ray.h, random());
             const auto vertex = guide_.controlVertex(residual, connection, ray.h, surface);
             const darts::DistanceSample step =
                 guide_.sampleDistance(residual, ray, surface, {1.0f, 1.0f, 1.0f}, random);

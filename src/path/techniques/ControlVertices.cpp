@@ -40,12 +40,13 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
 void ControlVertices::sample(const GuidedPath& path, const transport::Ahead& ahead) {
     const darts::Guide& guide = path.steps.guideOf(path.state.region);
     if (!guide.settings().elliptical) return;
+    const float h = path.steps.heading().h;
     const auto draw = [&](const darts::Residual& residual) {
         path.state.random.at(path.state.interactions + 1, Draw::FlightConnection);
-        return path.steps.drawConnection(path.state, guide, residual);
+        return path.steps.drawConnection(path.state, guide, residual, &h);
     };
-    const auto met = path.steps.meetControlVertex(
-        {guide, path.steps.heading().h, path.state.time, path.steps.sharesConnections()}, ahead.reach(), draw);
+    const auto met =
+        path.steps.meetControlVertex({guide, h, path.state.time, path.steps.sharesConnections()}, ahead.reach(), draw);
     if (!met) return;
     const double arrival = met->departure + met->length / double(path.state.region.speed) + path.target().start;
     add(path, *ahead.medium, met->vertex, arrival);
