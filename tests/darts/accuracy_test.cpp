@@ -110,6 +110,54 @@ TEST(Accuracy, ConnectionLobes) {
     });
 }
 
+TEST(Accuracy, LobesOfAllLengths) {
+    for (const float C : {1e-4f, 1.0f, 1e5f})
+        for (const float relativeWidth : {1e-6f, 1e-3f, 0.5f, 100.0f})
+            for (const float relativeLow : {0.0f, 1e-3f, 30.0f}) {
+                const float width = relativeWidth * C, low = relativeLow * width;
+                const OpenGateLobe<float> open(C, C + low + 0.5f * width, width);
+                const GateLobe<float> gate(C, low, width);
+                const Exact S = Exact(C) + low + Exact(width) / 2;
+                const Exact k = 2 / ExactPi * width / sqrt(2 * S * C), range = log1p(sqrt(Exact(2)) / k);
+                const Exact delta = Exact(low) + Exact(width) / 2, kappa = delta * delta / (2 * C * S);
+                const Exact share = Exact(width) / (4 * (Exact(low) + width));
+                SCOPED_TRACE(testing::Message() << "C " << C << " low " << low << " width " << width);
+                for (const float u : {1e-7f, 0.1f, 0.5f, 0.9f}) {
+                    const Exact x = k * expm1(u * range);
+                    EXPECT_TRUE(near(open.sample(u), x * x)) << u;
+                }
+                for (const float h : {1e-12f, 1e-6f, 0.1f, 1.0f, 2.0f}) {
+                    const Exact x = sqrt(Exact(h)), ofOpen = 1 / (4 * ExactPi * x * (k + x) * range);
+                    const Exact middle = 1 / (2 * ExactPi * (kappa + h) * log1p(2 / kappa));
+                    EXPECT_TRUE(near(open.pdf(h), ofOpen)) << h;
+                    EXPECT_TRUE(near(gate.pdf(h), share * ofOpen + (1 - share) * middle)) << h;
+                }
+            }
+}
+
+TEST(Accuracy, LengthAlong) {
+    for (const float width : {1e-4f, 1.0f, 1e5f})
+        for (const float relativeLow : {0.0f, 1e-3f, 30.0f})
+            for (const float relativeA : {1e-4f, 0.1f, 3.0f, 1e3f}) {
+                const float low = relativeLow * width, a = relativeA * width;
+                const LengthAlong<float> length{{low, width, 0.0f}, a};
+                const Exact angle = atan(Exact(low + Exact(width)) / a) - atan(Exact(low) / a);
+                SCOPED_TRACE(testing::Message() << "width " << width << " low " << low << " a " << a);
+                for (const float u : {1e-6f, 0.1f, 0.5f, 0.9f}) {
+                    const float number = 0.5f + 0.5f * u;
+                    const Exact offset = a * tan(atan(Exact(low) / a) + Exact(2 * number - 1) * angle) - low;
+                    EXPECT_TRUE(near(length.sample(number).offset, offset)) << u;
+                }
+                for (const float part : {0.0f, 1e-6f, 0.3f, 1.0f}) {
+                    const float offset = part * width;
+                    const Exact excess = Exact(low) + offset;
+                    EXPECT_TRUE(near(length.pdf(offset),
+                                     (1 / Exact(width) + a / ((excess * excess + Exact(a) * a) * angle)) / 2))
+                        << part;
+                }
+            }
+}
+
 Exact exactDot(const Vec3& a, const Vec3& b) {
     return Exact(a.x) * b.x + Exact(a.y) * b.y + Exact(a.z) * b.z;
 }

@@ -17,9 +17,9 @@ int main() {
         constexpr int Samples = 1000000;
         double sum = 0.0;
         for (int i = 0; i < Samples; ++i) {
-            // The connection's length S, a direction that suits it, the vertex where the path has this length.
-            const auto connection = guide.sampleConnection(residual, random());
-            const auto sample = guide.sampleDirection(residual, connection, isotropic, darts::NoView{}, random);
+            // A direction, the connection's length S, the vertex where the path has this length.
+            const auto sample = guide.sampleDirection(residual, {}, isotropic, darts::NoView{}, random);
+            const auto connection = guide.sampleConnectionAlong(residual, sample.h, random());
             const auto vertex = guide.controlVertex(residual, connection, sample.h, INFINITY);
             if (!vertex) continue;
             const float S = vertex->distance + vertex->toTarget, sigmaS = medium.sigmaS.x, sigmaT = medium.sigmaT().x;
