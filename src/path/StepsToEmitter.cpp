@@ -36,6 +36,12 @@ float logOf(float density) {
     return std::log(std::max(density, Least));
 }
 
+/// Of a quotient, which does not depend on the unit of both.
+float logOf(float density, float over) {
+    constexpr float Most = 1e30f;
+    return std::log(std::clamp(std::max(density, Least) / std::max(over, Least), Least, Most));
+}
+
 } // namespace
 
 bool endsReflectedLight(LobeMask lobes) {
@@ -178,7 +184,7 @@ Flight StepsToEmitter::flight(PathState& path, const Ahead& ahead) {
                                  ahead.medium ? ahead.medium->transmittance(ahead.reach()) : Rgb(1.0f)};
     if (hasDensities() && flight.event != Event::Nothing) {
         const FlightSample plain = plainly(flight);
-        path.logRatio = start_.logRatio + logOf(flight.pdf) - logOf(plain.pdf);
+        path.logRatio = start_.logRatio + logOf(flight.pdf, plain.pdf);
         path.channels = plain.channels;
     }
     return flight;
@@ -292,13 +298,13 @@ ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, fl
 }
 
 auto StepsToEmitter::inMedium(float distance) const -> InMedium {
-    const float plain = logOf(pdfFlight(*medium_, distance, start_.channels));
+    const float plain = pdfFlight(*medium_, distance, start_.channels);
     InMedium ending{vertexDensity(distance), controlVertexDensity(distance)};
     // Own vertices that guided paths do not go on from do not connect either.
     if ((passage_ == Passage::Medium && residual().way == darts::Way::Through && guided_->bound.oneSpeed()) ||
-        guided_->balance.endsGuided(start_.logRatio + logOf(ending.own) - plain))
+        guided_->balance.endsGuided(start_.logRatio + logOf(ending.own, plain)))
         ending.own = 0.0f;
-    ending.logRatio = start_.logRatio + logOf(ending.own + ending.control) - plain;
+    ending.logRatio = start_.logRatio + logOf(ending.own + ending.control, plain);
     return ending;
 }
 
@@ -308,7 +314,7 @@ float StepsToEmitter::logRatioOnSurface() const {
 
 float StepsToEmitter::logRatioThere(const Flight& flight) const {
     const float own = flight.event == Event::Collision ? vertexDensity(flight.distance) : surfaceProbability();
-    return start_.logRatio + logOf(own) - logOf(flight.pdf);
+    return start_.logRatio + logOf(own, flight.pdf);
 }
 
 // ---- Roulette, splitting, directions

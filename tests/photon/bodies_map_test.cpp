@@ -71,7 +71,7 @@ TEST(PhotonMapsOfBodies, LightThatGetsInWhereItIsOfNoUseEndsSoon) {
         const std::string scene = slabScene(size, 0.1);
         const Photons photons = renderBest(scene);
         EXPECT_LT(photons.eventsPerPath, most) << size;
-        expectSameMean(photons, *test::renderPaths(scene, {{"integrator.darts=best"}, 16, 32}));
+        expectSameMean(photons, *test::renderPaths(scene, {{"integrator.darts=best"}, 16, 128}));
     }
 }
 
