@@ -14,7 +14,7 @@ REMOVALS = [
          "(void)time; return 1.0f;"),
         ("src/transport/Sensor.h", "return !response || response->distribution(to) > response->distribution(from);",
          "(void)from; (void)to; return true;"),
-        ("src/path/PixelSink.h", "if (sensor_.delays.any()) return add(radiance, time, emitter);", "(void)emitter;"),
+        ("src/path/PixelSink.h", "if (sensor_.delays.any()) return add(radiance, time, emitter, logRatio);", "(void)emitter;"),
         ("src/path/PixelSink.h", "sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;", "scale_; (void)time;"),
     ]),
     ("frames after the first", PATHS, [
@@ -30,8 +30,8 @@ REMOVALS = [
         ("src/path/PathVisitor.cpp", "if (context_->refracted) weight *= refractedShare(index);", ""),
     ]),
     ("pulses that start later", [*PATHS, *MAPS], [
-        ("src/path/PathVisitor.cpp", "path.time + emitter.emissionTime, emitter", "path.time, emitter"),
-        ("src/path/PathVisitor.cpp", "connection->time + source_->start", "connection->time"),
+        ("src/path/PathVisitor.cpp", "const double time = path.time + emitter.emissionTime;", "const double time = path.time;"),
+        ("src/path/PathVisitor.cpp", "connection->time + target.start", "connection->time"),
         ("src/photon/light/DepositVisitor.cpp", "path.time = emitter.emissionTime + culling_->delays().sample(emitter, path.random);",
          "(void)emitter; path.time = 0.0;"),
     ]),
@@ -57,8 +57,6 @@ REMOVALS = [
         ("tungsten/medium/Medium.cpp", "[[gnu::noinline]] Rgb", "[[maybe_unused]] Rgb"),
         ("tungsten/medium/Medium.cpp", "grey_ ? Rgb(transmittanceOf(sigmaT().x, distance)) : transmittanceOf(sigmaT(), distance);",
          "Rgb(transmittanceOf(sigmaT().x, distance));"),
-        ("tungsten/medium/Medium.cpp", "uint64_t(sampler.nextBits()) * (medium.isGrey() ? 1 : 3);", "sampler.nextBits();"),
-        ("tungsten/medium/Medium.cpp", "sigma[int(bits >> 32)];", "sigma.x;"),
         ("src/photon/primitives/points/PointSplat.cpp", "if (k > 0 && !medium.grey) weight =", "if (false) weight ="),
     ]),
     ("light that leaves bodies", GUIDED, [

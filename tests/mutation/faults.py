@@ -324,7 +324,7 @@ FAULTS = [
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # guided paths bring all of what both find
     ("src/path/StepsToEmitter.cpp", "if (hasDensities()) path.logRatio += std::log(survival * float(copies));", ";",
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
-    ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOf(flight.pdf) - logOf(plain.pdf);", "path.logRatio = start_.logRatio + logOf(2.0f * flight.pdf) - logOf(plain.pdf);",
+    ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOf(flight.pdf, plain.pdf);", "path.logRatio = start_.logRatio + logOf(2.0f * flight.pdf, plain.pdf);",
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
