@@ -10,7 +10,7 @@ namespace darts {
 
 /// Two distributions of directions, a phase function's (Henyey-Greenstein) and a guide's about its own axis, are each
 /// cut into strata that are equally likely: by the angle to the axis, and in halves towards and away from the other
-/// axis. One direction in each tells how much is importance of its stratum; W_cj = importance / mixture there. A
+/// axis. One direction in each tells the importance of its stratum; W_cj = importance / mixture there. A
 /// stratum is chosen in proportion to W and a direction drawn in it by its own distribution q_c:
 ///   p(w) = sum over c of M q_c(w) W_{c, j_c(w)} / sum W.
 /// A Guide has axis, pdf(h) per solid angle, quantile(f) -> h = 1 - cos and part(h) -> f, its inverse.

@@ -24,6 +24,8 @@ template <typename Batch, Shape G, int Channels>
 void logImportanceOf(const CandidateDraw& draw, const float* distances, float* logs) {
     using std::max;
     constexpr int Width = lanes::Width<Batch>;
+    // What is reachable of the gate is a length: a part of it has no unit, and logarithms are rounded alike in any.
+    const float part = G != Shape::FirstPassage && draw.overlap ? 1.0f / draw.gateWidth : 1.0f;
     for (int first = 0; first < LogLinearDistance::Nodes; first += Width) {
         const Batch d = lanes::get<Batch>(distances + first);
         const PlaceOf<G, Batch> place(draw, d);
@@ -39,7 +41,7 @@ void logImportanceOf(const CandidateDraw& draw, const float* distances, float* l
             sum = Batch(0.0f);
             for (size_t i = 0; i < Channels; ++i) sum = sum + factors[i] * lanes::exp(Batch(exponents[i] - top));
         }
-        lanes::put(logs + first, Batch(top + lanes::log(max(Batch(place.reachable * sum), Batch(1e-30f)))));
+        lanes::put(logs + first, Batch(top + lanes::log(max(Batch(place.reachable * part * sum), Batch(1e-30f)))));
     }
 }
 

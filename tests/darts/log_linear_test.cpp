@@ -157,7 +157,7 @@ TEST(LogLinearDistance, OfPlainFlightsHasNoNoise) {
     }
 }
 
-/// Usefulness includes what is left of the gate: S - d - rho of the latest arrival, at most the gate.
+/// Usefulness includes the part of the gate that is left: S - d - rho of the latest arrival over the gate, at most 1.
 TEST(LogLinearDistance, NodesKnowThePartOfTheGateStillInReach) {
     for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal}) {
         Drawn drawn(true, 1.0f, 1.0f, 0.0f);
@@ -170,7 +170,8 @@ TEST(LogLinearDistance, NodesKnowThePartOfTheGateStillInReach) {
         const Ellipse<double> e{drawn.draw.latest.C, drawn.draw.latest.delta, drawn.draw.latest.h};
         for (size_t j = 0; j < at.size(); ++j) {
             const double left = e.length() - double(at[j]) - e.distanceToTarget(double(at[j]));
-            EXPECT_NEAR(double(with[j] - without[j]), std::log(std::min(left, double(drawn.draw.gateWidth))), 1e-4)
+            EXPECT_NEAR(double(with[j] - without[j]), std::log(std::min(left / double(drawn.draw.gateWidth), 1.0)),
+                        1e-4)
                 << j;
         }
     }

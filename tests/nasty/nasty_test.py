@@ -111,8 +111,7 @@ def scales(folder):
         for name in base:
             apart = np.abs(found[name][0] / expected[name][0] - 1).max()
             worst = max(worst, float(apart))
-            # Roulette of guided paths goes by logarithms, whose rounding in another unit is another: beside plain paths it is in all weights.
-            if bound is not None and apart > {"paths-plain": 0, "paths-best": 1e-5}.get(name, 1e-6):
+            if bound is not None and apart > (0 if name == "paths-plain" else 1e-6):
                 rows.append((f"lengths times {label}", f"{name}: {apart:.2g} apart", False))
         if bound is None:
             sigmas = max(difference(found[name], expected[name], 0.0) for name in base)
