@@ -1,8 +1,10 @@
 #include "path/PathTracer.h"
 
 #include "path/PathVisitor.h"
-#include "path/SharePilot.h"
 #include "path/Tuning.h"
+
+#include "transport/SharePilot.h"
+#include "transport/Tuning.h"
 
 #include "tungsten/render/EarliestArrival.h"
 
@@ -245,7 +247,7 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
     }
     const StageTimer timer(statistics, "pilot of plain and guided paths");
     watch.stage("pilot of plain and guided paths", tuning::MostPilotPixels);
-    constexpr uint64_t Key = 0x5EED0F511A5E5ull; // not the render's: all its parts must choose alike
+    constexpr uint64_t Key = transport::PilotKey;
     balance_ = {0.5f, 0.5f};
     if (plan_.lightVertices.on) {
         Statistics ignored;
@@ -286,9 +288,10 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
         watch.poll();
         costs = this->costs(counted);
         if (group + 1 < tuning::LeastPilotPixels) continue;
-        if (costs.sum() > tuning::MostPilotCost) break;
-        if ((group & (group + 1)) == 0 && pilot.effective(Strategy::Plain) >= 10.0 * tuning::LeastEffective &&
-            pilot.effective(Strategy::Guided) >= 10.0 * tuning::LeastEffective)
+        if (costs.sum() > transport::tuning::MostPilotCost) break;
+        if ((group & (group + 1)) == 0 &&
+            pilot.effective(Strategy::Plain) >= 10.0 * transport::tuning::LeastEffective &&
+            pilot.effective(Strategy::Guided) >= 10.0 * transport::tuning::LeastEffective)
             break;
     }
     const double time = asked ? double(*asked) : pilot.choose(costs);

@@ -4,16 +4,21 @@
 #include "path/GuidedVisitor.h"
 #include "path/PathPlan.h"
 #include "path/PathVisitor.h"
-#include "path/SharePilot.h"
 #include "path/Tuning.h"
 #include "path/techniques/LightPaths.h"
 #include "path/techniques/RefractedLight.h"
 #include "transport/DetectorLight.h"
+#include "transport/SharePilot.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include "tungsten/render/Integrator.h"
 
 namespace tungsten::path {
+
+/// What was counted, by whose work it was: of plain paths, of their densities, of guided paths.
+struct StrategyCounters {
+    PathCounters plain, densities, guided;
+};
 
 class PathTracer : public Integrator {
   public:

@@ -1,9 +1,8 @@
 #pragma once
 // Where a path's contributions go: the frame their time falls in, weighed as the sensor does.
 
-#include "path/StrategyBalance.h"
-
 #include "transport/Sensor.h"
+#include "transport/SharePilot.h"
 #include "transport/StepCounters.h"
 
 #include "tungsten/film/Film.h"
@@ -13,7 +12,12 @@
 
 namespace tungsten::path {
 
-class SharePilot;
+using transport::Found;
+using transport::LogRatio;
+using transport::PathCosts;
+using transport::SharePilot;
+using transport::Strategy;
+using transport::StrategyBalance;
 
 /// What happened, counted by one worker.
 struct PathCounters : transport::StepCounters {
@@ -21,10 +25,6 @@ struct PathCounters : transport::StepCounters {
              connections = 0, intoDetectors = 0, nonFinite = 0, densities = 0, plainPaths = 0;
     uint64_t arrivals = 0, timed = 0, laterFrames = 0, weighed = 0; ///< timed: at a sensor that is not always open
 };
-
-/// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided
-/// paths alone look.
-enum class Found { OnWay, Aside };
 
 /// Adds contributions to one pixel of the pass image. They are summed in double, the last few frames' here: paths of
 /// 10 000 bounces make so many equal ones that sums of floats would drift.
@@ -66,7 +66,9 @@ class PixelSink {
     }
 
   private:
-    void tellPilot(float value, int frame, LogRatio logRatio, Found found);
+    void tellPilot(float value, int frame, LogRatio logRatio, Found found) {
+        if (value != 0.0f) pilot_->tell(value, frame, logRatio, found);
+    }
     void count(int frame) {
         ++counters_.arrivals;
         if (!sensor_.gate.steadyState) ++counters_.timed;

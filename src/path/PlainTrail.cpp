@@ -16,16 +16,11 @@ namespace {
 
 constexpr float Never = StrategyBalance::Never;
 
-/// Of the same path, found by guided steps.
-Rgb guidedThroughput(const Rgb& plain, float logRatio) {
-    return plain * std::exp(std::min(-logRatio, 80.0f));
-}
-
 } // namespace
 
 void PlainTrail::start(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink,
                        PathCounters& counters, const Sampler& light) {
-    steps_.clear();
+    record_.clear();
     for (; used_ > 0; --used_) slots_[followers_[used_ - 1]->emitter] = 0;
     slots_.resize(context.scene.emitters.size(), 0);
     context_ = &context;
@@ -50,14 +45,14 @@ auto PlainTrail::follower(size_t emitter) -> Follower& {
 
 auto PlainTrail::now(size_t emitter) -> const Logs& {
     Follower& follower = this->follower(emitter);
-    while (follower.next < steps_.size()) follow(follower, follower.next++);
+    while (follower.next < record_.size()) follow(follower, follower.next++);
     return follower.logs;
 }
 
 void PlainTrail::pass(Follower& follower, const Step& step) {
     PathState guided = step.at;
     guided.logRatio = follower.logRatio;
-    guided.throughput = guidedThroughput(step.at.throughput, follower.logRatio);
+    guided.throughput = transport::WalkRecord::throughputOfGuided(step.at.throughput, follower.logRatio);
     std::optional<SurfaceInteraction> surface;
     if (!step.medium) surface.emplace(makeInteraction(context_->scene, *step.hit, guided.ray.direction));
     const WalkVertex vertex{step.medium, surface ? &*surface : nullptr, guided.ray.origin, guided.ray.direction,
@@ -93,15 +88,15 @@ float PlainTrail::byLightPaths(Follower& follower, const Step& step) {
 }
 
 void PlainTrail::follow(Follower& follower, size_t index) {
-    const Step& step = steps_[index];
+    const Step& step = record_[index];
     Logs& logs = follower.logs;
     logs = {Never, Never, Never, Never};
-    if (follower.alive && index > 0) pass(follower, steps_[index - 1]);
+    if (follower.alive && index > 0) pass(follower, record_[index - 1]);
     if (!follower.alive) return;
     ++counters_->densities;
     PathState guided = step.start;
     guided.logRatio = follower.logRatio;
-    guided.throughput = guidedThroughput(step.start.throughput, follower.logRatio);
+    guided.throughput = transport::WalkRecord::throughputOfGuided(step.start.throughput, follower.logRatio);
     guided.ray.tMax = Infinity;
     const Medium* medium = context_->scene.medium(guided.region);
     if (medium && medium->scatters()) --guided.flights;

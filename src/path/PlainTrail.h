@@ -4,6 +4,8 @@
 
 #include "path/GuidedPath.h"
 
+#include "transport/WalkRecord.h"
+
 #include <deque>
 
 namespace tungsten::path {
@@ -19,17 +21,11 @@ class PlainTrail {
                const Sampler& light);
 
     // What the path does, in order.
-    void fly(const PathState& start, const transport::Ahead& ahead) {
-        steps_.push_back({.start = start, .hit = ahead.hit});
-    }
+    void fly(const PathState& start, const transport::Ahead& ahead) { record_.fly(start, ahead); }
     void arrive(const PathState& at, const transport::Ahead& ahead, const transport::Flight& flight) {
-        Step& step = steps_.back();
-        step.at = at;
-        step.flight = flight;
-        step.hit = ahead.hit;
-        step.medium = flight.event == transport::Flight::Event::Collision ? ahead.medium : nullptr;
+        record_.arrive(at, ahead, flight);
     }
-    void leave(const transport::Way& way) { steps_.back().way = way; }
+    void leave(const transport::Way& way) { record_.leave(way); }
 
     [[nodiscard]] const TargetChoice& targets() const { return *targets_; }
     /// The path's point of an emitter that is a target of guided paths; null if its light gets nowhere.
@@ -53,14 +49,7 @@ class PlainTrail {
     }
 
   private:
-    struct Step {
-        PathState start; ///< where the flight begins
-        std::optional<SurfaceHit> hit{};
-        PathState at{Sampler(0, RandomStream::Camera, 0, 0)}; ///< at its end
-        transport::Flight flight{};
-        const Medium* medium = nullptr; ///< where it scatters; null on surfaces
-        std::optional<transport::Way> way{};
-    };
+    using Step = transport::WalkRecord::Step;
     struct Logs {
         float ending, openEnding; ///< of paths whose last vertex is that at the end of a step
         float light;              ///< of those that meet light there
@@ -87,7 +76,7 @@ class PlainTrail {
     /// The guided steps do what guided paths do at the vertex that ends the step, and leave it.
     void pass(Follower& follower, const Step& step);
 
-    std::vector<Step> steps_;
+    transport::WalkRecord record_;
     std::deque<std::optional<Follower>> followers_; ///< the first `used_`, of this path
     size_t used_ = 0;
     std::vector<uint32_t> slots_; ///< by emitter: one above its follower's place, 0 if it has none

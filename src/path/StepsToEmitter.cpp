@@ -8,6 +8,7 @@ namespace tungsten::path {
 
 using transport::Ahead;
 using transport::Flight;
+using transport::logOfQuotient;
 using transport::WalkVertex;
 using Event = transport::Flight::Event;
 
@@ -28,19 +29,6 @@ struct SurfaceScatterer {
                                  surface.frame.toLocal(darts::to<Vec3f>(direction)));
     }
 };
-
-/// What one of two ways to find a path never draws.
-constexpr float Least = 1e-30f;
-
-float logOf(float density) {
-    return std::log(std::max(density, Least));
-}
-
-/// Of a quotient, which does not depend on the unit of both.
-float logOf(float density, float over) {
-    constexpr float Most = 1e30f;
-    return std::log(std::clamp(std::max(density, Least) / std::max(over, Least), Least, Most));
-}
 
 } // namespace
 
@@ -183,8 +171,8 @@ Flight StepsToEmitter::flight(PathState& path, const Ahead& ahead) {
                         : Flight{Event::Surface, ahead.reach(),
                                  ahead.medium ? ahead.medium->transmittance(ahead.reach()) : Rgb(1.0f)};
     if (hasDensities() && flight.event != Event::Nothing) {
-        const FlightSample plain = plainly(flight);
-        path.logRatio = start_.logRatio + logOf(flight.pdf, plain.pdf);
+        const FlightSample plain = this->plain().like(flight);
+        path.logRatio = start_.logRatio + logOfQuotient(flight.pdf, plain.pdf);
         path.channels = plain.channels;
     }
     return flight;
@@ -258,16 +246,6 @@ float StepsToEmitter::surfaceProbability() const {
     return passage_ == Passage::Untimed ? untimed(start_.ray, *medium_, reach_).surface : 1.0f;
 }
 
-float StepsToEmitter::plainSurfaceProbability() const {
-    return medium_ ? probabilityFlightExits(*medium_, reach_, start_.channels) : 1.0f;
-}
-
-FlightSample StepsToEmitter::plainly(const Flight& flight) const {
-    if (!medium_) return {flight.distance, true, Rgb(1.0f), 1.0f, start_.channels};
-    return flight.event == Event::Collision ? flightThatCollides(*medium_, flight.distance, start_.channels)
-                                            : flightThatExits(*medium_, flight.distance, start_.channels);
-}
-
 float StepsToEmitter::controlVertexDensity(float distance) const {
     const darts::Guide& guide = guideOf(start_.region);
     if (!guide.settings().elliptical || guided_->sensor.gate.delta) return 0.0f;
@@ -298,23 +276,23 @@ ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, fl
 }
 
 auto StepsToEmitter::inMedium(float distance) const -> InMedium {
-    const float plain = pdfFlight(*medium_, distance, start_.channels);
+    const float plain = this->plain().pdf(distance);
     InMedium ending{vertexDensity(distance), controlVertexDensity(distance)};
     // Own vertices that guided paths do not go on from do not connect either.
     if ((passage_ == Passage::Medium && residual().way == darts::Way::Through && guided_->bound.oneSpeed()) ||
-        guided_->balance.endsGuided(start_.logRatio + logOf(ending.own, plain)))
+        guided_->balance.endsGuided(start_.logRatio + logOfQuotient(ending.own, plain)))
         ending.own = 0.0f;
-    ending.logRatio = start_.logRatio + logOf(ending.own + ending.control, plain);
+    ending.logRatio = start_.logRatio + logOfQuotient(ending.own + ending.control, plain);
     return ending;
 }
 
 float StepsToEmitter::logRatioOnSurface() const {
-    return start_.logRatio - logOf(plainSurfaceProbability());
+    return start_.logRatio - logOfQuotient(plain().surface());
 }
 
 float StepsToEmitter::logRatioThere(const Flight& flight) const {
     const float own = flight.event == Event::Collision ? vertexDensity(flight.distance) : surfaceProbability();
-    return start_.logRatio + logOf(own, flight.pdf);
+    return start_.logRatio + logOfQuotient(own, flight.pdf);
 }
 
 // ---- Roulette, splitting, directions
@@ -346,7 +324,7 @@ float StepsToEmitter::expectedCopies(const PathState& path, const WalkVertex& ve
 
 bool StepsToEmitter::survives(PathState& path) {
     if (hasDensities() && guided_->settings.russianRoulette)
-        path.logRatio -= logOf(transport::survivalByThroughput(
+        path.logRatio -= logOfQuotient(transport::survivalByThroughput(
             path.throughput * std::exp(std::min(path.logRatio, 80.0f)), path.interactions));
     return true;
 }
@@ -380,7 +358,7 @@ transport::Way StepsToEmitter::leaveMedium(PathState& path, const WalkVertex& ve
     const darts::DirectionSample sample = draw(path, guide, darts::PhaseScatterer{phase, vertex.before});
     const Vec3f direction = darts::to<Vec3f>(sample.direction);
     const float own = phase.eval(vertex.before, direction);
-    if (hasDensities()) path.logRatio -= logOf(own * sample.inversePdf);
+    if (hasDensities()) path.logRatio -= logOfQuotient(own * sample.inversePdf);
     return {Ray{vertex.position, direction}, path.region, Rgb(own * sample.inversePdf), own};
 }
 
@@ -390,7 +368,7 @@ transport::Way StepsToEmitter::leaveGuided(PathState& path, const WalkVertex& ve
     const Ray ray = vertex.surface->hit.leave(darts::to<Vec3f>(sample.direction));
     const transport::Vertex here = vertex.connectible(context_.scene, TransportMode::Radiance);
     const float own = here.pdf(ray.direction);
-    if (hasDensities()) path.logRatio -= logOf(own * sample.inversePdf);
+    if (hasDensities()) path.logRatio -= logOfQuotient(own * sample.inversePdf);
     return {ray, path.region, here.scattering(ray.direction) * sample.inversePdf, own, lobe::DiffuseReflection};
 }
 
@@ -421,12 +399,12 @@ void StepsToEmitter::leaveAlong(PathState& path, const WalkVertex& vertex, const
         return guide.pdfDirection(residual(), {}, darts::vec3(way.ray.direction), scatterer, darts::NoView{});
     };
     if (vertex.surface) {
-        path.logRatio += logOf(pdf(*surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random})) - logOf(way.pdf);
+        path.logRatio += logOfQuotient(pdf(*surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random}), way.pdf);
         return;
     }
     const darts::Guide& guide = guideOf(path.region);
     if (!residual().alive() || guide.settings().direction == darts::Direction::Phase) return;
-    path.logRatio += logOf(pdf(guide, darts::PhaseScatterer{vertex.medium->phase, vertex.before})) - logOf(way.pdf);
+    path.logRatio += logOfQuotient(pdf(guide, darts::PhaseScatterer{vertex.medium->phase, vertex.before}), way.pdf);
 }
 
 } // namespace tungsten::path

@@ -6,12 +6,12 @@
 #include "path/PathGuides.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
-#include "path/StrategyBalance.h"
 #include "path/techniques/ShellChord.h"
 
-#include "transport/Balance.h"
 #include "transport/GuidedSteps.h"
+#include "transport/PlainFlight.h"
 #include "transport/Sensor.h"
+#include "transport/StrategyBalance.h"
 #include "transport/Walk.h"
 
 namespace tungsten::path {
@@ -32,7 +32,7 @@ struct GuidedContext {
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite
     bool forwardBoundaries;            ///< connections must look through index-matched surfaces
     const PassWatch& watch;
-    StrategyBalance balance{}; ///< of guided paths beside plain ones
+    transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
 };
 
 class StepsToEmitter : public transport::GuidedSteps {
@@ -61,12 +61,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     void leaveAlong(PathState& path, const transport::WalkVertex& vertex, const transport::Way& way);
 
     // Of the flight at hand, and of paths that end on it: logarithms of densities, guided over plain.
-    /// Of paths whose last vertex is in the medium, at one distance: per length, of own vertices that connect and of
-    /// control vertices that are traced; and the logarithm.
-    struct InMedium {
-        float own = 0.0f, control = 0.0f, logRatio = 0.0f;
-        [[nodiscard]] float shareOfControl() const { return transport::balance(control, own); }
-    };
+    /// Own vertices that connect, control vertices that are traced.
     [[nodiscard]] InMedium inMedium(float distance) const;
     /// Of one whose last vertex is the surface ahead, which guided paths see whether or not they go there.
     [[nodiscard]] float logRatioOnSurface() const;
@@ -139,9 +134,8 @@ class StepsToEmitter : public transport::GuidedSteps {
     };
     [[nodiscard]] Untimed untimed(const Ray& ray, const Medium& medium, float distance) const;
     [[nodiscard]] float surfaceProbability() const;
-    [[nodiscard]] float plainSurfaceProbability() const;
-    /// The flight as plain paths have it.
-    [[nodiscard]] FlightSample plainly(const transport::Flight& flight) const;
+    /// The flight at hand as plain paths have it.
+    [[nodiscard]] transport::PlainFlight plain() const { return {medium_, reach_, start_.channels}; }
 
     /// What may still come from `position`, at the present time and in the present region.
     void lookAheadFrom(const PathState& path, const Vec3f& position);

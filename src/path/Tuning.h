@@ -25,14 +25,8 @@ inline constexpr float ViewSurfaceOdds = 4.0f;
 
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 
-/// Contributions, as many of one size as are worth them, by which a pilot may choose; another share than one half must
-/// be so much better; below this one only where plain paths have found as many themselves. (Without the second a pilot
-/// of 10 ms loses up to 11 times, with it 2.7.)
-inline constexpr double LeastEffective = 20.0, BetterThanHalf = 1.0 / 1.1, LeastUnjudged = 0.2;
 /// Pixels of a pilot, of four paths each, at least and at most; it ends where LeastEffective has been found ten times.
 inline constexpr size_t LeastPilotPixels = 64, MostPilotPixels = 8192;
-/// And its counted cost at most, in nanoseconds.
-inline constexpr double MostPilotCost = 1e8;
 /// What paths cost, in nanoseconds: of plain and guided ones. Rays are dearer by so much for each doubling of the
 /// number of triangles. Fitted to CPU seconds and counters of 15 scenes (statistics of renders at a plain_share of 0
 /// and 1).

@@ -54,9 +54,9 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
                   bsdfUses(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).causes(),
                   {"glossy sensor reflections"});
     if (!guidance.on) return;
-    plan.describe("bounds in time alone", boundsAlone.on, boundsAlone.reason, {"integrator.darts"});
-    if (!scene.transport.cameraUnwarped && !boundsAlone.on)
-        transport::WaysOut::plan(scene, settings.policy, false, plan);
+    plan.describe("plain light paths beside guided ones", sideBySide.on, sideBySide.reason, darts,
+                  {"plain light paths beside guided ones"});
+    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
     const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
     plan.describe("light towards bodies", bodies > 0,
                   bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +

@@ -3,6 +3,7 @@
 #include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/surface/SharedLight.h"
+#include "transport/SharePilot.h"
 
 #include "tungsten/render/EarliestArrival.h"
 
@@ -45,6 +46,24 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, const PassWatch& watch, S
     if (plan_.framesOneByOne.on) statistics.add("frames aimed at", uint64_t(photonPass_->guidance()->frames().frames));
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
+    if (plan_.sideBySide.on) chooseShare(watch, statistics);
+}
+
+void PhotonIntegrator::chooseShare(const PassWatch& watch, Statistics& statistics) {
+    const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
+    const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(0));
+    photonPass_->setGate(sensor.gate);
+    std::optional<SensorRecord> seen;
+    std::unique_ptr<SurfaceConnections> connections;
+    if (plan_.connections.on) {
+        Statistics ignored;
+        seen = record(pass, 0, ignored);
+        connections = std::make_unique<SurfaceConnections>(
+            *scene_, sensor, *seen, pass, Spread::of(settings_.gatherRadius, 1.0f), forwardBoundaries_);
+    }
+    photonPass_->chooseShare(watch, connections.get(), seen ? &*seen : nullptr, statistics);
+    // Folded rays take long beside plain light paths.
+    if (plan_.folds && photonPass_->plainAlone()) plan_.cameraPaths = 1;
 }
 
 double PhotonIntegrator::memoryBytes() const {

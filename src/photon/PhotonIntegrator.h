@@ -25,6 +25,8 @@ class PhotonIntegrator : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
+    /// Of plain and guided light paths.
+    void chooseShare(const PassWatch& watch, Statistics& statistics);
     /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that
     /// shared them would share their error, which no spread of passes tells.
     [[nodiscard]] uint32_t step(const PassInfo& pass) const;

@@ -92,18 +92,28 @@ Choice framesOneByOneOf(const Given& given, bool exact) {
     return {on, on ? "each light path aims at one frame" : "light paths aim at the whole sequence as one gate"};
 }
 
-Choice boundsAloneOf(const Given& given, const PhotonPlan& plan) {
-    const bool on = plan.guidance.on && given.policy().followsBodies() && !given.facts.surfaceScattering &&
-                    !given.delta() && !given.unwarped() && transport::gateInBodies(given.scene) > tuning::WidestGate;
-    return {on, on ? "a gate so wide that most light which leaves the bodies is in time"
-                   : "only for long gates over bodies that are seen and lit from outside, without surfaces"};
+Choice sideBySideOf(const Given& given, const PhotonPlan& plan) {
+    if (!plan.guidance.on) return {false, plan.guidance.reason};
+    if (given.policy().plainShare == 0.0f) return {false, "plain_share is 0: guided light paths alone"};
+    if (plan.framesOneByOne.on) return {false, "frames one by one: guided light paths alone"};
+    if (given.policy().directView == transport::DirectView::On) return {false, "direct_view: control vertices alone"};
+    if (plan.meetsDeltaGate) return {false, "delta gate: control vertices lie on it, where no plain photon arrives"};
+    const auto hasDensities = [&](const Medium& medium) {
+        return !medium.scatters() ||
+               given.policy()
+                   .sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase)
+                   .hasDensities();
+    };
+    if (!std::ranges::all_of(given.scene.media, hasDensities))
+        return {false, "the preset or a switch draws without a known density: guided light paths alone"};
+    return {true, "plain and guided light paths, weighed by how densely both leave each record"};
 }
 
 Choice ordinaryPhotonsOf(const Given& given, const PhotonPlan& plan) {
     if (!given.atVertices()) return {false, "no points are stored: there are no control vertices"};
+    if (plan.sideBySide.on) return {true, "they share with plain light paths, too"};
     if (!plan.directView)
         return {true, "mirrors, refraction or different speeds: control vertices alone are not complete"};
-    if (plan.boundsAlone.on) return {true, "bounds in time alone: there are no control vertices"};
     if (plan.meetsDeltaGate) return {false, "delta gate: none of them arrives on it"};
     if (plan.drawsByResponse) return {false, "control vertices are drawn by the sensor's response"};
     if (given.policy().directView != transport::DirectView::Auto || given.policy().sampling.published)
@@ -169,7 +179,6 @@ uint32_t affordedCameraPaths(const Given& given) {
 
 Choice moreCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t paths) {
     if (!plan.guidance.on) return {false, plan.guidance.reason};
-    if (!plan.splats()) return {false, "nothing is splatted"};
     if (given.policy().sampling.published) return {false, "the preset has one"};
     if (plan.glossyPaths.on) return {false, "paths on from glossy surfaces take long"};
     if (!given.ofPrimitive([](const auto& p) { return p.SplatsOften; })) return {false, "slices take long to draw"};
@@ -213,7 +222,7 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
     framesOneByOne = framesOneByOneOf(given, exact);
     drawsByResponse = exact && !scene.transport.response.empty();
     meetsDeltaGate = exact && given.delta() && settings.policy.sampling.elliptical;
-    boundsAlone = boundsAloneOf(given, *this);
+    sideBySide = sideBySideOf(given, *this);
     ordinaryPhotons = ordinaryPhotonsOf(given, *this);
 }
 

@@ -23,7 +23,7 @@ struct PhotonPlan {
     Choice surfacePhotons;  ///< stored and gathered
     Choice guidance;        ///< light paths aim at the camera
     Choice framesOneByOne;  ///< each at a single frame
-    Choice boundsAlone;     ///< guided by bounds in time alone: plain flights and directions, no control vertices
+    Choice sideBySide;      ///< plain light paths beside guided ones, weighed by how densely both leave their records
     Choice ordinaryPhotons; ///< beside control vertices, by the balance heuristic
     Choice connections;     ///< guided light paths connect to visible surface points
     Choice exactCulling;    ///< what arrives outside the gate is known and not stored

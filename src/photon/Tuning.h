@@ -34,23 +34,6 @@ inline constexpr uint32_t HighlightPaths = 16;
 
 // --- Guided light paths ----------------------------------------------------------------------------------------------
 
-/// Gates above are wide, in mean free paths: most connections are not close to the straight way, so that the direction
-/// need not know their length, and a length drawn after the direction knows where the surface is. MSE x CPU of
-/// sequences of 3.5 and 7 mean free paths in a cube of fog: 1.64 to 0.60, 0.17 to 0.08. Bench: study bodies
-inline constexpr double WideGate = 2.0;
-
-/// Gates above, in mean free paths of the densest body seen and lit from outside, let most light that leaves the bodies
-/// pass: guided steps cost more than they gain. Variance x CPU of points with bounds in time alone over guided ones:
-/// dense cube 60, gates of 6, 18 and 60 mean free paths 8.8, 3.7 and 1.07; layered tissue, 5, 20 and 80: 1.0, 0.8, 0.5.
-/// Bench: study bodies
-inline constexpr float WidestGate = 50.0f;
-
-/// Ordinary photons share with control vertices where their density is at least this part of that of the vertices.
-/// Variance x CPU of points, cornell-fog, gates of 11, 2.5 and 0.3: 0.043, 0.016 and 0.063 without sharing; 0.014,
-/// 0.011 and 0.046 at 0; 0.015, 0.012 and 0.062 at 0.3; a pulse in bare fog loses 16 % at 0 and 5 % at 0.3. Bench:
-/// study gate-width
-inline constexpr float LeastPhotons = 0.3f;
-
 /// Of directions into the camera's view, the part that is uniform over the sphere: light behind the image's edge keeps
 /// a density. Bench: infinite_medium
 inline constexpr float SphereShare = 0.1f;
@@ -145,6 +128,24 @@ inline constexpr float EvenInFrames = 0.1f;
 /// volumetric-caustic: variance / mean^2 x CPU seconds 9.4 with a ray for each slice, 0.74 by doses. A
 /// sequence's frames share them: 450 for 50 frames of fogged-box, 0.69 to 1.0. Bench: study liu-primitives
 inline constexpr float DosesPerRay = 64.0f;
+
+// --- Plain and guided light paths side by side -----------------------------------------------------------------------
+
+/// Paths of a pilot, at least and at most.
+inline constexpr uint64_t LeastSharePaths = 256, MostSharePaths = 1 << 16;
+/// What light paths cost, in nanoseconds, of plain and guided ones.
+struct Rates {
+    double path, vertex, ray, controlVertex;
+};
+inline constexpr Rates PlainRates{115.0, 120.0, 100.0, 0.0}, GuidedRates{50.0, 200.0, 200.0, 500.0};
+/// And a ray to a surface point; a record, with what is built and splatted of it; to keep a vertex of a plain path, and
+/// the densities of a flight; a path of a pixel in a pass. All fitted to CPU seconds and counters of 37 scenes
+/// (statistics of renders at a plain_share of 0, 0.5 and 1).
+inline constexpr double ConnectionCost = 200.0, PointCost = 400.0, BeamCost = 1300.0, SliceCost = 3000.0;
+/// How many times as often as the pilot's paths those of a render may connect to surfaces: as their part of the
+/// variance and of the cost asks for.
+inline constexpr double LeastEffort = 1.0 / 16.0, MostEffort = 4.0;
+inline constexpr double TrailCost = 60.0, DensityCost = 650.0, PixelCost = 400.0;
 
 // --- Connections to surfaces -----------------------------------------------------------------------------------------
 

@@ -122,24 +122,6 @@ std::vector<Body> bodiesOf(const Scene& scene) {
     return bodies;
 }
 
-float gateInBodies(const Scene& scene) {
-    const std::vector<Body> bodies = bodiesOf(scene);
-    const auto scatters = [&](int medium) { return medium >= 0 && bodies[size_t(medium)].scatters(); };
-    if (scatters(scene.cameraRegion.medium) ||
-        std::any_of(scene.emitters.begin(), scene.emitters.end(),
-                    [&](const Emitter& emitter) { return scatters(emitter.medium); }))
-        return 0.0f;
-    const TimeGate& gate = scene.transport.gate;
-    float longest = 0.0f;
-    for (const Primitive& primitive : scene.primitives)
-        for (const Region& region : {primitive.inside, primitive.outside}) {
-            if (!primitive.boundsMedium || region.medium < 0 || !bodies[size_t(region.medium)].scatters()) continue;
-            const float length = float(gate.end() - gate.start) * region.speed;
-            longest = std::max(longest, length * meanComponent(scene.media[size_t(region.medium)].sigmaT()));
-        }
-    return longest;
-}
-
 std::vector<BodySphere> spheresAboutBodies(const Scene& scene) {
     const auto scatters = [&](int medium) { return medium >= 0 && scene.media[size_t(medium)].scatters(); };
     std::vector<BodySphere> spheres;

@@ -60,10 +60,6 @@ struct BodySphere {
 };
 std::vector<BodySphere> spheresAboutBodies(const Scene& scene);
 
-/// The length of the gate, all its frames, in mean free paths of the body where these are the most. 0 unless camera and
-/// lights are all outside what scatters.
-float gateInBodies(const Scene& scene);
-
 /// All that scatters is sealed by walls that refract, without an emitter inside: no connection from there is complete.
 bool isSealed(const Scene& scene);
 

@@ -9,6 +9,7 @@
 // A straight way may cross several regions: the stages up to the direction are then passed once, the flight in each.
 // Random numbers are the walk's own, which says how they are drawn.
 
+#include "transport/Balance.h"
 #include "transport/WaysOut.h"
 
 #include "darts/Guide.h"
@@ -26,6 +27,12 @@ class GuidedSteps {
         darts::ControlVertex vertex; ///< at a distance from the ray's origin
         double length = 0.0;         ///< of the whole connection
         double departure = 0.0;      ///< the walk's time where the connection starts
+    };
+    /// Of paths whose last vertex is in the medium, at one distance: per length, of own vertices and of control
+    /// vertices; and the logarithm of both over the density of plain paths.
+    struct InMedium {
+        float own = 0.0f, control = 0.0f, logRatio = 0.0f;
+        [[nodiscard]] float shareOfControl() const { return transport::balance(control, own); }
     };
 
     // Look. Whatever the walk may find besides its target may arrive later by `surplus`, a length.

@@ -14,7 +14,7 @@ enum class DirectView { Auto, On, Off };
 struct Policy {
     darts::Scheme sampling;
     DirectView directView = DirectView::Auto; ///< of photon maps
-    std::optional<float> plainShare;          ///< of camera paths' time; none: by a pilot
+    std::optional<float> plainShare;          ///< of the time; none: by a pilot
     std::optional<bool> surfaceConnections, glossySensorPaths, singleFrames, bodies;
 
     [[nodiscard]] bool guides() const { return sampling.on; }
@@ -50,7 +50,8 @@ Policy readPolicy(const Block& block) {
                                 {{"auto", DirectView::Auto}, {"on", DirectView::On}, {"off", DirectView::Off}}, "auto")
                                 .value_or(DirectView::Auto);
         policy.plainShare = darts::switches::fraction(
-            object, "plain_share", "camera paths: the share of time of plain ones beside guided ones; by a pilot", 1.0);
+            object, "plain_share",
+            "the share of time of plain paths beside guided ones, of the camera or of lights; by a pilot", 1.0);
         policy.surfaceConnections = flag(object, "surface_connections",
                                          "light paths connect to visible surfaces, camera paths to lit ones", WithBest);
         policy.glossySensorPaths = flag(object, "glossy_sensor_paths",

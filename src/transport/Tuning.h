@@ -44,4 +44,13 @@ inline constexpr float LeaveOdds = 0.1f;
 /// it deep places would be rare, and bright.
 inline constexpr float Elsewhere = 0.02f;
 
+// --- Plain and guided paths side by side -----------------------------------------------------------------------------
+
+/// Contributions of a pilot of plain and guided paths, as many of one size as are worth them, by which a pilot may
+/// choose; another share than one half must be so much better; below this one only where plain paths have found as many
+/// themselves. (Without the second a pilot of 10 ms loses up to 11 times, with it 2.7.)
+inline constexpr double LeastEffective = 20.0, BetterThanHalf = 1.0 / 1.1, LeastUnjudged = 0.2;
+/// Its counted cost at most, in nanoseconds.
+inline constexpr double MostPilotCost = 1e8;
+
 } // namespace tungsten::transport::tuning

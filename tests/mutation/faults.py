@@ -176,7 +176,7 @@ FAULTS = [
      [("darts_tests", "DistancesOut.WeightsOfCameraPathsHardlyVaryDeepInside")]),  # most distances in thick media are drawn in vain
     ("src/darts/LogLinearDistance.cpp", "i > 0 && masses_[size_t(i)] < LeastMass * sum_", "false",
      [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # rounding leads to distances of enormous weight
-    ("src/darts/LogLinearDistance.cpp", "Batch(place.reachable * sum)", "sum",
+    ("src/darts/LogLinearDistance.cpp", "Batch(place.reachable * part * sum)", "Batch(sum)",
      [("darts_tests", "LogLinearDistance.NodesKnowThePartOfTheGateStillInReach")]),  # distances forget the part of the gate still in reach: more variance
     ("src/darts/DirectionStrata.h", "weights_[size_t(Strata + stratum(", "weights_[size_t(stratum(",
      [("darts_tests", "DirectionStrata.SamplesFollowTheDensityWhichIntegratesToOne")]),  # the guide's strata have the weights of the phase function's
@@ -318,17 +318,17 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
     ("src/path/PathVisitor.cpp", "weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lamps that are met and connected to count twice
-    ("src/path/StrategyBalance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
+    ("src/transport/StrategyBalance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # plain paths bring all of what both find
-    ("src/path/StrategyBalance.h", "return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);", "return 1.0f / guided;",
+    ("src/transport/StrategyBalance.h", "return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);", "return 1.0f / guided;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # guided paths bring all of what both find
     ("src/path/StepsToEmitter.cpp", "if (hasDensities()) path.logRatio += std::log(survival * float(copies));", ";",
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
-    ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOf(flight.pdf, plain.pdf);", "path.logRatio = start_.logRatio + logOf(2.0f * flight.pdf, plain.pdf);",
+    ("src/path/StepsToEmitter.cpp", "path.logRatio = start_.logRatio + logOfQuotient(flight.pdf, plain.pdf);", "path.logRatio = start_.logRatio + logOfQuotient(2.0f * flight.pdf, plain.pdf);",
      [("path_tests", "PlainTrail.*")]),  # guided flights are twice as dense as they are
     ("src/path/PlainTrail.cpp", "guided.logRatio += std::log(steps.expectedCopies(guided, vertex));", ";",
      [("path_tests", "PlainTrail.*")]),  # plain paths' densities forget roulette and splits
-    ("src/path/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
+    ("src/transport/SharePilot.cpp", "squaredMeans += half[0] * half[1] * double(PathsOfPixel);", ";",
      [("path_tests", "SharePilot.*")]),  # the pilot takes second moments for variances
     ("src/darts/ControlVertex.h", "return Real(0.5) * (lengths.pdf(offset) + a /", "return (lengths.pdf(offset) + a /",
      [("darts_tests", "LengthAlong.SamplesFollowTheDensity")]),  # connections along a way are twice as dense as they are
@@ -338,9 +338,9 @@ FAULTS = [
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # plain paths that meet a lamp take it for that of all guided ones
     ("src/path/PathTarget.h", "index >= 0 ? choice.ofVertex * pdfDirect", "index >= 0 ? pdfDirect",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # guided paths share lamps that are met otherwise than plain ones
-    ("src/path/SharePilot.cpp", "contribution.logRatio.plainToEstimate", "contribution.logRatio.weighed",
+    ("src/transport/SharePilot.cpp", "contribution.logRatio.plainToEstimate", "contribution.logRatio.weighed",
      [("path_tests", "SharePilot.JudgesPlainPathsByWhatTheyWouldBring")]),  # random estimates of light paths are taken for what plain ones bring
-    ("src/path/SharePilot.cpp", "const auto share = float(ofPlain / (ofPlain + ofGuided));", "const auto share = float(plainTime);",
+    ("src/transport/SharePilot.cpp", "const auto share = float(ofPlain / (ofPlain + ofGuided));", "const auto share = float(plainTime);",
      [("path_tests", "PathCosts.*")]),  # shares of time are taken for shares of paths
     ("tungsten/geometry/SceneGeometry.h", "onward.tMax = float(length);", "onward.tMax = ray.tMax - t;",
      [("transport_tests", "Visibility.*")]),  # lamps hide themselves behind boundaries
@@ -488,11 +488,22 @@ FAULTS = [
     ("src/photon/light/PhotonPass.cpp", "RandomStream::Photon, pass.index, path);", "RandomStream::Photon, 0u, path);",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/planesA2UnwarpedBox")]),  # all passes trace the same photons: more passes bring nothing
     ("src/photon/light/StepsToCamera.cpp", "path.throughput = path.throughput / survival;", "path.throughput = path.throughput * survival;",
-     [("photon_tests", "PhotonMapsOfBodies.HaveBoundsInTimeAloneUnderWideGates")]),  # roulette of guided photons loses light
+     [("photon_tests", "PhotonMapsOfBodies.AgreeWithPathsUnderNarrowAndWideGates")]),  # roulette of guided photons loses light
     ("src/photon/light/DepositVisitor.cpp", "path.throughput = Rgb(frames / chosen.probability);", "path.throughput = Rgb(1.0f / chosen.probability);",
      [("photon_tests", "GuidedFrames.MayBeShort")]),  # sequences by guided photons too dark by the number of frames
-    ("src/photon/light/DepositVisitor.cpp", "power = power * (1.0f - share);", ";",
-     [("photon_tests", "Delays.OfLightOnSurfacesAgree")]),  # photons beside control vertices count twice
+    ("src/photon/light/DepositVisitor.cpp", "return {(1.0f - ending.shareOfControl()) * weigh(ending.logRatio).weight, ending.logRatio};",
+     "return {weigh(ending.logRatio).weight, ending.logRatio};",
+     [("photon_tests", "Scenes/BalancedPhotons.*/PointsLampBeside")]),  # ordinary photons beside plain paths count as if there were no control vertices
+    ("src/photon/light/StepsToCamera.cpp", "path.logRatio = start_.logRatio + logOfQuotient(flight.pdf, plain.pdf);", "path.logRatio = start_.logRatio + logOfQuotient(2.0f * flight.pdf, plain.pdf);",
+     [("photon_tests", "PhotonTrail.*")]),  # light paths' flights count as twice as dense
+    ("src/photon/light/StepsToCamera.cpp", "if (hasDensities()) path.logRatio += std::log(survival);", ";",
+     [("photon_tests", "PhotonTrail.*")]),  # densities of guided light paths without roulette
+    ("src/photon/light/StepsToCamera.cpp", "if (hasDensities()) path.logRatio -= logOfQuotient(own * inversePdf);", ";",
+     [("photon_tests", "PhotonTrail.*")]),  # and as if lamps shone as they like
+    ("src/photon/light/DepositVisitor.h", "return weighs() ? weigh(trail_ ? trail_->onFlight() : path.logRatio) : Weighed{};", "return Weighed{};",
+     [("photon_tests", "Scenes/BalancedPhotons.*/BeamsLampBeside")]),  # beams of both strategies count in full
+    ("src/photon/light/StepsToCamera.cpp", "path.random.at(0, Draw::EmissionDirection);", "path.random.at(0, Draw::Direction);",
+     [("photon_tests", "GuidedEmission.DirectionsDoNotDependOnDelays")]),  # directions of emission and delays by the same numbers
     ("src/photon/light/DepositVisitor.cpp", "uint16_t(path.interactions + 1)", "uint16_t(path.interactions)",
      [("photon_tests", "PointsAtDeltaGates.HaveNoTemporalBias")]),  # guided photons: max_bounces shows one order more
     ("src/photon/light/EmissionDirections.h", "share_ * towards / float(cones_.size());", "share_ * towards;",

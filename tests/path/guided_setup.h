@@ -5,8 +5,8 @@
 #include "path/PathPlan.h"
 #include "path/PathVisitor.h"
 #include "path/PlainTrail.h"
-#include "path/SharePilot.h"
 #include "path/techniques/LightPaths.h"
+#include "transport/SharePilot.h"
 
 #include "support/SceneFile.h"
 

@@ -14,8 +14,8 @@
 namespace tungsten::photon {
 namespace {
 
-using test::BestPreset;
 using test::expectSameBlocks;
+using test::GuidedAlone;
 using test::Overrides;
 using test::PublishedPreset;
 using test::renderBeams;
@@ -40,9 +40,9 @@ class GuidedMaps : public testing::TestWithParam<MapCase> {
 
 INSTANTIATE_TEST_SUITE_P(Presets, GuidedMaps,
                          testing::Values(MapCase{"PublishedPoints", PublishedPreset, false},
-                                         MapCase{"BestPoints", BestPreset, false},
+                                         MapCase{"BestPoints", GuidedAlone, false},
                                          MapCase{"PublishedBeams", PublishedPreset, true},
-                                         MapCase{"BestBeams", BestPreset, true}),
+                                         MapCase{"BestBeams", GuidedAlone, true}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST_P(GuidedMaps, SingleScatteringInAFoggedBox) {
@@ -57,8 +57,8 @@ TEST_P(GuidedMaps, SingleScatteringInAFoggedBox) {
 /// Two pulses, 2 apart in time; fog, floor, a boundary between them. Frames see one pulse or both.
 TEST_P(GuidedMaps, AgreeWithPathsInEveryFrame) {
     const std::string json = test::fogOverFloor(R"("start_time": 6, "transient_time_width": 2, "frame_num": 3)");
-    const auto photons = GetParam().darts == BestPreset ? guided(json, {{setting("photon_count", 12000)}, 20, 1})
-                                                        : guided(json, {{setting("photon_count", 24000)}, 40, 1});
+    const auto photons = GetParam().darts == GuidedAlone ? guided(json, {{setting("photon_count", 12000)}, 20, 1})
+                                                         : guided(json, {{setting("photon_count", 24000)}, 40, 1});
     const auto paths = renderPaths(json, {{}, 20, 64});
     for (int frame = 0; frame < 3; ++frame) expectSameBlocks(*photons, *paths, frame, 0.05, 0.25);
     EXPECT_EQ(photons->statistics.counter("non-finite samples"), 0u);
@@ -120,9 +120,9 @@ TEST(GuidedFrames, NeedNotDivideThePaths) {
 /// Several camera samples of one pass: surfaces are connected and photons splatted on each sample's rays.
 TEST_P(GuidedMaps, AgreeWithPathsAtSeveralSamplesAPass) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 9, "transient_time_width": 2)");
-    const uint32_t passes = GetParam().darts == BestPreset ? 16 : 40;
+    const uint32_t passes = GetParam().darts == GuidedAlone ? 16 : 40;
     const auto photons = guided(json, {{setting("photon_count", 12000)}, passes, 3});
-    if (GetParam().darts == BestPreset) {
+    if (GetParam().darts == GuidedAlone) {
         EXPECT_GT(photons->statistics.counter("surface connections"), 10000u);
     }
     expectSameBlocks(*photons, *renderPaths(json, {{}, 20, 64}), 0, 0.05, 0.25);
@@ -147,7 +147,7 @@ TEST(CameraPaths, SeeBothSidesOfAnEdgeInOnePass) {
                        "transient_time_width": 2}})";
     constexpr uint32_t Passes = 32;
     const test::RenderOptions options{
-        {BestPreset, setting("photon_count", 3000), setting("volume_gather_radius", 0.03)}, Passes, 1};
+        {GuidedAlone, setting("photon_count", 3000), setting("volume_gather_radius", 0.03)}, Passes, 1};
     const double paths = renderPaths(json, {{}, 64, 4096})->mean();
     for (const auto& rendered : {renderBeams(json, options), renderPhotons(json, options)}) {
         const double mean = rendered->mean(), error = rendered->pixelError();
@@ -181,7 +181,7 @@ TEST(GuidedPoints, AreNotCulledByARadiusThatIsNotTheirs) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 7, "transient_time_width": 1)");
     const auto mean = [&](const std::string& radius) {
         return renderPhotons(
-                   json, {{BestPreset, "integrator.fixed_volume_radius=false", "integrator.include_surfaces=false",
+                   json, {{GuidedAlone, "integrator.fixed_volume_radius=false", "integrator.include_surfaces=false",
                            "camera.fov=3", "integrator.volume_gather_radius=" + radius, setting("photon_count", 4000)},
                           4,
                           1})

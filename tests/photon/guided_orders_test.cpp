@@ -19,20 +19,20 @@ struct Guiding {
     Overrides overrides;
 };
 const Guiding Plain{"Plain", {}}, Published{"Published", {"integrator.darts=published"}},
-    Best{"Best", {"integrator.darts=best"}},
+    Best{"Best", {test::GuidedAlone}}, BesidePlain{"BesidePlain", {R"(integrator.darts={"plain_share": 0.5})"}},
     GuidingOnly{"GuidingOnly", {"media.fog.type=guided_homo", "integrator.enable_guiding=true"}},
     EllipticalOnly{"EllipticalOnly", {"integrator.enable_elliptical=true"}},
     FlagsOfThePaper{
         "Flags", {"media.fog.type=guided_homo", "integrator.enable_guiding=true", "integrator.enable_elliptical=true"}},
-    Phase{"Phase", {R"(integrator.darts={"direction": "phase"})"}},
+    Phase{"Phase", {R"(integrator.darts={"direction": "phase", "plain_share": 0})"}},
     Eda{"Eda", {R"(integrator.darts={"direction": "eda"})"}},
-    Connection{"Connection", {R"(integrator.darts={"direction": "connection"})"}},
+    Connection{"Connection", {R"(integrator.darts={"direction": "connection", "plain_share": 0})"}},
     Ris{"Ris", {R"(integrator.darts={"preset": "published", "direction": "ris", "length_first": true})"}},
-    IndirectView{"IndirectView", {R"(integrator.darts={"direct_view": "off"})"}},
+    IndirectView{"IndirectView", {R"(integrator.darts={"direct_view": "off", "plain_share": 0})"}},
     PublishedIndirectView{"PublishedIndirectView",
                           {R"(integrator.darts={"preset": "published", "direct_view": "off"})"}},
-    DirectView{"DirectView", {R"(integrator.darts={"direct_view": "on"})"}},
-    NoConnections{"NoConnections", {R"(integrator.darts={"surface_connections": false})"}},
+    DirectView{"DirectView", {R"(integrator.darts={"direct_view": "on", "plain_share": 0})"}},
+    NoConnections{"NoConnections", {R"(integrator.darts={"surface_connections": false, "plain_share": 0})"}},
     NotElliptical{"NotElliptical", {"integrator.enable_elliptical=false", "integrator.darts=best"}};
 
 struct OrderCase {
@@ -53,7 +53,8 @@ TEST_P(GuidedOrders, MatchVerifiedValues) {
                                  {"A2WarpedBoxPublishedIndirectView", 1},
                                  {"A2WarpedDeltaBest", 3},
                                  {"A3WarpedDeltaBestBeams", 3},
-                                 {"A1UnwarpedDeltaPlain", 8}};
+                                 {"A1UnwarpedDeltaPlain", 8},
+                                 {"A3WarpedDeltaPublished", 2}};
     const OrderCase& c = GetParam();
     Overrides overrides = test::gateOf(c.value);
     overrides.push_back(setting("volume_gather_radius", 0.1));
@@ -89,14 +90,17 @@ INSTANTIATE_TEST_SUITE_P(PublishedPreset, GuidedOrders,
                                          OrderCase{C2, Published, false, 50}, OrderCase{A3, Published, true},
                                          OrderCase{C2, Published, true}, OrderCase{A2UnwarpedDelta, Published, true}),
                          guidedOrderName);
-INSTANTIATE_TEST_SUITE_P(BestPreset, GuidedOrders,
-                         testing::Values(OrderCase{A1Unwarped, Best}, OrderCase{A2, Best}, OrderCase{A3Unwarped, Best},
-                                         OrderCase{B2Unwarped, Best, false, 60}, OrderCase{B3, Best, false, 60},
-                                         OrderCase{C2Unwarped, Best, false, 60}, OrderCase{C3, Best},
-                                         OrderCase{A2Unwarped, Best, true}, OrderCase{A3, Best, true},
-                                         OrderCase{C2, Best, true}, OrderCase{A1UnwarpedDelta, Best, true, 60},
-                                         OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true}),
-                         guidedOrderName);
+INSTANTIATE_TEST_SUITE_P(
+    BestPreset, GuidedOrders,
+    testing::Values(OrderCase{A1Unwarped, Best}, OrderCase{A2, Best}, OrderCase{A3Unwarped, Best},
+                    OrderCase{B2Unwarped, Best, false, 60}, OrderCase{B3, Best, false, 60},
+                    OrderCase{C2Unwarped, Best, false, 60}, OrderCase{C3, Best}, OrderCase{A2Unwarped, Best, true},
+                    OrderCase{A3, Best, true}, OrderCase{C2, Best, true}, OrderCase{A1UnwarpedDelta, Best, true, 60},
+                    OrderCase{A3Delta, Best, true, 40}, OrderCase{C2Delta, Best, true},
+                    OrderCase{A2, BesidePlain, false, 60}, OrderCase{B2Unwarped, BesidePlain, false, 120},
+                    OrderCase{C3, BesidePlain, false, 60}, OrderCase{A2Unwarped, BesidePlain, true, 60},
+                    OrderCase{C2, BesidePlain, true, 60}),
+    guidedOrderName);
 /// Directions are drawn before anything knows of points or beams.
 INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
                          testing::Values(OrderCase{A2, GuidingOnly, false, 150}, OrderCase{A2, EllipticalOnly},
@@ -142,7 +146,8 @@ TEST(GuidedSwitches, WithoutAnObjectHaveNoEffect) {
     const double best = mean(Best);
     EXPECT_GT(best, 0.0);
     // But for sums in another order: photons that are gathered and photons that are splatted.
-    for (const Guiding& same : {FlagsOfThePaper, Connection, IndirectView, NoConnections})
+    EXPECT_EQ(mean(FlagsOfThePaper), mean({"Default", {test::BestPreset}}));
+    for (const Guiding& same : {Connection, IndirectView, NoConnections})
         EXPECT_NEAR(mean(same), best, 1e-6 * best) << same.name;
     for (const Guiding& other : {Published, GuidingOnly, EllipticalOnly, Phase, Eda, Ris, DirectView})
         EXPECT_NE(mean(other), best) << other.name;

@@ -10,8 +10,8 @@
 namespace tungsten::photon {
 namespace {
 
-using test::BestPreset;
 using test::expectSameBlocks;
+using test::GuidedAlone;
 using test::Overrides;
 using test::Rendered;
 using test::renderPaths;
@@ -51,7 +51,7 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     };
     const std::string json = room(RoomGate);
     const auto paths = renderPaths(json, {change, 16, 128});
-    const auto connected = renderPhotons(json, {with(BestPreset), 24, 1});
+    const auto connected = renderPhotons(json, {with(GuidedAlone), 24, 1});
     EXPECT_GT(connected->statistics.counter("surface connections"), 10000u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);
@@ -77,7 +77,7 @@ TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
         return all;
     };
     const auto paths = renderPaths(json, {metal, 16, 160});
-    const auto followed = renderPhotons(json, {with(BestPreset), 40, 1});
+    const auto followed = renderPhotons(json, {with(GuidedAlone), 40, 1});
     expectSameBlocks(*followed, *paths, 0, 0.03, 0.1);
     const auto photons = renderPhotons(json, {with(R"(integrator.darts={"glossy_sensor_paths": false})"), 30, 1});
     expectSameBlocks(*photons, *paths, 0, 0.05, 0.3);
@@ -94,7 +94,7 @@ TEST(GlossySurfaces, KnowTheSpeedThatMatters) {
                     "transform": {"position": [0, 1.5, 3], "look_at": [0, 0, 0], "up": [0, 1, 0]}},
          "integrator": {"type": "progressive_transient_photon_map", "photon_count": 100, "max_bounces": 2, "volume_gather_radius": 0.05}})";
         return renderPhotons(
-                   json, {{BestPreset, "media.fog.speed_of_light=" + std::to_string(speed),
+                   json, {{GuidedAlone, "media.fog.speed_of_light=" + std::to_string(speed),
                            setting("transient_time_center", 5.6 / speed), setting("transient_time_width", 1.0 / speed)},
                           8,
                           1})
@@ -112,7 +112,7 @@ TEST(GlossySurfaces, ShowLightThatComesFromAMirror) {
     Overrides metal{R"(primitives.floor.bsdf={"type": "mirror", "albedo": 0.9})",
                     R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})"};
     const auto paths = renderPaths(json, {metal, 16, 160});
-    metal.push_back(BestPreset);
+    metal.push_back(GuidedAlone);
     expectSameBlocks(*renderPhotons(json, {metal, 36, 1}), *paths, 0, 0.05, 0.15);
 }
 
@@ -151,7 +151,7 @@ TEST(GlossySurfaces, CountLampsInMirrorsOnce) {
     });
     const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
         return renderPhotons(json,
-                             {{R"(integrator.darts={"preset": "best", "surface_connections": false})"}, 4, 1, seed});
+                             {{R"(integrator.darts={"plain_share": 0, "surface_connections": false})"}, 4, 1, seed});
     });
     EXPECT_NEAR(mean, expected, 4.5 * std::hypot(error, pathError) + 0.02 * expected);
     EXPECT_LT(std::hypot(error, pathError), 0.1 * expected) << "the test would not see a wrong value";
@@ -177,7 +177,7 @@ TEST(GlossySurfaces, ShowSeveralLamps) {
         return renderPaths(json, {{"integrator.darts=off"}, 4, 64, seed});
     });
     const auto [mean, error] = meanOverSeeds([&](uint64_t seed) {
-        return renderPhotons(json, {{BestPreset}, 8, 1, seed});
+        return renderPhotons(json, {{GuidedAlone}, 8, 1, seed});
     });
     EXPECT_NEAR(mean, expected, 4.5 * std::hypot(error, pathError));
     EXPECT_LT(std::hypot(error, pathError), 0.01 * expected) << "the test would not see a wrong value";
@@ -196,7 +196,7 @@ TEST(GlossySurfaces, ShowFog) {
                           "integrator.max_bounces=3",
                           "integrator.volume_gather_radius=0.1"};
     Overrides best = foggy;
-    best.push_back(BestPreset);
+    best.push_back(GuidedAlone);
     Overrides alone = foggy; // of plain paths the variance is infinite
     alone.push_back(R"(integrator.darts={"plain_share": 0})");
     const auto [expected, pathError] = meanOverSeeds([&](uint64_t seed) {
@@ -221,7 +221,7 @@ TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
         const Overrides limits{setting("min_bounces", order), setting("max_bounces", order + 1),
                                setting("photon_count", 4000)};
         Overrides guided = limits;
-        guided.push_back(BestPreset);
+        guided.push_back(GuidedAlone);
         const std::string json = room(RoomGate);
         expectSameBlocks(*renderPhotons(json, {guided, 24, 1}), *renderPaths(json, {limits, 8, 128}), 1, 0.05, 0.3);
     }
@@ -231,7 +231,7 @@ TEST(SurfaceConnections, CountInteractionsAsPathsDo) {
 TEST(SurfaceConnections, LeavePhotonsToMirrorsAlone) {
     const std::string json = room(RoomGate);
     const auto stored = [&](Overrides overrides) {
-        overrides.push_back(BestPreset);
+        overrides.push_back(GuidedAlone);
         const auto render = renderPhotons(json, {overrides, 2, 1});
         EXPECT_GT(render->statistics.counter("surface connections"), 1000u);
         return render->statistics.counter("stored surface photons");
@@ -244,7 +244,7 @@ TEST(SurfaceConnections, LeavePhotonsToMirrorsAlone) {
 TEST(SurfaceConnections, GatherTheNearestPhotonsBesideAMirror) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     const auto gathered = [&](const Overrides& settings) {
-        Overrides all{Mirror, BestPreset, setting("photon_count", 20000)};
+        Overrides all{Mirror, GuidedAlone, setting("photon_count", 20000)};
         all.insert(all.end(), settings.begin(), settings.end());
         return meanOverSeeds([&](uint64_t seed) { return renderPhotons(json, {all, 2, 1, seed}); });
     };
@@ -266,7 +266,7 @@ TEST(SurfaceConnections, KeepTheMediumsLimit) {
                                   "integrator.max_bounces=5",
                                   setting("photon_count", 4000),
                                   "media.fog.max_bounces=" + flights,
-                                  BestPreset};
+                                  GuidedAlone};
         return renderPhotons(json, {overrides, 4, 1})->mean();
     };
     EXPECT_GT(mean("2"), 0.0);

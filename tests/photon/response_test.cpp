@@ -95,12 +95,13 @@ INSTANTIATE_TEST_SUITE_P(
     Sampling, PhotonResponse,
     testing::Values(ResponseCase{"PlainPoints", {"integrator.photon_count=300000"}},
                     ResponseCase{"PublishedPoints", {"integrator.darts=published", "integrator.photon_count=30000"}},
-                    ResponseCase{"BestPoints", {"integrator.darts=best"}},
+                    ResponseCase{"BestPoints", {test::GuidedAlone}},
                     ResponseCase{"IndirectViewPoints",
-                                 {R"(integrator.darts={"direct_view": "off"})", "integrator.photon_count=40000"}},
+                                 {R"(integrator.darts={"direct_view": "off", "plain_share": 0})",
+                                  "integrator.photon_count=40000"}},
                     ResponseCase{"PlainBeams", {test::BeamMap, Narrow}},
                     ResponseCase{"PublishedBeams", {test::BeamMap, Narrow, "integrator.darts=published"}},
-                    ResponseCase{"BestBeams", {test::BeamMap, Narrow, "integrator.darts=best"}}),
+                    ResponseCase{"BestBeams", {test::BeamMap, Narrow, test::GuidedAlone}}),
     responseName);
 
 /// Fog that light must leave: control vertices by the response's density, which free flights cannot be weighed against,
@@ -127,7 +128,8 @@ TEST(PhotonResponseOfBodies, ConnectionsByResponseAndByLengthAgree) {
         }
         return Mean{sum, std::sqrt((squares - sum * sum) / (Seeds - 1))};
     };
-    const Mean byResponse = mean(R"("best")"), byLength = mean(R"({"direct_view": "off"})");
+    const Mean byResponse = mean(R"({"plain_share": 0})"),
+               byLength = mean(R"({"direct_view": "off", "plain_share": 0})");
     const double error = std::hypot(byResponse.error, byLength.error);
     EXPECT_NEAR(byResponse.value, byLength.value, 5.0 * error);
     EXPECT_GT(byLength.value, 0.0);
@@ -141,13 +143,13 @@ TEST(PhotonResponseOnSurfaces, AgreesWithPaths) {
         R"(integrator.temporal_response={"times": [6, 6.2, 6.4, 7.5, 7.7, 7.9], "values": [0, 3, 0, 0, 1, 0]})";
     const auto paths = test::renderPaths(json, {{response, "integrator.darts=best"}, 20, 32});
     const double expected = paths->mean();
-    for (const char* darts : {"off", "published", "best"}) {
+    for (const char* darts : {"off", "published", R"({"plain_share": 0})", R"({"plain_share": 0.3})"}) {
         // Passes are independent: the error of the image's mean from the spread of groups of them.
         constexpr int Groups = 8;
         double mean = 0.0, squares = 0.0;
         for (int group = 0; group < Groups; ++group) {
             const auto photons = test::renderPhotons(
-                json, {{response, std::string("integrator.darts=") + darts}, 2, 1, uint64_t(group + 1)});
+                json, {{response, std::string("integrator.darts=") + darts}, 4, 1, uint64_t(group + 1)});
             mean += photons->mean() / Groups;
             squares += photons->mean() * photons->mean() / Groups;
         }
@@ -196,7 +198,7 @@ TEST(PhotonResponseRejection, ControlVerticesHitTwoPeaksThatPlainPhotonsMiss) {
         return 1.0 - double(statistics.counter("volume deposits that may count")) /
                          double(statistics.counter("volume deposits"));
     };
-    const double plain = outside("off"), published = outside("published"), best = outside("best");
+    const double plain = outside("off"), published = outside("published"), best = outside(R"({"plain_share": 0})");
     EXPECT_GT(plain, 0.80);
     EXPECT_LT(published, 0.03);
     EXPECT_LT(best, 0.03);

@@ -24,6 +24,7 @@ PLACES = {
         "src/transport/Vertex.cpp": "the region of a connection",
         "src/transport/WaysOut.cpp": "what lies behind the boundary of a body, on a straight way",
         "src/photon/primitives/sliced/FlightChain.cpp": "the medium on the side where a surface starts a chain of flights",
+        "src/photon/light/RecordImportance.cpp": "what lies behind what lets light pass, on a straight way",
     },
     "geometry->intersect": {
         "src/transport/PlainSteps.h": STEPS,
@@ -36,12 +37,14 @@ PLACES = {
         "src/path/techniques/RefractedPilot.cpp": "its loop",
         "src/transport/WaysOut.cpp": "its loops",
         "src/photon/DefaultRadius.cpp": "its loop",
+        "src/photon/light/RecordImportance.cpp": "its loop",
     },
 }
 #: How many geometry->intersect have a loop around them, and what it does.
 IN_LOOPS = {
     "src/path/techniques/RefractedPilot.cpp": (1, "indexTowards: refractive indices along a straight line"),
     "src/transport/WaysOut.cpp": (2, "findExit, lookBeyond: the boundary of a body on a straight line, and the layers behind it"),
+    "src/photon/light/RecordImportance.cpp": (1, "wayToCamera: what a straight line passes"),
     "src/photon/DefaultRadius.cpp": (1, "depthOf: single rays, all over the image"),
 }
 

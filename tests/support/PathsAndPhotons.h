@@ -5,8 +5,9 @@
 
 namespace tungsten::test {
 
-/// Overrides: presets of guiding, and photon beams.
+/// Overrides: presets of guiding, guided light paths alone, and photon beams.
 inline const std::string PublishedPreset = "integrator.darts=published", BestPreset = "integrator.darts=best",
+                         GuidedAlone = R"(integrator.darts={"plain_share": 0})",
                          BeamMap = "integrator.volume_photon_type=beams";
 
 std::unique_ptr<Rendered> renderPathFile(const std::filesystem::path& file, const RenderOptions& options);

@@ -29,6 +29,7 @@ enum class RandomStream : uint32_t {
     DetectorLight = 14,
     // Branches of a path's stream (Sampler::branch).
     Target = 15,     ///< the point of a light that a camera path aims at
+    Strategy = 16,   ///< whether a light path is plain
     Aimed = 17,      ///< a walk that is aimed through a wall
     Record = 18,     ///< of photons, thinned and drawn by themselves
     Connection = 19, ///< from a vertex to many surfaces
@@ -38,20 +39,21 @@ enum class RandomStream : uint32_t {
 /// What a vertex of a path draws, by the place of its first number among the vertex' own. What a flight draws belongs
 /// to the vertex that it leads to; vertex 0 is where the path starts.
 enum class Draw : uint32_t {
-    Flight = 0,            ///< 1: channel and distance of a plain one
-    Direction = 1,         ///< 3: of a phase function 2, of a BSDF 2 and its lobe
-    Light = 4,             ///< 3: which, and which of its points
-    Roulette = 7,          ///< 1
-    Distance = 8,          ///< 4: of a guided flight
-    ControlVertex = 12,    ///< 1: whether it is connected
-    FlightConnection = 13, ///< 1: length of the connection for a control vertex
-    Connection = 14,       ///< 1: the same, drawn before the direction
-    LightVertex = 16,      ///< 2
-    ReflectedLight = 18,   ///< 2
-    Untimed = 20,          ///< 2: a control vertex of a flight that takes no time
-    Sensor = 22,           ///< 2: a point of the lens
-    Emission = 24,         ///< 4: position and direction
-    GuidedDirection = 32   ///< up to 32
+    Flight = 0,             ///< 1: channel and distance of a plain one
+    Direction = 1,          ///< 3: of a phase function 2, of a BSDF 2 and its lobe
+    Light = 4,              ///< 3: which, and which of its points
+    Roulette = 7,           ///< 1
+    Distance = 8,           ///< 4: of a guided flight
+    ControlVertex = 12,     ///< 1: whether it is connected
+    FlightConnection = 13,  ///< 1: length of the connection for a control vertex
+    Connection = 14,        ///< 1: the same, drawn before the direction
+    LightVertex = 16,       ///< 2
+    ReflectedLight = 18,    ///< 2
+    Untimed = 20,           ///< 2: a control vertex of a flight that takes no time
+    Sensor = 22,            ///< 2: a point of the lens
+    Emission = 24,          ///< 4: position and direction, of a light path's start
+    EmissionDirection = 26, ///< 2 of these; what it draws before them are the first ones of vertex 0
+    GuidedDirection = 32    ///< up to 32
 };
 
 /// The random numbers of one path, one after the other from any place. Copying it copies the place.

@@ -23,10 +23,10 @@ float pdfPhoton(const Medium& medium, float distance) {
     return transport::pdfFreeFlight(meanComponent(medium.sigmaT()), distance);
 }
 
-/// The part of a photon that is left to control vertices, by densities per length along the flight: the balance
-/// heuristic, and all of it where hardly any ordinary photon would get.
-float shareOfVertices(float pdfVertex, float pdfPhoton) {
-    return pdfPhoton < tuning::LeastPhotons * pdfVertex ? 1.0f : transport::balance(pdfVertex, pdfPhoton);
+StepRules rulesOf(const PhotonContext& context) {
+    const bool storesVertices =
+        context.storeVolume && std::visit([](const auto& p) { return p.AtVertices; }, context.settings.primitive);
+    return {storesVertices, context.first, context.measured, context.balance};
 }
 
 } // namespace
@@ -34,6 +34,7 @@ float shareOfVertices(float pdfVertex, float pdfPhoton) {
 // ---- The walk's hooks
 
 bool DepositVisitor::ahead(PathState& path, auto& steps, const Ahead& ahead) {
+    if (trail_) trail_->fly(path, ahead);
     if (context_->storeVolume && ahead.medium && ahead.medium->scatters())
         std::visit([&](auto& list) { leaveOnFlight(path, steps, ahead, list); }, deposits_->volume);
     return true;
@@ -41,6 +42,7 @@ bool DepositVisitor::ahead(PathState& path, auto& steps, const Ahead& ahead) {
 
 bool DepositVisitor::arrive(PathState& path, auto& steps, const Ahead& ahead, const Flight& flight) {
     const bool collided = flight.event == Flight::Event::Collision;
+    if (trail_) trail_->arrive(path, ahead, flight);
     if (collided)
         connectable_ = true;
     else
@@ -55,18 +57,17 @@ bool DepositVisitor::arrive(PathState& path, auto& steps, const Ahead& ahead, co
 
 bool DepositVisitor::vertex(PathState& path, auto& steps, const WalkVertex& at) {
     if (at.surface) leaveOnSurface(path, at);
-    if constexpr (Guided<std::decay_t<decltype(steps)>>) {
-        // Without a flight that may leave here nothing else does.
-        const bool sends =
-            at.surface ? (at.surface->bsdf->lobes() & lobe::Smooth) != 0 : path.flights < at.medium->maxBounces;
-        if (connections_ && sends)
-            connectToSurfaces(path, steps.gate(), at.connectible(scene(), TransportMode::Photons),
-                              at.surface ? 2.0f * InSphere : InSphere);
-    }
+    // Without a flight that may leave here nothing else does.
+    const bool sends =
+        at.surface ? (at.surface->bsdf->lobes() & lobe::Smooth) != 0 : path.flights < at.medium->maxBounces;
+    if (connections_ && sends)
+        connectToSurfaces(path, gateOf(steps), at.connectible(scene(), TransportMode::Photons),
+                          at.surface ? 2.0f * InSphere : InSphere);
     return true;
 }
 
 void DepositVisitor::leave(PathState& path, auto&, const WalkVertex& at, const Way& way) {
+    if (trail_) trail_->leave(way);
     if (at.medium || way.straight()) return;
     connectable_ = way.smooth() && way.region.medium == path.region.medium && way.region.speed == path.region.speed;
 }
@@ -87,7 +88,8 @@ bool DepositVisitor::emitFrom(PathState& path, const Emitter& emitter, float pro
     return !isBlack(path.throughput) && culling_->mayContinue(path.ray.origin, path.time);
 }
 
-bool DepositVisitor::emit(PathState& path, PlainPhotonSteps&) {
+bool DepositVisitor::emit(PathState& path, PlainPhotonSteps& steps) {
+    if (guidance_) return emitBySteps(path, steps, 1.0f);
     const auto chosen = context_->emitters.sample(path.random.next1D());
     const Emitter& emitter = scene().emitters[chosen.index];
     const Vec2f uPosition = path.random.next2D();
@@ -96,11 +98,12 @@ bool DepositVisitor::emit(PathState& path, PlainPhotonSteps&) {
 }
 
 bool DepositVisitor::emit(PathState& path, StepsToCamera& steps) {
-    guided_ = true;
+    return emitBySteps(path, steps, guidance_->choosesFrames() ? float(guidance_->frames().frames) : 1.0f);
+}
+
+bool DepositVisitor::emitBySteps(PathState& path, auto& steps, float frames) {
     const auto chosen = context_->emitters.sample(path.random.next1D());
     const Emitter& emitter = scene().emitters[chosen.index];
-    const PhotonGuidance& guidance = steps.guidance();
-    const float frames = guidance.choosesFrames() ? float(guidance.frames().frames) : 1.0f;
     if (emitter.isDelta() || emitter.isInfinite()) {
         path.random.at(0, Draw::Emission);
         if (!emitFrom(path, emitter, chosen.probability, path.random.next2D())) return false;
@@ -113,40 +116,37 @@ bool DepositVisitor::emit(PathState& path, StepsToCamera& steps) {
     return emitFromPoint(path, steps, emitter, chosen.probability);
 }
 
-bool DepositVisitor::emitFromPoint(PathState& path, StepsToCamera& steps, const Emitter& emitter, float probability) {
+bool DepositVisitor::emitFromPoint(PathState& path, auto& steps, const Emitter& emitter, float probability) {
     path.random.at(0, Draw::Emission);
     const SurfaceSample start = sampleEmissionPoint(emitter, path.random.next2D());
     path.ray = Ray{start.position, Vec3f(0.0f)};
     connectable_ = true;
     if (!culling_->mayContinue(path.ray.origin, path.time)) return false;
-    connectToSurfaces(path, steps.gate(), {scene(), emitter, start}, InSphere * meanComponent(emitterPower(emitter)));
-    const PhotonGuidance& guidance = steps.guidance();
-    const darts::Guide* guide = guidance.guide(path.region);
-    if (context_->storeVolume && guide && mayGoOn(path))
+    connectToSurfaces(path, gateOf(steps), {scene(), emitter, start}, InSphere * meanComponent(emitterPower(emitter)),
+                      true);
+    if (context_->storeVolume && guidance_->guide(path.region) && mayGoOn(path))
         withSlices([&](SliceList& slices) {
             Sampler own = records(path, path.interactions, RecordsOf::Light);
             chain_.leaveLight(chainRules(), emitter, probability, start,
                               {start.position, Vec3f(0.0f), path.throughput, path.time, Infinity, path.interactions},
                               path.region.medium, own, slices);
+            noteVolume({});
         });
-    const bool guides = guide && guide->settings().guideEmission;
-    // What is guided aims at the camera itself.
-    const EmissionDirections own(emitter, start, guides ? std::span<const transport::BodySphere>() : guidance.bodies());
-    Vec3f direction;
-    float inversePdf = 0.0f;
-    if (guides) {
-        const auto drawn = steps.emit(path, {start.position, start.margin()}, own, direction);
-        if (!drawn) return false;
-        inversePdf = *drawn;
+    if constexpr (Guided<std::decay_t<decltype(steps)>>) {
+        const auto way = steps.emit(path, emitter, start);
+        if (!way) return false;
+        path.ray = way->ray;
+        path.throughput = path.throughput * way->weight;
     } else {
-        path.random.at(0, Draw::Direction);
+        path.random.at(0, Draw::EmissionDirection);
         const float u = path.random.next1D(), v = path.random.next1D();
-        const darts::Vec3 sample = own.sample(u, v);
-        direction = darts::to<Vec3f>(sample);
-        inversePdf = 1.0f / own.pdf(sample);
+        const EmissionDirections own(emitter, start);
+        const darts::Vec3 direction = own.sample(u, v);
+        if (trail_) trail_->emit(path, emitter, start, darts::to<Vec3f>(direction));
+        path.ray = start.leave(darts::to<Vec3f>(direction));
+        path.throughput =
+            path.throughput * emittedIntensity(emitter, start, path.ray.direction) * (1.0f / own.pdf(direction));
     }
-    path.ray = start.leave(direction);
-    path.throughput = path.throughput * emittedIntensity(emitter, start, path.ray.direction) * inversePdf;
     return !isBlack(path.throughput);
 }
 
@@ -163,9 +163,12 @@ void DepositVisitor::leaveOnSurface(const PathState& path, const WalkVertex& at)
     if (!context_->storeVolume) return;
     withSlices([&](SliceList& slices) {
         Sampler own = records(path, path.interactions, RecordsOf::Surface);
+        const Weighed weighed = weightAtVertex(path);
+        const Rgb power = path.throughput * weighed.weight;
         chain_.leaveSurface(chainRules(), *at.surface,
-                            {at.position, at.before, path.throughput, path.time, Infinity, path.interactions},
-                            path.region, own, slices);
+                            {at.position, at.before, power, path.time, Infinity, path.interactions}, path.region, own,
+                            slices);
+        noteVolume(weighed);
     });
 }
 
@@ -174,16 +177,17 @@ void DepositVisitor::depositOnSurface(const PathState& path, const SurfaceIntera
     const Vec3f& direction = path.ray.direction;
     const float shading = std::abs(direction.dot(surface.frame.n)), geometric = std::abs(direction.dot(surface.hit.ng));
     if (!(geometric > 0.0f)) return;
-    const auto deposit = [&](const Rgb& power) {
-        if (culling_->mayCount(surface.hit.position, path.time))
-            deposits_->surface.records.push_back(
-                {path.time, surface.hit.position, direction, power, uint16_t(path.interactions), -1});
+    if (!culling_->mayCount(surface.hit.position, path.time)) return;
+    const auto deposit = [&](const Rgb& power, const Weighed& weighed) {
+        deposits_->surface.records.push_back(
+            {path.time, surface.hit.position, direction, power * weighed.weight, uint16_t(path.interactions), -1});
+        if (deposits_->weighed) deposits_->weighed->surface.push_back(weighed);
     };
     const bool connected = context_->connects && connectable_ && receivesConnections(*surface.bsdf);
-    if (connected && context_->densityPhotons) deposit(Rgb(0.0f));
+    if (connected && context_->densityPhotons) deposit(Rgb(0.0f), {});
     if (connected || foundBySensorPaths(path, surface)) return;
     const Rgb arriving = path.throughput * (shading / geometric);
-    if (bears(arriving)) deposit(arriving);
+    if (bears(arriving)) deposit(arriving, weightAtVertex(path));
 }
 
 bool DepositVisitor::foundBySensorPaths(const PathState& path, const SurfaceInteraction& surface) const {
@@ -192,12 +196,16 @@ bool DepositVisitor::foundBySensorPaths(const PathState& path, const SurfaceInte
 }
 
 void DepositVisitor::connectToSurfaces(const PathState& path, const darts::TimeGate& gate, const Vertex& vertex,
-                                       float meanScattering) {
-    if (!connections_ || !bears(path.throughput)) return;
-    const SendingVertex from{{vertex, path.throughput}, path.time, path.interactions, meanScattering};
+                                       float meanScattering, bool light) {
+    if (!connections_ || !bears(path.throughput) || !connections_->mayArrive(path.time, gate)) return;
+    const Weighed weighed = light ? Weighed{} : weightAtVertex(path);
+    const SendingVertex from{{vertex, path.throughput * weighed.weight}, path.time, path.interactions, meanScattering};
     if (connections_->knowsLightPerConnection()) {
         Sampler own = path.random.branch(RandomStream::Connection, uint64_t(path.interactions));
+        const uint64_t before = counters_->rays;
         connections_->connect(from, gate, own, draws_, deposits_->received, counters_->rays);
+        counters_->connectionRays += counters_->rays - before;
+        if (deposits_->weighed) deposits_->weighed->received.resize(deposits_->received.size(), weighed);
     } else {
         deposits_->expectedLight.push_back(connections_->expectedLight(from, gate));
     }
@@ -209,74 +217,90 @@ void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ah
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
         if (!steps.guide().settings().elliptical || !orderCounts(path, 1)) return;
         const bool shares = steps.guidance().storesPhotons();
-        const auto met = steps.controlVertex(path, ahead, shares);
+        const auto met = steps.controlVertex(path, ahead, shares && !weighs());
         if (!met) return;
         const darts::ControlVertex& vertex = met->vertex;
         ++counters_->controlVertices;
         const Medium& medium = *ahead.medium;
-        Rgb power = path.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * vertex.inversePdf;
-        if (shares) power = power * shareOfVertices(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance));
+        const Rgb power = path.throughput * medium.sigmaS() * medium.transmittance(vertex.distance) * vertex.inversePdf;
         const Vec3f position = path.ray.at(vertex.distance);
         const double time = path.timeAfter(transport::distanceBetween(path.ray.origin, position));
         // In its frame but for rounding, which goes both ways: a test of the frame would only lose what it moves.
-        store(steps, context_->culling,
+        store(context_->culling,
               {time, position, path.ray.direction, power, uint16_t(path.interactions + 1), int16_t(path.region.medium)},
-              points);
+              points, [&]() -> Weighed {
+                  if (!weighs())
+                      return {shares ? transport::balance(1.0f / vertex.inversePdf, pdfPhoton(medium, vertex.distance))
+                                     : 1.0f};
+                  const auto ending = steps.inMedium(vertex.distance);
+                  return {ending.shareOfControl() * weigh(ending.logRatio).weight, ending.logRatio,
+                          transport::Found::Aside};
+              });
     }
 }
 
 void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& flight, const Medium& medium,
                                    PointList& points) {
     if (!orderCounts(path)) return;
-    Rgb power = path.throughput;
-    if constexpr (Guided<std::decay_t<decltype(steps)>>) {
-        // Ordinary photons share with control vertices where sensor paths can fold.
-        const bool elliptical = steps.guide().settings().elliptical;
-        if (!steps.guidance().storesPhotons() && elliptical) return;
-        float share = 0.0f;
-        if (elliptical)
-            share = shareOfVertices(steps.controlVertexPdf(flight.distance).value_or(0.0f),
-                                    pdfPhoton(medium, flight.distance));
-        power = power * (1.0f - share);
-    }
-    store(steps, *culling_,
-          {path.time, path.ray.origin, path.ray.direction, power, uint16_t(path.interactions),
+    if constexpr (Guided<std::decay_t<decltype(steps)>>)
+        if (steps.guide().settings().elliptical && !steps.guidance().storesPhotons()) return;
+    const auto weight = [&]() -> Weighed {
+        if constexpr (Guided<std::decay_t<decltype(steps)>>) {
+            if (weighs()) {
+                const auto ending = steps.inMedium(flight.distance);
+                return {(1.0f - ending.shareOfControl()) * weigh(ending.logRatio).weight, ending.logRatio};
+            }
+            // Ordinary photons share with control vertices where sensor paths can fold.
+            if (!steps.guide().settings().elliptical) return {};
+            return {1.0f - transport::balance(steps.controlVertexPdf(flight.distance).value_or(0.0f),
+                                              pdfPhoton(medium, flight.distance))};
+        } else {
+            return trail_ ? weigh(trail_->inMedium()) : Weighed{};
+        }
+    };
+    store(*culling_,
+          {path.time, path.ray.origin, path.ray.direction, path.throughput, uint16_t(path.interactions),
            int16_t(path.region.medium)},
-          points);
+          points, weight);
 }
 
-void DepositVisitor::store(const auto& steps, const ArrivalCulling& culling, const Photon& photon, PointList& points) {
+template <typename Weight>
+void DepositVisitor::store(const ArrivalCulling& culling, Photon photon, PointList& points, Weight&& weight) {
     if (!bears(photon.power)) return;
-    if constexpr (Guided<std::decay_t<decltype(steps)>>) {
-        const PhotonGuidance& guidance = steps.guidance();
-        if (guidance.directView() && !guidance.view().sees(photon.position, context_->settings.volumeReach())) return;
-    }
+    if (guidance_ && guidance_->directView() &&
+        !guidance_->view().sees(photon.position, context_->settings.volumeReach()))
+        return;
     ++counters_->volumeDeposits;
     if (!culling.mayCount(photon.position, photon.time)) return;
+    const Weighed weighed = weight();
+    photon.power = photon.power * weighed.weight;
+    if (isBlack(photon.power)) return;
     ++counters_->countingDeposits;
     points.records.push_back(photon);
+    noteVolume(weighed);
 }
 
 // ---- Beams
 
-void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ahead, BeamList& beams) {
+void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, BeamList& beams) {
     if (!bears(path.throughput) || !orderCounts(path, 1)) return;
     const Ray& ray = path.ray;
     float start = 0.0f, end = ahead.reach();
-    if constexpr (Guided<std::decay_t<decltype(steps)>>) {
-        // In direct view only what the camera's image shows: the store's room is for what can count.
-        const PhotonGuidance& guidance = steps.guidance();
-        if (guidance.directView()) {
-            const FlightPart seen =
-                guidance.view().seenPart(ray.origin, ray.direction, context_->settings.volumeReach());
-            start = float(seen.start);
-            end = std::min(end, float(seen.end));
-            if (!(start < end)) return;
-        }
+    if (guidance_ && guidance_->directView()) {
+        // Only what the camera's image shows: the store's room is for what can count.
+        const FlightPart seen = guidance_->view().seenPart(ray.origin, ray.direction, context_->settings.volumeReach());
+        start = float(seen.start);
+        end = std::min(end, float(seen.end));
+        if (!(start < end)) return;
     }
-    storeBeam(beams, *culling_, *ahead.medium,
-              {path.time, ray.origin, ray.direction, path.throughput, start, end, uint16_t(path.interactions),
-               int16_t(path.region.medium)});
+    const auto beam = clippedBeam(*culling_, *ahead.medium,
+                                  {path.time, ray.origin, ray.direction, path.throughput, start, end,
+                                   uint16_t(path.interactions), int16_t(path.region.medium)});
+    if (!beam) return;
+    const Weighed weighed = weightOnFlight(path);
+    beams.records.push_back(*beam);
+    beams.records.back().power = path.throughput * weighed.weight;
+    noteVolume(weighed);
 }
 
 // ---- Slices
@@ -287,20 +311,24 @@ FlightChain::Rules DepositVisitor::chainRules() const {
 
 void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, SliceList& slices) {
     Sampler own = records(path, path.interactions, RecordsOf::Flight);
-    chain_.fly(chainRules(),
-               {path.ray.origin, path.ray.direction, path.throughput, path.time, ahead.reach(), path.interactions},
+    const Weighed weighed = weightOnFlight(path);
+    const Rgb power = path.throughput * weighed.weight;
+    chain_.fly(chainRules(), {path.ray.origin, path.ray.direction, power, path.time, ahead.reach(), path.interactions},
                path.region.medium, own, slices);
+    noteVolume(weighed);
 }
 
 void DepositVisitor::leaveAtVertex(PathState& path, auto&, const Flight&, const Medium&, SliceList& slices) {
     Sampler own = records(path, path.interactions, RecordsOf::Vertex);
-    chain_.scatter(chainRules(),
-                   {path.ray.origin, path.ray.direction, path.throughput, path.time, Infinity, path.interactions}, own,
-                   slices);
+    const Weighed weighed = weightThere(path);
+    const Rgb power = path.throughput * weighed.weight;
+    chain_.scatter(chainRules(), {path.ray.origin, path.ray.direction, power, path.time, Infinity, path.interactions},
+                   own, slices);
+    noteVolume(weighed);
 }
 
 void DepositVisitor::endChain(const PathState& path, int interactions) {
-    if (guided_) return chain_.end();
+    if (guidance_) return chain_.end(); // records have drawn their own directions
     withSlices([&](SliceList& slices) {
         Sampler own = records(path, interactions, RecordsOf::End);
         chain_.end(chainRules(), own, slices);
@@ -312,13 +340,30 @@ void DepositVisitor::endChain(const PathState& path, int interactions) {
 void tracePlainPhotons(const PhotonContext& context, const Sampler& sampler, Deposits& deposits,
                        PhotonCounters& counters) {
     transport::Walk walk{PathState{.random = sampler}, PlainPhotonSteps({context.scene, counters, context.watch}),
-                         DepositVisitor(context, context.culling, nullptr, deposits, counters)};
+                         DepositVisitor(context, context.culling, nullptr, nullptr, nullptr, deposits, counters)};
+    if (walk.visitor.emit(walk.path, walk.steps)) walk.run();
+}
+
+void tracePlainBesideGuided(const PhotonContext& context, const PhotonGuidance& guidance,
+                            const SurfaceConnections* connections, const Sampler& sampler, PhotonTrail& trail,
+                            Deposits& deposits, PhotonCounters& counters, PhotonCounters& densities) {
+    const bool weighs = context.balance.both();
+    if (weighs)
+        trail.start(
+            StepsToCamera({context.scene, densities, context.watch}, guidance, rulesOf(context), guidance.gate()),
+            densities.densities);
+    ++counters.paths;
+    ++counters.plainPaths;
+    transport::Walk walk{PathState{.random = sampler}, PlainPhotonSteps({context.scene, counters, context.watch}),
+                         DepositVisitor(context, context.culling, &guidance, connections, weighs ? &trail : nullptr,
+                                        deposits, counters)};
     if (walk.visitor.emit(walk.path, walk.steps)) walk.run();
 }
 
 void traceGuidedPhotons(const PhotonContext& context, const PhotonGuidance& guidance,
                         const SurfaceConnections* connections, const Sampler& sampler, uint64_t path,
                         Deposits& deposits, PhotonCounters& counters) {
+    ++counters.paths;
     darts::TimeGate gate = guidance.gate();
     const ArrivalCulling* culling = &context.culling;
     if (guidance.choosesFrames()) {
@@ -326,12 +371,9 @@ void traceGuidedPhotons(const PhotonContext& context, const PhotonGuidance& guid
         gate = guidance.frames().frame(frame);
         culling = &context.frameCullings[size_t(frame)];
     }
-    const bool storesVertices =
-        context.storeVolume && std::visit([](const auto& p) { return p.AtVertices; }, context.settings.primitive);
     transport::Walk walk{PathState{.random = sampler},
-                         StepsToCamera({context.scene, counters, context.watch}, guidance,
-                                       {storesVertices, context.first, context.measured}, gate),
-                         DepositVisitor(context, *culling, connections, deposits, counters)};
+                         StepsToCamera({context.scene, counters, context.watch}, guidance, rulesOf(context), gate),
+                         DepositVisitor(context, *culling, &guidance, connections, nullptr, deposits, counters)};
     if (walk.visitor.emit(walk.path, walk.steps)) walk.run();
 }
 

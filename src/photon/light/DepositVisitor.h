@@ -1,10 +1,12 @@
 #pragma once
 // What light paths leave on their way for the primitive in use, on surfaces and for visible surface points. Plain and
-// guided paths leave the same, but that guided ones have control vertices for photons of points.
+// guided paths leave the same, but that guided ones have control vertices for photons of points. Where both are traced
+// side by side, each record is weighed by how densely both leave it, whoever may gather it.
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
 #include "photon/light/FirstUsefulness.h"
+#include "photon/light/PhotonTrail.h"
 #include "photon/light/StepsToCamera.h"
 #include "photon/primitives/sliced/FlightChain.h"
 #include "photon/primitives/sliced/RecordCounts.h"
@@ -23,7 +25,10 @@ struct PhotonCounters : transport::StepCounters {
     uint64_t controlVertices = 0;
     /// Photons that reached the test of arrival on their way to the volume store, and those that passed it.
     uint64_t volumeDeposits = 0, countingDeposits = 0;
-    uint64_t nonFinite = 0; ///< powers: nothing was stored
+    uint64_t nonFinite = 0;                 ///< powers: nothing was stored
+    uint64_t paths = 0, connectionRays = 0; ///< the latter are among the rays, too
+    uint64_t plainPaths = 0,
+             densities = 0; ///< beside guided paths; flights that were asked how densely these take them
 };
 
 /// What every light path of a pass shares.
@@ -40,9 +45,10 @@ struct PhotonContext {
     /// photons are, not from how dense those few are that bring what connections cannot.
     bool densityPhotons = false;
     bool glossySensorPaths = false;             ///< SensorPathRules::glossy
-    const RecordCounts* recordCounts = nullptr; ///< of guided paths
+    const RecordCounts* recordCounts = nullptr; ///< of paths that draw their records' directions
     const FirstUsefulness* first = nullptr;     ///< likewise: in bodies that light must leave
     FirstUsefulness* measured = nullptr;        ///< of pilot paths, which end at their first vertex there
+    transport::StrategyBalance balance{};       ///< of plain and guided paths
     PassWatch watch{};
 };
 
@@ -53,11 +59,13 @@ using PlainPhotonSteps =
 /// Throughputs of its walks are powers.
 class DepositVisitor : public transport::VisitorBase {
   public:
-    /// `culling`: of the gate that the path aims at. `connections` may be null.
-    DepositVisitor(const PhotonContext& context, const ArrivalCulling& culling, const SurfaceConnections* connections,
-                   Deposits& deposits, PhotonCounters& counters)
-        : context_(&context), culling_(&culling), connections_(connections), deposits_(&deposits), counters_(&counters),
-          limits_(context.scene.transport) {}
+    /// `culling`: of the gate that the path aims at. `guidance`, null of plain paths alone; `connections` may be null,
+    /// too. `trail`: of plain paths beside guided ones.
+    DepositVisitor(const PhotonContext& context, const ArrivalCulling& culling, const PhotonGuidance* guidance,
+                   const SurfaceConnections* connections, PhotonTrail* trail, Deposits& deposits,
+                   PhotonCounters& counters)
+        : context_(&context), culling_(&culling), guidance_(guidance), connections_(connections), trail_(trail),
+          deposits_(&deposits), counters_(&counters), limits_(context.scene.transport) {}
 
     // Emission. False if nothing leaves that could be in time.
     bool emit(PathState& path, PlainPhotonSteps& steps);
@@ -85,8 +93,31 @@ class DepositVisitor : public transport::VisitorBase {
     void startAt(PathState& path, const Emitter& emitter) const;
     /// By the emitter's own distribution; `probability` is that of its choice.
     bool emitFrom(PathState& path, const Emitter& emitter, float probability, const Vec2f& uPosition) const;
+    /// By either's own steps, beside each other or guided alone.
+    bool emitBySteps(PathState& path, auto& steps, float frames);
     /// From a point of an emitter that shines in more than one direction.
-    bool emitFromPoint(PathState& path, StepsToCamera& steps, const Emitter& emitter, float probability);
+    bool emitFromPoint(PathState& path, auto& steps, const Emitter& emitter, float probability);
+
+    // Weights of what is left, beside the other strategy's paths: for the way up to the flight at hand, to its end, and
+    // to the vertex there if paths go on.
+    [[nodiscard]] Weighed weigh(float logRatio) const {
+        const transport::StrategyBalance& balance = context_->balance;
+        return {trail_ ? balance.weightOfPlain(logRatio) : balance.weightOfGuided(logRatio), logRatio};
+    }
+    [[nodiscard]] bool weighs() const { return context_->balance.both(); }
+    [[nodiscard]] Weighed weightOnFlight(const PathState& path) {
+        return weighs() ? weigh(trail_ ? trail_->onFlight() : path.logRatio) : Weighed{};
+    }
+    [[nodiscard]] Weighed weightThere(const PathState& path) {
+        return weighs() ? weigh(trail_ ? trail_->there() : path.logRatio) : Weighed{};
+    }
+    [[nodiscard]] Weighed weightAtVertex(const PathState& path) {
+        return weighs() ? weigh(trail_ ? trail_->atVertex() : path.logRatio) : Weighed{};
+    }
+    /// Of the records that have been added last.
+    void noteVolume(const Weighed& weighed) {
+        if (deposits_->weighed) deposits_->weighed->volume.resize(deposits_->volumeRecords(), weighed);
+    }
     /// Whether what has been scattered so often in this medium is to be stored, counting `further` scatterings.
     [[nodiscard]] bool orderCounts(const PathState& path, int further = 0) const {
         return context_->settings.lowOrderScattering || path.inARow + further > 1;
@@ -99,8 +130,15 @@ class DepositVisitor : public transport::VisitorBase {
     void depositOnSurface(const PathState& path, const SurfaceInteraction& surface);
     /// Whether sensor paths along its glossy lobes find the light that arrives on `surface`.
     [[nodiscard]] bool foundBySensorPaths(const PathState& path, const SurfaceInteraction& surface) const;
+    /// `light`: the vertex is a light's point, which both strategies choose alike.
     void connectToSurfaces(const PathState& path, const darts::TimeGate& gate, const transport::Vertex& vertex,
-                           float meanScattering);
+                           float meanScattering, bool light = false);
+    [[nodiscard]] darts::TimeGate gateOf(auto& steps) const {
+        if constexpr (Guided<std::decay_t<decltype(steps)>>)
+            return steps.gate();
+        else
+            return guidance_->gate();
+    }
 
     // What is left for a primitive on a flight, and at a collision; of slices, too, at lights and on surfaces.
     void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, PointList& points);
@@ -111,7 +149,9 @@ class DepositVisitor : public transport::VisitorBase {
     void leaveAtVertex(PathState&, auto&, const transport::Flight&, const Medium&, BeamList&) {}
     void leaveAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
                        SliceList& slices);
-    void store(const auto& steps, const ArrivalCulling& culling, const Photon& photon, PointList& points);
+    /// `weight()`: of its power, asked only if it counts.
+    template <typename Weight>
+    void store(const ArrivalCulling& culling, Photon photon, PointList& points, Weight&& weight);
     /// What the records draw that are left here: there may be any number of them.
     enum class RecordsOf : uint32_t { Light, Flight, Vertex, Surface, End, Count };
     [[nodiscard]] static Sampler records(const PathState& path, int interactions, RecordsOf left) {
@@ -129,19 +169,24 @@ class DepositVisitor : public transport::VisitorBase {
 
     const PhotonContext* context_;
     const ArrivalCulling* culling_;
+    const PhotonGuidance* guidance_;
     const SurfaceConnections* connections_;
+    PhotonTrail* trail_;
     Deposits* deposits_;
     PhotonCounters* counters_;
     transport::BounceLimits limits_;
     std::vector<PointDraw> draws_; ///< of the vertex at hand
     FlightChain chain_;            ///< of the flights since the last light or surface, for slices
-    bool guided_ = false;          ///< slices' records then draw their own directions
     bool connectable_ = false;     ///< the last vertex has no single direction and lies in this region: it connects
 };
 
 /// Traces one light path, plain.
 void tracePlainPhotons(const PhotonContext& context, const Sampler& sampler, Deposits& deposits,
                        PhotonCounters& counters);
+/// The same beside guided ones; `densities` counts what these are asked, `trail` is memory.
+void tracePlainBesideGuided(const PhotonContext& context, const PhotonGuidance& guidance,
+                            const SurfaceConnections* connections, const Sampler& sampler, PhotonTrail& trail,
+                            Deposits& deposits, PhotonCounters& counters, PhotonCounters& densities);
 /// The same, guided. `path` is its index in the run: frames are chosen in turn. `connections` may be null.
 void traceGuidedPhotons(const PhotonContext& context, const PhotonGuidance& guidance,
                         const SurfaceConnections* connections, const Sampler& sampler, uint64_t path,

@@ -4,7 +4,22 @@
 #include "photon/primitives/VolumePrimitive.h"
 #include "photon/surface/ReceivedLight.h"
 
+#include "transport/StrategyBalance.h"
+
+#include <optional>
+
 namespace tungsten::photon {
+
+/// What a record was weighed by beside the other strategy's paths.
+struct Weighed {
+    float weight = 1.0f;   ///< of the strategy's own estimate
+    float logRatio = 0.0f; ///< log of the density of guided paths over that of plain ones
+    transport::Found found = transport::Found::OnWay;
+};
+/// Of pilot paths: one of these for every record, in their order.
+struct WeighedRecords {
+    std::vector<Weighed> volume, surface, received;
+};
 
 struct Deposits {
     explicit Deposits(const VolumePrimitive& primitive) : volume(depositsOf(primitive)) {}
@@ -14,6 +29,8 @@ struct Deposits {
     std::vector<ReceivedLight> received;
     std::vector<float>
         expectedLight; ///< light of each vertex's connections, where nobody knows yet what one is to bring
+
+    std::optional<WeighedRecords> weighed;
 
     [[nodiscard]] size_t volumeRecords() const {
         return std::visit([](const auto& list) { return list.records.size(); }, volume);

@@ -1,7 +1,5 @@
 #include "photon/light/PhotonGuidance.h"
 
-#include "photon/Tuning.h"
-
 namespace tungsten::photon {
 
 PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan,
@@ -13,7 +11,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
       choosesFrames_(plan.framesOneByOne.on), drawsByResponse_(plan.drawsByResponse),
       meetsDeltaGate_(plan.meetsDeltaGate), darkFrames_(plan.framesOneByOne.on ? plan.darkFrames : 0),
       sensor_(transport::Sensor::of(scene, scene.transport.gate)) {
-    if (!unwarped_ && !plan.boundsAlone.on) waysOut_ = transport::WaysOut::make(scene, policy);
+    if (!unwarped_) waysOut_ = transport::WaysOut::make(scene, policy);
     if (policy.followsBodies()) bodies_ = transport::spheresAboutBodies(scene);
     setGate(scene.transport.gate);
     watch.stage("guides of media", scene.media.size());
@@ -24,8 +22,6 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
         if (!medium.scatters()) continue;
         darts::Settings settings =
             policy.sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase);
-        const double width = lengthPerTime() * (gate_.end - gate_.begin) * double(meanComponent(medium.sigmaT()));
-        if (width > tuning::WideGate && !choosesFrames_ && !policy.sampling.lengthFirst) settings.lengthFirst = false;
         // On a delta gate directions suit the lengths that control vertices have there, not those of a kernel about it.
         if (meetsDeltaGate() && !policy.sampling.published) settings.lengthFirst = true;
         if (unwarped_ || (!plan.mediaOutOfTime.empty() && plan.mediaOutOfTime[i])) {
@@ -33,7 +29,6 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
             settings.direction = darts::Direction::Phase;
             settings.greens = darts::Greens::None;
         }
-        if (plan.boundsAlone.on) settings = darts::timeBoundAlone(settings);
         guides_.back() = std::make_unique<darts::Guide>(
             settings, darts::Medium{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()});
     }

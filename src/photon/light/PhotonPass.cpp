@@ -81,13 +81,17 @@ uint64_t leastPathsFor(const SurfaceConnections& connections) {
            uint64_t(tuning::MostPerPath);
 }
 
-void report(const PhotonCounters& counters, Statistics& statistics) {
-    transport::reportSteps(counters, statistics);
-    statistics.add("rays", counters.rays);
-    statistics.add("control vertices", counters.controlVertices);
-    statistics.add("non-finite samples", counters.nonFinite);
-    statistics.add("volume deposits", counters.volumeDeposits);
-    statistics.add("volume deposits that may count", counters.countingDeposits);
+void report(const TracedPaths& traced, Statistics& statistics) {
+    for (const PhotonCounters* counters : {&traced.plain, &traced.guided}) {
+        transport::reportSteps(*counters, statistics);
+        statistics.add("control vertices", counters->controlVertices);
+        statistics.add("plain light paths beside guided ones", counters->plainPaths);
+        statistics.add("non-finite samples", counters->nonFinite);
+        statistics.add("volume deposits", counters->volumeDeposits);
+        statistics.add("volume deposits that may count", counters->countingDeposits);
+    }
+    statistics.add("rays", traced.rays());
+    statistics.add("flights with densities of guided paths", traced.densities.densities);
 }
 
 void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Statistics& statistics) {
@@ -109,7 +113,7 @@ PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const
       guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan, watch) : nullptr),
       emitters_(powerDistribution(scene, plan.lateEmitters)), storeVolume_(plan.volume.on),
       storeSurface_(plan.surfacePhotons.on), glossySensorPaths_(plan.glossyPaths.on),
-      densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)) {
+      densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)), cameraPaths_(plan.cameraPaths) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
     for (int frame = guidance_->darkFrames(); frame < scene.transport.gate.frames; ++frame)
         frameCullings_.push_back(culling_.ofFrame(frame));
@@ -136,21 +140,36 @@ PhotonContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& 
             .frameCullings = frameCullings_,
             .emitters = emitters_,
             .first = first,
+            .balance = balance_,
             .watch = pass.watch};
 }
 
+void PhotonPass::tracePath(uint64_t path, const PhotonContext& context, const Sampler& sampler,
+                           const SurfaceConnections* connections, PhotonTrail& trail, TracedPaths& traced) const {
+    if (!guidance_) return tracePlainPhotons(context, sampler, traced.deposits, traced.plain);
+    const float plain = context.balance.plain;
+    if (plain > 0.0f && sampler.branch(RandomStream::Strategy, 0).next1D() < plain)
+        tracePlainBesideGuided(context, *guidance_, connections, sampler, trail, traced.deposits, traced.plain,
+                               traced.densities);
+    else
+        traceGuidedPhotons(context, *guidance_, connections, sampler, path, traced.deposits, traced.guided);
+}
+
 void PhotonPass::tracePaths(uint64_t first, uint64_t last, const PhotonContext& context, const PassInfo& pass,
-                            const SurfaceConnections* connections, Deposits& deposits, PhotonCounters& counters) const {
+                            const SurfaceConnections* connections, TracedPaths& traced) const {
+    PhotonTrail trail;
     for (uint64_t path = first; path < last; ++path) {
         pass.watch.pollWithin(1, path);
         const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
-        if (guidance_)
-            traceGuidedPhotons(context, *guidance_, connections, sampler, path, deposits, counters);
-        else
-            tracePlainPhotons(context, sampler, deposits, counters);
-        deposits.endPath();
+        tracePath(path, context, sampler, connections, trail, traced);
+        traced.deposits.endPath();
     }
     pass.watch.poll(last - first);
+}
+
+double PhotonPass::passOverhead() const {
+    const Vec2i& resolution = scene_.camera.resolution;
+    return tuning::PixelCost * double(cameraPaths_) * double(resolution.x) * double(resolution.y);
 }
 
 PhotonMaps PhotonPass::emptyMaps() const {
@@ -167,7 +186,7 @@ std::vector<TracedPaths> PhotonPass::traceWave(uint64_t first, uint64_t last, co
                                      TracedPaths(settings_.primitive));
     tbb::parallel_for(size_t(0), batches.size(), [&](size_t b) {
         const uint64_t begin = first + b * PathsPerBatch, end = std::min(begin + PathsPerBatch, last);
-        tracePaths(begin, end, context, pass, connections, batches[b].deposits, batches[b].counters);
+        tracePaths(begin, end, context, pass, connections, batches[b]);
     });
     return batches;
 }
@@ -201,7 +220,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
         if (maps.paths == 0) reserveStores(maps, wave, settings);
         for (const TracedPaths& batch : wave) {
             append(maps, batch.deposits, settings, thinning);
-            report(batch.counters, statistics);
+            report(batch, statistics);
         }
         maps.paths = last;
     }

@@ -8,6 +8,7 @@
 #include "photon/primitives/sliced/RecordCounts.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
+#include "transport/StrategyBalance.h"
 
 #include "tungsten/render/Integrator.h"
 
@@ -17,6 +18,7 @@ struct Deposits;
 struct TracedPaths;
 struct PhotonContext;
 struct PhotonCounters;
+class PhotonTrail;
 
 /// The stores of one pass.
 struct PhotonMaps {
@@ -36,6 +38,12 @@ class PhotonPass {
     /// `connections`: surface points that vertices connect to; may be null. With them, surfaces do not wait for
     /// photons: the pass ends when the volume store, if any is in use, is full and there were paths for connections.
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
+    /// How many light paths are plain and how many guided, from what a few of both bring: before the first pass, by
+    /// numbers of its own, so that every part of a render chooses alike. `seen`: what the connections' points are of;
+    /// both may be null.
+    void chooseShare(const PassWatch& watch, SurfaceConnections* connections, const SensorRecord* seen,
+                     Statistics& statistics);
+    [[nodiscard]] bool plainAlone() const { return balance_.guided == 0.0f; }
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);
     [[nodiscard]] const ArrivalCulling& culling() const { return culling_; }
@@ -51,6 +59,9 @@ class PhotonPass {
 
     // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
     // for.
+    /// So many paths, one after the other.
+    Deposits tracePilots(const PhotonContext& context, const PassInfo& pass, uint64_t paths,
+                         Statistics& statistics) const;
     /// What light paths are useful for at first in bodies that they must leave, from what a few find; null without any.
     [[nodiscard]] std::unique_ptr<FirstUsefulness> firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
                                                                    Statistics& statistics) const;
@@ -62,12 +73,18 @@ class PhotonPass {
                                                              const FirstUsefulness* first,
                                                              Statistics& statistics) const;
 
+    /// What a pass costs however many its paths are, in counted nanoseconds.
+    [[nodiscard]] double passOverhead() const;
+
     [[nodiscard]] PhotonMaps emptyMaps() const;
     /// Paths [first, last) in batches of consecutive ones.
     [[nodiscard]] std::vector<TracedPaths> traceWave(uint64_t first, uint64_t last, const PhotonContext& context,
                                                      const PassInfo& pass, const SurfaceConnections* connections) const;
     void tracePaths(uint64_t first, uint64_t last, const PhotonContext& context, const PassInfo& pass,
-                    const SurfaceConnections* connections, Deposits& deposits, PhotonCounters& counters) const;
+                    const SurfaceConnections* connections, TracedPaths& traced) const;
+    /// One path, plain or guided as its own number says.
+    void tracePath(uint64_t path, const PhotonContext& context, const Sampler& sampler,
+                   const SurfaceConnections* connections, PhotonTrail& trail, TracedPaths& traced) const;
 
     const Scene& scene_;
     const PhotonSettings& settings_;
@@ -76,6 +93,9 @@ class PhotonPass {
     std::vector<ArrivalCulling> frameCullings_; ///< when light paths aim at single frames
     Distribution1D emitters_;                   ///< proportional to power
     bool storeVolume_, storeSurface_, glossySensorPaths_, densityPhotons_;
+    uint64_t cameraPaths_;               ///< of a sample of a pixel
+    transport::StrategyBalance balance_; ///< of plain and guided paths
+    double connectionEffort_ = 1.0;      ///< connections of a path to surfaces, over those of the pilot
 };
 
 } // namespace tungsten::photon

@@ -3,37 +3,42 @@
 #include "photon/Tuning.h"
 #include "photon/light/DepositVisitor.h"
 #include "photon/light/PhotonPass.h"
+#include "photon/light/RecordImportance.h"
 #include "photon/light/TracedPaths.h"
+
+#include "transport/SharePilot.h"
+#include "transport/Tuning.h"
 
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
 
-namespace {
+using transport::PathCosts;
+using transport::SharePilot;
 
-/// One after the other.
-Deposits tracePilots(const PhotonContext& context, const PhotonGuidance& guidance, const PassInfo& pass, uint64_t paths,
-                     Statistics& statistics) {
+Deposits PhotonPass::tracePilots(const PhotonContext& context, const PassInfo& pass, uint64_t paths,
+                                 Statistics& statistics) const {
     TracedPaths pilot(context.settings.primitive);
+    PhotonTrail trail;
     for (uint64_t path = 0; path < paths; ++path) {
         pass.watch.poll(0);
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
-        traceGuidedPhotons(context, guidance, nullptr, sampler, path, pilot.deposits, pilot.counters);
+        tracePath(path, context, sampler, nullptr, trail, pilot);
     }
-    statistics.add("rays", pilot.counters.rays);
+    statistics.add("rays", pilot.rays());
     return std::move(pilot.deposits);
 }
 
-} // namespace
-
 std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
                                                              Statistics& statistics) const {
-    if (!guidance_ || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
+    if (!guidance_ || balance_.guided == 0.0f || !guidance_->leavesBodies() || guidance_->choosesFrames())
+        return nullptr;
     auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
     PhotonContext context = contextOf(pass, settings, nullptr);
     context.measured = first.get();
-    tracePilots(context, *guidance_, pass, paths, statistics);
+    context.balance = {}; // guided paths alone
+    tracePilots(context, pass, paths, statistics);
     return first;
 }
 
@@ -50,7 +55,8 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         TracedPaths& pilot = pilots[path];
         const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
-        traceGuidedPhotons(context, *guidance_, &connections, sampler, aim, pilot.deposits, pilot.counters);
+        PhotonTrail trail;
+        tracePath(aim, context, sampler, &connections, trail, pilot);
     });
     std::vector<float> expectedLight;
     uint64_t deposits = 0;
@@ -58,14 +64,15 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
         expectedLight.insert(expectedLight.end(), pilot.deposits.expectedLight.begin(),
                              pilot.deposits.expectedLight.end());
         deposits += pilot.deposits.volumeRecords();
-        statistics.add("rays", pilot.counters.rays);
+        statistics.add("rays", pilot.rays());
     }
     // Paths until the store of photons or beams is full.
     const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
     const double expected = std::min(double(settings.volumePhotonCount) * perDeposit, double(settings.photonCount));
     const double perPath =
         std::clamp(tuning::ConnectionsPerPass / std::max(expected, 1.0), tuning::LeastPerPath, tuning::MostPerPath);
-    connections.setLightPerConnection(lightPerConnection(std::move(expectedLight), perPath * double(paths)));
+    connections.setLightPerConnection(
+        lightPerConnection(std::move(expectedLight), connectionEffort_ * perPath * double(paths)));
 }
 
 std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
@@ -80,13 +87,154 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
             PhotonContext context = contextOf(pass, settings, first);
             context.storeVolume = true;
             context.recordCounts = counts.get();
-            const Deposits deposits = tracePilots(context, *guidance_, pass, paths, statistics);
+            const Deposits deposits = tracePilots(context, pass, paths, statistics);
             const auto& list = std::get<DepositList<typename Primitive::Record>>(deposits.volume);
             counts->measure(list.records, primitive.classes);
             return counts;
         }
     };
     return std::visit(countsOf, settings.primitive);
+}
+
+namespace {
+
+/// Whatever costs time in proportion to paths, but for records and connections, in nanoseconds.
+double cost(const PhotonCounters& counters, const tuning::Rates& rates) {
+    return rates.path * double(counters.paths) + rates.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
+           rates.ray * double(counters.rays - counters.connectionRays) +
+           rates.controlVertex * double(counters.controlVertices);
+}
+
+/// Of a record of the primitive in use.
+double recordCost(const VolumePrimitive& primitive) {
+    return std::visit(
+        [](const auto& p) {
+            return p.AtVertices ? tuning::PointCost : p.CountsRecords ? tuning::SliceCost : tuning::BeamCost;
+        },
+        primitive);
+}
+
+/// A pilot of both strategies: of all that they bring, and of what connections to surfaces bring of it.
+struct PhotonPilot {
+    explicit PhotonPilot(const VolumePrimitive& primitive) : traced(primitive) {}
+
+    SharePilot all, connected;
+    TracedPaths traced;
+    double plainRecords = 0.0, guidedRecords = 0.0;
+    PathCosts costs, connections; ///< the latter of connections alone
+
+    void begin(transport::Strategy strategy) {
+        all.begin(strategy);
+        connected.begin(strategy);
+    }
+    /// Connections that would be best, over those that the pilot made: their variance is as 1 / n, their cost as n.
+    [[nodiscard]] double effort(const transport::StrategyBalance& balance) const {
+        const double variance = connected.variance(balance), cost = connections.mean(balance);
+        if (!(variance > 0.0) || !(cost > 0.0)) return 1.0;
+        const double rest = std::max(all.variance(balance) - variance, 0.0);
+        return std::clamp(std::sqrt(variance * costs.mean(balance) / std::max(rest * cost, 1e-300)),
+                          tuning::LeastEffort, tuning::MostEffort);
+    }
+    /// Variance x cost.
+    [[nodiscard]] double score(const transport::StrategyBalance& balance) const {
+        const double most = effort(balance), ofConnections = connected.variance(balance);
+        const double rest = std::max(all.variance(balance) - ofConnections, 0.0);
+        return (rest + ofConnections / most) * (costs.mean(balance) + most * connections.mean(balance));
+    }
+};
+
+/// Tells the pilot what one path has left.
+void tell(PhotonPilot& pilot, const RecordImportance& importance, const Deposits& left, const SensorRecord* seen,
+          transport::Strategy strategy, const transport::StrategyBalance& balance) {
+    const auto add = [&](const Shown& shown, const Weighed& weighed, bool connected = false) {
+        const float own = shown.value / balance.weight(strategy, weighed.logRatio);
+        if (!(own > 0.0f) || !std::isfinite(own)) return;
+        pilot.all.tell(own, shown.cell, weighed.logRatio, weighed.found);
+        if (connected) pilot.connected.tell(own, shown.cell, weighed.logRatio, weighed.found);
+    };
+    std::visit(
+        [&](const auto& list) {
+            for (size_t i = 0; i < list.records.size(); ++i)
+                for (const Shown& part : importance.of(list.records[i])) add(part, left.weighed->volume[i]);
+        },
+        left.volume);
+    for (size_t i = 0; i < left.surface.records.size(); ++i)
+        add(importance.onSurface(left.surface.records[i]), left.weighed->surface[i]);
+    for (size_t i = 0; seen && i < left.received.size(); ++i)
+        add(importance.ofConnection(left.received[i], seen->points[left.received[i].point]), left.weighed->received[i],
+            true);
+}
+
+} // namespace
+
+void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connections, const SensorRecord* seen,
+                             Statistics& statistics) {
+    const std::optional<float> asked = settings_.policy.plainShare;
+    if (asked && (*asked == 0.0f || *asked == 1.0f)) {
+        balance_ = {*asked, 1.0f - *asked};
+        return;
+    }
+    const StageTimer timer(statistics, "pilot of plain and guided light paths");
+    watch.stage("pilot of plain and guided light paths", tuning::MostSharePaths);
+    balance_ = {0.5f, 0.5f};
+    const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
+    Statistics ignored;
+    const auto first = firstUsefulness(pass, settings_, ignored);
+    if (connections) setLightPerConnection(pass, settings_, first.get(), *connections, ignored);
+    const auto counts = recordCounts(pass, settings_, first.get(), ignored);
+    PhotonContext context = contextOf(pass, settings_, first.get());
+    context.connects = connections != nullptr;
+    context.densityPhotons = false; // they bring nothing
+    context.glossySensorPaths = glossySensorPaths_;
+    context.recordCounts = counts.get();
+    context.storeVolume = storeVolume_;
+    context.storeSurface = storeSurface_;
+    const RecordImportance importance(scene_, settings_, transport::Sensor::of(scene_, culling_.gate()));
+    PhotonPilot pilot(settings_.primitive);
+    TracedPaths& traced = pilot.traced;
+    PhotonTrail trail;
+    const auto count = [&] {
+        const double overhead = passOverhead();
+        const double record = recordCost(settings_.primitive) + overhead / double(settings_.volumePhotonCount);
+        pilot.costs = {cost(traced.plain, tuning::PlainRates) + record * pilot.plainRecords,
+                       tuning::TrailCost * double(traced.plain.mediumEvents + traced.plain.surfaceEvents) +
+                           tuning::DensityCost * double(traced.densities.densities) +
+                           tuning::PlainRates.ray * double(traced.densities.rays),
+                       cost(traced.guided, tuning::GuidedRates) + record * pilot.guidedRecords,
+                       overhead / double(settings_.photonCount) * double(traced.plain.paths)};
+        pilot.connections = {tuning::ConnectionCost * double(traced.plain.connectionRays), 0.0,
+                             tuning::ConnectionCost * double(traced.guided.connectionRays)};
+    };
+    uint64_t path = 0;
+    while (path < tuning::MostSharePaths) {
+        for (int i = 0; i < SharePilot::PathsOfPixel; ++i, ++path) {
+            const bool guides = i % 2 == 1;
+            const auto strategy = guides ? transport::Strategy::Guided : transport::Strategy::Plain;
+            const Sampler sampler(pass.seed, RandomStream::Photon, 0, path);
+            pilot.begin(strategy);
+            traced.deposits = Deposits(settings_.primitive);
+            traced.deposits.weighed.emplace();
+            if (guides)
+                traceGuidedPhotons(context, *guidance_, connections, sampler, path, traced.deposits, traced.guided);
+            else
+                tracePlainBesideGuided(context, *guidance_, connections, sampler, trail, traced.deposits, traced.plain,
+                                       traced.densities);
+            (guides ? pilot.guidedRecords : pilot.plainRecords) += double(traced.deposits.volumeRecords());
+            tell(pilot, importance, traced.deposits, seen, strategy, balance_);
+        }
+        watch.poll();
+        if (path < tuning::LeastSharePaths) continue;
+        count();
+        if (pilot.costs.sum() + pilot.connections.sum() > transport::tuning::MostPilotCost) break;
+        constexpr double Enough = 10.0 * transport::tuning::LeastEffective;
+        if ((path & (path - 1)) == 0 && pilot.all.effective(transport::Strategy::Plain) >= Enough &&
+            pilot.all.effective(transport::Strategy::Guided) >= Enough)
+            break;
+    }
+    const auto score = [&](const transport::StrategyBalance& balance) { return pilot.score(balance); };
+    balance_ = pilot.costs.ofTime(asked ? double(*asked) : pilot.all.choose(pilot.costs, score));
+    connectionEffort_ = pilot.effort(balance_);
+    statistics.add("pilot paths", path);
 }
 
 } // namespace tungsten::photon

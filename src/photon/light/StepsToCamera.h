@@ -2,10 +2,13 @@
 // Steps of a light path that is aimed at the camera inside the time gate: resampled distances, guided directions,
 // roulette and splitting by usefulness (He et al. 2024 and its successor presets; docs/method.md, sections 3 to 6).
 
+#include "photon/light/EmissionDirections.h"
 #include "photon/light/FirstUsefulness.h"
 #include "photon/light/PhotonGuidance.h"
 
 #include "transport/GuidedSteps.h"
+#include "transport/PlainFlight.h"
+#include "transport/StrategyBalance.h"
 #include "transport/Walk.h"
 
 namespace tungsten::photon {
@@ -15,6 +18,7 @@ struct StepRules {
     bool storesVertices = false;            ///< of a primitive that is made at vertices
     const FirstUsefulness* first = nullptr; ///< in bodies that light must leave
     FirstUsefulness* measured = nullptr;    ///< of pilot paths, which end at their first vertex there
+    transport::StrategyBalance balance{};   ///< of guided paths beside plain ones
 };
 
 /// In media that scatter; elsewhere straight on, and from surfaces by their BSDF.
@@ -28,26 +32,38 @@ class StepsToCamera : public transport::GuidedSteps {
         : context_(context), guidance_(&guidance), rules_(rules), gate_(gate) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
-    transport::Ahead ahead(transport::PathState& path);
+    transport::Ahead ahead(transport::PathState& path) { return ahead(path, nullptr); }
     transport::Flight flight(transport::PathState& path, const transport::Ahead& ahead);
     bool canArrive(transport::PathState& path, const transport::WalkVertex& vertex);
     int copies(transport::PathState& path, const transport::WalkVertex& vertex);
     std::optional<transport::Way> way(transport::PathState& path, const transport::WalkVertex& vertex);
     bool survives(transport::PathState&) { return true; }
 
-    /// From a point of a light. 1 / density per solid angle of the direction; none if nothing can be in time.
-    template <typename Emission>
-    std::optional<float> emit(transport::PathState& path, const transport::Start& start, const Emission& directions,
-                              Vec3f& direction) {
-        if (!lookFrom(path, start)) return std::nullopt;
-        return draw(path, *guidance_->guide(path.region), directions, direction);
-    }
+    /// From a point of a light that shines in more than a single direction; none if nothing can be in time.
+    std::optional<transport::Way> emit(transport::PathState& path, const Emitter& emitter, const SurfaceSample& start);
 
-    // Of the flight at hand, through a medium that scatters.
-    [[nodiscard]] const darts::Guide& guide() const { return *guide_; }
+    // The same steps asked of a plain path (PhotonTrail): where it went, and how densely guided ones would have. `path`
+    // has the throughput that a guided path would have there. All add to the path's logRatio, and draw nothing.
+    /// emit(), in the direction that the plain path took. False if guided ones do not start.
+    bool emitAlong(transport::PathState& path, const Emitter& emitter, const SurfaceSample& start,
+                   const Vec3f& direction);
+    /// ahead(), where the surface that ends the ray is known, or that there is none.
+    transport::Ahead ahead(transport::PathState& path, const std::optional<SurfaceHit>* known);
+    /// copies(), on the average.
+    void copyAlong(transport::PathState& path, const transport::WalkVertex& vertex);
+    void leaveAlong(transport::PathState& path, const transport::WalkVertex& vertex, const transport::Way& way);
+    [[nodiscard]] bool hasDensities() const { return rules_.balance.both(); }
+
+    // Of the flight at hand.
+    [[nodiscard]] const darts::Guide& guide() const { return *guide_; } ///< through a medium that scatters
     /// `shares`: ordinary photons share with control vertices.
     [[nodiscard]] std::optional<OnWay> controlVertex(transport::PathState& path, const transport::Ahead& ahead,
                                                      bool shares);
+    /// Of photons at this distance: of vertices, and of control vertices.
+    [[nodiscard]] InMedium inMedium(float distance) const;
+    /// Logarithm of the density of guided paths over that of the plain one, up to the end of its flight.
+    [[nodiscard]] float logRatioThere(const transport::Flight& flight) const;
+
     [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
     [[nodiscard]] const PhotonGuidance& guidance() const { return *guidance_; }
 
@@ -55,37 +71,39 @@ class StepsToCamera : public transport::GuidedSteps {
     /// False if nothing can be in time.
     bool lookFrom(const transport::PathState& path, const transport::Start& start);
     bool passesRoulette(transport::PathState& path, const darts::Guide& guide);
+    [[nodiscard]] float survival(const transport::PathState& path, const darts::Guide& guide);
+    /// Guided directions from a light; null where they are its own, or towards bodies.
+    [[nodiscard]] const darts::Guide* guideOfEmission(const Region& region) const;
+    [[nodiscard]] EmissionDirections emission(const Emitter& emitter, const SurfaceSample& start, bool guided) const {
+        // What is guided aims at the camera itself.
+        return {emitter, start, guided ? std::span<const transport::BodySphere>() : guidance_->bodies()};
+    }
     /// Of a connection from a vertex with this residual.
     darts::ConnectionSample drawConnection(transport::PathState& path, const darts::Guide& guide,
                                            const darts::Residual& residual) const;
     /// The direction of the straight way ahead, and before it the length of the connection, where settings say so.
     template <typename Scatterer>
-    std::optional<float> draw(transport::PathState& path, const darts::Guide& guide, const Scatterer& scatterer,
-                              Vec3f& direction);
+    std::optional<darts::DirectionSample> draw(transport::PathState& path, const darts::Guide& guide,
+                                               const Scatterer& scatterer);
+    /// Per solid angle, of directions that are drawn first.
+    template <typename Scatterer>
+    [[nodiscard]] float pdf(const darts::Guide& guide, const Scatterer& scatterer, const Vec3f& direction) const {
+        return guide.pdfDirection(residual(), {}, darts::vec3(direction), scatterer, guidance_->view());
+    }
+    /// The flight at hand as plain paths have it.
+    [[nodiscard]] transport::PlainFlight plain() const { return {medium_, reach_, start_.channels}; }
 
     transport::WalkContext context_;
     const PhotonGuidance* guidance_;
     StepRules rules_;
     darts::TimeGate gate_;
-    const darts::Guide* guide_ = nullptr; ///< of the flight at hand; null where nothing scatters
+    // The flight at hand.
+    const darts::Guide* guide_ = nullptr; ///< null where nothing scatters
     darts::Heading heading_{};
+    const Medium* medium_ = nullptr;
+    float reach_ = 0.0f;                                                 ///< of the surface ahead
+    transport::PathState start_{Sampler(0, RandomStream::Photon, 0, 0)}; ///< of the path, where it begins
+    std::optional<darts::DistanceDensity> distances_;
 };
-
-template <typename Scatterer>
-std::optional<float> StepsToCamera::draw(transport::PathState& path, const darts::Guide& guide,
-                                         const Scatterer& scatterer, Vec3f& direction) {
-    if (guide.settings().lengthFirst) {
-        path.random.at(path.interactions, Draw::Connection);
-        const darts::ConnectionSample connection = drawConnection(path, guide, residual());
-        connect(connection);
-        // A density of 0: the response is over, or the delta gate, but surfaces may still be seen in its kernel.
-        if (!(connection.inversePdf > 0.0f) && !guidance_->meetsDeltaGate()) return std::nullopt;
-    }
-    path.random.at(path.interactions, Draw::GuidedDirection);
-    const auto random = [&] { return path.random.next1D(); };
-    const darts::DirectionSample sample = sampleDirection(guide, scatterer, guidance_->view(), random);
-    direction = darts::to<Vec3f>(sample.direction);
-    return sample.inversePdf;
-}
 
 } // namespace tungsten::photon

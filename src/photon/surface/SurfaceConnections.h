@@ -46,6 +46,10 @@ class SurfaceConnections {
                        const PassInfo& pass, const Spread& spread, bool forwardBoundaries);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
+    /// False where nothing that leaves a vertex at this time can.
+    [[nodiscard]] bool mayArrive(double time, const darts::TimeGate& gate) const {
+        return !points_.empty() && time < gate.end;
+    }
     /// Appends what a vertex sends to sensor points. Adds the rays traced to `rays`.
     void connect(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
                  std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received, uint64_t& rays) const;

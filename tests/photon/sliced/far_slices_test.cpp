@@ -18,7 +18,7 @@ struct FarCase {
     bool twice;      ///< only light that has scattered exactly twice
     const char* gate = OneGate;
     float sigmaS = 4.0f;
-    const char* darts = "best";
+    const char* darts = R"({"plain_share": 0})";
     uint32_t passes = 8;
 };
 

@@ -11,13 +11,14 @@ float visibleReach(const Medium& medium) {
     return reach;
 }
 
-void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight) {
+std::optional<PhotonBeam> clippedBeam(const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight) {
     flight.tEnd = std::min(flight.tEnd, visibleReach(medium));
     const FlightPart part =
         culling.countingPart(flight.base, flight.direction, flight.time, double(medium.speedOfLight));
     flight.tStart = std::max(flight.tStart, float(part.start));
     flight.tEnd = std::min(flight.tEnd, float(part.end));
-    if (flight.tStart < flight.tEnd) list.records.push_back(flight);
+    if (!(flight.tStart < flight.tEnd)) return std::nullopt;
+    return flight;
 }
 
 std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& culling,

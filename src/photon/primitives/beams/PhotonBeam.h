@@ -23,9 +23,9 @@ static_assert(sizeof(PhotonBeam) == 56, "millions are stored: no padding");
 /// Beyond it nothing of a flight shows in a float.
 float visibleReach(const Medium& medium);
 
-/// Appends the part of a flight that sensor paths can see inside the gate; nothing if there is none. `flight` runs from
-/// tStart 0 to tEnd, the next surface (Infinity if there is none).
-void storeBeam(DepositList<PhotonBeam>& list, const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight);
+/// The part of a flight that sensor paths can see inside the gate, if there is one. `flight` runs from tStart to tEnd,
+/// the next surface (Infinity if there is none).
+std::optional<PhotonBeam> clippedBeam(const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight);
 
 /// The parts of the beams that sensor paths without mirror or refraction can see inside the gate; needs
 /// culling.straightTimesKnown().

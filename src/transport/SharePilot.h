@@ -2,21 +2,21 @@
 // How much time plain and guided paths get: a few paths of both, before the first pass, tell what either costs and how
 // much the image would vary at any share (docs/method.md, section 11).
 
-#include "path/PixelSink.h"
+#include "transport/StrategyBalance.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
-namespace tungsten::path {
+namespace tungsten::transport {
 
-/// What was counted, by whose work it was: of plain paths, of their densities, of guided paths.
-struct StrategyCounters {
-    PathCounters plain, densities, guided;
-};
+/// Of a pilot's random numbers: not the render's, so that all its parts choose alike.
+inline constexpr uint64_t PilotKey = 0x5EED0F511A5E5ull;
 
-/// What a plain path costs alone, what its densities cost, and what a guided path costs; in one unit.
+/// What a plain path costs alone, what its densities cost, and what a guided path costs; in one unit. `shared`: what
+/// either costs besides, of what a pass costs whoever its paths are.
 struct PathCosts {
-    double plain = 1.0, densities = 0.0, guided = 1.0;
+    double plain = 1.0, densities = 0.0, guided = 1.0, shared = 0.0;
 
     /// Plain's share of the paths if it has this share of the time.
     [[nodiscard]] StrategyBalance ofTime(double plainTime) const;
@@ -51,7 +51,12 @@ class SharePilot {
 
     /// The share of time with the least variance x cost, unless too little has been found to tell. One half is safe;
     /// less is only given to plain paths where they have found enough to be judged.
-    [[nodiscard]] double choose(const PathCosts& costs) const;
+    [[nodiscard]] double choose(const PathCosts& costs) const {
+        return choose(costs, [&](const StrategyBalance& balance) { return variance(balance) * costs.mean(balance); });
+    }
+    /// The same by another score, of which the least is best.
+    [[nodiscard]] double choose(const PathCosts& costs,
+                                const std::function<double(const StrategyBalance&)>& scoreOf) const;
 
   private:
     struct Path {
@@ -82,4 +87,4 @@ class SharePilot {
     std::vector<Contribution> found_;
 };
 
-} // namespace tungsten::path
+} // namespace tungsten::transport

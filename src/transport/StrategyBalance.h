@@ -1,13 +1,20 @@
 #pragma once
-// Plain and guided paths side by side, each weighed by how densely both together find what it has found
+// Plain and guided walks side by side, each weighed by how densely both together find what it has found
 // (docs/method.md, section 11).
 
 #include <algorithm>
 #include <cmath>
 
-namespace tungsten::path {
+namespace tungsten::transport {
 
 enum class Strategy { Alone, Plain, Guided };
+
+/// Logarithm of a quotient of densities, which does not depend on the unit of both; bounded where one of two ways to
+/// find a path never does.
+inline float logOfQuotient(float density, float over = 1.0f) {
+    constexpr float Least = 1e-30f, Most = 1e30f;
+    return std::log(std::clamp(std::max(density, Least) / std::max(over, Least), Least, Most));
+}
 
 /// How densely guided paths find what one has found, over plain ones; logarithms.
 struct LogRatio {
@@ -18,6 +25,10 @@ struct LogRatio {
     LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
     LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
 };
+
+/// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided
+/// paths alone look.
+enum class Found { OnWay, Aside };
 
 /// Shares of the paths that are plain and guided, and weights of what they bring. A path X is found by plain paths with
 /// the density lambda_P, by guided ones with lambda_G = lambda_P e^L; either adds f / (plain lambda_P + guided
@@ -50,4 +61,4 @@ struct StrategyBalance {
     static constexpr float Most = 80.0f; ///< of exponents
 };
 
-} // namespace tungsten::path
+} // namespace tungsten::transport

@@ -1,14 +1,10 @@
-#include "path/SharePilot.h"
+#include "transport/SharePilot.h"
 
-#include "path/Tuning.h"
+#include "transport/Tuning.h"
 
 #include <unordered_map>
 
-namespace tungsten::path {
-
-void PixelSink::tellPilot(float value, int frame, LogRatio logRatio, Found found) {
-    if (value != 0.0f) pilot_->tell(value, frame, logRatio, found);
-}
+namespace tungsten::transport {
 
 StrategyBalance PathCosts::ofTime(double plainTime) const {
     if (plainTime >= 1.0) return {1.0f, 0.0f};
@@ -18,8 +14,8 @@ StrategyBalance PathCosts::ofTime(double plainTime) const {
 }
 
 double PathCosts::mean(const StrategyBalance& balance) const {
-    if (balance.guided == 0.0f) return plain;
-    return double(balance.plain) * (plain + densities) + double(balance.guided) * guided;
+    if (balance.guided == 0.0f) return shared + plain;
+    return shared + double(balance.plain) * (plain + densities) + double(balance.guided) * guided;
 }
 
 double SharePilot::weighed(const Contribution& contribution, Strategy strategy, const StrategyBalance& balance) const {
@@ -96,14 +92,11 @@ double SharePilot::ownSecondMoment(Strategy strategy) const {
     return paths > 0.0 ? squares / paths : 0.0;
 }
 
-double SharePilot::choose(const PathCosts& costs) const {
+double SharePilot::choose(const PathCosts& costs, const std::function<double(const StrategyBalance&)>& scoreOf) const {
     constexpr double Half = 0.5;
     if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;
     const bool plainIsJudged = effective(Strategy::Plain) >= tuning::LeastEffective;
-    const auto score = [&](double time) {
-        const StrategyBalance balance = costs.ofTime(time);
-        return variance(balance) * costs.mean(balance);
-    };
+    const auto score = [&](double time) { return scoreOf(costs.ofTime(time)); };
     const double half = score(Half);
     double best = Half, least = tuning::BetterThanHalf * half;
     for (const double time : Times) {
@@ -116,4 +109,4 @@ double SharePilot::choose(const PathCosts& costs) const {
     return best;
 }
 
-} // namespace tungsten::path
+} // namespace tungsten::transport

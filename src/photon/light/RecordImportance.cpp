@@ -1,0 +1,114 @@
+#include "photon/light/RecordImportance.h"
+
+#include "photon/Tuning.h"
+#include "photon/primitives/sliced/RecordCounts.h"
+
+namespace tungsten::photon {
+
+namespace {
+
+constexpr float OffSurface = 1e-3f; ///< of the radius of gathers: rays that start on a surface must not meet it
+
+} // namespace
+
+RecordImportance::RecordImportance(const Scene& scene, const PhotonSettings& settings, const transport::Sensor& sensor)
+    : scene_(scene), sensor_(sensor), frame_(scene.camera.toWorld.rotation()),
+      radius_(settings.volumeRadius < 1e20f ? settings.volumeRadius : 0.0f),
+      surfaceRadius_(settings.gatherRadius < 1e20f ? settings.gatherRadius : 0.0f),
+      placed_(!scene.camera.hasParallelRays()) {
+    if (placed_) camera_ = scene.camera.position();
+    const float plane = placed_ ? scene.camera.fieldOfView().value_or(FieldOfView()).planeDistance : 1.0f;
+    const float width = 2.0f / (float(scene.camera.resolution.x) * plane);
+    pixel_ = width * width;
+}
+
+Vec3f RecordImportance::toCamera(const Vec3f& position) const {
+    const Vec3f way = camera_ - position;
+    const float distance = way.length();
+    return placed_ && distance > 0.0f ? way / distance : frame_.n * -1.0f;
+}
+
+auto RecordImportance::wayToCamera(Ray ray, float reach, Region region) const -> std::optional<Way> {
+    constexpr int MostSurfaces = 16;
+    Way way;
+    ray.tMax = reach;
+    float left = reach;
+    for (int surface = 0; surface < MostSurfaces; ++surface) {
+        const auto hit = scene_.geometry->intersect(ray);
+        const float length = hit ? hit->t : placed_ ? left : 0.0f;
+        if (const Medium* medium = scene_.medium(region))
+            way.transmittance *= meanComponent(medium->transmittance(length));
+        way.time += double(length / region.speed);
+        if (!hit) return way;
+        if ((scene_.bsdfOf(*hit).lobes() & lobe::Through) == 0) return std::nullopt;
+        region = regionBeyond(makeInteraction(scene_, *hit, ray.direction), ray.direction, region);
+        ray = hit->rest(ray);
+        left -= length;
+    }
+    return std::nullopt;
+}
+
+Shown RecordImportance::at(const Vec3f& position, double time, const Region& region, float power, float area) const {
+    const Vec3f direction = toCamera(position);
+    const float least = std::max(std::sqrt(area), 1e-6f);
+    const float distance = placed_ ? std::max((camera_ - position).length(), least) : 1.0f;
+    const auto way = wayToCamera({position, direction}, placed_ ? distance : Infinity, region);
+    if (!way) return {};
+    power *= way->transmittance;
+    const double arrival = time + (scene_.transport.cameraUnwarped ? 0.0 : way->time);
+    const int frame = placed_ ? sensor_.frameOf(arrival) : std::max(sensor_.frameOf(arrival), 0);
+    if (frame < 0) return {};
+    power *= sensor_.weight(arrival);
+    const float solid = std::max(area / (distance * distance), pixel_);
+    // Cells are about as wide as what the record covers, at least as pixels: a power of two of these.
+    const float width = std::exp2(std::round(0.5f * std::log2(solid / pixel_)));
+    const Vec3f local = frame_.toLocal(direction * -1.0f);
+    const float across = 1.0f / (std::max(std::abs(local.z), 1e-3f) * std::sqrt(pixel_) * width);
+    const auto column = int(std::clamp(local.x * across, -1e4f, 1e4f)), row = int(std::clamp(local.y * across, -1e4f, 1e4f));
+    const uint32_t cell = (uint32_t(frame) * 31u + uint32_t(width)) * 0x9E3779B1u + uint32_t(row) * 0x85EBCA6Bu + uint32_t(column);
+    return {power / (distance * distance * std::sqrt(pixel_ * solid)), int(cell >> 1)};
+}
+
+auto RecordImportance::of(const Photon& photon) const -> ShownParts {
+    const PhaseFunction& phase = scene_.media[size_t(photon.medium)].phase;
+    const float power = meanComponent(photon.power) * phase.eval(photon.direction, toCamera(photon.position));
+    return {at(photon.position, photon.time, regionOf(photon.medium), power, Pi * radius_ * radius_)};
+}
+
+auto RecordImportance::of(const PhotonBeam& beam) const -> ShownParts {
+    const Medium& medium = scene_.media[size_t(beam.medium)];
+    ShownParts parts;
+    // What is farther than some mean free paths from the base shows little.
+    constexpr float Farthest = 8.0f;
+    const float end = std::min(beam.tEnd, beam.tStart + Farthest / std::max(meanComponent(medium.sigmaT()), 1e-20f));
+    const float length = (end - beam.tStart) / float(Parts);
+    for (size_t i = 0; i < Parts; ++i) {
+        const float along = beam.tStart + (float(i) + 0.5f) * length;
+        const Vec3f position = beam.base + beam.direction * along;
+        const float power = meanComponent(beam.power * medium.sigmaS() * medium.transmittance(along)) * length *
+                            medium.phase.eval(beam.direction, toCamera(position));
+        parts[i] = at(position, beam.time + double(along / medium.speedOfLight), regionOf(beam.medium), power,
+                      2.0f * radius_ * length);
+    }
+    return parts;
+}
+
+auto RecordImportance::of(const CollapsedFlights& flights) const -> ShownParts {
+    const double soonest = std::max(sensor_.gate.start, flights.time);
+    return {Shown{float(std::exp(std::clamp(logSliceLight(scene_, flights, soonest), -60.0, 60.0))), 0}};
+}
+
+Shown RecordImportance::onSurface(const Photon& photon) const {
+    // Seen through whatever is there: the record does not know.
+    return at(photon.position + toCamera(photon.position) * (OffSurface * surfaceRadius_), photon.time,
+              scene_.cameraRegion, meanComponent(photon.power) * InvPi, Pi * sqr(surfaceRadius_));
+}
+
+Shown RecordImportance::ofConnection(const ReceivedLight& light, const SensorPoint& point) const {
+    // Neighbours share what arrives.
+    constexpr float Sharing = Pi * tuning::LeastShared * tuning::LeastShared;
+    return {meanComponent(light.light * point.throughput) / std::sqrt(Sharing),
+            light.frame * 65536 + int(point.pixel % 65536u)};
+}
+
+} // namespace tungsten::photon
