@@ -49,12 +49,9 @@ std::string guidedOrderName(const testing::TestParamInfo<OrderCase>& info) {
 class GuidedOrders : public testing::TestWithParam<OrderCase> {};
 
 TEST_P(GuidedOrders, MatchVerifiedValues) {
-    const test::OtherSeeds seeds{{"A1UnwarpedBoxPublished", 2},
-                                 {"A2WarpedBoxPublishedIndirectView", 1},
-                                 {"A2WarpedDeltaBest", 3},
-                                 {"A3WarpedDeltaBestBeams", 3},
-                                 {"A1UnwarpedDeltaPlain", 8},
-                                 {"A3WarpedDeltaPublished", 2}};
+    const test::OtherSeeds seeds{{"A1UnwarpedBoxPublished", 2}, {"A2WarpedBoxPublishedIndirectView", 1},
+                                 {"A2WarpedDeltaBest", 3},      {"A3WarpedDeltaBestBeams", 3},
+                                 {"A1UnwarpedDeltaPlain", 8},   {"A3WarpedDeltaPublished", 2}};
     const OrderCase& c = GetParam();
     Overrides overrides = test::gateOf(c.value);
     overrides.push_back(setting("volume_gather_radius", 0.1));

@@ -1,4 +1,5 @@
-// Plain light paths beside guided ones: what one of them leaves, whoever it is, is weighed by how densely both leave it.
+// Plain light paths beside guided ones: what one of them leaves, whoever it is, is weighed by how densely both leave
+// it.
 
 #include "photon/PhotonPlan.h"
 #include "photon/light/DepositVisitor.h"
@@ -20,7 +21,8 @@ using transport::WalkVertex;
 using transport::Way;
 
 const std::string EvenFog = R"("sigma_s": 4, "sigma_a": 0.1)",
-                  PeakedFog = R"("sigma_s": 8, "sigma_a": 0, "phase_function": {"type": "henyey_greenstein", "g": 0.6})",
+                  PeakedFog =
+                      R"("sigma_s": 8, "sigma_a": 0, "phase_function": {"type": "henyey_greenstein", "g": 0.6})",
                   ColouredFog = R"("sigma_s": [2, 4, 8], "sigma_a": 0.1)",
                   LampBeside = R"({"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
                       "transform": {"position": [1.2, 0.9, 0.8], "scale": 0.3}})",
@@ -188,8 +190,8 @@ TEST_P(BalancedPhotons, MeansAreTheSameAtAnyShare) {
 
 std::vector<BalancedCase> balancedCases() {
     std::vector<BalancedCase> cases;
-    for (const auto& [name, primitive] : {std::pair{"Points", "points"}, {"Beams", "beams"},
-                                          {"Slices", "mis_volumes_balls"}}) {
+    for (const auto& [name, primitive] :
+         {std::pair{"Points", "points"}, {"Beams", "beams"}, {"Slices", "mis_volumes_balls"}}) {
         const auto add = [&](const char* what, const std::string& scene) {
             cases.push_back({nullptr, scene, primitive});
             static std::vector<std::unique_ptr<std::string>> names;
@@ -197,7 +199,8 @@ std::vector<BalancedCase> balancedCases() {
             cases.back().name = names.back()->c_str();
         };
         add("LampBeside", sceneOf(EvenFog, LampBeside, "", WideGate));
-        if (std::string(name) != "Slices") add("Peak", sceneOf(PeakedFog, LampBeside, "", WideGate)); // they vary too much
+        if (std::string(name) != "Slices")
+            add("Peak", sceneOf(PeakedFog, LampBeside, "", WideGate)); // they vary too much
         add("ColouredFog", sceneOf(ColouredFog, LampBeside, "", WideGate));
         add("Floor", sceneOf(EvenFog, LampBeside, WhiteFloor, WideGate));
         add("Mirror", sceneOf(EvenFog, LampBeside, MirrorFloor, WideGate));
@@ -213,17 +216,20 @@ TEST(GuidedEmission, DirectionsDoNotDependOnDelays) {
     const std::string pulse = R"({"type": "sphere", "emission": 40, "bsdf": {"type": "null"},
                       "pulse": {"type": "gaussian", "center": 0.6, "sigma": 0.2},
                       "transform": {"position": [1.2, 0.9, 0.8], "scale": 0.3}})";
-    const std::string json = sceneOf(EvenFog, pulse, "", R"("start_time": 6.4, "transient_time_width": 1, "frame_num": 3)");
+    const std::string json =
+        sceneOf(EvenFog, pulse, "", R"("start_time": 6.4, "transient_time_width": 1, "frame_num": 3)");
     const auto beams = [&](const std::string& darts) {
         return test::renderPhotons(
-            json, {{"integrator.volume_photon_type=beams", "integrator.darts=" + darts, "camera.resolution=1"}, 100, 1});
+            json,
+            {{"integrator.volume_photon_type=beams", "integrator.darts=" + darts, "camera.resolution=1"}, 100, 1});
     };
     const auto paths = test::renderPaths(json, {{"integrator.darts=off", "camera.resolution=1"}, 64, 2000});
     for (const char* share : {"0", "1"}) {
         const auto other = beams(R"({"plain_share": )" + std::string(share) + "}");
         for (int frame = 0; frame < 3; ++frame) {
             const double error = std::hypot(paths->pixelError(frame), other->pixelError(frame));
-            EXPECT_NEAR(other->mean(frame), paths->mean(frame), 5.0 * error + 0.05 * paths->mean(frame)) // and the kernel
+            EXPECT_NEAR(other->mean(frame), paths->mean(frame),
+                        5.0 * error + 0.05 * paths->mean(frame)) // and the kernel
                 << share << ", frame " << frame;
             EXPECT_LT(error, 0.15 * paths->mean(frame));
         }

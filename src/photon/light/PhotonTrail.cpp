@@ -75,8 +75,8 @@ void PhotonTrail::stop(size_t index) {
     PathState path = guided(step.at);
     surface_.reset();
     if (!step.medium) surface_.emplace(makeInteraction(steps_->context().scene, *step.hit, path.ray.direction));
-    alive_ = steps_->canArrive(path, {step.medium, surface_ ? &*surface_ : nullptr, path.ray.origin,
-                                      path.ray.direction, path.region});
+    alive_ = steps_->canArrive(
+        path, {step.medium, surface_ ? &*surface_ : nullptr, path.ray.origin, path.ray.direction, path.region});
 }
 
 void PhotonTrail::pass(size_t index) {

@@ -64,8 +64,10 @@ Shown RecordImportance::at(const Vec3f& position, double time, const Region& reg
     const float width = std::exp2(std::round(0.5f * std::log2(solid / pixel_)));
     const Vec3f local = frame_.toLocal(direction * -1.0f);
     const float across = 1.0f / (std::max(std::abs(local.z), 1e-3f) * std::sqrt(pixel_) * width);
-    const auto column = int(std::clamp(local.x * across, -1e4f, 1e4f)), row = int(std::clamp(local.y * across, -1e4f, 1e4f));
-    const uint32_t cell = (uint32_t(frame) * 31u + uint32_t(width)) * 0x9E3779B1u + uint32_t(row) * 0x85EBCA6Bu + uint32_t(column);
+    const auto column = int(std::clamp(local.x * across, -1e4f, 1e4f)),
+               row = int(std::clamp(local.y * across, -1e4f, 1e4f));
+    const uint32_t cell =
+        (uint32_t(frame) * 31u + uint32_t(width)) * 0x9E3779B1u + uint32_t(row) * 0x85EBCA6Bu + uint32_t(column);
     return {power / (distance * distance * std::sqrt(pixel_ * solid)), int(cell >> 1)};
 }
 

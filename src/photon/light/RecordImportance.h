@@ -2,8 +2,8 @@
 // What records of light paths bring to the image, about: what a pilot judges plain and guided paths by.
 
 #include "photon/PhotonSettings.h"
-#include "photon/view/SensorRecord.h"
 #include "photon/surface/ReceivedLight.h"
+#include "photon/view/SensorRecord.h"
 #include "transport/Sensor.h"
 
 namespace tungsten::photon {
