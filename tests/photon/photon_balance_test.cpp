@@ -211,6 +211,23 @@ std::vector<BalancedCase> balancedCases() {
 INSTANTIATE_TEST_SUITE_P(Scenes, BalancedPhotons, testing::ValuesIn(balancedCases()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
+/// In thousandths.
+uint64_t chosenShare(const std::string& scene, const std::string& primitive) {
+    return test::renderPhotons(scene, {{"integrator.volume_photon_type=" + primitive}, 1, 1})
+        ->statistics.counter("plain light paths, in thousandths");
+}
+
+TEST(SharePilotOfPhotons, GivesPlainPathsWhatGuidesCannotDoBetter) {
+    // A gate in which nearly all light is, and one of a hundredth of it.
+    const std::string open = sceneOf(EvenFog, LampInside, "", R"("start_time": 4, "transient_time_width": 40)"),
+                      narrow = sceneOf(EvenFog, LampInside, "", R"("start_time": 6, "transient_time_width": 0.1)");
+    for (const char* primitive : {"points", "beams"}) {
+        const uint64_t ofNarrow = chosenShare(narrow, primitive);
+        EXPECT_GT(chosenShare(open, primitive), ofNarrow) << primitive;
+        EXPECT_LT(ofNarrow, 600u) << primitive;
+    }
+}
+
 /// A lamp whose pulse takes time, beside the fog: when its light starts and where it goes are independent.
 TEST(GuidedEmission, DirectionsDoNotDependOnDelays) {
     const std::string pulse = R"({"type": "sphere", "emission": 40, "bsdf": {"type": "null"},

@@ -118,13 +118,16 @@ bool DepositVisitor::emitBySteps(PathState& path, auto& steps, float frames) {
 
 bool DepositVisitor::emitFromPoint(PathState& path, auto& steps, const Emitter& emitter, float probability) {
     path.random.at(0, Draw::Emission);
-    const SurfaceSample start = sampleEmissionPoint(emitter, path.random.next2D());
+    const Vec2f uPosition = path.random.next2D();
+    const SurfaceSample start = sampleEmissionPoint(emitter, uPosition);
     path.ray = Ray{start.position, Vec3f(0.0f)};
     connectable_ = true;
+    if (!context_->recordCounts)
+        withSlices([&](SliceList&) { chain_.beginAt(scene(), emitter, probability, uPosition); });
     if (!culling_->mayContinue(path.ray.origin, path.time)) return false;
     connectToSurfaces(path, gateOf(steps), {scene(), emitter, start}, InSphere * meanComponent(emitterPower(emitter)),
                       true);
-    if (context_->storeVolume && guidance_->guide(path.region) && mayGoOn(path))
+    if (context_->storeVolume && context_->recordCounts && guidance_->guide(path.region) && mayGoOn(path))
         withSlices([&](SliceList& slices) {
             Sampler own = records(path, path.interactions, RecordsOf::Light);
             chain_.leaveLight(chainRules(), emitter, probability, start,
@@ -328,7 +331,7 @@ void DepositVisitor::leaveAtVertex(PathState& path, auto&, const Flight&, const 
 }
 
 void DepositVisitor::endChain(const PathState& path, int interactions) {
-    if (guidance_) return chain_.end(); // records have drawn their own directions
+    if (context_->recordCounts) return chain_.end(); // records have drawn their own directions
     withSlices([&](SliceList& slices) {
         Sampler own = records(path, interactions, RecordsOf::End);
         chain_.end(chainRules(), own, slices);

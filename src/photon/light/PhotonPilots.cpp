@@ -77,7 +77,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
 
 std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
                                                        const FirstUsefulness* first, Statistics& statistics) const {
-    if (!guidance_ || !storeVolume_) return nullptr;
+    if (!guidance_ || plainAlone() || !storeVolume_) return nullptr; // paths' own directions do
     const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordCounts> {
         if constexpr (!Primitive::CountsRecords)
             return nullptr;
@@ -114,43 +114,57 @@ double recordCost(const VolumePrimitive& primitive) {
         primitive);
 }
 
-/// A pilot of both strategies: of all that they bring, and of what connections to surfaces bring of it.
+/// A pilot of both strategies: of what connections to surfaces bring, and of the rest.
 struct PhotonPilot {
     explicit PhotonPilot(const VolumePrimitive& primitive) : traced(primitive) {}
 
-    SharePilot all, connected;
+    SharePilot rest, connected;
     TracedPaths traced;
     double plainRecords = 0.0, guidedRecords = 0.0;
     PathCosts costs, connections; ///< the latter of connections alone
 
     void begin(transport::Strategy strategy) {
-        all.begin(strategy);
+        rest.begin(strategy);
         connected.begin(strategy);
     }
     /// Connections that would be best, over those that the pilot made: their variance is as 1 / n, their cost as n.
     [[nodiscard]] double effort(const transport::StrategyBalance& balance) const {
+        // How bright slices are is known up to a factor.
+        if (std::holds_alternative<DepositList<CollapsedFlights>>(traced.deposits.volume)) return 1.0;
         const double variance = connected.variance(balance), cost = connections.mean(balance);
         if (!(variance > 0.0) || !(cost > 0.0)) return 1.0;
-        const double rest = std::max(all.variance(balance) - variance, 0.0);
-        return std::clamp(std::sqrt(variance * costs.mean(balance) / std::max(rest * cost, 1e-300)),
+        return std::clamp(std::sqrt(variance * costs.mean(balance) / std::max(rest.variance(balance) * cost, 1e-300)),
                           tuning::LeastEffort, tuning::MostEffort);
     }
     /// Variance x cost.
     [[nodiscard]] double score(const transport::StrategyBalance& balance) const {
-        const double most = effort(balance), ofConnections = connected.variance(balance);
-        const double rest = std::max(all.variance(balance) - ofConnections, 0.0);
-        return (rest + ofConnections / most) * (costs.mean(balance) + most * connections.mean(balance));
+        const double times = effort(balance);
+        return (rest.variance(balance) + connected.variance(balance) / times) *
+               (costs.mean(balance) + times * connections.mean(balance));
+    }
+    /// Whether either strategy has found so many effective contributions, of either kind that there is.
+    [[nodiscard]] bool hasFound(double enough) const {
+        const auto found = [&](const SharePilot& pilot) {
+            return pilot.effective(transport::Strategy::Alone) == 0.0 ||
+                   (pilot.effective(transport::Strategy::Plain) >= enough &&
+                    pilot.effective(transport::Strategy::Guided) >= enough);
+        };
+        return found(rest) && found(connected);
+    }
+    /// Plain's share of the time, judged by what is not connected, if there is anything.
+    [[nodiscard]] double choose() const {
+        const SharePilot& judge = rest.effective(transport::Strategy::Alone) > 0.0 ? rest : connected;
+        return judge.choose(costs, [&](const transport::StrategyBalance& balance) { return score(balance); });
     }
 };
 
 /// Tells the pilot what one path has left.
 void tell(PhotonPilot& pilot, const RecordImportance& importance, const Deposits& left, const SensorRecord* seen,
           transport::Strategy strategy, const transport::StrategyBalance& balance) {
-    const auto add = [&](const Shown& shown, const Weighed& weighed, bool connected = false) {
+    const auto add = [&](const Shown& shown, const Weighed& weighed, bool isConnected = false) {
         const float own = shown.value / balance.weight(strategy, weighed.logRatio);
         if (!(own > 0.0f) || !std::isfinite(own)) return;
-        pilot.all.tell(own, shown.cell, weighed.logRatio, weighed.found);
-        if (connected) pilot.connected.tell(own, shown.cell, weighed.logRatio, weighed.found);
+        (isConnected ? pilot.connected : pilot.rest).tell(own, shown.cell, weighed.logRatio, weighed.found);
     };
     std::visit(
         [&](const auto& list) {
@@ -227,14 +241,14 @@ void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connect
         count();
         if (pilot.costs.sum() + pilot.connections.sum() > transport::tuning::MostPilotCost) break;
         constexpr double Enough = 10.0 * transport::tuning::LeastEffective;
-        if ((path & (path - 1)) == 0 && pilot.all.effective(transport::Strategy::Plain) >= Enough &&
-            pilot.all.effective(transport::Strategy::Guided) >= Enough)
-            break;
+        if ((path & (path - 1)) == 0 && pilot.hasFound(Enough)) break;
     }
-    const auto score = [&](const transport::StrategyBalance& balance) { return pilot.score(balance); };
-    balance_ = pilot.costs.ofTime(asked ? double(*asked) : pilot.all.choose(pilot.costs, score));
+    balance_ = pilot.costs.ofTime(asked ? double(*asked) : pilot.choose());
     connectionEffort_ = pilot.effort(balance_);
     statistics.add("pilot paths", path);
+    const auto thousandths = [](double part) { return uint64_t(std::lround(1000.0 * part)); };
+    statistics.add("plain light paths, in thousandths", thousandths(double(balance_.plain)));
+    statistics.add("connections over the pilot's, in thousandths", thousandths(connectionEffort_));
 }
 
 } // namespace tungsten::photon
