@@ -69,7 +69,7 @@ REMOVALS = [
         ("src/transport/GuidedSteps.cpp", "const bool out = reachable_.way == darts::Way::Out;", "constexpr bool out = false;"),
     ]),
     ("sliced primitives", MAPS, [
-        ("src/photon/light/DepositVisitor.cpp", "if (guided_) return chain_.end();", ""),
+        ("src/photon/light/DepositVisitor.cpp", "if (context_->recordCounts) return chain_.end();", ""),
         ("src/photon/light/DepositVisitor.h", "if (auto* slices = std::get_if<SliceList>(&deposits_->volume)) use(*slices);", "(void)use;"),
     ]),
     ("glossy sensor paths", MAPS, [
