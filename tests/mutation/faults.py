@@ -500,8 +500,8 @@ FAULTS = [
      [("photon_tests", "PhotonTrail.*")]),  # densities of guided light paths without roulette
     ("src/photon/light/StepsToCamera.cpp", "if (hasDensities()) path.logRatio -= logOfQuotient(own * inversePdf);", ";",
      [("photon_tests", "PhotonTrail.*")]),  # and as if lamps shone as they like
-    ("src/photon/light/DepositVisitor.h", "return weighs() ? weigh(trail_ ? trail_->onFlight() : path.logRatio) : Weighed{};", "return Weighed{};",
-     [("photon_tests", "Scenes/BalancedPhotons.*/BeamsLampBeside")]),  # beams of both strategies count in full
+    ("src/photon/light/DepositVisitor.h", "return weighs() ? weigh(trail_ ? trail_->onFlight() : path.logRatio) : Weighed{};", "return weighs() ? weigh(trail_ ? 0.0f : path.logRatio) : Weighed{};",
+     [("photon_tests", "Scenes/BalancedPhotons.*/BeamsLampBeside")]),  # plain beams count as if guided paths left them as densely
     ("src/photon/light/StepsToCamera.cpp", "path.random.at(0, Draw::EmissionDirection);", "path.random.at(0, Draw::Direction);",
      [("photon_tests", "GuidedEmission.DirectionsDoNotDependOnDelays")]),  # directions of emission and delays by the same numbers
     ("src/photon/light/DepositVisitor.cpp", "uint16_t(path.interactions + 1)", "uint16_t(path.interactions)",
