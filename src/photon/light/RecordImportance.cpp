@@ -50,7 +50,7 @@ auto RecordImportance::wayToCamera(Ray ray, float reach, Region region) const ->
 
 Shown RecordImportance::at(const Vec3f& position, double time, const Region& region, float power, float area) const {
     const Vec3f direction = toCamera(position);
-    const float least = std::max(std::sqrt(area), 1e-6f);
+    const float least = std::max(std::sqrt(area), 1e-30f);
     const float distance = placed_ ? std::max((camera_ - position).length(), least) : 1.0f;
     const auto way = wayToCamera({position, direction}, placed_ ? distance : Infinity, region);
     if (!way) return {};
