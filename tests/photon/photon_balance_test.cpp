@@ -6,6 +6,7 @@
 
 #include "support/PathsAndPhotons.h"
 #include "support/SceneFile.h"
+#include "support/VerifiedValues.h"
 
 #include "tungsten/scene/SceneLoader.h"
 
@@ -149,8 +150,7 @@ TEST(PhotonTrail, SaysItBesideSurfaces) {
 }
 
 struct BalancedCase {
-    const char* name;
-    std::string scene, primitive;
+    std::string name, scene, primitive;
 };
 
 class BalancedPhotons : public testing::TestWithParam<BalancedCase> {};
@@ -190,26 +190,21 @@ TEST_P(BalancedPhotons, MeansAreTheSameAtAnyShare) {
 
 std::vector<BalancedCase> balancedCases() {
     std::vector<BalancedCase> cases;
-    for (const auto& [name, primitive] :
-         {std::pair{"Points", "points"}, {"Beams", "beams"}, {"Slices", "mis_volumes_balls"}}) {
-        const auto add = [&](const char* what, const std::string& scene) {
-            cases.push_back({nullptr, scene, primitive});
-            static std::vector<std::unique_ptr<std::string>> names;
-            names.push_back(std::make_unique<std::string>(std::string(name) + what));
-            cases.back().name = names.back()->c_str();
-        };
-        add("LampBeside", sceneOf(EvenFog, LampBeside, "", WideGate));
-        if (std::string(name) != "Slices")
-            add("Peak", sceneOf(PeakedFog, LampBeside, "", WideGate)); // they vary too much
-        add("ColouredFog", sceneOf(ColouredFog, LampBeside, "", WideGate));
-        add("Floor", sceneOf(EvenFog, LampBeside, WhiteFloor, WideGate));
-        add("Mirror", sceneOf(EvenFog, LampBeside, MirrorFloor, WideGate));
-    }
+    const auto add = [&](const char* what, const std::string& scene, bool peaked = false) {
+        cases.push_back({std::string("Points") + what, scene, "points"});
+        cases.push_back({std::string("Beams") + what, scene, "beams"});
+        if (!peaked) cases.push_back({std::string("Slices") + what, scene, "mis_volumes_balls"}); // they vary too much
+    };
+    add("LampBeside", sceneOf(EvenFog, LampBeside, "", WideGate));
+    add("Peak", sceneOf(PeakedFog, LampBeside, "", WideGate), true);
+    add("ColouredFog", sceneOf(ColouredFog, LampBeside, "", WideGate));
+    add("Floor", sceneOf(EvenFog, LampBeside, WhiteFloor, WideGate));
+    add("Mirror", sceneOf(EvenFog, LampBeside, MirrorFloor, WideGate));
     return cases;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BalancedPhotons, testing::ValuesIn(balancedCases()),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+                         [](const auto& instance) { return instance.param.name; });
 
 /// In thousandths.
 uint64_t chosenShare(const std::string& scene, const std::string& primitive) {
