@@ -33,9 +33,7 @@ class Replay : public transport::VisitorBase {
     bool arrive(PathState& path, StepsToEmitter& steps, const Ahead& ahead, const Flight& flight) {
         const bool collided = flight.event == Flight::Event::Collision;
         Flight plain = flight;
-        plain.pdf = !ahead.medium ? 1.0f
-                    : collided    ? flightThatCollides(*ahead.medium, flight.distance, before_).pdf
-                                  : flightThatExits(*ahead.medium, ahead.reach(), before_).pdf;
+        plain.pdf = transport::PlainFlight{ahead.medium, ahead.reach(), before_}.like(flight).pdf;
         if (collided) {
             const ChannelDensities channels = flightThatCollides(*ahead.medium, flight.distance, before_).channels;
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(path.channels[c], channels[c], 1e-5f);

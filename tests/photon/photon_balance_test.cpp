@@ -68,9 +68,7 @@ class Replay : public transport::VisitorBase {
     bool arrive(PathState& path, StepsToCamera& steps, const Ahead& ahead, const Flight& flight) {
         const bool collided = flight.event == Flight::Event::Collision;
         Flight plain = flight;
-        plain.pdf = !ahead.medium ? 1.0f
-                    : collided    ? flightThatCollides(*ahead.medium, flight.distance, before_).pdf
-                                  : flightThatExits(*ahead.medium, ahead.reach(), before_).pdf;
+        plain.pdf = transport::PlainFlight{ahead.medium, ahead.reach(), before_}.like(flight).pdf;
         trail_.arrive(plainly(path), ahead, plain);
         if (collided) expectSame(trail_.inMedium(), steps.inMedium(flight.distance).logRatio, path);
         expectSame(trail_.there(), path.logRatio, path);

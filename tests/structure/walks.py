@@ -44,7 +44,7 @@ PLACES = {
 IN_LOOPS = {
     "src/path/techniques/RefractedPilot.cpp": (1, "indexTowards: refractive indices along a straight line"),
     "src/transport/WaysOut.cpp": (2, "findExit, lookBeyond: the boundary of a body on a straight line, and the layers behind it"),
-    "src/photon/light/RecordImportance.cpp": (1, "wayToCamera: what a straight line passes"),
+    "src/photon/light/RecordImportance.cpp": (1, "segmentToCamera: what a straight line passes"),
     "src/photon/DefaultRadius.cpp": (1, "depthOf: single rays, all over the image"),
 }
 

@@ -40,7 +40,7 @@ class PhotonPass {
     [[nodiscard]] PhotonMaps trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const;
     /// How many light paths are plain and how many guided, from what a few of both bring: before the first pass, by
     /// numbers of its own, so that every part of a render chooses alike. `seen`: what the connections' points are of;
-    /// both may be null.
+    /// both may be null. Only where plain and guided paths are side by side.
     void chooseShare(const PassWatch& watch, SurfaceConnections* connections, const SensorRecord* seen,
                      Statistics& statistics);
     [[nodiscard]] bool plainAlone() const { return balance_.guided == 0.0f; }

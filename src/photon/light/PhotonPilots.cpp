@@ -31,8 +31,7 @@ Deposits PhotonPass::tracePilots(const PhotonContext& context, const PassInfo& p
 
 std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
                                                              Statistics& statistics) const {
-    if (!guidance_ || balance_.guided == 0.0f || !guidance_->leavesBodies() || guidance_->choosesFrames())
-        return nullptr;
+    if (!guidance_ || plainAlone() || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
     auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
     PhotonContext context = contextOf(pass, settings, nullptr);
@@ -158,18 +157,18 @@ struct PhotonPilot {
     }
 };
 
-/// Tells the pilot what one path has left.
-void tell(PhotonPilot& pilot, const RecordImportance& importance, const Deposits& left, const SensorRecord* seen,
-          transport::Strategy strategy, const transport::StrategyBalance& balance) {
-    const auto add = [&](const Shown& shown, const Weighed& weighed, bool isConnected = false) {
-        const float own = shown.value / balance.weight(strategy, weighed.logRatio);
+/// Adds what one path has left to the pilot.
+void addRecords(PhotonPilot& pilot, const RecordImportance& importance, const Deposits& left, const SensorRecord* seen,
+                transport::Strategy strategy, const transport::StrategyBalance& balance) {
+    const auto add = [&](const Contribution& contribution, const Weighed& weighed, bool isConnected = false) {
+        const float own = contribution.value / balance.weight(strategy, weighed.logRatio);
         if (!(own > 0.0f) || !std::isfinite(own)) return;
-        (isConnected ? pilot.connected : pilot.rest).tell(own, shown.cell, weighed.logRatio, weighed.found);
+        (isConnected ? pilot.connected : pilot.rest).tell(own, contribution.cell, weighed.logRatio, weighed.found);
     };
     std::visit(
         [&](const auto& list) {
             for (size_t i = 0; i < list.records.size(); ++i)
-                for (const Shown& part : importance.of(list.records[i])) add(part, left.weighed->volume[i]);
+                for (const Contribution& part : importance.of(list.records[i])) add(part, left.weighed->volume[i]);
         },
         left.volume);
     for (size_t i = 0; i < left.surface.records.size(); ++i)
@@ -184,8 +183,8 @@ void tell(PhotonPilot& pilot, const RecordImportance& importance, const Deposits
 void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connections, const SensorRecord* seen,
                              Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
-    if (asked && (*asked == 0.0f || *asked == 1.0f)) {
-        balance_ = {*asked, 1.0f - *asked};
+    if (asked && *asked == 1.0f) {
+        balance_ = {1.0f, 0.0f};
         return;
     }
     const StageTimer timer(statistics, "pilot of plain and guided light paths");
@@ -234,7 +233,7 @@ void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connect
                 tracePlainBesideGuided(context, *guidance_, connections, sampler, trail, traced.deposits, traced.plain,
                                        traced.densities);
             (guides ? pilot.guidedRecords : pilot.plainRecords) += double(traced.deposits.volumeRecords());
-            tell(pilot, importance, traced.deposits, seen, strategy, balance_);
+            addRecords(pilot, importance, traced.deposits, seen, strategy, balance_);
         }
         watch.poll();
         if (path < tuning::LeastSharePaths) continue;

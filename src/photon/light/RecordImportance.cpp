@@ -7,7 +7,7 @@ namespace tungsten::photon {
 
 namespace {
 
-constexpr float OffSurface = 1e-3f; ///< of the radius of gathers: rays that start on a surface must not meet it
+constexpr float OffSurface = 1e-4f; ///< of the distance to the camera: rays that start on a surface must not meet it
 
 } // namespace
 
@@ -28,18 +28,18 @@ Vec3f RecordImportance::toCamera(const Vec3f& position) const {
     return placed_ && distance > 0.0f ? way / distance : frame_.n * -1.0f;
 }
 
-auto RecordImportance::wayToCamera(Ray ray, float reach, Region region) const -> std::optional<Way> {
+auto RecordImportance::segmentToCamera(Ray ray, float reach, Region region) const -> std::optional<Segment> {
     constexpr int MostSurfaces = 16;
-    Way way;
+    Segment segment;
     ray.tMax = reach;
     float left = reach;
     for (int surface = 0; surface < MostSurfaces; ++surface) {
         const auto hit = scene_.geometry->intersect(ray);
         const float length = hit ? hit->t : placed_ ? left : 0.0f;
         if (const Medium* medium = scene_.medium(region))
-            way.transmittance *= meanComponent(medium->transmittance(length));
-        way.time += double(length / region.speed);
-        if (!hit) return way;
+            segment.transmittance *= meanComponent(medium->transmittance(length));
+        segment.time += double(length / region.speed);
+        if (!hit) return segment;
         if ((scene_.bsdfOf(*hit).lobes() & lobe::Through) == 0) return std::nullopt;
         region = regionBeyond(makeInteraction(scene_, *hit, ray.direction), ray.direction, region);
         ray = hit->rest(ray);
@@ -48,14 +48,15 @@ auto RecordImportance::wayToCamera(Ray ray, float reach, Region region) const ->
     return std::nullopt;
 }
 
-Shown RecordImportance::at(const Vec3f& position, double time, const Region& region, float power, float area) const {
+Contribution RecordImportance::at(const Vec3f& position, double time, const Region& region, float power,
+                                  float area) const {
     const Vec3f direction = toCamera(position);
     const float least = std::max(std::sqrt(area), 1e-30f);
     const float distance = placed_ ? std::max((camera_ - position).length(), least) : 1.0f;
-    const auto way = wayToCamera({position, direction}, placed_ ? distance : Infinity, region);
-    if (!way) return {};
-    power *= way->transmittance;
-    const double arrival = time + (scene_.transport.cameraUnwarped ? 0.0 : way->time);
+    const auto segment = segmentToCamera({position, direction}, placed_ ? distance : Infinity, region);
+    if (!segment) return {};
+    power *= segment->transmittance;
+    const double arrival = time + (scene_.transport.cameraUnwarped ? 0.0 : segment->time);
     const int frame = placed_ ? sensor_.frameOf(arrival) : std::max(sensor_.frameOf(arrival), 0);
     if (frame < 0) return {};
     power *= sensor_.weight(arrival);
@@ -71,15 +72,15 @@ Shown RecordImportance::at(const Vec3f& position, double time, const Region& reg
     return {power / (distance * distance * std::sqrt(pixel_ * solid)), int(cell >> 1)};
 }
 
-auto RecordImportance::of(const Photon& photon) const -> ShownParts {
+auto RecordImportance::of(const Photon& photon) const -> Contributions {
     const PhaseFunction& phase = scene_.media[size_t(photon.medium)].phase;
     const float power = meanComponent(photon.power) * phase.eval(photon.direction, toCamera(photon.position));
     return {at(photon.position, photon.time, regionOf(photon.medium), power, Pi * radius_ * radius_)};
 }
 
-auto RecordImportance::of(const PhotonBeam& beam) const -> ShownParts {
+auto RecordImportance::of(const PhotonBeam& beam) const -> Contributions {
     const Medium& medium = scene_.media[size_t(beam.medium)];
-    ShownParts parts;
+    Contributions parts;
     // What is farther than some mean free paths from the base shows little.
     constexpr float Farthest = 8.0f;
     const float end = std::min(beam.tEnd, beam.tStart + Farthest / std::max(meanComponent(medium.sigmaT()), 1e-20f));
@@ -95,18 +96,19 @@ auto RecordImportance::of(const PhotonBeam& beam) const -> ShownParts {
     return parts;
 }
 
-auto RecordImportance::of(const CollapsedFlights& flights) const -> ShownParts {
+auto RecordImportance::of(const CollapsedFlights& flights) const -> Contributions {
     const double soonest = std::max(sensor_.gate.start, flights.time);
-    return {Shown{float(std::exp(std::clamp(logSliceLight(scene_, flights, soonest), -60.0, 60.0))), 0}};
+    // They show in much of the image: all of a path may meet.
+    return {Contribution{float(std::exp(std::clamp(logSliceLight(scene_, flights, soonest), -60.0, 60.0))), 0}};
 }
 
-Shown RecordImportance::onSurface(const Photon& photon) const {
+Contribution RecordImportance::onSurface(const Photon& photon) const {
     // Seen through whatever is there: the record does not know.
-    return at(photon.position + toCamera(photon.position) * (OffSurface * surfaceRadius_), photon.time,
-              scene_.cameraRegion, meanComponent(photon.power) * InvPi, Pi * sqr(surfaceRadius_));
+    return at(photon.position + toCamera(photon.position) * (OffSurface * (camera_ - photon.position).length()),
+              photon.time, scene_.cameraRegion, meanComponent(photon.power) * InvPi, Pi * sqr(surfaceRadius_));
 }
 
-Shown RecordImportance::ofConnection(const ReceivedLight& light, const SensorPoint& point) const {
+Contribution RecordImportance::ofConnection(const ReceivedLight& light, const SensorPoint& point) const {
     // Neighbours share what arrives.
     constexpr float Sharing = Pi * tuning::LeastShared * tuning::LeastShared;
     return {meanComponent(light.light * point.throughput) / std::sqrt(Sharing),

@@ -10,36 +10,37 @@ namespace tungsten::photon {
 
 /// A contribution to the image: the root of its squares' sum over the pixels that it covers, and where it is, so that
 /// those of a path which meet in a pixel can be told from others.
-struct Shown {
+struct Contribution {
     float value = 0.0f;
     int cell = 0;
 };
 
-/// Seen along the straight way to the camera, through whatever lets light pass. A guess in mirrors and behind
+/// Seen along the segment to the camera, through whatever lets light pass. A guess in mirrors and behind
 /// refraction: images by shares that are chosen by it are right all the same.
 class RecordImportance {
   public:
     RecordImportance(const Scene& scene, const PhotonSettings& settings, const transport::Sensor& sensor);
 
     static constexpr size_t Parts = 4; ///< of a beam
-    using ShownParts = std::array<Shown, Parts>;
+    using Contributions = std::array<Contribution, Parts>;
 
-    [[nodiscard]] ShownParts of(const Photon& photon) const;
-    [[nodiscard]] ShownParts of(const PhotonBeam& beam) const;
-    [[nodiscard]] ShownParts of(const CollapsedFlights& flights) const;
-    [[nodiscard]] Shown onSurface(const Photon& photon) const;
-    [[nodiscard]] Shown ofConnection(const ReceivedLight& light, const SensorPoint& point) const;
+    [[nodiscard]] Contributions of(const Photon& photon) const;
+    [[nodiscard]] Contributions of(const PhotonBeam& beam) const;
+    [[nodiscard]] Contributions of(const CollapsedFlights& flights) const;
+    [[nodiscard]] Contribution onSurface(const Photon& photon) const;
+    [[nodiscard]] Contribution ofConnection(const ReceivedLight& light, const SensorPoint& point) const;
 
   private:
     /// Of light that leaves a point towards the camera; `power` in that direction per solid angle. It covers an area
     /// across the view.
-    [[nodiscard]] Shown at(const Vec3f& position, double time, const Region& region, float power, float area) const;
-    struct Way {
+    [[nodiscard]] Contribution at(const Vec3f& position, double time, const Region& region, float power,
+                                  float area) const;
+    struct Segment {
         float transmittance = 1.0f;
         double time = 0.0;
     };
     /// None behind something opaque.
-    [[nodiscard]] std::optional<Way> wayToCamera(Ray ray, float reach, Region region) const;
+    [[nodiscard]] std::optional<Segment> segmentToCamera(Ray ray, float reach, Region region) const;
     [[nodiscard]] Region regionOf(int medium) const { return {medium, scene_.media[size_t(medium)].speedOfLight}; }
     [[nodiscard]] Vec3f toCamera(const Vec3f& position) const;
 

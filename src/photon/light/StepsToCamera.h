@@ -1,5 +1,5 @@
 #pragma once
-// Steps of a light path that is aimed at the camera inside the time gate: resampled distances, guided directions,
+// Steps of a light path that is aimed at the camera inside the time gate: guided distances and directions,
 // roulette and splitting by usefulness (He et al. 2024 and its successor presets; docs/method.md, sections 3 to 6).
 
 #include "photon/light/EmissionDirections.h"
