@@ -2,7 +2,7 @@
 //
 // Renders the proofs' scenes (or those whose name holds SCENE) by every method under test, SIDE x SIDE pixels (128)
 // with EFFORT (4) times the passes of the test, and compares block means with the plain path tracer's. Writes
-// FOLDER/table.md, a picture per method, and a map of each method's deviations: red too bright, blue too dark, full
+// FOLDER/table.csv, a picture per method, and a map of each method's deviations: red too bright, blue too dark, full
 // colour where the deviation reaches what is allowed. Exits with 1 if a method disagrees.
 
 #include "support/AgreementScenes.h"
@@ -50,10 +50,10 @@ Image deviationMap(const BlockMeans& method, const BlockMeans& reference, int si
 void addRow(std::ostream& table, const AgreementScene& scene, const Method& method, double seconds,
             const Agreement& agreement) {
     char row[512];
-    std::snprintf(row, sizeof row, "| %s | %s | %.0f | %+.2f | %.2f | %.2f | %.2f | %.2f | %.2f |\n",
-                  scene.name.c_str(), method.name.c_str(), seconds, 100.0 * agreement.difference,
-                  100.0 * agreement.wholeError, 100.0 * agreement.deviation, 100.0 * agreement.blockError,
-                  100.0 * agreement.shrink, agreement.score());
+    std::snprintf(row, sizeof row, "%s,%s,%.0f,%+.2f,%.2f,%.2f,%.2f,%.2f,%.2f\n", scene.name.c_str(),
+                  method.name.c_str(), seconds, 100.0 * agreement.difference, 100.0 * agreement.wholeError,
+                  100.0 * agreement.deviation, 100.0 * agreement.blockError, 100.0 * agreement.shrink,
+                  agreement.score());
     table << row;
     std::cout << row << std::flush;
 }
@@ -84,10 +84,9 @@ bool proveScene(AgreementScene scene, const Run& run, std::ostream& table) {
 
 int prove(const Run& run) {
     std::filesystem::create_directories(run.folder);
-    std::ofstream table(run.folder / "table.md");
-    const char* const head = "| scene | method | seconds | mean, % | its error | rms of blocks, % | their error | "
-                             "change with the radius, % | "
-                             "used of what is allowed |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    std::ofstream table(run.folder / "table.csv");
+    const char* const head = "scene,method,seconds,mean_percent,mean_error_percent,blocks_rms_percent,"
+                             "blocks_error_percent,radius_change_percent,used_of_allowed\n";
     table << head;
     std::cout << head;
     bool agree = true;

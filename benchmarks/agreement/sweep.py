@@ -4,8 +4,8 @@ or turned and moved as a whole: all must agree.
 
     sweep.py FOLDER [--slices] [--fast] [--scenes NAME ...] [--effort FACTOR]
 
---slices: planes, volumes, balls and hypervolumes, in scenes for them, against paths and beams. Writes FOLDER/SWEEP.md; exits
-with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the same command, and only what
+--slices: planes, volumes, balls and hypervolumes, in scenes for them, against paths and beams. Writes FOLDER/SWEEP.md (SLICES.md)
+with its figures beside it, SWEEP-scenes.csv and SWEEP-methods.csv; exits with 1 if anything disagrees. Renders are kept in FOLDER: an interrupted sweep goes on with the same command, and only what
 changed is rendered again. Seeds are fixed.
 """
 
@@ -24,7 +24,7 @@ import numpy as np
 from sweep_copies import moved, scaled
 from sweep_measures import Samples, compare, compare_pairs, means, without_kernel
 from sweep_methods import METHODS, SLICE_METHODS
-from sweep_report import INTRODUCTION, SLICES_INTRODUCTION, report, scene_row
+from sweep_report import INTRODUCTION, SLICES_INTRODUCTION, report, scene_row, tables
 from sweep_scenes import FAST, all_scenes
 from sweep_slices import SLICE_FAST, slice_scenes
 from sweep_vocabulary import write_assets
@@ -41,7 +41,8 @@ COPIES = {"original": (lambda scene: scene, 0), "scaled": (lambda scene: scaled(
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is rendered how."""
+    """What is rendered how, and the name of its page."""
+    name: str
     introduction: str
     scenes: list
     fast: tuple
@@ -51,8 +52,8 @@ class Sweep:
 
 def sweep_of(options):
     if options.slices:
-        return Sweep(SLICES_INTRODUCTION, slice_scenes(), SLICE_FAST, SLICE_METHODS, ("original",))
-    return Sweep(INTRODUCTION, all_scenes(), FAST, METHODS)
+        return Sweep("SLICES", SLICES_INTRODUCTION, slice_scenes(), SLICE_FAST, SLICE_METHODS, ("original",))
+    return Sweep("SWEEP", INTRODUCTION, all_scenes(), FAST, METHODS)
 
 
 def methods_of(scene, methods):
@@ -230,8 +231,9 @@ def main():
     results, failures = {}, {}
 
     def write():
-        text, agree = report(sweep.introduction, results, failures, renderer.messages)
-        (options.folder / "SWEEP.md").write_text(text)
+        text, agree = report(sweep.name, sweep.introduction, results, failures, renderer.messages)
+        for name, content in {f"{sweep.name}.md": text, **tables(sweep.name, results)}.items():
+            (options.folder / name).write_text(content)
         return agree
 
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -244,7 +246,7 @@ def main():
                 continue
             results[scene.name] = (scene, rendered, *compare_scene(rendered, references))
             write()
-            print(scene_row(*results[scene.name]), flush=True)
+            print(*scene_row(*results[scene.name]), sep=", ", flush=True)
     return 0 if write() else 1
 
 

@@ -1,5 +1,7 @@
-"""The sweep's tables, in Markdown."""
+"""What a sweep found: a page in Markdown, and all figures as comma-separated values."""
 
+import csv
+import io
 import math
 
 from sweep_measures import MOST_SIGMAS, RELATIVE_BIAS
@@ -7,8 +9,8 @@ from sweep_measures import MOST_SIGMAS, RELATIVE_BIAS
 JUDGED = f"""Compared are the means over the image,
 every frame, and 16 blocks of it, each channel by itself. Errors are those of the seeds, as normal deviates of Student's t; allowed
 besides are {100 * RELATIVE_BIAS:g} % of the image's mean and two thirds of what half the kernel's radius changes, the means of
-photons being extrapolated to no radius. More than {MOST_SIGMAS:g} sigmas disagree. The largest error is the standard error of the
-noisiest method's image mean: what is much larger than 1 % proves little about single blocks.
+photons being extrapolated to no radius. More than {MOST_SIGMAS:g} sigmas disagree. Where the largest error of a scene
+is much above 1 %, it proves little about single blocks.
 """
 INTRODUCTION = f"""# Sweep of small scenes
 
@@ -19,18 +21,24 @@ SLICES_INTRODUCTION = f"""# Sweep of sliced primitives
 `benchmarks/agreement/sweep.py FOLDER --slices`: every sliced primitive, plain and best (at gates volumes_balls are volumes),
 against sensor paths, plain and best, and best beams; 16 x 16 pixels, 8 seeds. Delta gates are those of the slices:
 paths and beams have a box of the width of the planes' temporal kernel about the same moment. {JUDGED}"""
-SCENE_HEAD = """| scene | shows | worst ratio of methods | sigmas | of copies | sigmas | largest error, % | CPU s | |
-| --- | --- | --- | --- | --- | --- | --- | --- | --- |"""
+SCENE_HEAD = ["scene", "shows", "worst_ratio_of_methods", "sigmas", "worst_ratio_of_copies", "sigmas_of_copies", "largest_error_percent",
+              "cpu_seconds", "agrees"]
+METHOD_HEAD = ["scene", "method", "mean_over_first", "standard_error", "worst_sigmas"]
 
 
-def report(introduction, results, failures, messages):
-    """The whole report, and whether everything agrees."""
-    rows = [scene_row(*result) for result in results.values()]
-    parts = [introduction, "\n".join([SCENE_HEAD, *rows])]
+def tables(name, results):
+    """Comma-separated values by file name: a row for each scene, and for each method in it."""
+    return {f"{name}-scenes.csv": _comma_separated(SCENE_HEAD, [scene_row(*result) for result in results.values()]),
+            f"{name}-methods.csv": _comma_separated(METHOD_HEAD, [row for result in results.values() for row in _method_rows(*result)])}
+
+
+def report(name, introduction, results, failures, messages):
+    """The page, and whether everything agrees."""
     disagreements = [line for result in results.values() for line in _disagreements(*result)]
-    parts.append("## Disagreements\n\n" + ("\n".join(disagreements) or "None."))
-    parts.append("## Means over the image, relative to the first method's\n\n" + _means_table(results))
-    parts.append("## Worst deviation from any of the references before it, in sigmas\n\n" + _sigmas_table(results))
+    parts = [introduction, _summary(results), f"By scene: [{name}-scenes.csv]({name}-scenes.csv), the largest error is the standard error of the "
+             f"noisiest method's image mean.\nBy method: [{name}-methods.csv]({name}-methods.csv), means over the image relative to the first method's, "
+             "and the worst deviation from any of the references before it.",
+             "## Disagreements\n\n" + ("\n".join(disagreements) or "None.")]
     left_out = [f"- {scene.name}: {method}: {reason}" for scene, *_ in results.values()
                 for method, reason in scene.without.items()]
     if left_out:
@@ -40,6 +48,29 @@ def report(introduction, results, failures, messages):
     if messages:
         parts.append("## Messages of the renderer\n\n" + "\n".join(f"- {name}: {text}" for name, text in sorted(messages)))
     return "\n\n".join(part.strip() for part in parts) + "\n", not disagreements and not failures
+
+
+def _comma_separated(head, rows):
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([head, *rows])
+    return text.getvalue()
+
+
+def _summary(results):
+    """How many scenes agree, and what comes closest to a disagreement."""
+    rows = [dict(zip(SCENE_HEAD, scene_row(*result))) for result in results.values()]
+    if not rows:
+        return ""
+
+    def worst(column, unit=""):
+        row = max(rows, key=lambda row: float(row[column]))
+        return f"{row[column]}{unit} ({row['scene']})"
+
+    text = (f"{sum(row['agrees'] for row in rows)} of {len(rows)} scenes agree, {sum(float(row['cpu_seconds']) for row in rows):.0f} CPU seconds. Most sigmas: "
+            f"{worst('sigmas')} between methods")
+    if any(copies for *_, copies in results.values()):
+        text += f", {worst('sigmas_of_copies')} between copies"
+    return text + f". Largest error: {worst('largest_error_percent', ' %')}."
 
 
 def _worst(comparisons):
@@ -54,8 +85,16 @@ def scene_row(scene, rendered, methods, copies):
     seconds = sum(seconds for *_, seconds in rendered.values())
     error = max(together.whole_error / together.whole for _, together, _ in rendered.values())
     agree = all(c.agrees for c in [*methods.values(), *copies.values()])
-    return (f"| {scene.name} | {scene.shows} | {ratio:.3f} | {sigmas:.1f} | {copy_ratio:.3f} | {copy_sigmas:.1f} "
-            f"| {100 * error:.1f} | {seconds:.0f} | {'' if agree else '**disagrees**'} |")
+    return [scene.name, scene.shows, f"{ratio:.3f}", f"{sigmas:.1f}", f"{copy_ratio:.3f}", f"{copy_sigmas:.1f}", f"{100 * error:.1f}",
+            f"{seconds:.0f}", int(agree)]
+
+
+def _method_rows(scene, rendered, methods, _):
+    """Ratios of means with their standard errors, and the most sigmas from a reference."""
+    reference = next(iter(rendered.values()))[1].whole
+    for name, (_, together, _) in rendered.items():
+        sigmas = [c.sigmas for (_, second), c in methods.items() if second == name]
+        yield [scene.name, name, f"{together.whole / reference:.3f}", f"{together.whole_error / reference:.3f}", f"{max(sigmas):.1f}" if sigmas else ""]
 
 
 def _disagreements(scene, _, methods, copies):
@@ -65,29 +104,3 @@ def _disagreements(scene, _, methods, copies):
     for (method, copy), c in copies.items():
         if not c.agrees:
             yield f"- {scene.name}: {method}, {copy}: {c.sigmas:.1f} sigmas at {c.where}, ratio of images {c.ratio:.3f}"
-
-
-def _table(results, cell):
-    """cell(result, name) by scene and method."""
-    names = list(dict.fromkeys(name for _, rendered, *_ in results.values() for name in rendered))
-    lines = ["| scene | " + " | ".join(names) + " |", "| --- |" + " --- |" * len(names)]
-    for result in results.values():
-        lines.append(f"| {result[0].name} | " + " | ".join(cell(result, n) if n in result[1] else "" for n in names) + " |")
-    return "\n".join(lines)
-
-
-def _means_table(results):
-    """Ratios with their standard errors."""
-    def cell(result, name):
-        reference, together = next(iter(result[1].values()))[1].whole, result[1][name][1]
-        return f"{together.whole / reference:.3f} ± {together.whole_error / reference:.3f}"
-
-    return _table(results, cell)
-
-
-def _sigmas_table(results):
-    def cell(result, name):
-        sigmas = [c.sigmas for (_, second), c in result[2].items() if second == name]
-        return f"{max(sigmas):.1f}" if sigmas else ""
-
-    return _table(results, cell)

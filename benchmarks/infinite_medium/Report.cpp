@@ -26,19 +26,25 @@ std::string format(const char* pattern, double value) {
     return text;
 }
 
-template <typename Cell>
-void writeTable(std::ostream& out, const Experiment& e, const char* corner, Cell&& cell) {
-    out << "| " << corner << " |";
-    for (const Case& c : e.cases) out << ' ' << c.name << " |";
-    out << "\n| --- |";
-    for (size_t i = 0; i < e.cases.size(); ++i) out << " --- |";
-    out << '\n';
-    for (size_t v = 0; v < e.variants.size(); ++v) {
-        out << "| " << e.variants[v].name << " |";
-        for (size_t c = 0; c < e.cases.size(); ++c) out << ' ' << cell(c, v) << " |";
-        out << '\n';
-    }
-    out << '\n';
+/// Variants with an indented name are the preset above them with one part changed.
+bool isIndented(const std::string& name) {
+    return name.starts_with(' ');
+}
+
+std::string withoutIndent(const std::string& name) {
+    return name.substr(name.find_first_not_of(' '));
+}
+
+/// The study's efficiency of a variant in a case; 0 where it has none.
+double studyFigure(const Experiment& e, size_t caseIndex, size_t variantIndex) {
+    const std::vector<double>& study = e.variants[variantIndex].study;
+    const size_t column = e.cases[caseIndex].studyColumn;
+    return column < study.size() ? study[column] : 0;
+}
+
+/// A field of comma-separated values.
+std::string quoted(const std::string& text) {
+    return text.find(',') == std::string::npos ? text : '"' + text + '"';
 }
 
 /// Count, root mean square, mean and extreme of all z-scores.
@@ -96,40 +102,38 @@ double Experiment::ratio(size_t caseIndex, size_t variantIndex) const {
 }
 
 void writeMarkdown(std::ostream& out, const Experiment& e) {
-    out << "## " << e.title << "\n\nEfficiency relative to “" << e.baseline
-        << "”; the study's figures in brackets. * variance not converged "
-           "(kurtosis above a sixteenth of the paths).\n\n";
-    writeTable(out, e, "variant", [&](size_t c, size_t v) {
-        const std::vector<double>& study = e.variants[v].study;
-        std::string cell = digits(e.ratio(c, v)) + (e.measurements[c][v].converged() ? "" : "*");
-        for (size_t k = 0; k < study.size(); ++k)
-            if (e.cases[c].studyColumn == k && study[k] > 0) cell += " (" + digits(study[k]) + ")";
-        return cell;
-    });
+    out << "## " << e.title << "\n\nEfficiency relative to “" << e.baseline << "”, median of " << e.cases.size()
+        << " cases, and in how many of them the variance has converged (kurtosis below a sixteenth of the paths).\n\n"
+           "| variant | median | converged |\n| --- | ---: | ---: |\n";
+    for (size_t v = 0; v < e.variants.size(); ++v) {
+        if (isIndented(e.variants[v].name)) continue;
+        std::vector<double> ratios;
+        size_t converged = 0;
+        for (size_t c = 0; c < e.cases.size(); ++c) {
+            ratios.push_back(e.ratio(c, v));
+            converged += e.measurements[c][v].converged();
+        }
+        out << "| " << e.variants[v].name << " | " << digits(median(ratios)) << " | " << converged << " |\n";
+    }
+    out << '\n';
     summarise(out, e);
-    writeTable(out, e, "z", [&](size_t c, size_t v) { return format("%.1f", e.zScore(c, v)); });
-    writeTable(out, e, "kurtosis", [&](size_t c, size_t v) { return digits(e.measurements[c][v].kurtosis); });
-    writeTable(out, e, "ns per path", [&](size_t c, size_t v) { return format("%.0f", e.measurements[c][v].cost); });
-    writeTable(out, e, "mean ± error in %", [&](size_t c, size_t v) {
-        const Estimate& m = e.measurements[c][v].estimate;
-        return format("%.4g", m.mean) + " ± " + format("%.2g", 100 * m.error / m.mean);
-    });
-    if (e.measurements.empty() || e.measurements[0][0].pixels.empty()) return;
-    writeTable(out, e, "rms z of the pixels", [&](size_t c, size_t v) { return format("%.2f", e.pixelZ(c, v)); });
 }
 
 void writeCsv(std::ostream& out, const Experiment& e, bool heading) {
     if (heading)
-        out << "experiment,case,variant,paths,mean,standard_error,variance,kurtosis,ns_per_path,relative_efficiency,"
-               "z\n";
+        out << "experiment,case,variant,relative_efficiency,study_efficiency,converged,z,kurtosis,ns_per_path,mean,"
+               "standard_error_percent,pixel_rms_z,paths,variance\n";
     for (size_t c = 0; c < e.cases.size(); ++c)
         for (size_t v = 0; v < e.variants.size(); ++v) {
             const Measurement& m = e.measurements[c][v];
-            const std::string& name = e.variants[v].name;
-            char line[256];
-            std::snprintf(line, sizeof line, ",%.0f,%.9g,%.4g,%.6g,%.6g,%.6g,%.6g,%.3f\n", m.paths, m.estimate.mean,
-                          m.estimate.error, m.variance, m.kurtosis, m.cost, e.ratio(c, v), e.zScore(c, v));
-            out << e.title << ',' << e.cases[c].name << ',' << name.substr(name.find_first_not_of(' ')) << line;
+            const double study = studyFigure(e, c, v);
+            out << quoted(e.title) << ',' << e.cases[c].name << ',' << quoted(withoutIndent(e.variants[v].name))
+                << format(",%.4g,", e.ratio(c, v)) << (study > 0 ? format("%.4g", study) : "")
+                << (m.converged() ? ",1" : ",0") << format(",%.2f", e.zScore(c, v)) << format(",%.4g", m.kurtosis)
+                << format(",%.1f", m.cost) << format(",%.9g", m.estimate.mean)
+                << format(",%.3g,", 100 * m.estimate.error / m.estimate.mean)
+                << (m.pixels.empty() ? "" : format("%.2f", e.pixelZ(c, v))) << format(",%.0f", m.paths)
+                << format(",%.6g\n", m.variance);
         }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Tables of the measurements, and the check that all variants estimate one value.
+// A summary and all figures of the measurements, and the check that all variants estimate one value.
 
 #include "Statistics.h"
 #include "Variants.h"
@@ -26,9 +26,10 @@ struct Experiment {
     [[nodiscard]] double ratio(size_t caseIndex, size_t variantIndex) const;
 };
 
-/// Efficiencies (the study's in brackets), z-scores, kurtosis, costs; means and errors of the named variants.
+/// Medians of the named variants' efficiencies, and how well the means of all agree.
 void writeMarkdown(std::ostream& out, const Experiment& experiment);
-/// One line per case and variant; `heading` once per file.
+/// All figures, a line for each case and variant; `heading` once per file. The study's efficiencies and the pixels'
+/// z-scores are empty where there are none.
 void writeCsv(std::ostream& out, const Experiment& experiment, bool heading);
 /// Prints every |z| > 5 to `out`; returns how many there were.
 int reportDisagreements(std::ostream& out, const Experiment& experiment);

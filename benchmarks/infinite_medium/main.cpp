@@ -1,5 +1,5 @@
-// infinite_medium: which sampling works, without a scene. Every variant on every case, in both modes; a table and
-// comma-separated values.
+// infinite_medium: which sampling works, without a scene. Every variant on every case, in both modes; a summary and
+// all figures as comma-separated values.
 
 #include "Measure.h"
 
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
     app.add_option("--cases", cases, "names, separated by commas (default all)")->delimiter(',');
     app.add_option("--variants", variants, "names, separated by commas (default all)")->delimiter(',');
     app.add_option("--seed", budget.seed, "of the random numbers");
-    app.add_option("--markdown", markdown, "file for the tables (default standard output)");
+    app.add_option("--markdown", markdown, "file for the summary (default standard output)");
     app.add_option("--csv", csv, "file for all figures");
     app.add_flag("--list", listOnly, "print the names of cases and variants");
     CLI11_PARSE(app, argc, argv);
@@ -78,10 +78,17 @@ int main(int argc, char** argv) {
     if (!markdown.empty()) markdownFile.open(markdown);
     if (!csv.empty()) csvFile.open(csv);
     std::ostream& tables = markdown.empty() ? std::cout : markdownFile;
-    tables << "# Sampling in an infinite medium\n\nWhat the figures say: "
-              "[notebook](../../docs/notebook.md#infinite-medium).\n\n`infinite_medium";
+    tables << "# Sampling in an infinite medium\n\nWithout a scene: every variant of the library's samplers, on cases "
+              "of path "
+              "tracing and of the photon pass, whose image is seen in a cone of\ndirections or all around (sphere). "
+              "Efficiency is "
+              "1 / (variance × time). The baselines leave directions to the phase function; their variance is "
+              "infinite,\nso that "
+              "ratios in cases that have not converged say little.\n\n`infinite_medium";
     for (int i = 1; i < argc; ++i) tables << ' ' << argv[i];
-    tables << "`, " << today() << ", " << machineKind() << ", " << std::lround(seconds / 60) << " min.\n\n";
+    tables << "`, " << today() << ", " << machineKind() << ", " << std::lround(seconds / 60) << " min. ";
+    if (!csv.empty()) tables << "All figures: [" << csv << "](" << csv << "). ";
+    tables << "What they say:\n[notebook](../../docs/notebook.md#infinite-medium).\n\n";
     int disagreements = 0;
     for (const Experiment& e : experiments) {
         if (e.cases.empty() || e.variants.empty()) continue;

@@ -2,8 +2,8 @@
 //
 // Renders every verified value (docs/photon-primitives.md, section 6) by points, beams and paths, plain, published and
 // best, for about SECONDS (5) each: a pilot finds how many passes that is. With ROWS only what has it in its name, such
-// as "A2" or "best beams". Writes the deviations to FILE.md; exits with 1 if one exceeds what is allowed, except where
-// the estimator is known to have no finite variance.
+// as "A2" or "best beams". Writes a summary to FILE.md and all deviations to FILE.csv; exits with 1 if one exceeds what
+// is allowed, except where the estimator is known to have no finite variance.
 
 #include "support/PathsAndPhotons.h"
 #include "support/VerifiedValues.h"
@@ -147,57 +147,43 @@ Row prove(const VerifiedValue& value, const Method& method, double seconds) {
     return row;
 }
 
-void writeHeader(std::ostream& file, double seconds) {
+void writeHeader(std::ostream& file, const std::filesystem::path& all, double seconds) {
+    const std::string csv = all.filename().string();
     file
         << "# Verified values\n\n"
-           "Deviations from the verified values (docs/photon-primitives.md, section 6) in % ± standard error "
-           "of the render in "
-           "%; "
-           "in brackets\nthe deviation beyond what is allowed, in standard errors of render and value together. Names: "
-           "configuration, order of\nscattering, time (with or without the camera's leg), gate (a delta; a box of "
-           "width "
-           "1, or of 0.1: narrow).\n\n"
+           "Single orders of scattering by every method against the "
+           "[verified values](../../docs/photon-primitives.md#6-verified-values).\n"
         << "About " << seconds
-        << " s per render on 2 threads; 15000 photons, 6000 beams or 5000 paths a pass; constant "
-        << "radii.\nPoints: biweight kernel of radius " << PointRadius << "; beams: uniform kernel of radius "
-        << BeamRadius << "; delta gates: uniform kernel of half-width\n"
-        << Tau << ". Allowed: " << 100.0 * KernelBias << " % for the kernels' bias, " << 100.0 * Rounding
-        << " % for paths (rounding).\n\n"
-        << "- ∞: the estimator's variance is infinite: means are usually too low and standard errors too small. Apart "
-           "in the summary,\n  all of them (and those within 4).\n"
-        << "- noisy: the standard error is above " << 100.0 * LargestProvingError << " %; proves little.\n"
-        << "- repeated: the first render deviated by more than " << LargestDeviation
-        << "; these are the figures of a second one, with another seed\n  and four times the passes.\n"
-        << "- –: plain paths cannot meet a delta gate, and guided ones render none where surfaces could scatter.\n\n";
+        << " s per render on 2 threads; 15000 photons, 6000 beams or 5000 paths a pass; constant radii. Points: "
+           "biweight "
+           "kernel of radius "
+        << PointRadius << "; beams: uniform\nkernel of radius " << BeamRadius
+        << "; delta gates: uniform kernel of half-width " << Tau << ". Allowed: " << 100.0 * KernelBias
+        << " % for the kernels' bias, " << 100.0 * Rounding << " % for paths (rounding).\n\n"
+        << "All deviations: [" << csv << "](" << csv
+        << "), in % of the value with the standard error of the render in %; the score is the deviation beyond what is "
+           "allowed, in standard\nerrors of render and value together. A value's name: configuration, order of "
+           "scattering, "
+           "time (with or without the camera's segment), gate (a delta; a box of\nwidth 1, or of 0.1: narrow).\n\n"
+           "- Infinite variance (∞): means are usually too low and standard errors too small. These rows stand apart "
+           "in the "
+           "summary, with those within "
+        << LargestDeviation << " in brackets.\n- Noisy: the standard error is above " << 100.0 * LargestProvingError
+        << " %, so that the row proves little.\n- Repeated: the first render deviated by more than " << LargestDeviation
+        << "; the figures are those of a second one, with another seed and four times the passes.\n"
+           "- Plain paths cannot meet a delta gate, and guided ones render none where surfaces could scatter: these "
+           "rows do "
+           "not exist.\n\n";
 }
 
-void writeTable(std::ostream& file, const std::vector<Row>& rows) {
-    file << "| value | radiance |";
-    for (const Method& method : Methods) file << ' ' << method.name << " |";
-    file << "\n| --- | --- |";
-    for (size_t i = 0; i < Methods.size(); ++i) file << " --- |";
-    file << '\n';
-    const auto same = [](const Row& row, const VerifiedValue& value, const Method& method) {
-        return nameOf(row.value) == nameOf(value) && row.method.name == method.name;
-    };
-    char text[128];
-    for (const VerifiedValue& value : VerifiedValues) {
-        if (std::none_of(rows.begin(), rows.end(), [&](const Row& r) { return nameOf(r.value) == nameOf(value); }))
-            continue;
-        std::snprintf(text, sizeof text, "| %s | %.5e |", nameOf(value).c_str(), value.radiance);
+void writeCsv(std::ostream& file, const std::vector<Row>& rows) {
+    file << "value,radiance,method,deviation_percent,error_percent,score,infinite_variance,noisy,repeated,agrees\n";
+    for (const Row& row : rows) {
+        char text[192];
+        std::snprintf(text, sizeof text, "%s,%.5e,%s,%+.2f,%.2f,%.1f,%d,%d,%d,%d\n", nameOf(row.value).c_str(),
+                      row.value.radiance, row.method.name, 100.0 * row.deviation, 100.0 * row.error, row.score(),
+                      row.exempt(), row.noisy(), row.repeated, row.agrees());
         file << text;
-        for (const Method& method : Methods) {
-            const auto row =
-                std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return same(r, value, method); });
-            if (row == rows.end()) {
-                file << " – |";
-                continue;
-            }
-            std::snprintf(text, sizeof text, " %+.2f ± %.2f (%.1f)", 100.0 * row->deviation, 100.0 * row->error,
-                          row->score());
-            file << text << row->marks() << " |";
-        }
-        file << '\n';
     }
 }
 
@@ -231,6 +217,7 @@ std::string summary(const std::vector<Row>& rows, const std::string& name) {
 }
 
 bool proveAll(const std::string& path, double seconds, const std::string& only) {
+    const std::filesystem::path all = std::filesystem::path(path).replace_extension(".csv");
     const std::string unfinished = path + ".part"; // under its own name when it is complete
     std::ofstream file(unfinished);
     if (!file) throw std::runtime_error(unfinished + ": cannot be written");
@@ -244,7 +231,7 @@ bool proveAll(const std::string& path, double seconds, const std::string& only) 
         std::filesystem::remove(unfinished);
         throw std::runtime_error("no row's name holds '" + only + "'; names are such as 'A2WarpedBox, best beams'");
     }
-    writeHeader(file, seconds);
+    writeHeader(file, all, seconds);
     std::string table = "| method | values | within 4 | worst | rms of deviation / error | median error, % | "
                         "noisy | repeated | ∞ |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const Method& method : Methods)
@@ -252,10 +239,12 @@ bool proveAll(const std::string& path, double seconds, const std::string& only) 
             table += summary(rows, method.name);
     table += summary(rows, "");
     std::cout << table;
-    file << table << '\n';
-    writeTable(file, rows);
+    file << table;
     file.close();
-    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
+    std::ofstream csv(all);
+    writeCsv(csv, rows);
+    csv.close();
+    if (!file || !csv) throw std::runtime_error(unfinished + " or " + all.string() + ": cannot be written");
     std::filesystem::rename(unfinished, path);
     return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.agrees() || row.exempt(); });
 }
@@ -267,7 +256,7 @@ int main(int argc, char** argv) {
     CLI::App app{"Single orders of scattering against exact and brute-force values, by every method."};
     std::string file, rows;
     double seconds = 5.0;
-    app.add_option("file", file, "the table, in Markdown")->required();
+    app.add_option("file", file, "the summary, in Markdown; all deviations beside it, as .csv")->required();
     app.add_option("seconds", seconds, "of each render, about")->check(CLI::PositiveNumber)->capture_default_str();
     app.add_option("rows", rows, "only those with this in their name");
     try {

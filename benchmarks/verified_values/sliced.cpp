@@ -1,8 +1,8 @@
 // sliced_values FILE.md [PATHS [ROWS]]
 //
 // Every verified value (docs/photon-primitives.md, section 6) by planes, volumes, balls and hypervolumes, from their
-// geometry alone (tests/support/SlicedOrders.h), by PATHS walks each. Writes the deviations to FILE.md; exits with 1 if
-// one exceeds 4 standard errors, except where the estimator has no finite variance.
+// geometry alone (tests/support/SlicedOrders.h), by PATHS walks each. Writes a summary to FILE.md and all deviations to
+// FILE.csv; exits with 1 if one exceeds 4 standard errors, except where the estimator has no finite variance.
 
 #include "support/SlicedOrders.h"
 
@@ -28,11 +28,11 @@ struct Result {
         return std::abs(found.mean - value.radiance) / std::max(error, 1e-300);
     }
     [[nodiscard]] bool agrees() const { return score() <= LargestDeviation; }
-    /// Without ghosts the estimator is wrong: the table shows by how much.
+    /// Without ghosts the estimator is wrong: the figures show by how much.
     [[nodiscard]] bool counts() const { return !infiniteVariance(row) && row != Sliced::ShortWithoutGhosts; }
 };
 
-void write(std::ostream& file, const std::vector<Result>& results, uint64_t paths) {
+void write(std::ostream& file, const std::filesystem::path& all, const std::vector<Result>& results, uint64_t paths) {
     size_t counted = 0, within = 0;
     double worst = 0.0;
     for (const Result& r : results) {
@@ -41,22 +41,28 @@ void write(std::ostream& file, const std::vector<Result>& results, uint64_t path
         within += r.agrees();
         worst = std::max(worst, r.score());
     }
-    file << "# Verified values by sliced primitives\n\n"
-            "Deviations from the verified values (docs/photon-primitives.md, section 6) in % ± standard error in %; in "
-            "brackets the\ndeviation in standard errors of both together. "
-         << paths
-         << " walks each, planes, volumes, balls and\nhypervolumes from one walk. ∞: the variance is infinite, the "
-            "error "
-            "too small. Without ghosts the estimator is wrong, as it\nshould be.\n\n"
-         << counted << " rows of finite variance, " << within << " within 4 standard errors; the worst: ";
+    const std::string csv = all.filename().string();
     char text[128];
-    std::snprintf(text, sizeof text, "%.1f.\n\n", worst);
-    file << text << "| value | radiance | row | deviation |\n| --- | --- | --- | --- |\n";
+    std::snprintf(text, sizeof text, "%zu rows of finite variance, %zu within %g standard errors; the worst: %.1f.\n",
+                  counted, within, LargestDeviation, worst);
+    file << "# Verified values by sliced primitives\n\n"
+            "The [verified values](../../docs/photon-primitives.md#6-verified-values) by planes, volumes, balls "
+            "and hypervolumes, from their geometry alone:\n"
+         << paths << " walks each, all primitives from one walk. " << text << "\nAll deviations: [" << csv << "]("
+         << csv
+         << "), in % with the standard error in %; the score is the deviation in standard errors of both together. "
+            "Where the "
+            "variance is infinite\nthe error is too small. Without padding directions (`no ghosts`) the estimator is "
+            "wrong, as it should be.\n";
+}
+
+void writeCsv(std::ostream& file, const std::vector<Result>& results) {
+    file << "value,radiance,row,deviation_percent,error_percent,score,infinite_variance,agrees\n";
     for (const Result& r : results) {
-        std::snprintf(text, sizeof text, "| %s | %.5e | %s | %+.2f ± %.2f (%.1f)%s%s |\n", nameOf(r.value).c_str(),
+        char text[192];
+        std::snprintf(text, sizeof text, "%s,%.5e,\"%s\",%+.2f,%.2f,%.1f,%d,%d\n", nameOf(r.value).c_str(),
                       r.value.radiance, SlicedNames[size_t(r.row)], 100.0 * (r.found.mean / r.value.radiance - 1.0),
-                      100.0 * r.found.error / r.value.radiance, r.score(), infiniteVariance(r.row) ? " ∞" : "",
-                      r.counts() && !r.agrees() ? " **disagrees**" : "");
+                      100.0 * r.found.error / r.value.radiance, r.score(), infiniteVariance(r.row), r.agrees());
         file << text;
     }
 }
@@ -72,11 +78,14 @@ bool prove(const std::string& path, uint64_t paths, const std::string& only) {
     }
     if (results.empty())
         throw std::runtime_error("no value's name holds '" + only + "'; names are such as A3WarpedBox");
+    const std::filesystem::path all = std::filesystem::path(path).replace_extension(".csv");
     const std::string unfinished = path + ".part"; // under its own name when it is complete
-    std::ofstream file(unfinished);
-    write(file, results, paths);
+    std::ofstream file(unfinished), csv(all);
+    write(file, all, results, paths);
+    writeCsv(csv, results);
     file.close();
-    if (!file) throw std::runtime_error(unfinished + ": cannot be written");
+    csv.close();
+    if (!file || !csv) throw std::runtime_error(unfinished + " or " + all.string() + ": cannot be written");
     std::filesystem::rename(unfinished, path);
     return std::all_of(results.begin(), results.end(), [](const Result& r) { return r.agrees() || !r.counts(); });
 }
@@ -88,7 +97,7 @@ int main(int argc, char** argv) {
     CLI::App app{"Single orders of scattering against exact and brute-force values, by sliced primitives."};
     std::string file, rows;
     uint64_t paths = 10000000;
-    app.add_option("file", file, "the table, in Markdown")->required();
+    app.add_option("file", file, "the summary, in Markdown; all deviations beside it, as .csv")->required();
     app.add_option("paths", paths, "walks for each value")->check(CLI::PositiveNumber)->capture_default_str();
     app.add_option("rows", rows, "only values with this in their name");
     try {

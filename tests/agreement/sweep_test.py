@@ -2,6 +2,7 @@
 """The sweep of small scenes (benchmarks/agreement/sweep.py): its comparisons on synthetic means, its copies, and its scenes in the
 built renderer, named by the environment's TUNGSTEN."""
 
+import csv
 import json
 import os
 import subprocess
@@ -20,6 +21,7 @@ from sweep import Renderer, compare_scene, methods_of, scene_json  # noqa: E402
 from sweep_copies import moved, scaled  # noqa: E402
 from sweep_measures import BLOCKS, Samples, compare, compare_pairs, means, normal_sigmas, without_kernel  # noqa: E402
 from sweep_methods import METHODS, SLICE_METHODS  # noqa: E402
+from sweep_report import report, tables  # noqa: E402
 from sweep_scenes import FAST, all_scenes  # noqa: E402
 from sweep_slices import SLICE_FAST, slice_scenes  # noqa: E402
 from sweep_vocabulary import write_assets  # noqa: E402
@@ -150,6 +152,21 @@ class Scenes(unittest.TestCase):
         self.assertEqual({b for (_, b), c in methods.items() if not c.agrees}, {"best balls"})
         self.assertEqual({a for a, _ in methods}, set(names[:3]))
         self.assertEqual(copies, {})
+
+    def test_the_page_names_what_disagrees_and_the_files_have_all_figures(self):
+        scene, random = all_scenes()[0], np.random.default_rng(1)
+        rendered = {name: ({}, samples(random, mean, 0.02), 1.0) for name, mean in (("plain paths", 1.0), ("best paths", 2.0))}
+        results = {scene.name: (scene, rendered, *compare_scene(rendered, ["plain paths"]))}
+        page, agree = report("SWEEP", "# Sweep", results, {}, set())
+        self.assertFalse(agree)
+        self.assertIn("0 of 1 scenes agree, 2 CPU seconds", page)
+        self.assertIn(f"- {scene.name}: best paths against plain paths", page)
+        files = tables("SWEEP", results)
+        self.assertEqual({name for name in files if name in page}, {"SWEEP-scenes.csv", "SWEEP-methods.csv"})
+        by_scene, by_method = (list(csv.DictReader(text.splitlines())) for text in files.values())
+        self.assertEqual([(row["scene"], row["agrees"]) for row in by_scene], [(scene.name, "0")])
+        self.assertEqual([row["method"] for row in by_method], list(rendered))
+        self.assertAlmostEqual(float(by_method[1]["mean_over_first"]), 2.0, delta=0.05)
 
     def test_the_renderer_accepts_them_without_a_warning(self):
         with tempfile.TemporaryDirectory() as folder:
