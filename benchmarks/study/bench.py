@@ -5,6 +5,7 @@ A busy machine takes wall time from a render, hardly processor time: renders her
 process has used its share of CPU seconds.
 """
 
+import csv
 import hashlib
 import json
 import os
@@ -207,8 +208,16 @@ class Bench:
             figure.savefig(self.results / f"{name}.svg", metadata={"Date": None})
         plt.close(figure)
 
+    def keep(self, name, head, rows):
+        """Writes a table as NAME.csv beside the page, empty where there is no figure. Returns what the page says of it."""
+        rows = [["" if cell in ("–", None) else str(cell) for cell in row] for row in rows]
+        self.results.mkdir(parents=True, exist_ok=True)
+        with (self.results / f"{name}.csv").open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([head, *rows])
+        return f"[{name}.csv]({name}.csv) ({len(rows)} rows)"
+
     def write(self, title, *parts):
-        """README.md of the results: what the study says, then the conditions."""
+        """README.md of the results: what the study says, then the conditions. Long tables are files beside it (`keep`)."""
         commit = commit_of(ROOT)
         command = " ".join(self.sample).replace(f"{ROOT.parent}/", "../").replace(f"../{ROOT.name}/", "")
         end = ["## Conditions", f"`benchmarks/study/study.py {self.name}{' --quick' if self.quick else ''}`, renderer built at "

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench import Bench, Scene, panels, table
+from bench import Bench, Scene, panels
 from measures import grey
 
 TITLE = "Does `--plan-cost` tell what an error costs?"
@@ -145,9 +145,11 @@ def run(bench: Bench):
                 "## What 1 % costs", "CPU seconds at that resolution, by the method that prices call the cheapest, and as the cheapest of the renders would "
                 "take if its MSE fell as 1 / time, which a bias does not. Both go beyond what was rendered by factors of up to a "
                 "million: a bias below a pilot's noise, or a bright sample that it has not seen, is in neither.",
-                table(["scene", "cheapest by its price", "CPU s", "cheapest of the renders", "CPU s"], prices),
-                "## Predictions", table(["scene", "method", "passes", "error", "own standard error / spread of seeds", "own bias",
-                                         "predicted, CPU s", "measured, CPU s", "ratio"], [row for row, _ in rows]),
-                "## Choices", "At the least error that a method reached in its time; the cost of the others there from their MSE × CPU s.",
-                table(["scene", "error", "its choice", "cheapest", "cost over the cheapest"], [row for row, _ in choices]),
-                "## Without a price", table(["scene", "method", "why"], refused) if refused else "None.")
+                "By scene: " + bench.keep("one-percent", ["scene", "cheapest by its price", "CPU s by its price", "cheapest of the renders", "CPU s of the renders"],
+                                          prices) + ".",
+                "## Figures", "- " + bench.keep("predictions", ["scene", "method", "passes", "error", "own standard error / spread of seeds", "own bias",
+                                                                "predicted, CPU s", "measured, CPU s", "ratio"], [row for row, _ in rows])
+                + ": prices of the error that renders reached, and what it took them\n- "
+                + bench.keep("choices", ["scene", "error", "its choice", "cheapest", "cost over the cheapest"], [row for row, _ in choices])
+                + ": at the least error that a method reached in its time; the cost of the others there from their MSE × CPU s\n- "
+                + bench.keep("refused", ["scene", "method", "why"], refused) + ": methods without a price, and why")

@@ -52,7 +52,7 @@ class Case:
         self.passes = float(np.mean([render.passes[-1] for render in renders]))
 
     def ratio(self):
-        return f"{self.mean:.3f} ± {self.error:.3f}"
+        return f"{self.mean:.3f}", f"{self.error:.3f}"
 
 
 def picture(bench, gains):
@@ -90,8 +90,8 @@ def run(bench: Bench):
             ratios = [a / b for a, b in zip(plain.by_seed, best.by_seed)]
             gains[name][primitive] = (plain.cost / best.cost, min(ratios), max(ratios))
             rows.append([name, primitive, f"{plain.cost:.3g}", f"{best.cost:.3g}", f"{plain.cost / best.cost:.3g}",
-                         f"{plain.trimmed / best.trimmed:.3g}", f"{plain.flip:.3f}, {best.flip:.3f}", plain.ratio(), best.ratio(),
-                         f"{plain.passes:.0f}, {best.passes:.0f}"])
+                         f"{plain.trimmed / best.trimmed:.3g}", f"{plain.flip:.3f}", f"{best.flip:.3f}", *plain.ratio(), *best.ratio(),
+                         f"{plain.passes:.0f}", f"{best.passes:.0f}"])
     picture(bench, gains)
     bench.write(TITLE, "MSE × CPU seconds over (reference mean)², the reference's own noise taken off: " + str(seeds) + " seeds. "
                 "*Gain*: plain over best; *99 %*: without the hundredth of the pixels of largest error, which tells what single bright "
@@ -100,4 +100,7 @@ def run(bench: Bench):
                 "Gains are least in gates that hold most of the light (tissue, gate of 4), "
                 "and for beams where light hardly diffuses (two rooms).",
                 "![gains](bodies.svg)",
-                table(["scene", "kind", "plain", "best", "gain", "gain, 99 %", "FLIP", "plain: mean", "best: mean", "passes"], rows))
+                "All figures: " + bench.keep("bodies", ["scene", "kind", "plain", "best", "gain", "gain, 99 %", "FLIP, plain", "FLIP, best", "plain: mean",
+                                                        "plain: its error", "best: mean", "best: its error", "passes, plain", "passes, best"], rows) + ".",
+                table(["scene", "gain: points", "beams", "paths"], [[name, *(f"{found[primitive][0]:.3g}" for primitive in PRIMITIVES)]
+                                                                    for name, found in gains.items()]))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench import PATHS, Bench, Scene, panels, plain_log, table
+from bench import PATHS, Bench, Scene, panels, plain_log
 from study_file import StudyError
 
 TITLE = "What effects cost"
@@ -101,7 +101,7 @@ def row_of(effect, scene, own, renders):
     largest = sorted(by_stage, key=lambda name: -abs(by_stage[name]))[:3]
     told = ", ".join(f"{name} {by_stage[name]:+.1f}" for name in largest if abs(by_stage[name]) > 0.01 * off["passes"]) or "none"
     rest = (difference - mine) / max(on["passes"], off["passes"])
-    return [effect, scene, f"{on['passes']:.1f}", f"{off['passes']:.1f}", f"{difference:+.1f}", f"{mine:+.1f}", f"{rest:+.1%}",
+    return [effect, scene, f"{on['passes']:.1f}", f"{off['passes']:.1f}", f"{difference:+.1f}", f"{mine:+.1f}", f"{100 * rest:+.1f}",
             f"{on['passes'] / off['passes']:.2f}", told], (label, on["passes"] / off["passes"], rest)
 
 
@@ -146,5 +146,5 @@ def run(bench: Bench):
                 f"paths the camera pass; those with fewer stages ({', '.join(dict.fromkeys(effect for effect, _, own, *_ in chosen if own != CAMERA and not set(PHOTONS + VOLUME + LOOK) <= set(own)))}) are the "
                 "harder test.",
                 "![time with and without](effects.svg)",
-                table(["effect", "scene", "with, ms", "without, ms", "change, ms", "of its stages, ms", "elsewhere, of a pass", "ratio",
-                       "stages that changed most, ms"], rows))
+                "All figures: " + bench.keep(bench.name, ["effect", "scene", "with, ms", "without, ms", "change, ms", "of its stages, ms", "elsewhere, % of a pass",
+                                                          "ratio", "stages that changed most, ms"], rows) + ".")

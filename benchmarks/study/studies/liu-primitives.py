@@ -6,14 +6,13 @@ import subprocess
 
 import numpy as np
 
-from bench import MAP, PRESETS, Bench, Scene, method, panels, plt, table
+from bench import MAP, PRESETS, Bench, Scene, method, panels, plt
 from errors import Truth, parts
 from images import tone_map
 from measures import grey
 
 TITLE = "Liu et al.'s primitives beside points, beams and paths"
 SLICES = ["planes", "volumes", "balls", "mis_volumes_balls", "hypervolumes"]
-COLUMNS = ["points", "beams", *SLICES, "paths"]
 SHOWN = ["plain points", "plain beams", "plain mis_volumes_balls", "best mis_volumes_balls"]
 UNBLURRED = 0.01  # radius of the beams, and half of their time, of what references are made by
 
@@ -83,13 +82,6 @@ def three(value):
     return f"{value:.3g}"
 
 
-def cell(costs, spreads, name, least):
-    if name not in costs:
-        return "–"
-    cost = three(costs[name])
-    return (f"**{cost}**" if name == least else cost) + f" ({spreads[name]:.2g})"
-
-
 def picture(bench, case, truth, found):
     """The first seed's image of some methods, and the seeds' mean less the reference."""
     figure, axes = plt.subplots(2, len(SHOWN) + 1, figsize=(2.6 * (len(SHOWN) + 1), 4.4), layout="constrained")
@@ -126,7 +118,7 @@ def gains(bench, chosen):
 
 
 def run(bench: Bench):
-    rows, automatic, means, chosen = {"plain": [], "best": []}, [], [], {}
+    rows, automatic, means, chosen = [], [], [], {}
     for scene in bench.short(SCENES, SCENES[1:2]):
         seeds = bench.short(5, 2)
         for unwarped, delta in ((True, True), (True, False), (False, True), (False, False)):
@@ -136,9 +128,7 @@ def run(bench: Bench):
             found = bench.interleaved(cells, seeds, cpu=bench.short(0.4, 0.2))
             said = {name: parts(renders, truth) for name, renders in found.items()}
             costs, spreads = ({name: value(one) for name, one in said.items()} for value in (lambda one: one.cost, lambda one: one.variance * one.cpu))
-            least = min(costs, key=costs.get)
-            for preset, lines in rows.items():
-                lines.append([case.name, *(cell(costs, spreads, f"{preset} {column}", least) for column in COLUMNS)])
+            rows += [[case.name, *name.split(" "), three(cost), f"{spreads[name]:.2g}"] for name, cost in costs.items()]
             primitive, reason = case.automatic(bench)
             photons = {name: cost for name, cost in costs.items() if not name.endswith("paths")}
             best = {name: cost for name, cost in photons.items() if name.startswith("best")}
@@ -154,19 +144,17 @@ def run(bench: Bench):
             if unwarped and delta:
                 picture(bench, case, truth, found)
     gains(bench, chosen)
-    head = ["scene", *COLUMNS]
     notes = "; ".join(f"{name}: {why}" for name, why in NOTES.items())
-    bench.write(TITLE, "MSE × CPU seconds over (reference mean)², the reference's own noise taken off; in brackets the same of the variance "
+    bench.write(TITLE, "MSE × CPU seconds over (reference mean)², the reference's own noise taken off, and the same of the variance "
                 "alone: what is left is blur, most of all at the front of light and in the focus of the caustic. 5 seeds; "
-                "lower is better, the least of both tables is bold. `volumes_balls` makes at these gates what `volumes` makes. References: plain "
+                "lower is better. `volumes_balls` makes at these gates what `volumes` makes. References: plain "
                 f"`mis_volumes_balls` with beams of radius {UNBLURRED}, or, where they are less noisy, such beams (fogged-box, volumetric-caustic, "
                 "amber-half-space warped), by another seed. No paths in " + notes + "; nor plain ones at a moment.",
-                "## What it says", SAYS, "## Plain", table(head, rows["plain"]), "## With `\"darts\": \"best\"`", table(head, rows["best"]),
-                "## What `auto` chooses", "`volume_photon_type: \"auto\"` with `\"darts\": \"best\"`: its cost, that of the best primitive guided "
-                "alike, and the ratio of both; of variances: its variance × CPU over the least.",
-                table(["scene", "auto", "cost", "best", "cost", "ratio", "of variances", "reason"], automatic),
-                "![costs](liu-primitives.svg)",
-                "## Means", "Over the reference's; and the reference's own standard error per pixel, over its mean.",
-                table(["scene", *SHOWN, "reference"], means),
+                "## What it says", SAYS, "![costs](liu-primitives.svg)",
+                "## Figures", "- " + bench.keep("costs", ["scene", "preset", "primitive", "MSE × CPU s", "variance × CPU s"], rows) + "\n- "
+                + bench.keep("auto", ["scene", "auto", "cost of auto", "best", "cost of best", "ratio", "ratio of variances", "reason"], automatic)
+                + ": `volume_photon_type: \"auto\"` with `\"darts\": \"best\"`, its cost, that of the best primitive guided alike, and the ratio of both; "
+                "of variances: its variance × CPU over the least\n- " + bench.keep("means", ["scene", *SHOWN, "reference"], means)
+                + ": means over the reference's, and the reference's own standard error per pixel over its mean",
                 "## Pictures", "Single moments, time stopped at what is seen.",
                 *(f"![{scene[0]}]({scene[0]}.png)" for scene in bench.short(SCENES, SCENES[1:2])))

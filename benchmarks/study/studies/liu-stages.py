@@ -1,6 +1,6 @@
 """Memory and CPU time by stage of sliced primitives in the scenes of data/scenes."""
 
-from bench import MAP, Bench, Scene, table
+from bench import MAP, Bench, Scene
 
 TITLE = "Sliced primitives: memory and time by stage"
 TYPES = ["planes", "volumes", "balls", "mis_volumes_balls", "hypervolumes"]
@@ -39,6 +39,6 @@ def film_rows(bench):
 
 def run(bench: Bench):
     bench.write(TITLE, "One plain pass at each scene's own counts, `camera_unwarped`, one thread. MB: of the records, and peak of the process. Stages in "
-                "ms of CPU time.", table(["scene", "gate", "type", "records", "records, MB", "peak, MB", *STAGES], stage_rows(bench)),
-                "CPU seconds that drawing takes for 2000 records of fogged-box (96x96, no surfaces) over the same 5 units of time:",
-                table(["type", *(f"{n} frame{'s' if n > 1 else ''}" for n in FRAMES)], film_rows(bench)))
+                "ms of CPU time: " + bench.keep("stages", ["scene", "gate", "type", "records", "records, MB", "peak, MB", *STAGES], stage_rows(bench)) + ".",
+                "CPU seconds that drawing takes for 2000 records of fogged-box (96x96, no surfaces) over the same 5 units of time, by number of frames: "
+                + bench.keep("frames", ["type", *FRAMES], film_rows(bench)) + ".")

@@ -96,20 +96,26 @@ def exponent(sizes, values):
     return float(np.log(values[-1] / values[-2]) / np.log(sizes[-1] / sizes[-2]))
 
 
-def rows_of(found):
-    """By method: seconds by size, the power at the upper end, memory, its growth per unit of size."""
+def rows_of(what, found):
+    """All figures."""
+    for size, of_size in found.items():
+        for name, (cpu, wall, before, memory) in of_size.items():
+            yield [what, size, name, f"{1e3 * cpu:.3g}", f"{1e3 * wall:.3g}", f"{memory:.0f}", f"{1e3 * before:.3g}"]
+
+
+def growth(found, name):
+    """The power of the CPU time at the upper end, and by how many bytes memory grows per unit of size there."""
     sizes = list(found)
-    for name in next(iter(found.values())):
-        cpu, _, before, memory = zip(*(found[size][name] for size in sizes))
-        grows = 1e6 * (memory[-1] - memory[-2]) / (sizes[-1] - sizes[-2])
-        yield [name, *(f"{1e3 * seconds:.3g}" for seconds in cpu), f"{exponent(sizes, cpu):.2f}", *(f"{mb:.0f}" for mb in memory), 
-               f"{grows:.3g}" if memory[-1] > 1.1 * memory[0] else "–", f"{1e3 * before[-1]:.3g}"]
+    if name not in found[sizes[0]]:
+        return "–"
+    cpu, _, _, memory = zip(*(found[size][name] for size in sizes))
+    grows = 1e6 * (memory[-1] - memory[-2]) / (sizes[-1] - sizes[-2])
+    return f"{exponent(sizes, cpu):.2f}" + (f", {grows:.3g} B" if memory[-1] > 1.1 * memory[0] else "")
 
 
-def thread_rows(found):
-    for name, (cpu, wall, _, memory) in found[1].items():
-        cpu2, wall2, _, memory2 = found[2][name]
-        yield [name, f"{1e3 * wall:.3g}", f"{1e3 * wall2:.3g}", f"{wall / wall2:.2f}", f"{1e3 * cpu:.3g}", f"{1e3 * cpu2:.3g}", f"{memory:.0f}", f"{memory2:.0f}"]
+def faster(found):
+    """How many times as fast two threads are."""
+    return ", ".join(f"{name} {one[1] / found[2][name][1]:.2f}" for name, one in found[1].items())
 
 
 def picture(bench, found):
@@ -129,13 +135,12 @@ def picture(bench, found):
 def run(bench: Bench):
     found = {what: measured(bench, cells) for what, cells in axes_of(bench).items()}
     picture(bench, found)
-    text = []
-    for what in ("pixels", "photons of a pass", "frames", "triangles"):
-        sizes = list(found[what])
-        text += [f"## {what.capitalize()}", table(["method", *(f"{n}: ms" for n in sizes), "power at the end", *(f"{n}: MB" for n in sizes),
-                                                   f"bytes for each of the {what.split(' ')[0]}", "load and prepare, ms"], rows_of(found[what]))]
-    text += ["## Threads", "A machine with other work to do has less than two processors for two threads.",
-             table(["method", "1: ms", "2: ms", "times as fast", "1: CPU ms", "2: CPU ms", "1: MB", "2: MB"], thread_rows(found["threads"]))]
+    rows = [row for what, of_what in found.items() for row in rows_of(what, of_what)]
     bench.write(TITLE, "CPU ms of a pass, of one sample for each pixel, and the peak memory of the process, in cornell-fog; triangles: a ball of them in fog. "
                 f"The least of {bench.short(REPEATS, 1)} renders of {PASSES} passes each, one thread. The power: of the size, between the two largest. What a scene needs "
-                "apart from what grows is in all of them, so that powers are below those of large scenes.", "![CPU seconds against sizes](scaling.svg)", *text)
+                "apart from what grows is in all of them, so that powers are below those of large scenes.", "![CPU seconds against sizes](scaling.svg)",
+                "The power of the CPU time, and the bytes for each pixel, photon, frame or triangle where memory grows:",
+                table(["what grows", *METHODS], [[what, *(growth(of_what, name) for name in METHODS)] for what, of_what in found.items() if what != "threads"]),
+                f"Two threads, on a machine with other work to do, are this many times as fast as one: {faster(found['threads'])}.",
+                "All figures: " + bench.keep(bench.name, ["what", "size", "method", "CPU ms of a pass", "wall ms of a pass", "peak MB",
+                                                          "load and prepare, ms"], rows) + ".")
