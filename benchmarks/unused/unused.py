@@ -4,10 +4,11 @@ render of cornell-fog, which uses none of these. Counts of valgrind do not depen
 the difference of two lengths. Works in the tree that it is in, restores every file, and builds once more at the end. Some two minutes
 an effect.
 
-    benchmarks/unused/unused.py [--build build] [--only TEXT] [--jobs N] [--markdown FILE]
+    benchmarks/unused/unused.py [--build build] [--only TEXT] [--jobs N] [--csv FILE]
 """
 
 import argparse
+import csv
 import os
 import subprocess
 import sys
@@ -82,23 +83,23 @@ def main():
     parser.add_argument("--build", type=Path, default=PROJECT / "build")
     parser.add_argument("--only", default="")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--csv", type=Path, help="file for the figures, in %")
     options = parser.parse_args()
     folder = options.build.resolve()
     build(folder, options.jobs)
     every = {method: of_samples(folder / "bin/tungsten", method) for method in METHODS}
-    lines = ["| what the other build lacks | " + " | ".join(METHODS) + " |", "| --- |" + " --- |" * len(METHODS)]
-    print(*lines, sep="\n", flush=True)
+    rows = [["what the other build lacks", *(f"{method}, %" for method in METHODS)]]
+    print(*rows[0], sep=", ", flush=True)
     for what, methods, edits in REMOVALS:
         if options.only not in what:
             continue
         lacking = without(edits, folder, options.jobs, methods)
-        cells = [f"{every[m] / lacking[m] - 1:+.2%}" if m in lacking else "" for m in METHODS]
-        lines.append(f"| {what} | " + " | ".join(cells) + " |")
-        print(lines[-1], flush=True)
+        rows.append([what, *(f"{100 * (every[m] / lacking[m] - 1):+.2f}" if m in lacking else "" for m in METHODS)])
+        print(*rows[-1], sep=", ", flush=True)
     build(folder, options.jobs)
-    if options.markdown:
-        options.markdown.write_text("\n".join(lines) + "\n")
+    if options.csv:
+        with options.csv.open("w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
 
 
 if __name__ == "__main__":

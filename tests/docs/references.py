@@ -159,6 +159,8 @@ def main():
     for file in files:
         if file.endswith(".md"):
             check.page(file)
+        elif file.startswith("docs/") and file.endswith(".csv"):
+            check.paths(file, (project / file).read_text())
         elif (Path(file).suffix in SOURCES or Path(file).name == "CMakeLists.txt") and not file.startswith("tests/docs/"):
             check.comments(file)
     print("\n".join(check.problems) or f"{len(files)} files: every reference leads somewhere")

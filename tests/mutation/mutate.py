@@ -124,7 +124,7 @@ def main():
     parser.add_argument("--folder", default="", help="faults of files below it")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--all-tests", action="store_true", help="what is missed by its tests is shown to all others, too")
-    parser.add_argument("--table", action="store_true", help="print rows of a table of docs/accuracy.md")
+    parser.add_argument("--table", action="store_true", help="print rows of a Markdown table")
     parser.add_argument("--no-build", action="store_true", help="the build is there, with the faults as they are")
     arguments = parser.parse_args()
     signal.signal(signal.SIGINT, signal.default_int_handler)  # else ignored by what tests interrupt, where this runs in the background

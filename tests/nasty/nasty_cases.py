@@ -168,7 +168,7 @@ def energy_room(bounces, times):
 
 
 def cases():
-    """In the order of docs/accuracy.md."""
+    """In the order of docs/accuracy-hard-scenes.csv."""
     same = "points, beams and paths, plain and best, agree within 5 standard errors and the kernel's blur"
     finite = "finite, no crash, no hang"
     many = [lamp((0.3 + 1e-3 * math.sin(i), 1.6, 0.2 + 1e-3 * math.cos(i)), emission=8e-4, name=f"lamp {i}") for i in range(10000)]

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Hard scenes (nasty_cases.py): finite, without crash or hang, and agreeing where a comparison makes sense. `--long` adds what takes
-minutes, `--table` prints the rows of docs/accuracy.md. The renderer is named by the environment's TUNGSTEN."""
+minutes, `--table` prints the rows of docs/accuracy-hard-scenes.csv. The renderer is named by the environment's TUNGSTEN."""
 
 import argparse
+import csv
 import json
 import math
 import os
@@ -181,7 +182,8 @@ def main():
     for name, measured, good, promise in rows(arguments):
         bad += not good
         if arguments.table:
-            print(f"| {name} | {promise} | {measured} |", flush=True)
+            csv.writer(sys.stdout, lineterminator="\n").writerow([name, promise, measured])
+            sys.stdout.flush()
         else:
             print(f"{'ok    ' if good else 'FAILED'} {name}: {measured}", flush=True)
     sys.exit(bad > 0)
