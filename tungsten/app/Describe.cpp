@@ -76,17 +76,24 @@ std::vector<SharedFields> shareFields(const DescribedKind& kind) {
 }
 
 void printTable(const std::vector<Field>& fields, std::ostream& out) {
-    out << "\n| field | default | unit | accepted | meaning |\n| --- | --- | --- | --- | --- |\n";
+    out << "\n| field | default | accepted, in its unit | meaning |\n| --- | --- | --- | --- |\n";
     for (const Field& field : fields)
-        out << "| `" << field.name << "` | " << cell(field.fallback) << " | " << field.unit << " | "
-            << cell(field.accepted) << " | " << cell(field.meaning) << " |\n";
+        out << "| `" << field.name << "` | " << cell(field.fallback) << " | " << cell(field.accepted)
+            << (field.unit == "none" ? "" : " [" + field.unit + "]") << " | " << cell(field.meaning) << " |\n";
 }
 
 void printBlocks(const DescribedKind& kind, std::ostream& out) {
-    for (const auto& block : kind.types) {
-        out << "\n### " << block->name << '\n';
-        printTable(block->fields, out);
-        const std::vector<std::string> ignored = block->ignored();
+    for (size_t i = 0; i < kind.types.size(); ++i) {
+        const Description& block = *kind.types[i];
+        out << "\n### " << block.name << '\n';
+        const auto end = kind.types.begin() + std::ptrdiff_t(i);
+        const auto alike =
+            std::find_if(kind.types.begin(), end, [&](const auto& earlier) { return earlier->fields == block.fields; });
+        if (alike == end)
+            printTable(block.fields, out);
+        else
+            out << "\nThe fields of `" << (*alike)->name << "`.\n";
+        const std::vector<std::string> ignored = block.ignored();
         if (!ignored.empty()) out << "\nAccepted without effect: " << quoted(ignored) << ".\n";
     }
 }
