@@ -4,6 +4,9 @@
 #include "darts/LogLinearDistance.h"
 #include "darts/Settings.h"
 
+#include <optional>
+#include <utility>
+
 namespace darts {
 
 /// Uniform numbers in [0, 1) of one draw.
