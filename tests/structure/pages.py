@@ -71,7 +71,8 @@ def main():
         print("\n".join(f"{count:6} {name}" for name, count in sorted(counts.items(), key=lambda entry: entry[1])))
         print(f"{sum(counts.values()):6} in all, at most {MOST_WORDS}")
     told = list(wrong(counts, (PROJECT / GLOSSARY).read_text(), code()))
-    print("\n".join(told))
+    for line in told:
+        print(line)
     return bool(told)
 
 
