@@ -217,14 +217,14 @@ class Bench:
         return f"[{name}.csv]({name}.csv) ({len(rows)} rows)"
 
     def write(self, title, *parts):
-        """README.md of the results: what the study says, then the conditions. Long tables are files beside it (`keep`)."""
+        """README.md of the results: what the study says, then the conditions. Long tables (`keep`) and the first command are files beside it."""
         commit = commit_of(ROOT)
         command = " ".join(self.sample).replace(f"{ROOT.parent}/", "../").replace(f"../{ROOT.name}/", "")
         end = ["## Conditions", f"`benchmarks/study/study.py {self.name}{' --quick' if self.quick else ''}`, renderer built at "
                f"`{commit}`, {time.strftime('%Y-%m-%d')}, {machine()}, load {os.getloadavg()[1]:.1f} in the last 5 minutes; "
-               f"{self.spent / 60:.1f} CPU minutes of renders, one thread each unless a table says else. The first of them:",
-               f"```sh\n{quoted(command)}\n```"]
+               f"{self.spent / 60:.1f} CPU minutes of renders, one thread each unless a table says else; the first of them: [command.sh](command.sh)."]
         self.results.mkdir(parents=True, exist_ok=True)
+        (self.results / "command.sh").write_text(f"{quoted(command)}\n")
         file = self.results / "README.md"
         file.write_text("\n\n".join([f"# {title}", *parts, *end]) + "\n")
         print(file)

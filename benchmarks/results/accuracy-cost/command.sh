@@ -1,0 +1,1 @@
+build/bin/tungsten -t 1 --resolution 48x48 --plan-cost --set renderer.spp_step=1 --set renderer.enable_resume_render=false --set integrator.photon_count=10000 --set integrator.volume_photon_count=5000 data/scenes/cornell-fog/scene.json

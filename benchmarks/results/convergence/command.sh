@@ -1,0 +1,1 @@
+build/bin/tungsten -t 1 --resolution 32x32 -s 1 --quiet --spp 4 --timeout 10h --set renderer.spp_step=1 --set renderer.enable_resume_render=false --set integrator.type=path_tracer --set integrator.darts=off benchmarks/study/scenes/pulse-in-fog.json

@@ -1,0 +1,1 @@
+build/bin/tungsten -t 1 --resolution 96x96 -s 1 --quiet --spp 4 --timeout 10h --set renderer.spp_step=1 --set renderer.enable_resume_render=false --set integrator.photon_count=60000 --set integrator.volume_photon_count=30000 data/scenes/cornell-fog/scene.json

@@ -1,0 +1,1 @@
+build/bin/tungsten -t 1 --resolution 48x48 -s 1001 --quiet --spp 1000000000 --timeout 10h --set renderer.spp_step=1 --set renderer.enable_resume_render=false --set integrator.type=path_tracer --set 'integrator.darts={"preset":"best","surface_connections":false}' build/study/many-lights/1-lights-0.05.json
