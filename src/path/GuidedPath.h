@@ -90,11 +90,11 @@ struct GuidedPath {
         return {scene(), surface, state.ray.direction, TransportMode::Radiance, state.region};
     }
 
-    /// Of what arrives at the ray's origin inside the gate, from the target.
+    /// Of what arrives at the ray's origin in time, from the target.
     [[nodiscard]] LengthsInGate lengthsInGate() const {
-        const TimeGate& gate = context.sensor.arrivals;
+        const transport::TimeWindow& gate = steps.window();
         const double speed = double(state.region.speed), elapsed = state.time + target().start;
-        return {float(speed * (gate.start - elapsed)), float(speed * (gate.end() - elapsed))};
+        return {float(speed * (gate.begin - elapsed)), float(speed * (gate.end - elapsed))};
     }
     /// Whether a path with this many further interactions and medium scatters counts.
     [[nodiscard]] bool counts(int interactions, int mediumScatters) const {

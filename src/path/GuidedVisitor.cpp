@@ -72,13 +72,13 @@ void GuidedVisitor::connectToLightPaths(const GuidedPath& path, const transport:
 }
 
 void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
-                     const PathTarget& target, const Ray& ray) {
+                     const PathTarget& target, const Ray& ray, size_t window) {
     const Scene& scene = context.scene;
     ++counters.paths;
     transport::Walk walk{
         PathState{
             .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
-        StepsToEmitter(context, counters, target), GuidedVisitor(context, sink, counters)};
+        StepsToEmitter(context, counters, target, window), GuidedVisitor(context, sink, counters)};
     walk.run();
 }
 

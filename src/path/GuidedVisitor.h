@@ -36,8 +36,8 @@ class GuidedVisitor : public transport::VisitorBase {
     StepsToEmitter::InMedium inMedium_{}; ///< of paths whose last vertex is where the walk is
 };
 
-/// Traces one camera path along `ray`, guided towards the target.
+/// Traces one camera path along `ray`, guided towards the target, at the window that the sink has been told.
 void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
-                     const PathTarget& target, const Ray& ray);
+                     const PathTarget& target, const Ray& ray, size_t window = 0);
 
 } // namespace tungsten::path

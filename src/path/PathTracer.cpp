@@ -55,6 +55,16 @@ float radicalInverse(uint32_t index) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
+/// Beside plain paths, guided ones aim at parts of a sequence.
+transport::TimeWindows windowsOf(const Scene& scene, const transport::Sensor& sensor, const PathPlan& plan,
+                                 const EffectPlan& facts) {
+    if (!plan.balance.on || sensor.gate.frames < 2) return transport::TimeWindows(sensor.arrivals);
+    double origin = Infinity, earliest = Infinity;
+    for (const Emitter& emitter : scene.emitters) origin = std::min(origin, emitter.emissionTime);
+    for (const double arrival : earliestArrivals(scene, facts)) earliest = std::min(earliest, arrival);
+    return {sensor.arrivals, sensor.gate, origin, earliest};
+}
+
 } // namespace
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
@@ -87,6 +97,7 @@ void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statist
     guides_ = PathGuides::of(*scene_, settings_.policy.sampling, plan, watch);
     if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
+    windows_ = windowsOf(*scene_, sensor_, plan_, plan);
     if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, watch, statistics);
     if (plan_.balance.on) chooseShare(watch, statistics);
     // Plain paths connect to the virtual sources of lasers alone.
@@ -143,7 +154,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
         // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
         Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
         const float rotation = targets_->several() ? turns.next1D() : 0.0f;
-        const double turn = balance_.both() ? turns.nextDouble() : 0.0;
+        const double turn = balance_.both() || (windows_ && windows_->size() > 1) ? turns.nextDouble() : 0.0;
         for (uint32_t s = 0; s < pass.samples; ++s) {
             // Keyed by the absolute sample: but for light vertices, each pass's own, the image does not depend on how
             // samples are cut into passes.
@@ -190,7 +201,7 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
 }
 
 GuidedContext PathTracer::guidedContext(const PassWatch& watch) const {
-    return {*scene_, settings_, sensor_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
+    return {*scene_, settings_, sensor_, *windows_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
             watch,   balance_};
 }
 
@@ -206,10 +217,11 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
                            float strategy) {
         if (!targets_->any()) return;
         if (!(strategy < balance_.plain)) {
-            sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_);
+            const size_t window = windows_->choose((strategy - balance_.plain) / balance_.guided);
+            sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_, (*windows_)[window]);
             Sampler light = sampler.branch(RandomStream::Target, 0);
             if (const auto target = targets_->sample(u, light, pass.watch, counters.guided))
-                traceGuidedPath(guided, sink, counters.guided, sampler, *target, ray);
+                traceGuidedPath(guided, sink, counters.guided, sampler, *target, ray, window);
             return;
         }
         ++counters.plain.plainPaths;
@@ -277,9 +289,12 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
             PixelSink sink(pilot, sensor_, counters);
             pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
             if (guides) {
+                const double place = GoldenRatio * double(traced / 2);
+                const size_t window = windows_->choose(float(place - std::floor(place)));
+                sink.begin(Strategy::Guided, balance_, (*windows_)[window]);
                 Sampler light = sampler.branch(RandomStream::Target, 0);
                 if (const auto target = targets_->sample(radicalInverse(uint32_t(traced / 2)), light, watch, counters))
-                    traceGuidedPath(guided, sink, counters, sampler, *target, ray);
+                    traceGuidedPath(guided, sink, counters, sampler, *target, ray, window);
             } else {
                 trail.start(guided, *targets_, sink, counted.densities, sampler);
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);

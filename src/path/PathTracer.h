@@ -56,6 +56,7 @@ class PathTracer : public Integrator {
     std::optional<TargetChoice>
         targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
     std::optional<ArrivalBound> bound_;
+    std::optional<transport::TimeWindows> windows_; ///< that guided paths aim at
     PathGuides guides_;
     StrategyBalance balance_;
     std::unique_ptr<const transport::WaysOut> waysOut_;     ///< null: media are taken for infinite

@@ -132,7 +132,7 @@ void PathVisitor<TimeResolved, Beside>::addEmission(const PathState& path, const
     float logRatio = 0.0f;
     if constexpr (Beside::Balanced) {
         const bool aimedAt = beside_.trail->targets().probability(size_t(index)) > 0.0f;
-        logRatio = aimedAt ? beside_.trail->atLight(size_t(index)) : StrategyBalance::Never;
+        logRatio = aimedAt ? beside_.trail->atLight(size_t(index), time) : StrategyBalance::Never;
     }
     sink_->add(path.throughput * radiance * weight, time, emitter, logRatio, Found::OnWay);
 }
@@ -185,14 +185,14 @@ void PathVisitor<TimeResolved, Beside>::connectToTarget(const PathState& path, c
     const auto connection =
         connector_.connect(vertex, path.throughput, transport::connectionEnd(*way, target), counters_->shadowRays);
     if (!connection || !limits().renders(path.interactions + connection->crossings + target.interactions)) return;
+    const double time = path.time + connection->time + target.start;
     float weight = 1.0f, logRatio = 0.0f;
     if constexpr (Beside::Balanced) {
         // Surfaces that shine can be met, too.
         weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));
-        logRatio = beside_.trail->atVertex(emitter, connection->crossings == 0);
+        logRatio = beside_.trail->atVertex(emitter, time, connection->crossings == 0);
     }
-    sink_->add(connection->throughput * weight, path.time + connection->time + target.start, *target.emitter, logRatio,
-               Found::OnWay);
+    sink_->add(connection->throughput * weight, time, *target.emitter, logRatio, Found::OnWay);
 }
 
 template <bool TimeResolved, typename Beside>

@@ -4,6 +4,7 @@
 #include "transport/Sensor.h"
 #include "transport/SharePilot.h"
 #include "transport/StepCounters.h"
+#include "transport/TimeWindows.h"
 
 #include "tungsten/film/Film.h"
 
@@ -42,14 +43,17 @@ class PixelSink {
         for (; used_ != 0; used_ &= used_ - 1) addToFilm(sums_[size_t(std::countr_zero(used_))]);
     }
 
-    /// Who brings the next contributions, beside whom.
-    void begin(Strategy strategy, const StrategyBalance& balance) {
+    /// Who brings the next contributions, beside whom; guided paths count in the window that they aim at.
+    void begin(Strategy strategy, const StrategyBalance& balance, const transport::TimeWindow& window = {}) {
         strategy_ = strategy;
         balance_ = balance;
+        window_ = window;
+        logOfWindow_ = std::log(window.probability);
     }
     /// Light of an emitter, as the strategy's own estimate has it; `time` is the total time of flight, emission time
     /// included; ignored in steady state.
     void add(const Rgb& radiance, double time, const Emitter& emitter, LogRatio logRatio, Found found = Found::Aside) {
+        if (!window_.contains(time)) return;
         sensor_.spread(time, emitter,
                        [&](int frame, float share) { put(radiance * share, time, frame, logRatio, found); });
     }
@@ -81,7 +85,8 @@ class PixelSink {
             ++counters_.nonFinite;
             return;
         }
-        float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
+        float weight = (sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_) / window_.probability;
+        logRatio = logRatio.plus(logOfWindow_);
         if (pilot_) return tellPilot(meanComponent(radiance) * weight, frame, logRatio, found);
         weight *= balance_.weight(strategy_, logRatio.weighed);
         if (weight > 0.0f) count(frame);
@@ -111,6 +116,8 @@ class PixelSink {
     PathCounters& counters_;
     Strategy strategy_ = Strategy::Alone;
     StrategyBalance balance_;
+    transport::TimeWindow window_;
+    float logOfWindow_ = 0.0f;
     SharePilot* pilot_ = nullptr;
     static constexpr size_t MostFrames = 8;
     uint32_t used_ = 0; ///< bits of the sums below that hold something

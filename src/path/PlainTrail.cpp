@@ -21,8 +21,8 @@ constexpr float Never = StrategyBalance::Never;
 void PlainTrail::start(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink,
                        PathCounters& counters, const Sampler& light) {
     record_.clear();
-    for (; used_ > 0; --used_) slots_[followers_[used_ - 1]->emitter] = 0;
-    slots_.resize(context.scene.emitters.size(), 0);
+    for (; used_ > 0; --used_) slots_[followers_[used_ - 1]->slot] = 0;
+    slots_.resize(context.scene.emitters.size() * context.windows.size(), 0);
     context_ = &context;
     targets_ = &targets;
     sink_ = &sink;
@@ -30,21 +30,27 @@ void PlainTrail::start(const GuidedContext& context, const TargetChoice& targets
     light_ = light;
 }
 
-auto PlainTrail::follower(size_t emitter) -> Follower& {
-    if (const uint32_t slot = slots_[emitter]; slot > 0) return *followers_[slot - 1];
+auto PlainTrail::follower(size_t emitter, size_t window) -> Follower& {
+    const size_t slot = emitter * context_->windows.size() + window;
+    if (const uint32_t place = slots_[slot]; place > 0) return *followers_[place - 1];
+    const Follower* same = window > 0 ? &follower(emitter, 0) : nullptr;
     if (used_ == followers_.size()) followers_.emplace_back();
     Follower& follower = followers_[used_++].emplace();
-    follower.emitter = emitter;
-    slots_[emitter] = uint32_t(used_);
-    Sampler random = light_->branch(RandomStream::Target, emitter);
-    const auto target = targets_->of(emitter, random, context_->watch, *counters_);
-    if (target) follower.steps.emplace(*context_, *counters_, *target);
-    follower.alive = target.has_value();
+    follower.slot = slot;
+    slots_[slot] = uint32_t(used_);
+    if (same) {
+        if (same->steps) follower.steps.emplace(*context_, *counters_, same->steps->target(), window);
+    } else {
+        Sampler random = light_->branch(RandomStream::Target, emitter);
+        const auto target = targets_->of(emitter, random, context_->watch, *counters_);
+        if (target) follower.steps.emplace(*context_, *counters_, *target);
+    }
+    follower.alive = follower.steps.has_value();
     return follower;
 }
 
-auto PlainTrail::now(size_t emitter) -> const Logs& {
-    Follower& follower = this->follower(emitter);
+auto PlainTrail::now(size_t emitter, size_t window) -> const Logs& {
+    Follower& follower = this->follower(emitter, window);
     while (follower.next < record_.size()) follow(follower, follower.next++);
     return follower.logs;
 }

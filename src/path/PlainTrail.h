@@ -30,22 +30,25 @@ class PlainTrail {
     [[nodiscard]] const TargetChoice& targets() const { return *targets_; }
     /// The path's point of an emitter that is a target of guided paths; null if its light gets nowhere.
     [[nodiscard]] const PathTarget* target(size_t emitter) {
-        const auto& steps = follower(emitter).steps;
+        const auto& steps = follower(emitter, 0).steps;
         return steps ? &steps->target() : nullptr;
     }
 
-    // Logarithms of densities, guided over plain, of paths that end in light of an emitter with a target.
+    // Logarithms of densities, guided over plain, of paths that end in light of an emitter with a target, and arrive at
+    // this time.
     /// With the vertex at which the path is. `open`: no boundary is crossed on the way to the target, so that light
     /// paths may find the same.
-    [[nodiscard]] float atVertex(size_t emitter, bool open) {
-        const Logs& logs = now(emitter);
-        return open ? logs.openEnding : logs.ending;
+    [[nodiscard]] float atVertex(size_t emitter, double time, bool open) {
+        const size_t window = context_->windows.indexOf(time);
+        const Logs& logs = now(emitter, window);
+        return (open ? logs.openEnding : logs.ending) + logOf(window);
     }
-    /// Of the way up to there.
-    [[nodiscard]] float there(size_t emitter) { return now(emitter).there; }
+    /// Of the way up to there, of those that aim at the first window.
+    [[nodiscard]] float there(size_t emitter) { return now(emitter, 0).there; }
     /// With light that the flight at hand has met: guided paths count it if it is their target's.
-    [[nodiscard]] float atLight(size_t emitter) {
-        return now(emitter).light + std::log(targets_->probability(emitter));
+    [[nodiscard]] float atLight(size_t emitter, double time) {
+        const size_t window = context_->windows.indexOf(time);
+        return now(emitter, window).light + logOf(window) + std::log(targets_->probability(emitter));
     }
 
   private:
@@ -55,9 +58,9 @@ class PlainTrail {
         float light;              ///< of those that meet light there
         float there;              ///< of the way up to there
     };
-    /// Guided steps towards one target.
+    /// Guided steps towards one target, in one window.
     struct Follower {
-        size_t emitter = 0;
+        size_t slot = 0;
         std::optional<StepsToEmitter> steps; ///< at the flight that has been followed last; none: there is no target
         size_t next = 0;                     ///< flight that has not been followed yet
         WayBehind behind;                    ///< of the vertex where the last one begins
@@ -66,9 +69,10 @@ class PlainTrail {
         Logs logs{};                         ///< of it
     };
 
-    [[nodiscard]] Follower& follower(size_t emitter);
+    [[nodiscard]] Follower& follower(size_t emitter, size_t window);
     /// Of the last step, followed.
-    [[nodiscard]] const Logs& now(size_t emitter);
+    [[nodiscard]] const Logs& now(size_t emitter, size_t window);
+    [[nodiscard]] float logOf(size_t window) const { return std::log(context_->windows[window].probability); }
     /// Of paths whose last vertex is the surface that ends this step, and which light paths may find.
     float byLightPaths(Follower& follower, const Step& step);
     /// Follows a flight, from the end of the one before.
@@ -79,7 +83,7 @@ class PlainTrail {
     transport::WalkRecord record_;
     std::deque<std::optional<Follower>> followers_; ///< the first `used_`, of this path
     size_t used_ = 0;
-    std::vector<uint32_t> slots_; ///< by emitter: one above its follower's place, 0 if it has none
+    std::vector<uint32_t> slots_; ///< by emitter and window: one above the follower's place, 0 if there is none
     const GuidedContext* context_ = nullptr;
     const TargetChoice* targets_ = nullptr;
     PixelSink* sink_ = nullptr;

@@ -62,10 +62,10 @@ darts::ConnectionSample StepsToEmitter::drawConnection(PathState& path, const da
 // ---- Looking
 
 void StepsToEmitter::lookAheadFrom(const PathState& path, const Vec3f& position) {
-    const TimeGate& gate = guided_->sensor.arrivals;
+    const transport::TimeWindow& gate = window();
     const PathTarget& target = target_;
     const float speed = path.region.speed;
-    const darts::TimeGate open{gate.start - target.start, gate.end() - target.start};
+    const darts::TimeGate open{gate.begin - target.start, gate.end - target.start};
     const auto range = darts::ResidualRange::of(open, path.time, double(speed));
     const float faster = guided_->bound.oneSpeed() ? 0.0f : guided_->bound.highestSpeed() / speed - 1.0f;
     lookAhead(darts::Residual::of(darts::vec3(target.vertex.position() - position), range),
@@ -269,10 +269,10 @@ float StepsToEmitter::shadowRayProbability(const darts::ControlVertex& vertex, c
 }
 
 ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, float surface) const {
-    const TimeGate& gate = guided_->sensor.arrivals;
+    const transport::TimeWindow& gate = window();
     const double speed = double(region.speed);
-    return {target_.vertex.position() - ray.origin, ray.direction, speed * (gate.start - target_.start),
-            speed * (gate.end() - target_.start), double(surface)};
+    return {target_.vertex.position() - ray.origin, ray.direction, speed * (gate.begin - target_.start),
+            speed * (gate.end - target_.start), double(surface)};
 }
 
 auto StepsToEmitter::inMedium(float distance) const -> InMedium {

@@ -12,6 +12,7 @@
 #include "transport/PlainFlight.h"
 #include "transport/Sensor.h"
 #include "transport/StrategyBalance.h"
+#include "transport/TimeWindows.h"
 #include "transport/Walk.h"
 
 namespace tungsten::path {
@@ -26,6 +27,7 @@ struct GuidedContext {
     const Scene& scene;
     const PathSettings& settings;
     const transport::Sensor& sensor;
+    const transport::TimeWindows& windows;
     const PathGuides& guides;
     const LightPaths& lightPaths;
     const ArrivalBound& bound;
@@ -39,8 +41,9 @@ class StepsToEmitter : public transport::GuidedSteps {
   public:
     static constexpr bool Timed = true;
 
-    StepsToEmitter(const GuidedContext& guided, PathCounters& counters, const PathTarget& target)
-        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(target) {}
+    /// Light of the target is looked for in this window of time.
+    StepsToEmitter(const GuidedContext& guided, PathCounters& counters, const PathTarget& target, size_t window = 0)
+        : context_{guided.scene, counters, guided.watch}, guided_(&guided), target_(target), window_(window) {}
     [[nodiscard]] const transport::WalkContext& context() const { return context_; }
 
     transport::Ahead ahead(PathState& path) { return ahead(path, nullptr); }
@@ -76,6 +79,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     [[nodiscard]] ShellChord controlChord(const Ray& ray, const Region& region, float surface) const;
 
     [[nodiscard]] const PathTarget& target() const { return target_; }
+    [[nodiscard]] const transport::TimeWindow& window() const { return guided_->windows[window_]; }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
         const bool connects = residual().exit.connects;
         return (connects ? guided_->guides.media : guided_->guides.plain)[size_t(region.medium)];
@@ -161,6 +165,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     transport::WalkContext context_;
     const GuidedContext* guided_;
     PathTarget target_;
+    size_t window_;
     bool startsAnew_ = true; ///< the ray ahead has not been looked along
     Passage passage_ = Passage::Empty;
     const darts::Guide* surfaceGuide_ = nullptr;

@@ -24,6 +24,8 @@ struct LogRatio {
     /// The same, unless an estimate is random: what light paths bring is weighed by the way up to them.
     LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
     LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
+    /// Where a part of the guided paths alone may find it, the logarithm of which this is.
+    [[nodiscard]] LogRatio plus(float logOfPart) const { return {weighed + logOfPart, plainToEstimate + logOfPart}; }
 };
 
 /// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided

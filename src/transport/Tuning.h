@@ -44,6 +44,12 @@ inline constexpr float LeaveOdds = 0.1f;
 /// it deep places would be rare, and bright.
 inline constexpr float Elsewhere = 0.02f;
 
+// --- Windows of sequences --------------------------------------------------------------------------------------------
+
+/// Each is so many times as long as the one before, unless there were more than so many. Bench: study films
+inline constexpr double WindowGrowth = 1.5;
+inline constexpr int MostWindows = 16;
+
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 
 /// Contributions of a pilot of plain and guided paths, as many of one size as are worth them, by which a pilot may

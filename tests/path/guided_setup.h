@@ -22,7 +22,7 @@ struct GuidedSetup {
     GuidedSetup& operator=(const GuidedSetup&) = delete;
 
     [[nodiscard]] GuidedContext guided() const {
-        return {scene, settings, sensor, guides, lightPaths, bound, waysOut.get(), true, watch, {0.5f, 0.5f}};
+        return {scene, settings, sensor, windows, guides, lightPaths, bound, waysOut.get(), true, watch, {0.5f, 0.5f}};
     }
     [[nodiscard]] PathContext plain() const { return {scene, settings, lights, bound, nullptr, true, watch}; }
 
@@ -33,6 +33,7 @@ struct GuidedSetup {
     EffectPlan effects = analyseScene(scene);
     PassWatch watch;
     transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
+    transport::TimeWindows windows{sensor.arrivals};
     PathGuides guides = PathGuides::of(scene, settings.policy.sampling, effects, watch);
     LightPaths lightPaths; ///< none
     ArrivalBound bound{scene, effects};

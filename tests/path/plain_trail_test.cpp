@@ -41,7 +41,7 @@ class Replay : public transport::VisitorBase {
         const float ending = collided ? steps.inMedium(flight.distance).logRatio : steps.logRatioOnSurface();
         trail_.arrive(plainly(path), ahead, plain);
         const float tolerance = 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(path.logRatio));
-        EXPECT_NEAR(trail_.atVertex(emitter_, false), ending, tolerance) << path.interactions;
+        EXPECT_NEAR(trail_.atVertex(emitter_, 0.0, false), ending, tolerance) << path.interactions;
         EXPECT_NEAR(trail_.there(emitter_), path.logRatio, tolerance) << path.interactions;
         ++compared;
         largest = std::max(largest, std::abs(path.logRatio));

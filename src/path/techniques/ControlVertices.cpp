@@ -55,15 +55,14 @@ void ControlVertices::sample(const GuidedPath& path, const transport::Ahead& ahe
 void ControlVertices::sampleUntimed(const GuidedPath& path, const transport::Ahead& ahead) {
     const PathState& state = path.state;
     if (!path.steps.guideOf(state.region).settings().elliptical) return;
-    const TimeGate& gate = path.context.sensor.arrivals;
     const PathTarget& target = path.target();
-    const double speed = double(state.region.speed), low = speed * (gate.start - target.start);
+    const double speed = double(state.region.speed), low = speed * (path.steps.window().begin - target.start);
     const ShellChord chord = path.steps.controlChord(state.ray, state.region, ahead.reach());
     const auto addAt = [&](double t, double inversePdf) {
         const double toTarget = double((target.vertex.position() - state.ray.at(float(t))).length());
         add(path, *ahead.medium, {float(t), float(toTarget), float(inversePdf)}, toTarget / speed + target.start);
     };
-    if (gate.delta) {
+    if (path.context.sensor.gate.delta) {
         std::array<double, 2> t{}, perRadius{};
         const int count = chord.intersect(low, t, perRadius);
         for (size_t i = 0; i < size_t(count); ++i) addAt(t[i], perRadius[i]);
