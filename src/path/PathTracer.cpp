@@ -55,16 +55,6 @@ float radicalInverse(uint32_t index) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
-/// Beside plain paths, guided ones aim at parts of a sequence.
-transport::TimeWindows windowsOf(const Scene& scene, const transport::Sensor& sensor, const PathPlan& plan,
-                                 const EffectPlan& facts) {
-    if (!plan.balance.on || sensor.gate.frames < 2) return transport::TimeWindows(sensor.arrivals);
-    double origin = Infinity, earliest = Infinity;
-    for (const Emitter& emitter : scene.emitters) origin = std::min(origin, emitter.emissionTime);
-    for (const double arrival : earliestArrivals(scene, facts)) earliest = std::min(earliest, arrival);
-    return {sensor.arrivals, sensor.gate, origin, earliest};
-}
-
 } // namespace
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
@@ -97,7 +87,8 @@ void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statist
     guides_ = PathGuides::of(*scene_, settings_.policy.sampling, plan, watch);
     if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
-    windows_ = windowsOf(*scene_, sensor_, plan_, plan);
+    windows_ = plan_.balance.on ? transport::TimeWindows::ofSequence(*scene_, plan, sensor_.arrivals)
+                                : transport::TimeWindows(sensor_.arrivals);
     if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, watch, statistics);
     if (plan_.balance.on) chooseShare(watch, statistics);
     // Plain paths connect to the virtual sources of lasers alone.
@@ -154,7 +145,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
         // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
         Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
         const float rotation = targets_->several() ? turns.next1D() : 0.0f;
-        const double turn = balance_.both() || (windows_ && windows_->size() > 1) ? turns.nextDouble() : 0.0;
+        const double turn = balance_.both() || (windows_ && windows_->several()) ? turns.nextDouble() : 0.0;
         for (uint32_t s = 0; s < pass.samples; ++s) {
             // Keyed by the absolute sample: but for light vertices, each pass's own, the image does not depend on how
             // samples are cut into passes.
@@ -201,8 +192,9 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
 }
 
 GuidedContext PathTracer::guidedContext(const PassWatch& watch) const {
-    return {*scene_, settings_, sensor_, *windows_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
-            watch,   balance_};
+    return {
+        *scene_, settings_, sensor_, *windows_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
+        watch,   balance_};
 }
 
 PathContext PathTracer::plainContext(const PassWatch& watch) const {

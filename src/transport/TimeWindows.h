@@ -2,6 +2,7 @@
 // When light arrives, cut into windows: a guided path aims at one of them, and counts there alone (docs/method.md,
 // section 11).
 
+#include "tungsten/render/EffectPlan.h"
 #include "tungsten/scene/Scene.h"
 
 #include <algorithm>
@@ -24,11 +25,9 @@ struct TimeWindow {
 class TimeWindows {
   public:
     /// The whole gate.
-    explicit TimeWindows(const TimeGate& arrivals)
-        : windows_{{arrivals.start, arrivals.end(), 1.0f}} {}
-    /// Of light that is recorded in a sequence of frames: windows that grow with the time since light started, at
-    /// `origin`; none arrives before `earliest`.
-    TimeWindows(const TimeGate& arrivals, const TimeGate& sequence, double origin, double earliest);
+    explicit TimeWindows(const TimeGate& arrivals) : windows_{{arrivals.start, arrivals.end(), 1.0f}} {}
+    /// Of what is recorded in a sequence of frames: windows that grow with the time since the first light started.
+    static TimeWindows ofSequence(const Scene& scene, const EffectPlan& facts, const TimeGate& arrivals);
 
     [[nodiscard]] size_t size() const { return windows_.size(); }
     [[nodiscard]] const TimeWindow& operator[](size_t index) const { return windows_[index]; }
@@ -42,6 +41,8 @@ class TimeWindows {
     [[nodiscard]] size_t choose(float u) const {
         return std::min(size_t(std::max(u, 0.0f) * float(windows_.size())), windows_.size() - 1);
     }
+
+    [[nodiscard]] bool several() const { return windows_.size() > 1; }
 
   private:
     std::vector<TimeWindow> windows_;

@@ -334,8 +334,12 @@ FAULTS = [
      [("darts_tests", "LengthAlong.SamplesFollowTheDensity")]),  # connections along a way are twice as dense as they are
     ("src/darts/ConnectionLobe.h", "share_ * open_.pdf(h) + (1 - share_) * middle_.pdf(h)", "middle_.pdf(h)",
      [("darts_tests", "ConnectionLobe.LobesOfAllLengthsSampleTheirDensity")]),  # the open gate's directions are drawn, and no density knows of it
-    ("src/path/PlainTrail.h", "now(emitter).light + std::log(targets_->probability(emitter));", "now(emitter).light;",
+    ("src/path/PlainTrail.h", "logOf(window) + std::log(targets_->probability(emitter));", "logOf(window);",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # plain paths that meet a lamp take it for that of all guided ones
+    ("src/path/PlainTrail.h", "(open ? logs.openEnding : logs.ending) + logOf(window);", "(open ? logs.openEnding : logs.ending);",
+     [("path_tests", "TimeWindows.*")]),  # plain paths of a sequence take every window for one that all guided ones aim at
+    ("src/path/PixelSink.h", "if (!window_.contains(time)) return;", ";",
+     [("path_tests", "TimeWindows.*")]),  # guided paths count in windows that they do not aim at
     ("src/path/PathTarget.h", "index >= 0 ? choice.ofVertex * pdfDirect", "index >= 0 ? pdfDirect",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # guided paths share lamps that are met otherwise than plain ones
     ("src/transport/SharePilot.cpp", "contribution.logRatio.plainToEstimate", "contribution.logRatio.weighed",

@@ -179,6 +179,55 @@ std::vector<BalancedCase> balancedCases() {
          bodies(Fog, Beside, "", R"("temporal_response": {"type": "gaussian", "center": 7.6, "sigma": 0.15})")}};
 }
 
+// ---- Sequences
+
+/// Lamp and camera in fog.
+const char* const Fog = R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 1, "sigma_a": 0}],
+      "primitives": [{"type": "point", "power": 100, "ext_medium": "fog", "transform": {"position": [0, 0, -1]}}],
+      "camera": {"resolution": 1, "fov": 40, "medium": "fog", "transform": {"position": [0, 0, 3], "look_at": [0, 0, 0]}},
+      "integrator": {"type": "path_tracer", "max_bounces": 64, "start_time": 4, "transient_time_width": 2,
+                     "frame_num": 8}, "renderer": {}})";
+
+TEST(TimeWindows, FollowEachOtherAndGrow) {
+    const GuidedSetup setup(Fog);
+    const auto windows = transport::TimeWindows::ofSequence(setup.scene, setup.effects, setup.sensor.arrivals);
+    ASSERT_EQ(windows.size(), 4u) << "log(20 / 4) / log(1.5)";
+    EXPECT_DOUBLE_EQ(windows[0].begin, 4.0);
+    EXPECT_DOUBLE_EQ(windows[3].end, 20.0);
+    float probability = 0.0f;
+    for (size_t i = 0; i < windows.size(); ++i) {
+        probability += windows[i].probability;
+        EXPECT_NEAR(windows[i].end / windows[i].begin, std::pow(5.0, 0.25), 1e-9);
+        EXPECT_EQ(windows.indexOf(windows[i].begin), i);
+        EXPECT_EQ(windows.indexOf(std::nextafter(windows[i].end, 0.0)), i);
+        EXPECT_FALSE(windows[i].contains(windows[i].end));
+        EXPECT_EQ(windows[i].begin, i > 0 ? windows[i - 1].end : 4.0);
+    }
+    EXPECT_FLOAT_EQ(probability, 1.0f);
+    EXPECT_EQ(windows.choose(0.0f), 0u);
+    EXPECT_EQ(windows.choose(1.0f), 3u);
+}
+
+/// Every frame has the light that plain paths find there, whatever window it is in.
+TEST(TimeWindows, FramesAreTheSameAtAnyShare) {
+    const auto render = [](const std::string& darts, uint32_t samples) {
+        return test::renderPaths(Fog, {{"integrator.darts=" + darts}, 32, samples, 5});
+    };
+    const auto plain = render("off", 20000);
+    for (const char* share : {"0.6", "0.1"}) {
+        const auto both = render(R"({"plain_share": )" + std::string(share) + "}", 4000);
+        for (int frame = 0; frame < 8; ++frame) {
+            const double mean = plain->mean(frame);
+            ASSERT_GT(mean, 0.0);
+            const double error = std::hypot(plain->pixelError(frame), both->pixelError(frame));
+            EXPECT_NEAR(both->mean(frame), mean, 4.5 * error) << share << " " << frame;
+            EXPECT_LT(error, 0.1 * mean) << frame;
+        }
+    }
+}
+
+// ---- Means
+
 class Balanced : public testing::TestWithParam<BalancedCase> {};
 
 TEST_P(Balanced, MeansAreTheSameAtAnyShare) {
