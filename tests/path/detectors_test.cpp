@@ -95,5 +95,31 @@ TEST(DetectorPower, OfARoomAgrees) {
         }
 }
 
+/// Light that leaves what scatters it forward, just under a bucket: by paths that meet the lamp, and by light paths
+/// that are connected to the bucket or meet it.
+TEST(DetectorPower, OfTissueUnderABucketAgrees) {
+    for (const char* skin : {R"({"type": "forward"})", R"({"type": "dielectric", "ior": 1.4})"}) {
+        const std::string json =
+            R"({"media": [{"name": "tissue", "type": "homogeneous", "sigma_s": 12, "sigma_a": 0.1,
+                           "phase_function": {"type": "henyey_greenstein", "g": 0.9}}],
+            "primitives": [{"type": "cube", "int_medium": "tissue", "bsdf": )" +
+            std::string(skin) + R"(, "transform": {"position": [0, 0, -0.5], "scale": [4, 4, 1]}},
+              {"type": "sphere", "bsdf": {"type": "null"}, "emission": 6, "transform": {"position": [1, 0, 0.6], "scale": 0.4}}],
+            "camera": {"type": "detectors", "detectors": [
+              {"position": [0, 0, 0.02], "direction": [0, 0, -1], "radius": 0.2},
+              {"position": [-0.6, 0, -1.02], "direction": [0, 0, 1], "radius": 0.3, "numerical_aperture": 0.5}]},
+            "integrator": {"max_bounces": 1000}, "renderer": {}})";
+        const auto paths = test::renderPaths(json, {{"integrator.type=path_tracer"}, 30, 4000});
+        const auto light = test::renderLight(json, {{"integrator.type=light_tracer"}, 30, 12000});
+        for (int x = 0; x < 2; ++x) {
+            const double expected = double(paths->film.mean(0).at(x, 0).y);
+            const double error = std::hypot(double(paths->film.standardError(0).at(x, 0).y),
+                                            double(light->film.standardError(0).at(x, 0).y));
+            EXPECT_NEAR(double(light->film.mean(0).at(x, 0).y), expected, 4.5 * error) << skin << x;
+            EXPECT_LT(error, 0.08 * expected) << skin << x;
+        }
+    }
+}
+
 } // namespace
 } // namespace tungsten::path

@@ -22,6 +22,10 @@ Vec3f Detector::samplePoint(const Vec2f& u) const {
     return position + frame.s * disk.x + frame.t * disk.y;
 }
 
+float Detector::pdfPoint(const Vec3f& direction, float distance) const {
+    return sqr(distance) / (Pi * sqr(radius) * std::max(-direction.dot(frame.n), 1e-20f));
+}
+
 bool Detector::accepts(const Vec3f& towards) const {
     const Vec3f local = frame.toLocal(towards);
     return local.z > 0.0f && sqr(local.x) + sqr(local.y) <= sqr(aperture);

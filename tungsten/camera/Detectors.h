@@ -36,6 +36,8 @@ struct Detector {
     [[nodiscard]] Ray sampleRay(const Vec2f& uPlace, const Vec2f& uDirection) const;
     /// A point of the disc, even over it.
     [[nodiscard]] Vec3f samplePoint(const Vec2f& u) const;
+    /// Density per solid angle of such points, of one at a distance along the unit `direction`.
+    [[nodiscard]] float pdfPoint(const Vec3f& direction, float distance) const;
     /// Whether it accepts what comes from the unit direction `towards`.
     [[nodiscard]] bool accepts(const Vec3f& towards) const;
     /// How far along the ray it meets the disc, if within the ray's limits and from where it is accepted.
@@ -49,6 +51,11 @@ struct Detectors {
     /// A connection to one of them: its disc, at a place drawn evenly. None where it does not accept what comes from
     /// there.
     [[nodiscard]] std::optional<SensorSample> sample(size_t index, const Vec3f& point, const Vec2f& u) const;
+    /// Density per solid angle of connections to a detector that is drawn evenly, to a point at a distance along the
+    /// unit `direction`.
+    [[nodiscard]] float pdf(size_t index, const Vec3f& direction, float distance) const {
+        return row[index].pdfPoint(direction, distance) / float(row.size());
+    }
 };
 
 } // namespace tungsten

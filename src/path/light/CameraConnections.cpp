@@ -1,5 +1,6 @@
 #include "path/light/CameraConnections.h"
 
+#include "transport/Balance.h"
 #include "transport/DetectorLight.h"
 
 namespace tungsten::path {
@@ -25,14 +26,14 @@ bool CameraConnections::emit(PathState& path) {
     power_ = emission.power / chosen.probability;
     path.region = scene().regionOf(emitter);
     path.ray = emission.ray;
-    if (emitter.isDelta()) meetDetectors(path, path.ray, path.region, power_);
+    if (emitter.isDelta()) meetDetectors(path, path.ray, path.region, power_, 0.0f);
     return !isBlack(power_);
 }
 
 void CameraConnections::showEmitter(PathState& path, const Emitter& emitter, float probability) {
     path.random.at(0, Draw::Light);
     const SurfaceSample point = sampleEmissionPoint(emitter, path.random.next2D());
-    connect(path, {scene(), emitter, point}, Rgb(1.0f / probability));
+    connect(path, {scene(), emitter, point}, Rgb(1.0f / probability), false);
 }
 
 void CameraConnections::showEnvironment(PathState& path, const Emitter& emitter, float probability) {
@@ -62,18 +63,17 @@ bool CameraConnections::arrive(PathState& path, auto&, const Ahead&, const Fligh
 
 bool CameraConnections::vertex(PathState& path, auto&, const WalkVertex& at) {
     if (at.medium) scattered_ = path.time;
-    connect(path, at.connectible(scene(), TransportMode::Photons), power_ * path.throughput);
+    connect(path, at.connectible(scene(), TransportMode::Photons), power_ * path.throughput, true);
     return true;
 }
 
 void CameraConnections::leave(PathState& path, auto&, const WalkVertex& at, const Way& way) {
-    if (at.medium) return;
-    if (way.smooth()) scattered_ = path.time;
-    if ((way.lobe & lobe::Specular) != 0)
-        meetDetectors(path, way.ray, way.region, power_ * (path.throughput * way.weight));
+    if (at.surface && way.smooth()) scattered_ = path.time;
+    // What passes straight has been looked for from before.
+    if (!way.straight()) meetDetectors(path, way.ray, way.region, power_ * (path.throughput * way.weight), way.pdf);
 }
 
-void CameraConnections::connect(PathState& path, const Vertex& vertex, const Rgb& power) {
+void CameraConnections::connect(PathState& path, const Vertex& vertex, const Rgb& power, bool mayMeet) {
     if (!vertex.isConnectible() || !orderCounts(path)) return;
     path.random.at(path.interactions, Draw::Sensor);
     const auto sensor = scene().camera.sampleSensor(vertex.position(), path.random.next2D());
@@ -81,17 +81,26 @@ void CameraConnections::connect(PathState& path, const Vertex& vertex, const Rgb
     const bool unwarped = scene().transport.cameraUnwarped;
     if (!context_->bounds.mayArrive(path.time, unwarped ? 0.0 : double(sensor->distance))) return;
     ++counters_->connections;
+    float share = 1.0f;
+    if (const Detectors* detectors = scene().camera.detectors(); detectors && mayMeet)
+        share = transport::balance(detectors->pdf(size_t(sensor->raster.x), sensor->direction, sensor->distance),
+                                   vertex.pdf(sensor->direction));
     const auto connection =
-        context_->connector.connect(vertex, power, transport::connectionEnd(*sensor), counters_->shadowRays);
+        context_->connector.connect(vertex, power * share, transport::connectionEnd(*sensor), counters_->shadowRays);
     if (connection) arriveAtSensor(path, sensor->raster, *connection, path.time);
 }
 
-void CameraConnections::meetDetectors(const PathState& path, const Ray& ray, const Region& region, const Rgb& power) {
+void CameraConnections::meetDetectors(const PathState& path, const Ray& ray, const Region& region, const Rgb& power,
+                                      float pdf) {
     const Detectors* detectors = scene().camera.detectors();
     if (!detectors || !orderCounts(path)) return;
     for (size_t column = 0; column < detectors->row.size(); ++column) {
-        const auto met = transport::meetDetector(context_->connector, detectors->row[column], ray, region, power,
-                                                 counters_->shadowRays);
+        const auto distance = detectors->row[column].intersect(ray);
+        if (!distance) continue;
+        const float share =
+            pdf > 0.0f ? transport::balance(pdf, detectors->pdf(column, ray.direction, *distance)) : 1.0f;
+        const auto met = transport::meetDetector(context_->connector, detectors->row[column], ray, region,
+                                                 power * share, counters_->shadowRays);
         if (met) arriveAtSensor(path, {float(column), 0.0f}, *met, scattered_);
     }
 }

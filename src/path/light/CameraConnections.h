@@ -1,5 +1,6 @@
 #pragma once
-// What plain walks from a light do on their way: every vertex is connected to the camera.
+// What plain walks from a light do on their way: every vertex is connected to the camera. Directions that they take to
+// a detector count, too: both ways to find a path share it by the balance heuristic.
 
 #include "path/light/FilmSplats.h"
 #include "transport/Connection.h"
@@ -53,9 +54,11 @@ class CameraConnections : public transport::VisitorBase {
     void showEmitter(PathState& path, const Emitter& emitter, float probability);
     /// The environment, as a detector sees it straight.
     void showEnvironment(PathState& path, const Emitter& emitter, float probability);
-    void connect(PathState& path, const transport::Vertex& vertex, const Rgb& power);
-    /// The ray, which no connection stands for, may meet detectors.
-    void meetDetectors(const PathState& path, const Ray& ray, const Region& region, const Rgb& power);
+    /// `mayMeet`: directions of the walk may find the same.
+    void connect(PathState& path, const transport::Vertex& vertex, const Rgb& power, bool mayMeet);
+    /// The ray may meet detectors. `pdf`: density of its direction per solid angle; 0 where no connection stands for
+    /// it.
+    void meetDetectors(const PathState& path, const Ray& ray, const Region& region, const Rgb& power, float pdf);
     /// What a connection brings to one place of the image. `scattered`: when camera segments began.
     void arriveAtSensor(const PathState& path, const Vec2f& raster, const transport::Connection& connection,
                         double scattered);
