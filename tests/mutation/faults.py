@@ -366,6 +366,10 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer too bright by the samples of a pass
     ("src/transport/PlainSteps.h", "path.channels = drawn_.channels;", ";",
      [("tests/agreement/awaits_balance_test.py", "-k coloured")]),  # coloured media: every flight is weighed as if it were the path's first
+    ("src/path/light/CameraConnections.cpp", "connect(vertex, power * share, transport", "connect(vertex, power * std::sqrt(share), transport",
+     [("path_tests", "DetectorPower.OfASpot*")]),  # connections to detectors take a part of what directions find
+    ("src/path/light/CameraConnections.cpp", "pdf > 0.0f ? transport::balance(pdf, detectors->pdf(", "pdf > 0.0f ? transport::balance(2.0f * pdf, detectors->pdf(",
+     [("path_tests", "DetectorPower.OfASpot*")]),  # and the other way round
     ("src/path/light/CameraConnections.cpp", "connection.throughput * float(context_->sensor.density(time))", "connection.throughput",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),  # light tracer: not divided by the frame's width, response ignored
     # src/path/techniques

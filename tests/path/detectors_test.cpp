@@ -95,6 +95,19 @@ TEST(DetectorPower, OfARoomAgrees) {
         }
 }
 
+/// A spot of power 1 on a wall of albedo 0.6, and a bucket above it as wide as it is far, which gets half of what the
+/// wall scatters (R^2 / (R^2 + h^2)): about as much by connections as by directions that meet it.
+TEST(DetectorPower, OfASpotUnderAWideBucketIsHalfOfWhatItScatters) {
+    const std::string json = scene(
+        R"({"type": "quad", "bsdf": "grey", "transform": {"rotation": [90, 0, 0], "scale": 40}},
+           {"type": "collimated", "radius": 0.01, "emission": 3183.0989,
+            "transform": {"position": [0, 0, 2], "look_at": [0, 0, 0], "up": [0, 1, 0]}})",
+        R"({"position": [0, 0, 1], "direction": [0, 0, -1], "radius": 1}, {"position": [9, 0, 1], "radius": 0.1})");
+    const auto light = test::renderLight(json, {{"integrator.type=light_tracer"}, 40, 8000});
+    EXPECT_NEAR(power(*light, 0), 0.3, 4.5 * powerError(*light, 0) + 1e-4);
+    EXPECT_LT(powerError(*light, 0), 0.003);
+}
+
 /// Light that leaves what scatters it forward, just under a bucket: by paths that meet the lamp, and by light paths
 /// that are connected to the bucket or meet it.
 TEST(DetectorPower, OfTissueUnderABucketAgrees) {
