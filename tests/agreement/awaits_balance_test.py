@@ -243,7 +243,7 @@ CASES = [
     Case("forward peak, points", PHOTON_BALANCE, forward_peak_by_points, BEST, {**PATHS, **PLAIN}),
     Case("coloured milk, light tracer", None, partial(coloured_milk, LIGHT, 16384, 0), COLOURS, GREY),
     Case("coloured milk, points", None, partial(coloured_milk, points(1000, 0.1, steady=True), 512, 0.1), COLOURS, GREY),
-    Case("tissue fibre, light tracer", PHOTON_BALANCE, partial(tissue, LIGHT, 4096), TISSUE, SIMILAR),
+    Case("tissue fibre, light tracer", None, partial(tissue, LIGHT, 32768), TISSUE, (1, 0, 16)),
     Case("tissue fibre, points", PHOTON_BALANCE, partial(tissue, {**points(500, 0.5), **BEST}, 16), TISSUE, SIMILAR_POINTS),
 ] + [
     Case(f"detectors, {lamp}, {when}, {what}", None, partial(detectors, lamp, fields, integrator, samples, allowed), method, PLAIN)

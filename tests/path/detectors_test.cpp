@@ -108,6 +108,27 @@ TEST(DetectorPower, OfASpotUnderAWideBucketIsHalfOfWhatItScatters) {
     EXPECT_LT(powerError(*light, 0), 0.003);
 }
 
+/// What goes into a slab that absorbs nothing comes out on either side, however often paths are split on their way to a
+/// fibre beside.
+TEST(DetectorPower, OfBothSidesOfASlabIsWhatGoesIn) {
+    const std::string json = R"({"media": [{"name": "milk", "type": "homogeneous", "sigma_s": 3, "sigma_a": 0,
+                                            "phase_function": {"type": "henyey_greenstein", "g": 0.5}}],
+        "primitives": [{"type": "cube", "int_medium": "milk", "bsdf": {"type": "forward"},
+                        "transform": {"position": [0, 0, -0.5], "scale": [600, 600, 1]}},
+                       {"type": "collimated", "radius": 0.01, "emission": 3183.0989,
+                        "transform": {"position": [0, 0, 0.5], "look_at": [0, 0, 0], "up": [0, 1, 0]}}],
+        "camera": {"type": "detectors", "detectors": [
+            {"position": [0, 0, 0.01], "direction": [0, 0, -1], "radius": 200},
+            {"position": [0, 0, -1.01], "direction": [0, 0, 1], "radius": 200},
+            {"position": [2, 0, 0.02], "direction": [0, 0, -1], "radius": 0.2}]},
+        "integrator": {"max_bounces": 10000}, "renderer": {}})";
+    const auto light = test::renderLight(json, {{"integrator.type=light_tracer"}, 40, 3000});
+    const double error = std::hypot(powerError(*light, 0), powerError(*light, 1));
+    EXPECT_NEAR(power(*light, 0) + power(*light, 1), 1.0, 4.5 * error);
+    EXPECT_LT(error, 0.01);
+    EXPECT_GT(power(*light, 2), 5.0 * powerError(*light, 2)) << "nothing is split";
+}
+
 /// Light that leaves what scatters it forward, just under a bucket: by paths that meet the lamp, and by light paths
 /// that are connected to the bucket or meet it.
 TEST(DetectorPower, OfTissueUnderABucketAgrees) {

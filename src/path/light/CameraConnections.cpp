@@ -1,5 +1,7 @@
 #include "path/light/CameraConnections.h"
 
+#include "path/light/StepsToDetectors.h"
+
 #include "transport/Balance.h"
 #include "transport/DetectorLight.h"
 
@@ -131,11 +133,19 @@ bool CameraConnections::inView(const Vec2f& raster) const {
 
 void traceLightPath(const LightContext& context, const Sampler& sampler, std::vector<Splat>& splats,
                     LightCounters& counters) {
-    transport::Walk walk{PathState{.random = sampler},
-                         transport::PlainLightSteps({context.scene, counters, context.watch}),
-                         CameraConnections(context, splats, counters)};
-    walk.steps.roulette = context.russianRoulette;
-    if (walk.visitor.emit(walk.path)) walk.run();
+    const auto trace = [&](auto steps) {
+        transport::Walk walk{PathState{.random = sampler}, std::move(steps),
+                             CameraConnections(context, splats, counters)};
+        walk.steps.roulette = context.russianRoulette;
+        if (!walk.visitor.emit(walk.path)) return;
+        if constexpr (std::is_same_v<decltype(steps), StepsToDetectors>) walk.steps.startAt(walk.path.ray.origin);
+        walk.run();
+    };
+    const transport::WalkContext all{context.scene, counters, context.watch};
+    if (context.splits)
+        trace(StepsToDetectors(all));
+    else
+        trace(transport::PlainLightSteps(all));
 }
 
 } // namespace tungsten::path

@@ -21,6 +21,7 @@ struct LightContext {
     const Distribution1D& emitters;
     transport::Connector connector;
     bool russianRoulette;
+    bool splits; ///< paths on their way to detectors (StepsToDetectors)
     const PassWatch& watch;
 };
 

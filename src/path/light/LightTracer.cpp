@@ -104,14 +104,15 @@ void LightTracer::prepare(const EffectPlan& plan, const PassWatch&, Statistics&)
     emitters_ = emitterDistribution(
         *scene_, [](const Emitter&) { return true; }, plan.late);
     bounds_ = {scene_->transport.gate, plan};
+    splits_ = scene_->camera.detectors() && plan.mediumScattering;
 }
 
 void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
     const StageTimer timer(statistics, "light paths");
     const uint64_t pixels = uint64_t(film.width()) * uint64_t(film.height()), paths = pixels * pass.samples;
     if (!(emitters_.total() > 0.0)) return;
-    const LightContext context{*scene_,          limits_,   sensor_, bounds_, emitters_, {*scene_, forwardBoundaries_},
-                               russianRoulette_, pass.watch};
+    const LightContext context{*scene_,          limits_, sensor_,   bounds_, emitters_, {*scene_, forwardBoundaries_},
+                               russianRoulette_, splits_, pass.watch};
     pass.watch.stage("light paths", paths);
     const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
     for (uint64_t traced = 0; traced < paths; traced += PathsPerBatch * BatchesPerWave) {

@@ -18,7 +18,7 @@ class LightTracer : public Integrator {
   private:
     std::shared_ptr<const Scene> scene_;
     transport::BounceLimits limits_;
-    bool russianRoulette_, forwardBoundaries_ = true;
+    bool russianRoulette_, forwardBoundaries_ = true, splits_ = false;
     transport::Sensor sensor_;
     transport::GateBounds bounds_;
     Distribution1D emitters_;
