@@ -6,6 +6,7 @@
 #include "path/techniques/RefractedLight.h"
 
 #include "transport/DetectorLight.h"
+#include "transport/SamplingSummary.h"
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
@@ -76,14 +77,13 @@ Choice tablesOf(const Scene& scene, const PathSettings& settings, const EffectPl
 
 Choice balanceOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
     if (!guidance.on) return {false, "paths are not guided"};
-    if (scene.transport.gate.delta) return {false, "no plain path meets a gate of width 0: paths are guided alone"};
+    if (scene.transport.gate.delta) return {false, "no plain path meets a gate of width 0"};
     const darts::Scheme& scheme = settings.policy.sampling;
     const bool known = std::all_of(scene.media.begin(), scene.media.end(), [&](const Medium& medium) {
         const auto of = scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
         return !medium.scatters() || of.hasDensities();
     });
-    if (!known)
-        return {false, "the published method, or switches that leave densities unknown: paths are guided alone"};
+    if (!known) return {false, "the published method, or switches that leave densities unknown"};
     return {true, "plain paths beside guided ones, each weighed by how densely both find what it has found"};
 }
 
@@ -125,12 +125,30 @@ void PathPlan::chooseLightPaths(const Scene& scene, const PathSettings& settings
                                                 : "no glossy surface";
 }
 
+SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) const {
+    const transport::Policy& policy = settings.policy;
+    SamplingSummary said;
+    said.paths = transport::describeStrategies("camera paths", guidance, balance, policy.plainShare);
+    said.vertices = guidance.on ? transport::describeVertices(scene, policy, darts::Mode::Path, facts, true)
+                                : transport::PlainVertices;
+    const bool connects = settings.lightSampling || settings.volumeLightSampling;
+    said.ends = transport::describeEnds({{guidance.on && policy.sampling.elliptical, "control vertices"},
+                                         {connects, "connections to lights"},
+                                         {facts.surfaceEmission || facts.environment, "lights that are met"},
+                                         {lightVertices.on, lightVertices.reason},
+                                         {reflectedLight.on, reflectedLight.reason},
+                                         {refracted.on, refracted.reason},
+                                         {detectorLight.on, detectorLight.reason}});
+    return said;
+}
+
 void PathPlan::describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const {
     const auto add = [&](const std::string& name, const Choice& choice, const std::vector<std::string>& causes,
                          const std::vector<std::string>& counters = {}) {
         plan.describe(name, choice.on, choice.reason, causes, counters);
     };
     countArrivals(plan);
+    plan.sampling = summary(scene, settings, plan);
     if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
     if (settings.missed)
         plan.lack("light of points by mirrors and refraction",

@@ -32,6 +32,8 @@ struct PathPlan {
     bool forwardBoundaries = false; ///< connections must look through index-matched surfaces
 
   private:
+    [[nodiscard]] SamplingSummary summary(const Scene& scene, const PathSettings& settings,
+                                          const EffectPlan& facts) const;
     void chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
 };
 

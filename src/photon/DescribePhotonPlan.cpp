@@ -4,6 +4,7 @@
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
+#include "transport/SamplingSummary.h"
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
@@ -68,8 +69,31 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
     plan.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
 }
 
+SamplingSummary PhotonPlan::summary(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) const {
+    const transport::Policy& policy = settings.policy;
+    SamplingSummary said;
+    said.paths = transport::describeStrategies("light paths", guidance, sideBySide, policy.plainShare);
+    said.vertices = guidance.on ? transport::describeVertices(scene, policy, darts::Mode::Photon, facts,
+                                                              !scene.transport.cameraUnwarped)
+                                : transport::PlainVertices;
+    const auto [stored, atVertices] = std::visit(
+        [](const auto& p) { return std::pair(std::string(p.Effect), bool(p.AtVertices)); }, settings.primitive);
+    said.ends = transport::describeEnds(
+        {{volume.on, stored + " (" + volume.reason + "), " + (splats() ? "splatted" : "gathered")},
+         {volume.on && !settings.radiusReason.empty(), "default radius: " + settings.radiusReason},
+         {guidance.on && atVertices && policy.sampling.elliptical,
+          ordinaryPhotons.on ? "control vertices beside them" : "control vertices alone: " + ordinaryPhotons.reason},
+         {connections.on, "connections to surface points that the camera sees in time"},
+         {surfacePhotons.on,
+          connections.on ? "surface photons for what connections cannot bring" : "surface photons, gathered"},
+         {glossyPaths.on, glossyPaths.reason},
+         {detectorLight.on, detectorLight.reason}});
+    return said;
+}
+
 void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
     transport::countSteps(plan);
+    plan.sampling = summary(scene, settings, plan);
     describeVolume(settings, plan);
     plan.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
     plan.describe("surface photons", surfacePhotons.on, surfacePhotons.reason, lobeUses(scene, lobe::Smooth).causes(),

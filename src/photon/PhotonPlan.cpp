@@ -94,9 +94,10 @@ Choice framesOneByOneOf(const Given& given, bool exact) {
 
 Choice sideBySideOf(const Given& given, const PhotonPlan& plan) {
     if (!plan.guidance.on) return {false, plan.guidance.reason};
-    if (given.policy().plainShare == 0.0f) return {false, "plain_share is 0: guided light paths alone"};
-    if (plan.framesOneByOne.on) return {false, "frames one by one: guided light paths alone"};
-    if (given.policy().directView == transport::DirectView::On) return {false, "direct_view: control vertices alone"};
+    if (given.policy().plainShare == 0.0f) return {false, "plain_share is 0"};
+    if (plan.framesOneByOne.on) return {false, "frames one by one"};
+    if (given.policy().directView == transport::DirectView::On)
+        return {false, "direct_view asks for control vertices alone"};
     if (plan.meetsDeltaGate) return {false, "delta gate: control vertices lie on it, where no plain photon arrives"};
     const auto hasDensities = [&](const Medium& medium) {
         return !medium.scatters() ||
@@ -105,7 +106,7 @@ Choice sideBySideOf(const Given& given, const PhotonPlan& plan) {
                    .hasDensities();
     };
     if (!std::ranges::all_of(given.scene.media, hasDensities))
-        return {false, "the preset or a switch draws without a known density: guided light paths alone"};
+        return {false, "the published method, or switches that leave densities unknown"};
     return {true, "plain and guided light paths, weighed by how densely both leave each record"};
 }
 

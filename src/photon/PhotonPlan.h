@@ -54,6 +54,8 @@ struct PhotonPlan {
     [[nodiscard]] bool records() const { return splats() || connections.on; }
 
   private:
+    [[nodiscard]] SamplingSummary summary(const Scene& scene, const PhotonSettings& settings,
+                                          const EffectPlan& facts) const;
     void describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
     void describeVolume(const PhotonSettings& settings, EffectPlan& plan) const;
     void describeSplatting(EffectPlan& plan) const;

@@ -250,7 +250,7 @@ class Plan(unittest.TestCase):
 
     def test_text_and_json_say_the_same(self):
         scene = foggy(best())
-        text = self.run_on(scene, "--explain").stdout.splitlines()[1:]
+        text = self.run_on(scene, "--explain=effects").stdout.splitlines()[1:]
         text, left_open = text[:text.index("what the scene leaves open")], text[text.index("what the scene leaves open") + 1:]
         plan = self.plan(scene)
         effects = plan["effects"]
@@ -261,6 +261,29 @@ class Plan(unittest.TestCase):
             self.assertTrue(line.endswith(effect["reason"]), line)
         self.assertEqual([re.sub(" +", " ", line).strip() for line in left_open],
                          [f"{taken['field']} {taken['value']} ({taken['meaning']})" for taken in plan["defaults"]])
+
+    def test_three_lines_say_what_is_sampled_how(self):
+        for settings, parts in [
+            (best(PATHS), ["plain and guided camera paths side by side", "a pilot will choose", "by the light still to arrive in time (causal)",
+                      "control vertices; connections to lights"]),
+            (best(PATHS, plain_share=0.25), ["plain_share gives plain ones 0.25 of the time"]),
+            (best(PATHS, plain_share=0), ["guided camera paths alone: plain_share is 0"]),
+            ({**PATHS, "darts": {"preset": "published", "direction": "eda"}}, ["guided camera paths alone: the published method",
+                                                             "resampled by the light still to arrive in time (diffusion)", "the published table"]),
+            (PATHS, ["plain camera paths: the scene does not ask for it", "distances by transmittance"]),
+            ({**PATHS, "type": "light_tracer"}, ["plain light paths", "connections to the camera"]),
+            (best(PHOTONS), ["plain and guided light paths side by side",
+                                                                      "volume photon points (a medium scatters), splatted"])]:
+            scene = foggy(settings)
+            lines = self.run_on(scene, "--explain").stdout.splitlines()
+            said = self.plan(scene)["sampling"]
+            self.assertEqual(lines[1:4], [f"  {name:10}{said[name]}" for name in ("paths", "vertices", "ends")])
+            for part in parts:
+                self.assertIn(part, " ".join(lines[1:4]))
+
+    def test_what_is_left_out_is_told_with_them(self):
+        late = foggy({**best(PATHS), "transient_time_center": 0.01, "transient_time_width": 0.01})
+        self.assertIn("  left out  black image: no light can arrive", self.run_on(late, "--explain").stdout)
 
     def defaults(self, scene):
         return {taken["field"]: taken["value"] for taken in self.plan(scene)["defaults"]}

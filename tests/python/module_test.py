@@ -244,7 +244,7 @@ class Render(unittest.TestCase):
         plan = darts_tungsten.plan(SCENE)
         self.assertEqual(plan["integrator"], "path_tracer")
         self.assertTrue(all(effect["reason"] for effect in plan["effects"]))
-        explained = subprocess.run([TUNGSTEN, "--explain", self.file], check=True, capture_output=True, text=True).stdout
+        explained = subprocess.run([TUNGSTEN, "--explain=effects", self.file], check=True, capture_output=True, text=True).stdout
         for effect in plan["effects"]:
             self.assertIn(effect["reason"], explained)
         causes = {effect["name"]: effect["causes"] for effect in plan["effects"]}

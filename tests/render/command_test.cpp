@@ -209,7 +209,7 @@ TEST(Command, ListReportsABrokenPluginAndListsTheOthers) {
 
 TEST(Command, ExplainPrintsThePlanAndRendersNothing) {
     const SceneFile scene(foggyBox(test::Photons));
-    const CommandResult result = test::tungsten({"--explain", "--time-center", "7", scene.path().string()});
+    const CommandResult result = test::tungsten({"--explain=effects", "--time-center", "7", scene.path().string()});
     EXPECT_EQ(result.exitCode, 0) << result.err;
     for (const char* part : {"one gate [6, 8)", "scattering media: 'fog'", "'floor'"})
         EXPECT_NE(result.out.find(part), std::string::npos) << part << " in\n" << result.out;

@@ -19,7 +19,7 @@ EffectPlan planOf(const std::string& json) {
 
 std::string textOf(const EffectPlan& plan) {
     std::ostringstream out;
-    printPlan(plan, out);
+    printEffects(plan, out);
     return out.str();
 }
 

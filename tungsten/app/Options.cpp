@@ -149,9 +149,11 @@ void declareBounds(CLI::App& app, Options& options, OptionTexts& text) {
 
 /// What is answered instead of rendering.
 void declareQuestions(CLI::App& app, Options& options, OptionTexts& text) {
-    app.add_flag("--explain{text}", text.explain,
-                 "print which effects the scene calls for, and why; render nothing; --explain=json: as JSON, with the "
-                 "elements of the scene behind them");
+    app.add_flag(
+        "--explain{text}", text.explain,
+        "print what is sampled how, and what is left out; render nothing; --explain=effects: every effect that "
+        "the scene calls for or not, and why; --explain=json: both as JSON, with the elements of the scene "
+        "behind them");
     app.add_flag(
         "--plan-cost", options.planCost,
         "print what errors of 10, 3, 1 and 0.3 % cost in seconds by points, beams, sliced primitives and paths, "
@@ -200,6 +202,14 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
     return true;
 }
 
+std::optional<Explanation> explanationOf(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    if (text == "text") return Explanation::Text;
+    if (text == "effects") return Explanation::Effects;
+    if (text == "json") return Explanation::Json;
+    throw UsageError("--explain=" + text + ": expected text, effects or json");
+}
+
 void understand(const OptionTexts& text, Options& options) {
     if (!text.seed.empty()) options.seed = seedOption(text.seed);
     if (!text.memoryLimit.empty()) options.memoryLimit = sizeOption(text.memoryLimit);
@@ -223,10 +233,7 @@ void understand(const OptionTexts& text, Options& options) {
         if (!options.outputs.exposure)
             throw UsageError("--exposure " + text.exposure + ": expected auto or a number of stops, from -100 to 100");
     }
-    if (!text.explain.empty() && text.explain != "text" && text.explain != "json")
-        throw UsageError("--explain=" + text.explain + ": expected json or text");
-    options.explain = !text.explain.empty();
-    options.explainAsJson = text.explain == "json";
+    options.explain = explanationOf(text.explain);
     options.everything = text.effects == "all";
     if (text.description->count() > 0) options.describe = text.describe;
 }
@@ -249,7 +256,7 @@ std::optional<Options> parseOptions(int argc, const char* const* argv) {
     if (options.planCost && options.outputs.statistics && options.scenes.size() > 1)
         throw UsageError("--plan-cost: takes one scene at a time with --stats");
     if (options.markdown && !options.describe) throw UsageError("--markdown: goes with --describe");
-    if (options.explainAsJson && options.scenes.size() > 1)
+    if (options.explain == Explanation::Json && options.scenes.size() > 1)
         throw UsageError("--explain=json: takes one scene at a time");
     if (!options.trace.empty() && options.scenes.size() > 1) throw UsageError("--trace: takes one scene at a time");
     if (options.scenes.size() > 1)

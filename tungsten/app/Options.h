@@ -11,6 +11,9 @@
 
 namespace tungsten {
 
+/// What --explain prints: what is sampled how; every effect with its reason; both as JSON.
+enum class Explanation { Text, Effects, Json };
+
 struct Options {
     std::vector<std::filesystem::path> scenes;
     std::vector<std::string> overrides; ///< --set, then what other options say about the scene
@@ -27,8 +30,9 @@ struct Options {
     int threads = 0;          ///< 0: all
     bool restart = false, quiet = false;
     bool bias = false;
-    bool explainAsJson = false, everything = false; ///< --explain=json, --effects all
-    bool explain = false, list = false, planCost = false;
+    bool everything = false;            ///< --effects all
+    std::optional<Explanation> explain; ///< --explain
+    bool list = false, planCost = false;
     std::optional<std::string> describe; ///< a type or kind; empty: all
     bool markdown = false;
 };

@@ -56,13 +56,13 @@ Job loadJob(const std::filesystem::path& file, const Options& options, const Plu
 
 /// What a scene calls for, and what it leaves to defaults; renders nothing.
 void explain(const std::filesystem::path& file, const Job& job, const std::vector<DefaultTaken>& defaults,
-             bool asJson) {
-    if (asJson) {
+             Explanation how) {
+    if (how == Explanation::Json) {
         std::cout << planJson(job, defaults) << '\n';
         return;
     }
     std::cout << file.string() << " (" << job.loaded.integratorType << ")\n";
-    printPlan(job.plan, std::cout);
+    how == Explanation::Effects ? printEffects(job.plan, std::cout) : printPlan(job.plan, std::cout);
     printDefaults(defaults, std::cout);
 }
 
@@ -98,8 +98,8 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
     const Job job = loadJob(file, options, plugins, team);
     const LoadedScene& loaded = job.loaded;
     loading.reset();
-    if (options.explain || options.explainAsJson) {
-        explain(file, job, defaultsTaken(job, plugins.registry), options.explainAsJson);
+    if (options.explain) {
+        explain(file, job, defaultsTaken(job, plugins.registry), *options.explain);
         return 0;
     }
     OutputFiles outputs;

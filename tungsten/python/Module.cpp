@@ -180,6 +180,11 @@ py::dict planOf(const py::object& scene, const py::dict& set, const Folder& fold
     }
     py::dict plan;
     plan["integrator"] = job.loaded.integratorType;
+    py::dict sampling;
+    sampling["paths"] = job.plan.sampling.paths;
+    sampling["vertices"] = job.plan.sampling.vertices;
+    sampling["ends"] = job.plan.sampling.ends;
+    plan["sampling"] = sampling;
     plan["effects"] = effects;
     plan["lacks"] = job.plan.lacks;
     py::list defaults;

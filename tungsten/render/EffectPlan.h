@@ -17,6 +17,13 @@ struct Effect {
     std::vector<std::string> counters = {}; ///< of Statistics; each is 0 after a render with the effect off
 };
 
+/// What is sampled how, in a line each.
+struct SamplingSummary {
+    std::string paths;    ///< which strategies run, and what share each has
+    std::string vertices; ///< how distances and directions are drawn
+    std::string ends;     ///< what a path ends at, or leaves
+};
+
 struct EffectPlan {
     bool timeResolved = false; ///< gated or frames
     bool multipleFrames = false;
@@ -53,6 +60,7 @@ struct EffectPlan {
     }
     [[nodiscard]] bool isOutOfTime(size_t medium) const { return !mediaOutOfTime.empty() && mediaOutOfTime[medium]; }
 
+    SamplingSummary sampling; ///< as integrators fill it in
     /// Every effect with its reason, integrators' own included, in order of description.
     std::vector<Effect> effects;
     /// Light of the scene that the image will lack, each with a reason; empty where it will have all.

@@ -1,6 +1,9 @@
 #include "tungsten/render/PlanReport.h"
 
+#include "tungsten/render/BounceCuts.h"
+
 #include <algorithm>
+#include <array>
 #include <iomanip>
 #include <ostream>
 
@@ -12,7 +15,28 @@ void EffectPlan::count(const std::string& effect, const std::vector<std::string>
             described.counters.insert(described.counters.end(), counters.begin(), counters.end());
 }
 
+namespace {
+
+/// Whether the effect is that of leaving something out, and does.
+bool leavesOut(const Effect& effect, const EffectPlan& plan) {
+    const bool surfaces = plan.surfaceScattering || plan.surfaceEmission || plan.specularSensorPaths;
+    if (effect.name == "surfaces in time") return surfaces && plan.surfacesOutOfTime;
+    if (effect.name == "media in time") return !plan.mediaOutOfTime.empty();
+    constexpr std::array LeftOut{"late emitters left out", "black image", "frames before all light", LightCut};
+    return effect.on && std::ranges::find(LeftOut, effect.name) != LeftOut.end();
+}
+
+} // namespace
+
 void printPlan(const EffectPlan& plan, std::ostream& out) {
+    out << "  paths     " << plan.sampling.paths << "\n  vertices  " << plan.sampling.vertices << "\n  ends      "
+        << plan.sampling.ends << '\n';
+    for (const std::string& lack : plan.lacks) out << "  lacks     " << lack << '\n';
+    for (const Effect& effect : plan.effects)
+        if (leavesOut(effect, plan)) out << "  left out  " << effect.name << ": " << effect.reason << '\n';
+}
+
+void printEffects(const EffectPlan& plan, std::ostream& out) {
     size_t width = 0;
     for (const Effect& effect : plan.effects) width = std::max(width, effect.name.size());
     for (const Effect& effect : plan.effects)
@@ -49,6 +73,11 @@ std::string planJson(const Job& job, const std::vector<DefaultTaken>& defaults) 
     JsonWriter json;
     json.field("scene", job.loaded.scene->file.string());
     json.field("integrator", job.loaded.integratorType);
+    json.beginObject("sampling");
+    json.field("paths", job.plan.sampling.paths);
+    json.field("vertices", job.plan.sampling.vertices);
+    json.field("ends", job.plan.sampling.ends);
+    json.endObject();
     writeEffects(job.plan.effects, {}, json);
     json.field("lacks", job.plan.lacks);
     json.beginArray("defaults");

@@ -73,7 +73,7 @@ class Case:
 
     def automatic(self, bench):
         """What `auto` chooses, and why."""
-        command = bench.command(self.place, [MAP, "integrator.volume_photon_type=auto", "integrator.darts=best"], ["--explain"])
+        command = bench.command(self.place, [MAP, "integrator.volume_photon_type=auto", "integrator.darts=best"], ["--explain=effects"])
         said = subprocess.run([*command, str(self.place.file)], capture_output=True, text=True, check=True).stdout
         return re.search(rf"^\s*on .*?\s{{2,}}({'|'.join(['points', 'beams', *SLICES])}): (.*)$", said, re.MULTILINE).groups()
 

@@ -4,6 +4,8 @@
 #include "path/PathSettings.h"
 #include "path/Tuning.h"
 
+#include "transport/SamplingSummary.h"
+
 #include "tungsten/render/EarliestArrival.h"
 #include "tungsten/scene/LightChoice.h"
 
@@ -81,6 +83,9 @@ LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader&
 void LightTracer::plan(EffectPlan& plan) const {
     leaveOutLate(*scene_, lastTime(*scene_), plan);
     countArrivals(plan);
+    plan.sampling = {"plain light paths: there is no guidance for them",
+                     transport::PlainVertices + std::string(russianRoulette_ ? ", Russian roulette by throughput" : ""),
+                     "connections to the camera"};
     plan.describe("light paths", emitters_.total() > 0.0,
                   emitters_.total() > 0.0 ? "one for every sample of a pixel, connected to the camera at each vertex"
                                           : "nothing shines",
