@@ -71,7 +71,6 @@ struct Settings {
     bool overlap = true; ///< usefulness includes the part of the gate that is still reachable
     float floor = 0.0f;  ///< added to usefulness, relative to the candidates' mean; at most 0.05
     float strays = 0.0f; ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
-    bool splitsHeavyOut = false; ///< out of bodies walks that are too heavy split too, not by the way left alone
 
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
@@ -125,7 +124,6 @@ inline Settings best(Mode mode, float g) {
         s.roulette = s.rouletteOut = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
         s.strays = 0.2f;
-        s.splitsHeavyOut = true;
     } else {
         s.candidates = 16;
         s.roulette = 0.03f;

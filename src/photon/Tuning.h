@@ -44,12 +44,6 @@ inline constexpr float SphereShare = 0.1f;
 /// Bench: study bodies
 inline constexpr float TowardsBodies = 0.2f;
 
-/// Light paths of a pass that tell what the others are measured by at first in bodies that they must leave
-/// (FirstUsefulness). Variance x CPU without and with it, points and beams: milk behind glass 0.31 and 0.23, 0.48 and
-/// 0.33; cloud in haze 0.90 and 0.62, 0.82 and 0.62; amber half-space 0.43 and 0.29, 0.39 and 0.24; a lit slab 0.036
-/// and 0.043, 0.083 and 0.088, which is noise. Bench: study bodies
-inline constexpr uint64_t FirstPaths = 1024;
-
 /// Slices, as `auto` chooses them, up to this |g| of phase functions, with and without the camera's leg, and their
 /// guided paths with it. Variance x CPU of mis_volumes_balls against beams, fog seen from 1.5 away: 0.17 at g = 0, 0.9
 /// at 0.3, 5.5 at 0.5; without the leg 0.07 at 0.7 and, against points, 1.6 at 0.9. Guided against plain: 0.5 at 0, 0.8

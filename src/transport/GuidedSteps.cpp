@@ -20,22 +20,22 @@ void GuidedSteps::startRoulette(const darts::Guide& guide, int medium, float thr
     first_ = First{guide.logUsefulness(reachable_, throughput), medium, reachable_.way};
 }
 
-float GuidedSteps::survival(const darts::Guide& guide, int medium, float throughput, float others) {
+float GuidedSteps::survival(const darts::Guide& guide, int medium, float throughput) {
     if (!(guide.settings().roulette > 0.0f)) return 1.0f;
     useful_ = guide.logUsefulness(reachable_, throughput);
     if (!(first_ && first_->medium == medium && first_->way == reachable_.way))
-        first_ = First{std::max(useful_, others), medium, reachable_.way};
+        first_ = First{useful_, medium, reachable_.way};
     const float survival = guide.survival(reachable_.way, useful_, first_->usefulness);
     lineage_ *= survival;
     return survival;
 }
 
 int GuidedSteps::copiesBy(const darts::Guide& guide) {
-    const bool out = reachable_.way == darts::Way::Out;
-    int copies = out ? splits_.copies(guide.splits(reachable_)) : 1;
-    const bool byUsefulness = out ? guide.settings().splitsHeavyOut : reachable_.way != darts::Way::Unknown;
-    if (byUsefulness && first_)
-        copies *= guide.copies(useful_ - std::log(float(copies)), first_->usefulness, tuning::MostCopies / lineage_);
+    int copies = 1;
+    if (reachable_.way == darts::Way::Out)
+        copies = splits_.copies(guide.splits(reachable_));
+    else if (reachable_.way == darts::Way::Through && first_)
+        copies = guide.copies(useful_, first_->usefulness, tuning::MostCopies / lineage_);
     lineage_ *= float(copies);
     return copies;
 }

@@ -14,7 +14,6 @@
 
 #include "darts/Guide.h"
 
-#include <limits>
 #include <optional>
 #include <variant>
 
@@ -69,12 +68,10 @@ class GuidedSteps {
     // Roulette. Models of what is still to come do not compare: where another one holds, in another medium or by
     // another way out, usefulness is measured anew.
     void startRoulette(const darts::Guide& guide, int medium, float throughput);
-    static constexpr float NoOthers = -std::numeric_limits<float>::infinity();
-    /// Probability of going on. Where the roulette starts it is 1, unless the walk is less useful than others are at
-    /// first (`others`, a logarithm).
-    [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput, float others = NoOthers);
-    /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, and where it has become
-    /// too useful.
+    /// Probability of going on; 1 where the roulette starts.
+    [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput);
+    /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, elsewhere where it has
+    /// become too useful.
     [[nodiscard]] int copiesBy(const darts::Guide& guide);
 
     // Connection.

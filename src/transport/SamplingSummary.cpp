@@ -56,8 +56,7 @@ std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mo
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
         if (!medium.scatters() || facts.isOutOfTime(i)) continue;
-        darts::Settings settings =
-            policy.sampling.settings(mode, medium.phase.g(), medium.guided, medium.guidedPhase);
+        darts::Settings settings = policy.sampling.settings(mode, medium.phase.g(), medium.guided, medium.guidedPhase);
         const bool connects = mode == darts::Mode::Photon || settings.elliptical || policy.sampling.direction;
         if (!aims || !connects) settings.direction = darts::Direction::Phase;
         if (!aims) settings.greens = darts::Greens::None;

@@ -1,6 +1,4 @@
-// Photon maps of bodies that light must leave: against paths, and what is spent on light that is of no use.
-
-#include "photon/light/FirstUsefulness.h"
+// Photon maps of bodies that light must leave: against paths.
 
 #include "support/PathsAndPhotons.h"
 
@@ -8,16 +6,6 @@
 
 namespace tungsten::photon {
 namespace {
-
-TEST(FirstUsefulness, IsTheRootMeanSquareByMedium) {
-    FirstUsefulness first(2);
-    EXPECT_LT(first.logged(0), -1e20f);
-    // Far beyond what the exponential of a float holds, in either order.
-    for (const float logged : {-200.0f + std::log(3.0f), -200.0f, -200.0f + std::log(5.0f)}) first.record(0, logged);
-    EXPECT_NEAR(first.logged(0), -200.0f + 0.5f * std::log(35.0f / 3.0f), 1e-4f);
-    for (int i = 0; i < 3; ++i) first.record(1, 4.0f);
-    EXPECT_FLOAT_EQ(first.logged(1), 4.0f);
-}
 
 /// A slab lit from close by, of which the camera sees a small part; `size` is its width.
 std::string slabScene(double size, double gate) {
@@ -38,24 +26,18 @@ std::string slabScene(double size, double gate) {
 
 struct Photons {
     double mean = 0.0, error = 0.0; ///< of whole images of several seeds, whose pixels err together
-    double eventsPerPath = 0.0;
-    uint64_t controlVertices = 0;
 };
 
 Photons renderBest(const std::string& scene) {
     constexpr int Seeds = 8;
     Photons result;
-    double squares = 0.0, events = 0.0, paths = 0.0;
+    double squares = 0.0;
     for (int seed = 1; seed <= Seeds; ++seed) {
         const auto rendered = test::renderPhotons(scene, {{test::GuidedAlone}, 14, 1, uint64_t(seed)});
         result.mean += rendered->mean() / Seeds;
         squares += rendered->mean() * rendered->mean() / Seeds;
-        events += double(rendered->statistics.counter("medium events"));
-        paths += double(rendered->statistics.counter("photons"));
-        result.controlVertices += rendered->statistics.counter("control vertices");
     }
     result.error = std::sqrt((squares - result.mean * result.mean) / (Seeds - 1));
-    result.eventsPerPath = events / paths;
     return result;
 }
 
@@ -63,16 +45,6 @@ void expectSameMean(const Photons& photons, const test::Rendered& paths) {
     const double error = std::hypot(photons.error, paths.pixelError() / 4.0);   // pixels of paths are independent
     EXPECT_NEAR(photons.mean, paths.mean(), 4.5 * error + 0.02 * paths.mean()); // and the kernel
     EXPECT_LT(error, 0.05 * paths.mean());
-}
-
-TEST(PhotonMapsOfBodies, LightThatGetsInWhereItIsOfNoUseEndsSoon) {
-    // Scatterings of a light path without it: 8.9 and 5.6.
-    for (const auto& [size, most] : {std::pair{3.0, 6.5}, std::pair{40.0, 4.4}}) {
-        const std::string scene = slabScene(size, 0.1);
-        const Photons photons = renderBest(scene);
-        EXPECT_LT(photons.eventsPerPath, most) << size;
-        expectSameMean(photons, *test::renderPaths(scene, {{"integrator.darts=best"}, 16, 128}));
-    }
 }
 
 /// A block of milk under a lamp; its walls send back what meets them from inside, but for 1 / index^2 and less.

@@ -50,27 +50,6 @@ TEST(GuidedSteps, LooksInTwoStages) {
     EXPECT_FALSE(step.hasLooked());
 }
 
-TEST(GuidedSteps, StartsWithTheUsefulnessOfOthersIfItsOwnIsLower) {
-    const darts::Guide guide = guideWith(0.1f);
-    const auto started = [&](float throughput, float others) {
-        GuidedSteps step;
-        step.setTimeBudget(ahead());
-        return step.survival(guide, 0, throughput, others);
-    };
-    const float own = guide.logUsefulness(ahead(), 1.0f);
-    EXPECT_FLOAT_EQ(started(1.0f, own), 1.0f);
-    EXPECT_FLOAT_EQ(started(1.0f, own - 5.0f), 1.0f);
-    EXPECT_FLOAT_EQ(started(1.0f, own + std::log(9.0f)), 1.0f); // not below a tenth
-    EXPECT_NEAR(started(1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
-    // And goes on by it: what has survived has made up for it.
-    GuidedSteps step;
-    step.setTimeBudget(ahead());
-    EXPECT_NEAR(step.survival(guide, 0, 1.0f, own + std::log(40.0f)), 0.25f, 1e-4f);
-    EXPECT_FLOAT_EQ(step.survival(guide, 0, 4.0f, own + std::log(40.0f)), 1.0f);
-    EXPECT_NEAR(step.survival(guide, 0, 0.4f), 0.1f, 1e-4f);
-    EXPECT_EQ(step.copiesBy(guide), 1);
-}
-
 TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
@@ -92,25 +71,6 @@ TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     EXPECT_LT(step.survival(guide, 0, 1e-4f), 0.01f);
     (void)step.survival(guide, 0, 1e6f);
     EXPECT_GT(step.copiesBy(guide), 8);
-}
-
-/// Where half of 16 transport mean free paths is not left yet, by their usefulness alone, and by both where it is.
-TEST(GuidedSteps, OutOfBodiesHeavyPhotonsSplit) {
-    const auto copiesOf = [](darts::Mode mode, double longest) {
-        const darts::Guide guide(darts::best(mode, 0.0f), Fog);
-        GuidedSteps step;
-        step.setTimeBudget(test::outOf(0.5, 3.0, longest, 1.0));
-        EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
-        EXPECT_EQ(step.copiesBy(guide), 1);
-        if (longest < 10.0) step.setTimeBudget(test::outOf(0.5, 3.0, 0.5 * (longest + 3.5), 1.0));
-        EXPECT_FLOAT_EQ(step.survival(guide, 0, 40.0f), 1.0f);
-        return step.copiesBy(guide);
-    };
-    EXPECT_EQ(copiesOf(darts::Mode::Photon, 43.5), 11); // 40 / 4 + 1
-    EXPECT_EQ(copiesOf(darts::Mode::Path, 43.5), 1);
-    const int halved = copiesOf(darts::Mode::Path, 9.5);
-    EXPECT_EQ(halved, 2);
-    EXPECT_GT(copiesOf(darts::Mode::Photon, 9.5), halved);
 }
 
 TEST(GuidedSteps, OutOfBodiesCameraPathsEndSooner) {

@@ -26,7 +26,7 @@ float pdfPhoton(const Medium& medium, float distance) {
 StepRules rulesOf(const PhotonContext& context) {
     const bool storesVertices =
         context.storeVolume && std::visit([](const auto& p) { return p.AtVertices; }, context.settings.primitive);
-    return {storesVertices, context.first, context.measured, context.balance};
+    return {storesVertices, context.balance};
 }
 
 } // namespace

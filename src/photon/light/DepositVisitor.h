@@ -5,7 +5,6 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/light/Deposits.h"
-#include "photon/light/FirstUsefulness.h"
 #include "photon/light/PhotonTrail.h"
 #include "photon/light/StepsToCamera.h"
 #include "photon/primitives/sliced/FlightChain.h"
@@ -46,8 +45,6 @@ struct PhotonContext {
     bool densityPhotons = false;
     bool glossySensorPaths = false;             ///< SensorPathRules::glossy
     const RecordCounts* recordCounts = nullptr; ///< of paths that draw their records' directions
-    const FirstUsefulness* first = nullptr;     ///< likewise: in bodies that light must leave
-    FirstUsefulness* measured = nullptr;        ///< of pilot paths, which end at their first vertex there
     transport::StrategyBalance balance{};       ///< of plain and guided paths
     PassWatch watch{};
 };

@@ -30,8 +30,6 @@ class PhotonGuidance {
     [[nodiscard]] darts::Residual residual(const transport::Start& start, const Region& region, double elapsed,
                                            const darts::TimeGate& gate, uint64_t& rays) const;
 
-    /// Some scattering medium ends at a boundary that light passes: Way::Out.
-    [[nodiscard]] bool leavesBodies() const { return waysOut_ != nullptr; }
     /// Bodies that light from outside is sent towards.
     [[nodiscard]] const std::vector<transport::BodySphere>& bodies() const { return bodies_; }
     /// transport::WaysOut::leaveOdds

@@ -132,14 +132,12 @@ PhotonSettings PhotonPass::settingsOf(const PassInfo& pass) const {
     return settings;
 }
 
-PhotonContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& settings,
-                                    const FirstUsefulness* first) const {
+PhotonContext PhotonPass::contextOf(const PassInfo& pass, const PhotonSettings& settings) const {
     return {.scene = scene_,
             .settings = settings,
             .culling = culling_,
             .frameCullings = frameCullings_,
             .emitters = emitters_,
-            .first = first,
             .balance = balance_,
             .watch = pass.watch};
 }
@@ -193,12 +191,11 @@ std::vector<TracedPaths> PhotonPass::traceWave(uint64_t first, uint64_t last, co
 
 PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connections, Statistics& statistics) const {
     const PhotonSettings settings = settingsOf(pass);
-    // Pilots, each of which knows what those before it have found.
-    const auto usefulAtFirst = firstUsefulness(pass, settings, statistics);
-    if (connections) setLightPerConnection(pass, settings, usefulAtFirst.get(), *connections, statistics);
-    const auto counts = recordCounts(pass, settings, usefulAtFirst.get(), statistics);
+    // Pilots.
+    if (connections) setLightPerConnection(pass, settings, *connections, statistics);
+    const auto counts = recordCounts(pass, settings, statistics);
 
-    PhotonContext context = contextOf(pass, settings, usefulAtFirst.get());
+    PhotonContext context = contextOf(pass, settings);
     context.frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     context.connects = connections != nullptr;
     context.densityPhotons = densityPhotons_;

@@ -2,7 +2,6 @@
 // The photon pass: light paths from the emitters, plain or guided, and what they deposit in the stores.
 
 #include "photon/PhotonSettings.h"
-#include "photon/light/FirstUsefulness.h"
 #include "photon/light/PhotonGuidance.h"
 #include "photon/primitives/VolumePrimitive.h"
 #include "photon/primitives/sliced/RecordCounts.h"
@@ -54,23 +53,18 @@ class PhotonPass {
     /// Of its part of a whole pass, and with its kernels.
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// What every walk is told; nothing is stored and nothing connected to.
-    [[nodiscard]] PhotonContext contextOf(const PassInfo& pass, const PhotonSettings& settings,
-                                          const FirstUsefulness* first) const;
+    [[nodiscard]] PhotonContext contextOf(const PassInfo& pass, const PhotonSettings& settings) const;
 
     // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
     // for.
     /// So many paths, one after the other.
     Deposits tracePilots(const PhotonContext& context, const PassInfo& pass, uint64_t paths,
                          Statistics& statistics) const;
-    /// What light paths are useful for at first in bodies that they must leave, from what a few find; null without any.
-    [[nodiscard]] std::unique_ptr<FirstUsefulness> firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
-                                                                   Statistics& statistics) const;
     /// Tells connections what each of them is to bring, from what a few paths find.
-    void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, const FirstUsefulness* first,
-                               SurfaceConnections& connections, Statistics& statistics) const;
+    void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, SurfaceConnections& connections,
+                               Statistics& statistics) const;
     /// Guided slices: how many records a base leaves, from what a few paths find.
     [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const PhotonSettings& settings,
-                                                             const FirstUsefulness* first,
                                                              Statistics& statistics) const;
 
     /// What a pass costs however many its paths are, in counted nanoseconds.

@@ -29,23 +29,10 @@ Deposits PhotonPass::tracePilots(const PhotonContext& context, const PassInfo& p
     return std::move(pilot.deposits);
 }
 
-std::unique_ptr<FirstUsefulness> PhotonPass::firstUsefulness(const PassInfo& pass, const PhotonSettings& settings,
-                                                             Statistics& statistics) const {
-    if (!guidance_ || plainAlone() || !guidance_->leavesBodies() || guidance_->choosesFrames()) return nullptr;
-    auto first = std::make_unique<FirstUsefulness>(scene_.media.size());
-    const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 16, 16, tuning::FirstPaths);
-    PhotonContext context = contextOf(pass, settings, nullptr);
-    context.measured = first.get();
-    context.balance = {}; // guided paths alone
-    tracePilots(context, pass, paths, statistics);
-    return first;
-}
-
 void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings,
-                                       const FirstUsefulness* first, SurfaceConnections& connections,
-                                       Statistics& statistics) const {
+                                       SurfaceConnections& connections, Statistics& statistics) const {
     const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-    PhotonContext context = contextOf(pass, settings, first);
+    PhotonContext context = contextOf(pass, settings);
     context.storeVolume = storeVolume_;
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<TracedPaths> pilots(paths, TracedPaths(settings_.primitive));
@@ -75,7 +62,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
 }
 
 std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
-                                                       const FirstUsefulness* first, Statistics& statistics) const {
+                                                       Statistics& statistics) const {
     if (!guidance_ || plainAlone() || !storeVolume_) return nullptr; // paths' own directions do
     const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordCounts> {
         if constexpr (!Primitive::CountsRecords)
@@ -83,7 +70,7 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
         else {
             auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
             const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, tuning::PilotPaths);
-            PhotonContext context = contextOf(pass, settings, first);
+            PhotonContext context = contextOf(pass, settings);
             context.storeVolume = true;
             context.recordCounts = counts.get();
             const Deposits deposits = tracePilots(context, pass, paths, statistics);
@@ -192,10 +179,9 @@ void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connect
     balance_ = {0.5f, 0.5f};
     const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
     Statistics ignored;
-    const auto first = firstUsefulness(pass, settings_, ignored);
-    if (connections) setLightPerConnection(pass, settings_, first.get(), *connections, ignored);
-    const auto counts = recordCounts(pass, settings_, first.get(), ignored);
-    PhotonContext context = contextOf(pass, settings_, first.get());
+    if (connections) setLightPerConnection(pass, settings_, *connections, ignored);
+    const auto counts = recordCounts(pass, settings_, ignored);
+    PhotonContext context = contextOf(pass, settings_);
     context.connects = connections != nullptr;
     context.densityPhotons = false; // they bring nothing
     context.glossySensorPaths = glossySensorPaths_;

@@ -116,18 +116,7 @@ float StepsToCamera::logRatioThere(const Flight& flight) const {
 
 // ---- Roulette and splitting
 
-float StepsToCamera::survival(const PathState& path, const darts::Guide& guide) {
-    const int medium = path.region.medium;
-    const bool out = residual().way == darts::Way::Out;
-    const float others = out && rules_.first ? rules_.first->logged(medium) : NoOthers;
-    return GuidedSteps::survival(guide, medium, meanComponent(path.throughput), others);
-}
-
 bool StepsToCamera::passesRoulette(PathState& path, const darts::Guide& guide) {
-    if (rules_.measured && residual().way == darts::Way::Out) {
-        rules_.measured->record(path.region.medium, guide.logUsefulness(reachable(), meanComponent(path.throughput)));
-        return false;
-    }
     const float survival = this->survival(path, guide);
     if (survival >= 1.0f) return true;
     path.random.at(path.interactions, Draw::Roulette);

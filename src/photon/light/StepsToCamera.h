@@ -3,7 +3,6 @@
 // roulette and splitting by usefulness (He et al. 2024 and its successor presets; docs/method.md, sections 3 to 6).
 
 #include "photon/light/EmissionDirections.h"
-#include "photon/light/FirstUsefulness.h"
 #include "photon/light/PhotonGuidance.h"
 
 #include "transport/GuidedSteps.h"
@@ -15,10 +14,8 @@ namespace tungsten::photon {
 
 /// What a pass tells the steps of its paths.
 struct StepRules {
-    bool storesVertices = false;            ///< of a primitive that is made at vertices
-    const FirstUsefulness* first = nullptr; ///< in bodies that light must leave
-    FirstUsefulness* measured = nullptr;    ///< of pilot paths, which end at their first vertex there
-    transport::StrategyBalance balance{};   ///< of guided paths beside plain ones
+    bool storesVertices = false;          ///< of a primitive that is made at vertices
+    transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
 };
 
 /// In media that scatter; elsewhere straight on, and from surfaces by their BSDF.
@@ -71,7 +68,9 @@ class StepsToCamera : public transport::GuidedSteps {
     /// False if nothing can be in time.
     bool lookFrom(const transport::PathState& path, const transport::Start& start);
     bool passesRoulette(transport::PathState& path, const darts::Guide& guide);
-    [[nodiscard]] float survival(const transport::PathState& path, const darts::Guide& guide);
+    [[nodiscard]] float survival(const transport::PathState& path, const darts::Guide& guide) {
+        return GuidedSteps::survival(guide, path.region.medium, meanComponent(path.throughput));
+    }
     /// Guided directions from a light; null where they are its own, or towards bodies.
     [[nodiscard]] const darts::Guide* guideOfEmission(const Region& region) const;
     [[nodiscard]] EmissionDirections emission(const Emitter& emitter, const SurfaceSample& start, bool guided) const {
