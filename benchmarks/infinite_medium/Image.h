@@ -24,25 +24,6 @@ enum class View {
     Sphere ///< 24 columns of longitude by 12 rows of latitude about z
 };
 
-/// Directions evenly over the cone image, for sampling from the camera's side; a tenth evenly over the sphere, so that
-/// no direction is left out.
-struct CameraView {
-    static constexpr float Elsewhere = 0.1f;
-
-    [[nodiscard]] darts::Vec3 sample(float u, float v) const {
-        if (u < Elsewhere) return darts::HenyeyGreenstein{}.sample(u / Elsewhere, v);
-        const float across = (u - Elsewhere) / (1 - Elsewhere), slope = std::tan(ConeAngle);
-        const darts::Vec3 d{(2 * across - 1) * slope, (2 * v - 1) * slope, 1};
-        return d * (1 / length(d));
-    }
-    /// Per solid angle.
-    [[nodiscard]] float pdf(const darts::Vec3& d) const {
-        const float slope = std::tan(ConeAngle), uniform = Elsewhere * 0.25f / darts::Pi;
-        if (d.z <= 0 || std::abs(d.x) > slope * d.z || std::abs(d.y) > slope * d.z) return uniform;
-        return uniform + (1 - Elsewhere) / (4 * slope * slope * d.z * d.z * d.z);
-    }
-};
-
 /// The pixels' rays, and which of them a photon's kernel meets.
 class Image {
   public:

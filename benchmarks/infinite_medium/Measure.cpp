@@ -177,7 +177,7 @@ std::array<Measurement, 2> measurePhoton(const Case& c, const Variant& variant, 
         for (size_t i = 0; i < paths; ++i) {
             Sampler sampler = pathRandom(budget, pass, index++);
             batch.rays += walk.fromEmitter(
-                CameraView{}, [&] { return sampler.next1D(); },
+                [&] { return sampler.next1D(); },
                 [&](const LastScattering& last) {
                     batch.photons.push_back({last.position, last.before, float(last.throughput), last.order});
                 });

@@ -68,7 +68,6 @@ void addDistanceAblations(List& list) {
     list.change("  mixed quarter", [](Settings& s) { s.proposals = Proposals::MixedQuarter; });
     list.change("  equiangular", [](Settings& s) { s.proposals = Proposals::Equiangular; });
     list.change("  uniform S", [](Settings& s) { s.uniformLength = true; });
-    list.change("  floor .05", [](Settings& s) { s.floor = 0.05f; });
     list.change("  no roulette", [](Settings& s) { s.roulette = 0.0f; });
     list.change("  roulette .01", [](Settings& s) { s.roulette = 0.01f; });
     list.change("  roulette .03", [](Settings& s) { s.roulette = 0.03f; });
@@ -110,7 +109,6 @@ void addBest(List& list, Mode mode) {
     add("  8 candidates", [](Settings& s) { s.candidates = 8; });
     add("  16 candidates", [](Settings& s) { s.candidates = 16; });
     add("  roulette .1", [](Settings& s) { s.roulette = 0.1f; });
-    if (mode == Mode::Photon) add("  focus .1", [](Settings& s) { s.focus = s.thinFocus = 0.1f; });
 }
 
 /// The published sampler with a table that does not resolve the needle: one bin an octave, 1 - C / S not below 1 / 8.
@@ -205,10 +203,6 @@ std::vector<Variant> photonVariants() {
     list.change(
         "P4 a1", [](Settings& s) { s.alpha = 1.0f; }, {6.8, 1.0, 3.0, 4.3, 1.3, 4.1, 9.7, 0, 2.5}, true);
     list.change("  path lobe", [](Settings& s) { s.lobe = Lobe::Path; }, {6.8, .88, 2.1, 3.7, 1.4, 5.1, 20, 0, 2.3});
-    list.change("  focus .1", [](Settings& s) { s.focus = 0.1f; });
-    list.change("  focus .2", [](Settings& s) { s.focus = 0.2f; });
-    list.change("  focus .3", [](Settings& s) { s.focus = 0.3f; });
-    list.change("  focus only", [](Settings& s) { s.focus = 1.0f; }, {.62, .78, .55, .40, .03, 1.0, 2.0, 0, .22});
     list.change("  unguided emission", [](Settings& s) { s.guideEmission = false; });
     list.change("  causal", [](Settings& s) { s.greens = Greens::Causal; });
     list.change("  overlap", [](Settings& s) { s.overlap = true; });
@@ -228,8 +222,6 @@ std::vector<Variant> photonVariants() {
     list.base.proposals = Proposals::MixedUniform;
     list.change(
         "RIS M=4", [](Settings&) {}, {5.3, .61, 1.8, 7.0, 4.9, 3.1, 26, 0, 1.6}, true);
-    list.change(
-        "  RIS M=4 focus .1", [](Settings& s) { s.focus = 0.1f; }, {}, true);
     list.change(
         "  RIS M=8", [](Settings& s) { s.directionCandidates = 8; }, {}, true);
     list.change(

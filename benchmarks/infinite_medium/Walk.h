@@ -51,18 +51,18 @@ class Walk {
         const auto connection = guide_.sampleConnection(state.residual, random());
         state.direction = direction;
         const float h = oneMinusCosine(direction, state.residual.axis);
-        return run(state, connection, h, darts::NoView{}, random, use);
+        return run(state, connection, h, random, use);
     }
-    /// From an emitter of intensity 1 per steradian; `view` is the target's.
-    template <typename View, typename Random, typename Use>
-    int fromEmitter(const View& view, Random&& random, Use&& use) const {
+    /// From an emitter of intensity 1 per steradian.
+    template <typename Random, typename Use>
+    int fromEmitter(Random&& random, Use&& use) const {
         const darts::HenyeyGreenstein isotropic{{0, 0, 1}, 0.0f};
         State state = first(4.0f * darts::Pi);
         if (!state.residual.alive()) return 0;
         const auto connection = guide_.sampleConnection(state.residual, random());
         darts::DirectionSample sample;
         if (guide_.settings().guideEmission) {
-            sample = guide_.sampleDirection(state.residual, connection, isotropic, view, random);
+            sample = guide_.sampleDirection(state.residual, connection, isotropic, random);
         } else {
             const float u = random(), v = random();
             sample.direction = isotropic.sample(u, v);
@@ -71,7 +71,7 @@ class Walk {
         }
         state.direction = sample.direction;
         state.throughput = sample.inversePdf;
-        return run(state, connection, sample.h, view, random, use);
+        return run(state, connection, sample.h, random, use);
     }
 
   private:
@@ -95,9 +95,8 @@ class Walk {
         return darts::Residual::of(route_.target - state.position,
                                    darts::ResidualRange::of(route_.gate, state.elapsed, 1.0));
     }
-    template <typename View, typename Random, typename Use>
-    int run(State state, darts::ConnectionSample connection, float h, const View& view, Random&& random,
-            Use&& use) const {
+    template <typename Random, typename Use>
+    int run(State state, darts::ConnectionSample connection, float h, Random&& random, Use&& use) const {
         constexpr float Surface = std::numeric_limits<float>::infinity();
         for (int order = 1;; ++order) {
             if (guide_.settings().elliptical) connect(state, connection, h, order, use);
@@ -119,7 +118,7 @@ class Walk {
             if (survival < 1 && !(random() < survival)) return order;
             const darts::HenyeyGreenstein scatterer{state.direction, guide_.medium().g};
             connection = guide_.sampleConnection(state.residual, random());
-            const auto sample = guide_.sampleDirection(state.residual, connection, scatterer, view, random);
+            const auto sample = guide_.sampleDirection(state.residual, connection, scatterer, random);
             if (!(sample.inversePdf > 0)) return order;
             state.throughput *= scatterer.pdf(sample.direction) * sample.inversePdf / survival;
             state.direction = sample.direction;

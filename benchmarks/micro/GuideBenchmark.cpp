@@ -42,7 +42,7 @@ void guideVertex(benchmark::State& state, const Settings& settings, float g) {
     for (auto _ : state) {
         const Residual& residual = walk[i++ % walk.size()].residual;
         const ConnectionSample connection = guide.sampleConnection(residual, random());
-        const DirectionSample sample = guide.sampleDirection(residual, connection, phase, NoView{}, random);
+        const DirectionSample sample = guide.sampleDirection(residual, connection, phase, random);
         benchmark::DoNotOptimize(guide.controlVertex(residual, connection, sample.h, INFINITY));
         benchmark::DoNotOptimize(guide.sampleDistance(residual, sample, INFINITY, {1, 1, 1}, random));
         benchmark::DoNotOptimize(guide.survival(residual.way, guide.logUsefulness(residual, 1.0f), 0.0f));

@@ -152,18 +152,12 @@ struct Candidates {
             }
         }
         const float top = lanes::most(highest);
-        Batch total(0.0f);
         for (int r = 0; r < Registers; ++r) {
             Batch value(0.0f);
             for (int i = 0; i < Channels; ++i) value = value + factors[i][r] * lanes::exp(Batch(exponents[i][r] - top));
-            factors[0][r] = select(reachable[r] > 0.0f, reachable[r] * value, Batch(0.0f));
-            total = total + factors[0][r];
-        }
-        const float lift = draw.floor > 0 ? draw.floor * lanes::sum(total) / float(N) : 0.0f;
-        for (int r = 0; r < Registers; ++r) {
-            const Batch lifted = select(reachable[r] > 0.0f, factors[0][r] + lift, Batch(0.0f));
-            lanes::put(usefulness.data() + r * Width, lifted);
-            lanes::put(weight.data() + r * Width, Batch(lifted / density[r]));
+            const Batch useful = select(reachable[r] > 0.0f, reachable[r] * value, Batch(0.0f));
+            lanes::put(usefulness.data() + r * Width, useful);
+            lanes::put(weight.data() + r * Width, Batch(useful / density[r]));
         }
     }
 };

@@ -22,7 +22,6 @@ struct CandidateDraw {
     float kink = 0;        ///< where the reachable part of the gate begins to shrink; 0: everywhere
     bool falls = true;     ///< usefulness falls to nothing towards the bound in time
     float probability = 1; ///< of the medium event
-    float floor = 0;
     Proposals proposals = Proposals::Exponential;
     bool overlap = false;
     Vec3 throughput;

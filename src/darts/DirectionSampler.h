@@ -20,13 +20,6 @@ struct DirectionSample : Heading {
     float inversePdf = 0;
 };
 
-/// The target's own view, from which a share of the guided directions comes: sample(u, v) -> unit direction seen from
-/// the target, pdf(direction) per solid angle. NoView where there is none.
-struct NoView {
-    [[nodiscard]] Vec3 sample(float, float) const { return {0, 0, 1}; }
-    [[nodiscard]] float pdf(const Vec3&) const { return 0; }
-};
-
 /// Directions about the target's: a Lobe has sample(u) -> h and pdf(h) per solid angle (a connection lobe, a row of an
 /// EDA table).
 template <typename Lobe>
@@ -50,52 +43,6 @@ struct AboutTarget {
 template <typename Lobe>
 AboutTarget(Lobe, Vec3) -> AboutTarget<Lobe>; // Clang before 17 does not deduce an aggregate's
 
-/// The guided distribution at a vertex: a base of directions (AboutTarget, DirectionsOut), and the view's to the coming
-/// control vertex.
-template <typename Base, typename View>
-class GuidedDirections {
-  public:
-    GuidedDirections(const Base& base, const Residual& residual, float excess, const View& view, float focus)
-        : residual_(residual), excess_(excess), view_(view), focus_(focus), base_(base) {}
-
-    /// choice, u, v in [0, 1) -> unit direction.
-    [[nodiscard]] Vec3 sample(float choice, float u, float v) const {
-        if (choice < focus_) return fromView(view_.sample(u, v));
-        return base_.sample(std::min((choice - focus_) / (1.0f - focus_), BelowOne), u, v);
-    }
-    /// Density per solid angle; h = 1 - cos between the direction and residual.axis.
-    [[nodiscard]] float pdf(const Vec3& direction, float h) const {
-        const float base = base_.pdf(direction, h);
-        return focus_ > 0 ? (1.0f - focus_) * base + focus_ * viewPdf(direction, h) : base;
-    }
-    /// Of a direction of this density: see the base's.
-    template <typename Last>
-    [[nodiscard]] float usefulness(float pdf, const Last& last) const {
-        return base_.usefulness(pdf, last);
-    }
-
-  private:
-    /// The vertex's direction to the control vertex on a view ray; the ellipse is the same from its other focus.
-    [[nodiscard]] Vec3 fromView(const Vec3& seen) const {
-        const Ellipse<float> back{residual_.C, excess_, oneMinusCosine(seen, -residual_.axis)};
-        const Vec3 toVertex = residual_.axis * residual_.C + seen * back.firstLeg();
-        return toVertex * (1.0f / std::max(length(toVertex), 1e-30f));
-    }
-    /// Both legs meet the ellipse at one angle: p(w) = p(w') t^2 / r^2.
-    [[nodiscard]] float viewPdf(const Vec3& direction, float h) const {
-        const Ellipse<float> e{residual_.C, excess_, h};
-        const float t = e.firstLeg(), r = std::max(e.secondLeg(), 1e-20f * e.length());
-        const Vec3 seen = direction * t - residual_.axis * residual_.C;
-        return view_.pdf(seen * (1.0f / std::max(length(seen), 1e-30f))) * (t / r) * (t / r);
-    }
-
-    const Residual& residual_;
-    float excess_;
-    const View& view_;
-    float focus_;
-    Base base_;
-};
-
 /// Mixtures of a guided distribution with a scatterer's own. A scatterer has sample(u, v) -> unit direction and
 /// pdf(direction) per solid angle (a phase function, an emitter's or a surface's distribution).
 class DirectionSampler {
@@ -112,9 +59,9 @@ class DirectionSampler {
 
     /// `excess`: of the connection drawn for the coming control vertex (S = C + excess). `random()` is uniform in
     /// [0, 1).
-    template <typename Scatterer, typename View, typename Random>
+    template <typename Scatterer, typename Random>
     [[nodiscard]] DirectionSample sample(const Residual& residual, float excess, const Scatterer& scatterer,
-                                         const View& view, Random&& random) const {
+                                         Random&& random) const {
         if (settings_.direction == Direction::Phase || isBehindRefraction(residual))
             return fromScatterer(residual, scatterer, random);
         if (residual.way == Way::Out) {
@@ -128,18 +75,18 @@ class DirectionSampler {
         }
         if (const auto phase = peakOf(scatterer)) {
             const float delta = least(residual, excess);
-            return draw(residual, multiplied(*phase, residual, delta, view), random);
+            return draw(residual, multiplied(*phase, residual, delta), random);
         }
-        return withGuided(residual, excess, view, [&](const auto& guided) {
+        return withGuided(residual, excess, [&](const auto& guided) {
             if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
             return mix(residual, guideShare(residual, excess), scatterer, guided, random);
         });
     }
 
     /// Density per solid angle of sample(); for Direction::Ris, of its candidates.
-    template <typename Scatterer, typename View>
-    [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction, const Scatterer& scatterer,
-                            const View& view) const {
+    template <typename Scatterer>
+    [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction,
+                            const Scatterer& scatterer) const {
         if (settings_.direction == Direction::Phase || isBehindRefraction(residual)) return scatterer.pdf(direction);
         const float h = oneMinusCosine(direction, residual.axis);
         const auto mixture = [&](float share, const auto& guided) {
@@ -155,9 +102,9 @@ class DirectionSampler {
             return mixture(out.share(), out);
         }
         if (const auto phase = peakOf(scatterer))
-            return multiplied(*phase, residual, least(residual, excess), view).pdf(direction, h);
+            return multiplied(*phase, residual, least(residual, excess)).pdf(direction, h);
         const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
-        return withGuided(residual, excess, view, [&](const auto& guided) { return mixture(share, guided); });
+        return withGuided(residual, excess, [&](const auto& guided) { return mixture(share, guided); });
     }
 
     /// gamma = (C / S) / (C / S + alpha).
@@ -204,13 +151,10 @@ class DirectionSampler {
                     return own * guided.usefulness(guide, lastTurn(residual, excess, direction, h));
                 }};
     }
-    /// By the product of the phase function and the connection's lobe, and for the rest by the target's view.
-    template <typename View>
-    [[nodiscard]] auto multiplied(const HenyeyGreenstein& phase, const Residual& residual, float excess,
-                                  const View& view) const {
+    /// By the product of the phase function and the connection's lobe.
+    [[nodiscard]] auto multiplied(const HenyeyGreenstein& phase, const Residual& residual, float excess) const {
         const AboutTarget lobe{connectionLobe(residual.C, excess), residual.axis};
-        return GuidedDirections(strata(phase, lobe, residual, excess), residual, excess, view,
-                                focus<View>(residual.C + excess));
+        return strata(phase, lobe, residual, excess);
     }
     template <typename Guided, typename Random>
     static DirectionSample draw(const Residual& residual, const Guided& guided, Random& random) {
@@ -224,25 +168,16 @@ class DirectionSampler {
                                             : ConnectionLobe<float>::photon(C, excess);
     }
     /// use(the vertex's guided distribution).
-    template <typename View, typename Use>
-    [[nodiscard]] auto withGuided(const Residual& residual, float excess, const View& view, Use&& use) const {
+    template <typename Use>
+    [[nodiscard]] auto withGuided(const Residual& residual, float excess, Use&& use) const {
         const float C = residual.C, delta = least(residual, excess);
-        const auto about = [&](const auto& lobe) {
-            return use(
-                GuidedDirections(AboutTarget{lobe, residual.axis}, residual, delta, view, focus<View>(C + delta)));
-        };
+        const auto about = [&](const auto& lobe) { return use(AboutTarget{lobe, residual.axis}); };
         if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
         // All lengths at once, of which `excess` is the median.
         if (settings_.medianLobe && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
             excess > residual.low)
             return about(GateLobe<float>(C, residual.low, 2.0f * (excess - residual.low)));
         return about(connectionLobe(C, delta));
-    }
-    /// Share of the view's directions for connections of length S: long chains of scatterings forget where they began.
-    template <typename View>
-    [[nodiscard]] float focus(float S) const {
-        if (std::is_same_v<View, NoView>) return 0.0f;
-        return std::max(settings_.focus, std::min(settings_.thinFocus, 1.2f / (sigmaT_ * S)));
     }
     template <typename Scatterer, typename Random>
     static DirectionSample fromScatterer(const Residual& residual, const Scatterer& scatterer, Random& random) {

@@ -69,11 +69,6 @@ Vec3 DistanceSampler::transmittance(float distance) const {
     return {std::exp(-sigmaT_.x * distance), std::exp(-sigmaT_.y * distance), std::exp(-sigmaT_.z * distance)};
 }
 
-float DistanceSampler::floor(const Residual& residual) const {
-    if (residual.way != Way::Out || !(settings_.strays > 0)) return settings_.floor;
-    return std::clamp(settings_.strays / (meanSigmaT_ * residual.excess), settings_.floor, MostFloor);
-}
-
 Shape DistanceSampler::shapeFor(const Residual& residual) const {
     // Without a Green's function nothing but the bound in time is wanted.
     if (settings_.greens == Greens::None || residual.way == Way::Unknown) return Shape::TimeBound;
@@ -101,7 +96,6 @@ CandidateDraw DistanceSampler::drawOf(const Residual& residual, const Heading& r
     draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
     draw.proposals = settings_.proposals;
     draw.overlap = settings_.overlap;
-    draw.floor = floor(residual);
     draw.throughput = throughput;
     draw.medium = &medium_;
     draw.exit = &residual.exit;

@@ -91,11 +91,6 @@ class DistanceSampler {
                                        float bound, const Vec3& throughput) const;
     [[nodiscard]] Shape shapeFor(const Residual& residual) const;
     using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3& transmittanceOverPdf);
-    /// Of usefulness, relative to the candidates' mean. Diffusion knows little of the last few scatterings in a body:
-    /// what it calls useless still shows, too bright for its odds. Over a long way a constant floor would lead every
-    /// walk astray; this one leads `strays` flights of each.
-    [[nodiscard]] float floor(const Residual& residual) const;
-    static constexpr float MostFloor = 0.05f;
 
     Settings settings_;
     Medium medium_;

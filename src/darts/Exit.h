@@ -72,7 +72,6 @@ struct Exit {
     bool connects = true; ///< light goes on straight beyond the boundary
     bool sealed = false;  ///< and does so nowhere: no connection from inside is ever complete
     float leaveOdds = 1;  ///< factor on the odds of a flight's end at the surface ahead
-    float elsewhere = 0;  ///< part of what leaves by any other way that may get to the target, within the gate
     Few<Side, 4> sides;   ///< pairs of opposite ones; none if the target sees everything
 };
 

@@ -95,10 +95,6 @@ class FirstPassage {
             add(other, otherFactor, exponent, factor);
         }
         exponent = exponent - at.squaredOutside * fourthInverseD_ / (at.excess + meanFreePath_);
-        if (exit_.elsewhere > 0.0f)
-            add(Batch(-sigmaA_ * first.longest),
-                Batch(exit_.elsewhere * (first.reachable + 1e-4f * meanFreePath_) / (first.longest + meanFreePath_)),
-                exponent, factor);
         return exponent;
     }
     /// Its logarithm, never below that of 1e-37.

@@ -142,15 +142,15 @@ class Guide {
 
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the median length, or of the
     /// latest arrival (Settings::medianLobe).
-    template <typename Scatterer, typename View, typename Random>
+    template <typename Scatterer, typename Random>
     [[nodiscard]] DirectionSample sampleDirection(const Residual& residual, const ConnectionSample& connection,
-                                                  const Scatterer& scatterer, const View& view, Random&& random) const {
-        return direction_.sample(residual, directionExcess(residual, connection), scatterer, view, random);
+                                                  const Scatterer& scatterer, Random&& random) const {
+        return direction_.sample(residual, directionExcess(residual, connection), scatterer, random);
     }
-    template <typename Scatterer, typename View>
+    template <typename Scatterer>
     [[nodiscard]] float pdfDirection(const Residual& residual, const ConnectionSample& connection,
-                                     const Vec3& direction, const Scatterer& scatterer, const View& view) const {
-        return direction_.pdf(residual, directionExcess(residual, connection), direction, scatterer, view);
+                                     const Vec3& direction, const Scatterer& scatterer) const {
+        return direction_.pdf(residual, directionExcess(residual, connection), direction, scatterer);
     }
 
     /// The next vertex along the ray; see DistanceSampler.

@@ -97,9 +97,6 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance us
     intervals_ = endsInTime ? Nodes : Nodes - 1;
     const float top = *std::max_element(log.begin(), log.end());
     std::array<float, Nodes + 1> values;
-    float sum = 0.0f;
-    for (size_t i = 0; i < Nodes; ++i) sum += values[i] = std::exp(log[i] - top);
-    lift_ = draw.floor * sum / float(Nodes);
     const float least = smallest(draw.medium->sigmaT());
     for (size_t i = 0; i < Nodes; ++i) {
         nodes_[i] = at[i];
@@ -109,7 +106,6 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance us
     nodes_[Nodes] = end;
     logs_[Nodes] = logs_[Nodes - 1] - (draw.falls ? FallToBound : sigmaT * (end - at[Nodes - 1]));
     values[Nodes] = std::exp(logs_[Nodes]);
-    sum_ = lift_ * end;
     for (int i = 0; i < intervals_; ++i) {
         const auto k = size_t(i);
         const float here = values[k], next = values[k + 1], rise = slope(i);
@@ -122,10 +118,7 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance us
 }
 
 float LogLinearDistance::sample(float u) const {
-    const float end = nodes_[size_t(intervals_)], lifted = lift_ * end;
     float rest = u * sum_;
-    if (rest < lifted) return std::min(rest / lift_, end * BelowOne);
-    rest -= lifted;
     int i = 0;
     while (i < intervals_ - 1 && !(rest < masses_[size_t(i)])) rest -= masses_[size_t(i++)];
     // Rounding leads to intervals that are never meant, and their weights are as large as they are unlikely.
@@ -134,7 +127,7 @@ float LogLinearDistance::sample(float u) const {
     const float part = masses_[k] > 0.0f ? std::clamp(rest / masses_[k], 0.0f, BelowOne) : 0.0f, rise = slope(i);
     const float along = std::abs(rise) < 1e-5f ? part : fastLog1p(part * fastExpm1(rise)) / rise;
     const float d = nodes_[k] + (nodes_[k + 1] - nodes_[k]) * std::clamp(along, 0.0f, 1.0f);
-    return std::min(d, end * BelowOne);
+    return std::min(d, nodes_[size_t(intervals_)] * BelowOne);
 }
 
 float LogLinearDistance::pdf(float distance) const {
@@ -143,7 +136,7 @@ float LogLinearDistance::pdf(float distance) const {
     while (i < intervals_ - 1 && !(distance < nodes_[size_t(i) + 1])) ++i;
     const auto k = size_t(i);
     const float width = nodes_[k + 1] - nodes_[k];
-    return (std::exp(logs_[k] + slope(i) * (distance - nodes_[k]) / width) + lift_) / sum_;
+    return std::exp(logs_[k] + slope(i) * (distance - nodes_[k]) / width) / sum_;
 }
 
 } // namespace darts

@@ -9,9 +9,8 @@ namespace darts {
 
 /// Density per length on [0, bound), in proportion to importance (usefulness, of DistanceSampler) at its nodes and
 /// log-linear between them:
-///   p(d) = (e^{L_i + (L_{i+1} - L_i) (d - b_i) / (b_{i+1} - b_i)} + f) / (f bound + sum m),
-///   m_i = (b_{i+1} - b_i) (e^{L_{i+1}} - e^{L_i}) / (L_{i+1} - L_i),
-/// f the floor, of the nodes' mean: kept apart, for the sum of both is not log-linear over long intervals.
+///   p(d) = e^{L_i + (L_{i+1} - L_i) (d - b_i) / (b_{i+1} - b_i)} / sum m,
+///   m_i = (b_{i+1} - b_i) (e^{L_{i+1}} - e^{L_i}) / (L_{i+1} - L_i).
 /// Nodes are quantiles of the free flight and of a uniform distance, and where the part of the gate that is still
 /// reachable begins to shrink. Positive everywhere; one random number a draw.
 class LogLinearDistance {
@@ -38,7 +37,6 @@ class LogLinearDistance {
     std::array<float, Nodes + 1> logs_;  ///< of importance, the highest at 0
     std::array<float, Nodes> masses_;    ///< of the intervals
     int intervals_;
-    float lift_; ///< f, on the scale of the logarithms
     float sum_ = 0.0f;
 };
 

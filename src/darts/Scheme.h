@@ -18,7 +18,7 @@ struct Scheme {
     std::optional<Greens> greens;
     std::optional<Proposals> proposals;
     std::optional<int> candidates;
-    std::optional<float> alpha, focus, roulette, floor;
+    std::optional<float> alpha, roulette;
     std::optional<bool> bounded, lengthFirst, overlap, guideEmission;
 
     /// Settings for a medium of mean cosine g; `asksDistance` and `asksDirection` are the medium's own wishes (type
@@ -40,11 +40,8 @@ struct Scheme {
         set(s.proposals, proposals);
         set(s.candidates, candidates);
         set(s.alpha, alpha);
-        set(s.focus, focus);
-        set(s.thinFocus, focus);
         set(s.roulette, roulette);
         set(s.rouletteOut, roulette);
-        set(s.floor, floor);
         set(s.bounded, bounded);
         set(s.lengthFirst, lengthFirst);
         set(s.overlap, overlap);
@@ -82,8 +79,6 @@ void readDistances(const Block& block, Scheme& scheme) {
                                                    {"mixed_quarter", Proposals::MixedQuarter},
                                                    {"equiangular", Proposals::Equiangular}});
     scheme.candidates = candidateCount(block);
-    scheme.floor =
-        switches::fraction(block, "floor", "added to what distances are good for, relative to its mean", 0.05);
     scheme.bounded = switches::flag(block, "bounded", "distances end where no path can be in time any more");
     scheme.overlap =
         switches::flag(block, "overlap", "distances are shaped by the part of the gate still in reach, too");
@@ -100,8 +95,6 @@ void readDirections(const Block& block, Scheme& scheme) {
                                     {"connection", Direction::Connection},
                                     {"ris", Direction::Ris}});
     scheme.alpha = switches::fraction(block, "alpha", "weight of the phase function against the guide", 1e6);
-    scheme.focus =
-        switches::fraction(block, "focus", "least share of guided directions drawn from the camera's view", 1.0);
     scheme.lengthFirst = switches::flag(block, "length_first",
                                         "published: a connection's length is drawn before the direction, shaping it");
     scheme.guideEmission = switches::flag(block, "guide_emission", "directions of emission are guided too");

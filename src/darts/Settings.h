@@ -59,8 +59,6 @@ struct Settings {
     bool lengthFirst = true;     ///< the connection's length is drawn before the direction, and shapes it
     bool medianLobe = false;     ///< if it is not: directions suit its median length, instead of the longest one
     bool guideEmission = true;   ///< the emitted direction is guided as well
-    float focus = 0.0f;          ///< share of the guided directions drawn from the camera's view, at least
-    float thinFocus = 0.0f;      ///< at most: max(focus, min(thinFocus, 1.2 / (sigmaT S)))
 
     bool bounded = true; ///< distances end where no path can be in time any more
     /// Distances are drawn by a density that is known (LogLinearDistance), instead of resampled from candidates.
@@ -69,8 +67,6 @@ struct Settings {
     Proposals proposals = Proposals::MixedUniform;
     int candidates = 8;  ///< 1, 4, 8 or 16
     bool overlap = true; ///< usefulness includes the part of the gate that is still reachable
-    float floor = 0.0f;  ///< added to usefulness, relative to the candidates' mean; at most 0.05
-    float strays = 0.0f; ///< out of bodies the floor is at least this over the scatterings to come, at most 0.05
 
     bool elliptical = true;     ///< control vertices at all
     bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
@@ -119,11 +115,8 @@ inline Settings best(Mode mode, float g) {
     if (mode == Mode::Photon) {
         s.lobe = Lobe::Photon;
         s.alpha = 0.2f;
-        s.focus = 0.1f;
-        s.thinFocus = peaked ? 0.1f : 0.3f;
         s.roulette = s.rouletteOut = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
-        s.strays = 0.2f;
     } else {
         s.candidates = 16;
         s.roulette = 0.03f;
@@ -139,7 +132,6 @@ inline Settings plainFlights(Settings s) {
     s.proposals = Proposals::Exponential;
     s.candidates = 1;
     s.overlap = false;
-    s.strays = 0.0f;
     return s;
 }
 

@@ -335,8 +335,7 @@ darts::DirectionSample StepsToEmitter::draw(PathState& path, const darts::Guide&
     path.random.at(path.interactions, Draw::Connection);
     if (lengthFirst) connect(drawConnection(path, guide, residual()));
     path.random.at(path.interactions, Draw::GuidedDirection);
-    const darts::DirectionSample sample =
-        sampleDirection(guide, scatterer, darts::NoView{}, [&] { return path.random.next1D(); });
+    const darts::DirectionSample sample = sampleDirection(guide, scatterer, [&] { return path.random.next1D(); });
     if (lengthFirst && elliptical)
         place({guide, sample.h, path.time, sharesConnections()});
     else
@@ -396,7 +395,7 @@ void StepsToEmitter::leaveAlong(PathState& path, const WalkVertex& vertex, const
     }
     startWay();
     const auto pdf = [&](const darts::Guide& guide, const auto& scatterer) {
-        return guide.pdfDirection(residual(), {}, darts::vec3(way.ray.direction), scatterer, darts::NoView{});
+        return guide.pdfDirection(residual(), {}, darts::vec3(way.ray.direction), scatterer);
     };
     if (vertex.surface) {
         path.logRatio += logOfQuotient(pdf(*surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random}), way.pdf);

@@ -34,10 +34,6 @@ inline constexpr uint32_t HighlightPaths = 16;
 
 // --- Guided light paths ----------------------------------------------------------------------------------------------
 
-/// Of directions into the camera's view, the part that is uniform over the sphere: light behind the image's edge keeps
-/// a density. Bench: infinite_medium
-inline constexpr float SphereShare = 0.1f;
-
 /// Of directions from lamps outside fog, the part that goes towards its bodies. What misses them costs little time, and
 /// what gets there by way of mirrors or refraction is the brighter the fewer of its directions are left. Variance x CPU
 /// at 0.5 and 0.2: milk behind glass, beams 3.6 and 1.7, points 0.63 and 0.38; dense cube 10, beams 0.20 and 0.21.

@@ -85,12 +85,12 @@ class GuidedSteps {
     void connect(const darts::ConnectionSample& connection) { connection_ = connection; }
 
     // Direction.
-    template <typename Scatterer, typename View, typename Random>
+    template <typename Scatterer, typename Random>
     [[nodiscard]] darts::DirectionSample sampleDirection(const darts::Guide& guide, const Scatterer& scatterer,
-                                                         const View& view, Random&& random) const {
+                                                         Random&& random) const {
         const bool drawn = std::holds_alternative<darts::ConnectionSample>(connection_);
         return guide.sampleDirection(residual_, drawn ? std::get<darts::ConnectionSample>(connection_) : NoConnection,
-                                     scatterer, view, random);
+                                     scatterer, random);
     }
     /// What a flight's control vertex depends on.
     struct Line {

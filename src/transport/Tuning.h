@@ -40,9 +40,6 @@ inline constexpr float FarthestFace = 4.0f;
 /// and lamp in fog: 3.4 and 0.94 at 1, 1.2 and 0.66 at 0.1, 1.3 and 0.78 at 0.01. Lower ones would starve what is lit
 /// from the bodies.
 inline constexpr float LeaveOdds = 0.1f;
-/// Of what leaves a body by other ways, the part that may be sent to the aim from surfaces and media outside: without
-/// it deep places would be rare, and bright.
-inline constexpr float Elsewhere = 0.02f;
 
 // --- Windows of sequences --------------------------------------------------------------------------------------------
 

@@ -30,10 +30,6 @@ darts::Exit::Face faceOf(const Body& body, const Body::Face& face, const Vec3f& 
 
 WaysOut::WaysOut(const Scene& scene) : scene_(scene), bodies_(bodiesOf(scene)) {
     layered_ = std::count_if(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.scatters(); }) > 1;
-    surfaces_ = std::any_of(scene.primitives.begin(), scene.primitives.end(), [](const Primitive& primitive) {
-        return std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(),
-                           [](const BsdfPtr& bsdf) { return (bsdf->lobes() & lobe::Smooth) != 0; });
-    });
 }
 
 std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const Policy& policy) {
@@ -146,7 +142,6 @@ void WaysOut::leave(const Boundary& boundary, const Vec3f& position, const Regio
         const darts::Exit::Face other = faceOf(body, face, position, aim.position);
         if (other.depth < tuning::FarthestFace * exit.faces[0].depth + 2.0f / body.reducedSigmaT) exit.faces.add(other);
     }
-    if (layered_ || surfaces_) exit.elsewhere = tuning::Elsewhere;
     exit.mismatch = darts::boundaryMismatch(boundary.index);
     exit.outerSpeed = region.speed / boundary.beyond.speed;
     if (aim.sides) {

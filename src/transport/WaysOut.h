@@ -79,7 +79,6 @@ class WaysOut {
     const Scene& scene_;
     std::vector<Body> bodies_; ///< by medium
     bool layered_ = false;     ///< several media scatter
-    bool surfaces_ = false;    ///< some surface has a smooth lobe
 };
 
 } // namespace tungsten::transport

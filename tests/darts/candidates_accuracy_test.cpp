@@ -172,16 +172,7 @@ TEST(CandidatesAccuracy, LobesOfDrift) {
     EXPECT_TRUE(sampled.within(9e-7));
 }
 
-/// The camera's view as a cap of directions.
-struct Cap {
-    Vec3 axis;
-    float g;
-    [[nodiscard]] Vec3 sample(float u, float v) const { return HenyeyGreenstein{axis, g}.sample(u, v); }
-    [[nodiscard]] float pdf(const Vec3& seen) const { return HenyeyGreenstein{axis, g}.pdf(seen); }
-};
-
-/// Share of the lobe, the view's carried over by p(w') t^2 / r^2, and the phase function, as the mixture's definition
-/// has them.
+/// Shares of the lobe and the phase function, as the mixture's definition has them.
 TEST(CandidatesAccuracy, MixturesOfDirections) {
     LargestError mixed("mixtures");
     const auto dotOf = [](const Vec3& a, const Vec3& b) {
@@ -203,31 +194,19 @@ TEST(CandidatesAccuracy, MixturesOfDirections) {
         const ConnectionSample drawn = guide.sampleConnection(residual, s.next1D());
         const Vec3 direction = directionAbout(residual.axis, float(logUniform(s, 1e-2, 2.0)), s.next1D());
         const HenyeyGreenstein phase{{0, 0, 1}, 0.3f};
-        const Cap view{directionAbout(residual.axis * -1.0f, 0.3f, s.next1D()), 0.4f};
         const Exact distance(residual.C), delta(connection.excess), S = distance + delta;
         // Of unit vectors as they were rounded.
         const auto apart = [&](const Vec3& a, const Vec3& b) {
             const Vec3 difference = a - b;
             return Exact(dotOf(difference, difference) / 2);
         };
-        const Exact h = apart(direction, residual.axis), t = delta * (S + distance) / (2 * (delta + distance * h)),
-                    r = S - t;
-        std::array<Exact, 3> seen;
-        Exact off = 0;
-        for (int k = 0; k < 3; ++k) {
-            seen[size_t(k)] = (Exact(channel(direction, k)) * t - Exact(channel(residual.axis, k)) * distance) / r;
-            const Exact x = seen[size_t(k)] - channel(view.axis, k);
-            off += x * x;
-        }
-        const Exact fromView = henyeyGreenstein(Exact(view.g), off / 2) * t * t / (r * r);
+        const Exact h = apart(direction, residual.axis);
         const Exact lobe = 1 / (2 * ExactPi * (delta / distance + h) * log1p(2 * distance / delta));
         const Settings& settings = guide.settings();
-        const Exact focus =
-            std::max(Exact(settings.focus), std::min(Exact(settings.thinFocus), Exact(Exact(1.2f) / (sigma * S))));
         const Exact ratio = distance / S, share = ratio / (ratio + Exact(settings.alpha));
-        const Exact exact = share * ((1 - focus) * lobe + focus * fromView) +
-                            (1 - share) * henyeyGreenstein(Exact(phase.g), apart(direction, phase.before));
-        mixed.add(double(guide.pdfDirection(residual, drawn, direction, phase, view)), exact);
+        const Exact exact =
+            share * lobe + (1 - share) * henyeyGreenstein(Exact(phase.g), apart(direction, phase.before));
+        mixed.add(double(guide.pdfDirection(residual, drawn, direction, phase)), exact);
     }
     EXPECT_TRUE(mixed.within(1.3e-6));
 }

@@ -20,21 +20,6 @@ Vec3 fromHost(const tungsten::Vec3f& v) {
     return {v.x, v.y, v.z};
 }
 
-/// A camera that looks along `axis` into a cone, and a tenth of the time anywhere.
-struct ConeView {
-    Vec3 axis;
-    float h = 0.05f; ///< of the cone's edge
-
-    [[nodiscard]] Vec3 sample(float u, float v) const {
-        if (u < 0.1f) return directionAbout(axis, 2.0f * u / 0.1f, v);
-        return directionAbout(axis, h * (u - 0.1f) / 0.9f, v);
-    }
-    [[nodiscard]] float pdf(const Vec3& direction) const {
-        const float inside = oneMinusCosine(direction, axis) < h ? 0.9f / (2.0f * Pi * h) : 0.0f;
-        return inside + 0.1f / (4.0f * Pi);
-    }
-};
-
 struct DirectionCase {
     float C, excess, g;
     float alpha;
@@ -65,19 +50,18 @@ TEST(HenyeyGreenstein, SamplesItsDensity) {
     }
 }
 
-template <typename View>
-void expectSamplesDensity(const Settings& settings, const DirectionCase& c, const View& view) {
+void expectSamplesDensity(const Settings& settings, const DirectionCase& c) {
     const DirectionSampler sampler(settings, coloured(c.g));
     const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
     const HenyeyGreenstein phase{Before, c.g};
     const double p = tungsten::test::chiSquareSphere(
         [&](Sampler& s) {
-            const auto sample = sampler.sample(residual, c.excess, phase, view, [&s] { return s.next1D(); });
-            const float pdf = sampler.pdf(residual, c.excess, sample.direction, phase, view);
+            const auto sample = sampler.sample(residual, c.excess, phase, [&s] { return s.next1D(); });
+            const float pdf = sampler.pdf(residual, c.excess, sample.direction, phase);
             EXPECT_NEAR(sample.inversePdf * pdf, 1.0f, 2e-3f);
             return std::optional(toHost(sample.direction));
         },
-        [&](const tungsten::Vec3f& d) { return double(sampler.pdf(residual, c.excess, fromHost(d), phase, view)); });
+        [&](const tungsten::Vec3f& d) { return double(sampler.pdf(residual, c.excess, fromHost(d), phase)); });
     EXPECT_GT(p, tungsten::test::SmallestPValue) << c.C << " " << c.excess << " " << c.g;
 }
 
@@ -88,37 +72,17 @@ TEST(DirectionSampler, MixturesSampleTheirDensity) {
             settings.alpha = c.alpha;
             settings.lobe = lobe;
             if (c.excess < 0.05f && lobe == Lobe::Path) continue; // narrower than the cells: see NarrowMixtures
-            expectSamplesDensity(settings, c, NoView{});
-        }
-}
-
-TEST(DirectionSampler, TheCamerasViewBelongsToTheDensity) {
-    for (const DirectionCase& c : DirectionCases)
-        for (const float focus : {0.1f, 1.0f}) {
-            Settings settings = best(Mode::Photon, 0.0f);
-            settings.focus = focus;
-            if (c.C < 0.1f || c.excess < 0.2f) continue; // thinner than the test's cells
-            ConeView view{directionAbout({0, 1, 0}, 0.4f, 0.3f)};
-            view.h = 0.3f;
-            expectSamplesDensity(settings, c, view);
+            expectSamplesDensity(settings, c);
         }
 }
 
 TEST(DirectionSampler, MixturesWithTheEdaTableSampleTheirDensity) {
     for (const DirectionCase& c : DirectionCases)
-        for (const Mode mode : {Mode::Path, Mode::Photon})
-            for (const float focus : {0.0f, 0.3f}) {
-                if (focus > 0 && (mode == Mode::Path || c.C < 0.1f || c.excess < 0.2f)) continue; // as above
-                Settings settings = published(mode);
-                settings.alpha = c.alpha;
-                settings.focus = focus;
-                ConeView view{directionAbout({0, 1, 0}, 0.4f, 0.3f)};
-                view.h = 0.3f;
-                if (focus > 0)
-                    expectSamplesDensity(settings, c, view);
-                else
-                    expectSamplesDensity(settings, c, NoView{});
-            }
+        for (const Mode mode : {Mode::Path, Mode::Photon}) {
+            Settings settings = published(mode);
+            settings.alpha = c.alpha;
+            expectSamplesDensity(settings, c);
+        }
 }
 
 /// Needles need cells of their own, in h; isotropic, so that the density is a function of h alone.
@@ -134,7 +98,7 @@ TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
                 const Residual residual = Residual::of(ToTarget, {1.0, 1.0 + double(excess)});
                 const auto density = [&](double h) {
                     const Vec3 d = directionAbout(residual.axis, float(h), 0.3f);
-                    return 2.0 * double(Pi) * double(sampler.pdf(residual, excess, d, HenyeyGreenstein{}, NoView{}));
+                    return 2.0 * double(Pi) * double(sampler.pdf(residual, excess, d, HenyeyGreenstein{}));
                 };
                 auto edges = tungsten::test::ratioEdges(1e-10, 2.0, 60);
                 edges.insert(edges.begin(), 0.0);
@@ -146,7 +110,7 @@ TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
                 const double p = tungsten::test::chiSquareInterval(
                     [&](Sampler& s) {
                         const auto random = [&s] { return s.next1D(); };
-                        return double(sampler.sample(residual, excess, HenyeyGreenstein{}, NoView{}, random).h);
+                        return double(sampler.sample(residual, excess, HenyeyGreenstein{}, random).h);
                     },
                     density, edges);
                 EXPECT_GT(p, tungsten::test::SmallestPValue) << int(direction) << " " << int(lobe) << " " << excess;
@@ -167,7 +131,7 @@ TEST(DirectionSampler, TheEdaTablesShareIsTheTablesOwnDensity) {
         const float h = oneMinusCosine(direction, residual.axis);
         const float expected = share * table->pdf(residual.C, excess, 2.0f, h) + (1.0f - share) * phase.pdf(direction);
         for (const DirectionSampler* sampler : {&built, &given})
-            ASSERT_NEAR(sampler->pdf(residual, excess, direction, phase, NoView{}) / expected, 1.0f, 1e-5f)
+            ASSERT_NEAR(sampler->pdf(residual, excess, direction, phase) / expected, 1.0f, 1e-5f)
                 << C << " " << excess << " " << h;
     }
 }
@@ -176,7 +140,7 @@ TEST(DirectionSampler, EmptyMediaHaveNoTableAndUseThePhaseFunction) {
     const DirectionSampler sampler(published(Mode::Path), Medium{});
     const Residual residual = Residual::of({0, 0, 1}, {1.0, 1.5});
     const HenyeyGreenstein phase{Before, 0.3f};
-    EXPECT_EQ(sampler.pdf(residual, 0.5f, ToTarget, phase, NoView{}), phase.pdf(ToTarget));
+    EXPECT_EQ(sampler.pdf(residual, 0.5f, ToTarget, phase), phase.pdf(ToTarget));
 }
 
 TEST(DirectionSampler, WithoutAShareOfThePhaseFunctionATargetAtTheVertexStillHasDirections) {
@@ -184,39 +148,36 @@ TEST(DirectionSampler, WithoutAShareOfThePhaseFunctionATargetAtTheVertexStillHas
     settings.alpha = 0.0f;
     const DirectionSampler sampler(settings, coloured(0.0f));
     const Residual residual = Residual::of({0, 0, 0}, {0.0, 1.0});
-    const auto sample = sampler.sample(residual, 1.0f, HenyeyGreenstein{}, NoView{}, [] { return 0.25f; });
+    const auto sample = sampler.sample(residual, 1.0f, HenyeyGreenstein{}, [] { return 0.25f; });
     EXPECT_NEAR(sample.inversePdf, 4.0f * Pi, 1e-4f);
 }
 
 /// Resampled directions: E[F(w) inverse pdf] = the integral of F over the sphere.
 TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
     for (const DirectionCase& c : DirectionCases)
-        for (const int count : {2, 4, 8})
-            for (const float focus : {0.0f, 0.2f}) {
-                Settings settings = best(Mode::Photon, 0.7f);
-                settings.direction = Direction::Ris;
-                settings.strata = false;
-                settings.directionCandidates = count;
-                settings.focus = focus;
-                const DirectionSampler sampler(settings, coloured(c.g));
-                const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
-                const HenyeyGreenstein phase{Before, c.g};
-                const ConeView view{{0, 1, 0}};
-                // F = phase (1 + w.a): its integral is 1 + g (before . a).
-                const Vec3 a{0.2f, -0.9f, 0.3f};
-                double sum = 0.0, squares = 0.0;
-                constexpr int Count = 100000;
-                for (uint64_t i = 0; i < Count; ++i) {
-                    Sampler s(21, RandomStream::Test, 0, i);
-                    const auto sample = sampler.sample(residual, c.excess, phase, view, [&s] { return s.next1D(); });
-                    const double x = double(phase.pdf(sample.direction)) * (1.0 + double(dot(sample.direction, a))) *
-                                     double(sample.inversePdf);
-                    sum += x, squares += x * x;
-                }
-                const double mean = sum / Count, error = std::sqrt((squares / Count - mean * mean) / Count);
-                EXPECT_NEAR(mean, 1.0 + double(c.g * dot(Before, a)), 4.5 * error)
-                    << c.C << " " << c.excess << " " << c.g << " " << count;
+        for (const int count : {2, 4, 8}) {
+            Settings settings = best(Mode::Photon, 0.7f);
+            settings.direction = Direction::Ris;
+            settings.strata = false;
+            settings.directionCandidates = count;
+            const DirectionSampler sampler(settings, coloured(c.g));
+            const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
+            const HenyeyGreenstein phase{Before, c.g};
+            // F = phase (1 + w.a): its integral is 1 + g (before . a).
+            const Vec3 a{0.2f, -0.9f, 0.3f};
+            double sum = 0.0, squares = 0.0;
+            constexpr int Count = 100000;
+            for (uint64_t i = 0; i < Count; ++i) {
+                Sampler s(21, RandomStream::Test, 0, i);
+                const auto sample = sampler.sample(residual, c.excess, phase, [&s] { return s.next1D(); });
+                const double x = double(phase.pdf(sample.direction)) * (1.0 + double(dot(sample.direction, a))) *
+                                 double(sample.inversePdf);
+                sum += x, squares += x * x;
             }
+            const double mean = sum / Count, error = std::sqrt((squares / Count - mean * mean) / Count);
+            EXPECT_NEAR(mean, 1.0 + double(c.g * dot(Before, a)), 4.5 * error)
+                << c.C << " " << c.excess << " " << c.g << " " << count;
+        }
 }
 
 } // namespace

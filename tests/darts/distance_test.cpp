@@ -160,13 +160,11 @@ TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     for (const DistanceCase& c : DistanceCases) {
         if (c.S < 1.1 * c.C || c.medium.sigmaS.x < 1e-3f) continue; // nearly all its candidates are too late there
         for (const bool overlap : {false, true})
-            for (const float floor : {0.0f, 0.05f})
-                for (const bool scalar : {false, true}) {
-                    Settings settings = published(Mode::Path);
-                    settings.overlap = overlap;
-                    settings.floor = floor;
-                    expectUnbiased(c, settings, scalar, ++seed);
-                }
+            for (const bool scalar : {false, true}) {
+                Settings settings = published(Mode::Path);
+                settings.overlap = overlap;
+                expectUnbiased(c, settings, scalar, ++seed);
+            }
     }
 }
 

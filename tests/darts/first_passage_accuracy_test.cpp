@@ -57,7 +57,6 @@ struct Configuration {
         exit.mismatch = s.next1D() < 0.5f ? 1.0f : float(logUniform(s, 1.0, 90.0));
         exit.surplus = s.next1D() < 0.8f ? 0.0f : 0.1f * latest.delta;
         exit.outerSpeed = s.next1D() < 0.5f ? 1.0f : 0.5f + s.next1D();
-        exit.elsewhere = s.next1D() < 0.5f ? 0.0f : 0.02f;
         const float wall = s.next1D() < 0.5f ? Exit::Infinite : float(depth * logUniform(s, 1.01, 100.0));
         const float beyond = s.next1D() < 0.7f ? 0.0f : float(mfp * s.nextDouble());
         exit.faces.add({{0, 0, 1}, float(depth), float(height), wall, beyond});
@@ -134,9 +133,7 @@ struct ExactPassage {
         Exact sum = 0;
         for (size_t i = 0; i < c.exit.faces.size(); ++i) sum += throughFace(i, 0, 0);
         sum *= exp(-squaredOutside * fourthInverseD / (excess + meanFreePath));
-        const Left left = to(c.exit.faces[0]);
-        return sum + c.exit.elsewhere * exp(-c.sigmaA * left.longest) * (left.reachable + meanFreePath / 10000) /
-                         (left.longest + meanFreePath);
+        return sum;
     }
 };
 
@@ -195,7 +192,6 @@ TEST(FirstPassageAccuracy, Slopes) {
     LargestError pull("pull"), later("later");
     for (uint64_t i = 0; i < 300; ++i) {
         Configuration c(i);
-        c.exit.elsewhere = 0.0f;
         const ExactPassage exact(c);
         const Exact step = exact.meanFreePath, here = log(exact.throughFace(0, 0, 0));
         const Exact change = here - log(exact.throughFace(0, step, 0)),

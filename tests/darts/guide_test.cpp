@@ -40,7 +40,7 @@ void expectOnceScattered(const Settings& settings, const Geometry& geometry, uin
         const auto random = [&s] { return s.next1D(); };
         const HenyeyGreenstein isotropic{{1, 0, 0}, 0.0f};
         ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
-        const DirectionSample d = guide.sampleDirection(residual, connection, isotropic, NoView{}, random);
+        const DirectionSample d = guide.sampleDirection(residual, connection, isotropic, random);
         if (!settings.lengthFirst) connection = guide.sampleConnectionAlong(residual, d.h, s.next1D());
         double value = 0.0;
         if (const auto v = guide.controlVertex(residual, connection, d.h, INFINITY)) {
@@ -126,8 +126,8 @@ TEST(Guide, LobesAreOfTheMedianLength) {
                 for (const float h : {1e-4f, 0.02f, 1.0f}) {
                     const Vec3 direction = directionAbout(residual.axis, h, 0.3f);
                     const auto drawn = guide.sampleConnection(residual, 0.9f);
-                    const float expected = directions.pdf(residual, lengths[1000], direction, phase, NoView{});
-                    EXPECT_NEAR(guide.pdfDirection(residual, drawn, direction, phase, NoView{}) / expected, 1.0f, 0.02f)
+                    const float expected = directions.pdf(residual, lengths[1000], direction, phase);
+                    EXPECT_NEAR(guide.pdfDirection(residual, drawn, direction, phase) / expected, 1.0f, 0.02f)
                         << int(way) << " " << g << " " << geometry.C << " " << geometry.low << " " << h;
                 }
             }
@@ -177,10 +177,10 @@ TEST(Guide, DirectionsStayFiniteAtTheHardCases) {
         if (!residual.alive()) continue;
         const ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
         const HenyeyGreenstein phase{{0, 1, 0}, g};
-        const auto d = guide.sampleDirection(residual, connection, phase, NoView{}, [&s] { return s.next1D(); });
+        const auto d = guide.sampleDirection(residual, connection, phase, [&s] { return s.next1D(); });
         ASSERT_TRUE(std::isfinite(d.inversePdf) && d.inversePdf >= 0.0f) << C << " " << g;
         ASSERT_NEAR(length(d.direction), 1.0f, 1e-4f);
-        ASSERT_NEAR(d.inversePdf * guide.pdfDirection(residual, connection, d.direction, phase, NoView{}), 1.0f, 1e-3f);
+        ASSERT_NEAR(d.inversePdf * guide.pdfDirection(residual, connection, d.direction, phase), 1.0f, 1e-3f);
         ASSERT_TRUE(d.h >= 0.0f && d.h <= 2.0f);
     }
 }

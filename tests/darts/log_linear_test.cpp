@@ -31,7 +31,6 @@ struct Drawn {
         draw.kink = draw.firstLeg * kink;
         draw.gateWidth = residual.width;
         draw.overlap = true;
-        draw.floor = grey ? 0.0f : 0.01f;
         draw.throughput = {0.5f, 1.0f, 0.8f};
         draw.exit = &residual.exit;
         draw.direction = directionAbout(residual.axis, h, 0.3f);
@@ -127,21 +126,6 @@ TEST(LogLinearDistance, ByTimeAloneIsTheTruncatedExponential) {
                     << depth << " " << d;
             }
         }
-}
-
-/// Long ways out of bodies are not led astray: what the floor adds is uniform, and no more than that.
-TEST(LogLinearDistance, FloorsAddAUniformPart) {
-    for (const float depth : {1.0f, 300.0f}) {
-        Drawn drawn(true, depth, 1.0f, 0.5f);
-        const LogLinearDistance without = drawn.distance(Shape::FirstPassage);
-        drawn.draw.floor = 1e-3f;
-        const LogLinearDistance with = drawn.distance(Shape::FirstPassage);
-        const float bound = drawn.draw.bound, far = 0.999f * bound, near = 0.0f;
-        // Both densities are at hand at two places: share and uniform part follow.
-        const float kept = (with.pdf(near) - with.pdf(far)) / (without.pdf(near) - without.pdf(far));
-        EXPECT_NEAR(with.pdf(far) - kept * without.pdf(far), (1.0f - kept) / bound, 1e-3f * with.pdf(far)) << depth;
-        EXPECT_TRUE(kept < 1.0f && kept > 0.7f) << kept;
-    }
 }
 
 /// Plain flights with bounds in time: every draw has the same weight.

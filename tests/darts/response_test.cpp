@@ -163,7 +163,7 @@ TEST(TemporalResponse, ControlVerticesHitTwoPeaksThatPlainConnectionsMiss) {
             if (!residual.alive()) break;
             const auto connection = guide.sampleConnection(residual, s.next1D(), {&peaks, elapsed, 1.0});
             const HenyeyGreenstein phase{direction, 0.0f};
-            const DirectionSample next = guide.sampleDirection(residual, connection, phase, NoView{}, random);
+            const DirectionSample next = guide.sampleDirection(residual, connection, phase, random);
             if (const auto vertex = guide.controlVertex(residual, connection, next.h, INFINITY)) {
                 const Vec3 at = position + next.direction * vertex->distance;
                 const double time = elapsed + double(vertex->distance) + double(length(target - at));

@@ -103,9 +103,7 @@ TEST(Scheme, EverySwitchWorksAlone) {
     EXPECT_EQ(settings({{"direction", "connection"}}).direction, Direction::Connection);
     EXPECT_EQ(settings({{"greens_function", "causal"}}).greens, Greens::Causal);
     EXPECT_EQ(settings({{"alpha", 0.7}}).alpha, 0.7f);
-    EXPECT_EQ(settings({{"focus", 0.3}}).focus, 0.3f);
     EXPECT_EQ(settings({{"roulette", 0.25}}).roulette, 0.25f);
-    EXPECT_EQ(settings({{"floor", 0.02}}).floor, 0.02f);
     EXPECT_FALSE(settings({{"bounded", false}}).bounded);
     EXPECT_FALSE(settings({{"length_first", false}}).lengthFirst);
     EXPECT_FALSE(settings({{"overlap", false}}).overlap);
@@ -181,8 +179,6 @@ TEST(Scheme, WrongValuesNameWhatIsAccepted) {
     };
     EXPECT_EQ(problem("alpha", -1.0), "alpha: expected a number from 0 to 1000000");
     EXPECT_EQ(problem("alpha", 2e6), "alpha: expected a number from 0 to 1000000");
-    EXPECT_EQ(problem("focus", 1.5), "focus: expected a number from 0 to 1");
-    EXPECT_EQ(problem("floor", 0.1), "floor: expected a number from 0 to 0.05");
     EXPECT_EQ(problem("candidates", 3.0), "candidates: expected 1, 4, 8 or 16, found 3");
     EXPECT_EQ(problem("direction", "sideways"), "direction: unknown sideways");
 }

@@ -123,12 +123,8 @@ TEST(DirectionStrata, WeightsVaryLessThanThoseOfAMixture) {
     }
 }
 
-/// As DirectionSampler uses them: with the camera's share, and towards the boundary of a body.
+/// As DirectionSampler uses them: towards the target, and towards the boundary of a body.
 TEST(DirectionStrata, DrawsOfTheSamplerKnowTheirDensity) {
-    struct View {
-        [[nodiscard]] Vec3 sample(float u, float v) const { return HenyeyGreenstein{{0, 0, -1}, 0.9f}.sample(u, v); }
-        [[nodiscard]] float pdf(const Vec3& seen) const { return HenyeyGreenstein{{0, 0, -1}, 0.9f}.pdf(seen); }
-    };
     for (const float g : {0.5f, 0.9f, -0.7f})
         for (const bool out : {false, true}) {
             const Medium medium = tungsten::test::thickMedium(g);
@@ -140,8 +136,8 @@ TEST(DirectionStrata, DrawsOfTheSamplerKnowTheirDensity) {
             constexpr int Count = 50000;
             for (uint64_t i = 0; i < Count; ++i) {
                 Sampler s(94, RandomStream::Test, 0, i);
-                const auto sample = sampler.sample(residual, 0.02f, phase, View{}, [&s] { return s.next1D(); });
-                const float pdf = sampler.pdf(residual, 0.02f, sample.direction, phase, View{});
+                const auto sample = sampler.sample(residual, 0.02f, phase, [&s] { return s.next1D(); });
+                const float pdf = sampler.pdf(residual, 0.02f, sample.direction, phase);
                 ASSERT_NEAR(sample.inversePdf * pdf, 1.0f, 1e-3f) << g << " " << out;
                 const double x = double(phase.pdf(sample.direction)) * double(sample.inversePdf);
                 sum += x, squares += x * x;

@@ -51,15 +51,14 @@ std::array<Estimate, Orders> radianceByOrder(const darts::Settings& settings, co
 
 /// Photon mode: the same radiance at the route's target, for a ray that looks along z; the 2-D biweight kernel spreads
 /// it over `kernelRadius`.
-template <typename Form = DerivedForm, typename View>
+template <typename Form = DerivedForm>
 std::array<Estimate, Orders> gatheredByOrder(const darts::Settings& settings, const darts::Medium& medium,
-                                             const Route& route, const View& view, float kernelRadius, uint64_t paths,
-                                             uint64_t seed) {
+                                             const Route& route, float kernelRadius, uint64_t paths, uint64_t seed) {
     const darts::Guide guide(settings, medium);
     const Walk<Form> walk(guide, route);
     const double width = route.gate.end - route.gate.begin;
     return orderMeans(paths, seed, [&](auto&& random, auto&& add) {
-        walk.fromEmitter(view, random, [&](const LastScattering& last) {
+        walk.fromEmitter(random, [&](const LastScattering& last) {
             const darts::Vec3 seen = last.position - route.target;
             const float across = std::hypot(seen.x, seen.y) / kernelRadius;
             if (!(seen.z > 0) || across >= 1) return;

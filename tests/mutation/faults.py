@@ -130,8 +130,8 @@ FAULTS = [
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # guided flights that do not end at a surface ahead carry a wrong weight
     ("src/darts/DistanceSampler.cpp", "return {surface, true, event.reaching * (1.0f / event.probability)};", "return {surface, true, event.reaching};",
      [("darts_tests", "DistancesOut.MeansMatchQuadrature")]),  # surfaces seen through a guided medium are too dark
-    ("src/darts/CandidateKernel.h", "Batch(lifted / density[r]));", "Batch(lifted * density[r]));",
-     [("darts_tests", "DistancesOut.StraysBoundWeights")]),  # resampled distances are biased: candidates weighed by their density instead of over it
+    ("src/darts/CandidateKernel.h", "Batch(useful / density[r]));", "Batch(useful * density[r]));",
+     [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # resampled distances are biased: candidates weighed by their density instead of over it
     ("src/darts/CandidateKernel.h", "candidates.usefulness[chosen] * draw.probability);", "candidates.usefulness[chosen]);",
      [("darts_tests", "DistanceSampler.BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean")]),  # light from media before surfaces is too dark by the chance of the medium event
     ("src/darts/EdaTable.h", "bins_.edge(bin)) * 6.283185307f);", "bins_.edge(bin)) * 3.141592653f);",
@@ -164,10 +164,6 @@ FAULTS = [
      [("darts_tests", "DistanceSampler.DrawsKnowTheirDensity")]),  # surfaces are reached with no density, and weigh infinitely
     ("src/darts/DistanceSampler.cpp", "draw.falls = shape != Shape::TimeBound || draw.overlap;", ";",
      [("darts_tests", "LogLinearDistance.OfPlainFlightsHasNoNoise")]),  # plain flights with bounds in time are noisier than free ones
-    ("src/darts/LogLinearDistance.cpp", "sum_ = lift_ * end;", ";",
-     [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # the density of distances leaves the floor out of its sum
-    ("src/darts/LogLinearDistance.cpp", "std::exp(logs_[k] + slope(i) * (distance - nodes_[k]) / width) + lift_", "std::exp(logs_[k] + slope(i) * (distance - nodes_[k]) / width)",
-     [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # the floor is drawn, and no density knows of it
     ("src/darts/LogLinearDistance.cpp", "fastLog1p(part * fastExpm1(rise)) / rise;", "part;",
      [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # distances are uniform between nodes
     ("src/darts/LogLinearDistance.cpp", ": (next - here) / rise;", ": (next + here) * 0.5f;",

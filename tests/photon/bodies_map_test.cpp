@@ -77,7 +77,7 @@ TEST(PhotonMapsOfBodies, ShowLightBehindWallsThatReflectNearlyAll) {
     const auto paths = test::renderPaths(scene, {{test::BestPreset}, 64, 64});
     for (const std::string type : {"points", "beams"}) {
         const auto best =
-            test::renderPhotons(scene, {{test::GuidedAlone, "integrator.volume_photon_type=" + type}, 48, 1});
+            test::renderPhotons(scene, {{test::GuidedAlone, "integrator.volume_photon_type=" + type}, 72, 1});
         // Pixels of a pass share photons: their errors add up at worst.
         const double both = std::hypot(error(*paths) / 4.0, error(*best));
         EXPECT_NEAR(best->mean(), paths->mean(), 4.5 * both + 0.04 * paths->mean()) << type; // and the kernel

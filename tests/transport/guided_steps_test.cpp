@@ -169,7 +169,7 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
         step.setTimeBudget(ahead());
         step.connect({excess, 1.0f});
         const auto half = [] { return 0.5f; };
-        return step.sampleDirection(guide, darts::HenyeyGreenstein{}, darts::NoView{}, half).inversePdf;
+        return step.sampleDirection(guide, darts::HenyeyGreenstein{}, half).inversePdf;
     };
     EXPECT_NE(density(1.1f), density(1.9f));
 }

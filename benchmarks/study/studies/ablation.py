@@ -27,7 +27,6 @@ PARTS = {
     "flat candidates": {"proposals": "exponential"},
     "overlap with the gate": {"overlap": False},
     "bounds by time": {"bounded": False},
-    "camera's share": {"focus": 0},
     "roulette": {"roulette": 0},
     "surface connections": {"surface_connections": False},
     "glossy sensor paths": {"glossy_sensor_paths": False},

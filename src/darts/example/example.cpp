@@ -18,7 +18,7 @@ int main() {
         double sum = 0.0;
         for (int i = 0; i < Samples; ++i) {
             // A direction, the connection's length S, the vertex where the path has this length.
-            const auto sample = guide.sampleDirection(residual, {}, isotropic, darts::NoView{}, random);
+            const auto sample = guide.sampleDirection(residual, {}, isotropic, random);
             const auto connection = guide.sampleConnectionAlong(residual, sample.h, random());
             const auto vertex = guide.controlVertex(residual, connection, sample.h, INFINITY);
             if (!vertex) continue;

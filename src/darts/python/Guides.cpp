@@ -80,8 +80,7 @@ class GuideOfMedium {
         const auto random = [&bits] { return float(bits() >> 40) * 0x1p-24f; };
         for (py::ssize_t i = 0; i < count; ++i) {
             darts::ConnectionSample connection = guide_.sampleConnection(residual, random());
-            const darts::DirectionSample ray =
-                guide_.sampleDirection(residual, connection, phase, darts::NoView{}, random);
+            const darts::DirectionSample ray = guide_.sampleDirection(residual, connection, phase, random);
             if (!guide_.settings().lengthFirst) connection = guide_.sampleConnectionAlong(residual, ray.h, random());
             const auto vertex = guide_.controlVertex(residual, connection, ray.h, surface);
             const darts::DistanceSample step =

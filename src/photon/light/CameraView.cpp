@@ -1,40 +1,18 @@
 #include "photon/light/CameraView.h"
 
-#include "photon/Tuning.h"
-
 namespace tungsten::photon {
 
 CameraView::CameraView(const Camera& camera) : position_(camera.position()), frame_(camera.toWorld.rotation()) {
     const FieldOfView fov = camera.fieldOfView().value_or(FieldOfView());
     aperture_ = camera.aperture() * (1.0f + 1.0f / std::max(camera.focusDistance(), 1e-6f));
     const float width = float(camera.resolution.x), height = float(camera.resolution.y);
-    halfWidth_ = 1.0f / fov.planeDistance;
-    halfHeight_ = halfWidth_ * height / width;
+    const float halfWidth = 1.0f / fov.planeDistance, halfHeight = halfWidth * height / width;
     // Pixel centres lie inside the image; filters reach a little beyond, the thin lens is off by half a pixel.
-    const float pixel = 2.0f * halfWidth_ / width, reach = (camera.filter.halfWidth() + 1.0f) * pixel;
-    marginX_ = halfWidth_ + reach;
-    marginY_ = halfHeight_ + reach;
-    // Directions aim wider than a narrow image: across its edge, where their density leaps, a direction's rounding
-    // would mistake many.
-    constexpr float Narrowest = 0.01f;
-    halfWidth_ = std::max(halfWidth_, Narrowest);
-    halfHeight_ = std::max(halfHeight_, Narrowest);
+    const float pixel = 2.0f * halfWidth / width, reach = (camera.filter.halfWidth() + 1.0f) * pixel;
+    marginX_ = halfWidth + reach;
+    marginY_ = halfHeight + reach;
     slantX_ = std::sqrt(1.0f + marginX_ * marginX_);
     slantY_ = std::sqrt(1.0f + marginY_ * marginY_);
-}
-
-darts::Vec3 CameraView::sample(float u, float v) const {
-    if (u < tuning::SphereShare) return darts::directionAbout({0, 0, 1}, 2.0f * u / tuning::SphereShare, v);
-    const float x = (2.0f * (u - tuning::SphereShare) / (1.0f - tuning::SphereShare) - 1.0f) * halfWidth_;
-    return darts::vec3(frame_.toWorld(Vec3f(x, (2.0f * v - 1.0f) * halfHeight_, 1.0f)).normalized());
-}
-
-float CameraView::pdf(const darts::Vec3& direction) const {
-    constexpr float Sphere = tuning::SphereShare / (4.0f * Pi);
-    const Vec3f local = frame_.toLocal(Vec3f(direction.x, direction.y, direction.z));
-    if (local.z <= 0.0f || std::abs(local.x) > halfWidth_ * local.z || std::abs(local.y) > halfHeight_ * local.z)
-        return Sphere;
-    return Sphere + (1.0f - tuning::SphereShare) / (4.0f * halfWidth_ * halfHeight_ * local.z * local.z * local.z);
 }
 
 std::array<Vec3f, 4> CameraView::sides() const {

@@ -10,16 +10,11 @@
 
 namespace tungsten::photon {
 
-/// Of pinhole and thin-lens cameras. As a `View` of the sampling library: directions seen from the camera, mostly
-/// uniform over the image plane, the rest uniform over the sphere, so that light behind the image's edge keeps a
-/// density.
+/// What pinhole and thin-lens cameras see.
 class CameraView {
   public:
     explicit CameraView(const Camera& camera);
 
-    [[nodiscard]] darts::Vec3 sample(float u, float v) const;
-    /// Per solid angle.
-    [[nodiscard]] float pdf(const darts::Vec3& direction) const;
     /// False when no sensor ray comes within `radius` of the point. Margins hold the pixel filter and the aperture.
     [[nodiscard]] bool sees(const Vec3f& point, float radius) const;
     /// The part of a ray whose points it sees: an interval, as what a pinhole sees is convex. A thin lens: all of it.
@@ -31,9 +26,8 @@ class CameraView {
   private:
     Vec3f position_;
     Frame frame_;
-    float halfWidth_, halfHeight_; ///< of the image at distance 1, widened if narrow
-    float marginX_, marginY_;      ///< of the same with the filter's reach
-    float slantX_, slantY_;        ///< sqrt(1 + margin^2): a sphere's reach beyond a slanted plane
+    float marginX_, marginY_; ///< half the image's width and height at distance 1, with the filter's reach
+    float slantX_, slantY_;   ///< sqrt(1 + margin^2): a sphere's reach beyond a slanted plane
     float aperture_ = 0.0f;
 };
 

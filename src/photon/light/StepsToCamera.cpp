@@ -153,7 +153,7 @@ std::optional<darts::DirectionSample> StepsToCamera::draw(PathState& path, const
         if (!(connection.inversePdf > 0.0f) && !guidance_->meetsDeltaGate()) return std::nullopt;
     }
     path.random.at(path.interactions, Draw::GuidedDirection);
-    return sampleDirection(guide, scatterer, guidance_->view(), [&] { return path.random.next1D(); });
+    return sampleDirection(guide, scatterer, [&] { return path.random.next1D(); });
 }
 
 const darts::Guide* StepsToCamera::guideOfEmission(const Region& region) const {

@@ -87,7 +87,7 @@ class StepsToCamera : public transport::GuidedSteps {
     /// Per solid angle, of directions that are drawn first.
     template <typename Scatterer>
     [[nodiscard]] float pdf(const darts::Guide& guide, const Scatterer& scatterer, const Vec3f& direction) const {
-        return guide.pdfDirection(residual(), {}, darts::vec3(direction), scatterer, guidance_->view());
+        return guide.pdfDirection(residual(), {}, darts::vec3(direction), scatterer);
     }
     /// The flight at hand as plain paths have it.
     [[nodiscard]] transport::PlainFlight plain() const { return {medium_, reach_, start_.channels}; }
