@@ -61,12 +61,7 @@ REMOVALS = [
     ]),
     ("light that leaves bodies", GUIDED, [
         ("src/path/StepsToEmitter.cpp", "if (hasLookedOut() || !guided_->waysOut) return;", "if (true) return;"),
-        ("src/path/StepsToEmitter.cpp",
-         "if (ahead.hit && reachable().way == darts::Way::Out && reachable().exit.connects && path.mediumScatters > 0)", "if (false)"),
-        ("src/photon/light/StepsToCamera.cpp", "const bool out = residual().way == darts::Way::Out;", "constexpr bool out = false;"),
-        ("src/photon/light/StepsToCamera.cpp",
-         "if (guide_ && ahead.hit && residual().way == darts::Way::Out && residual().exit.connects)", "if (false)"),
-        ("src/transport/GuidedSteps.cpp", "const bool out = reachable_.way == darts::Way::Out;", "constexpr bool out = false;"),
+        ("src/transport/GuidedSteps.cpp", "if (reachable_.way == darts::Way::Out)\n", "if (false)\n"),
     ]),
     ("sliced primitives", MAPS, [
         ("src/photon/light/DepositVisitor.cpp", "if (context_->recordCounts) return chain_.end();", ""),

@@ -77,14 +77,12 @@ Shape DistanceSampler::shapeFor(const Residual& residual) const {
     return residual.exit.connects ? Shape::FirstPassage : Shape::TimeBound;
 }
 
-auto DistanceSampler::surfaceEvent(const Residual& residual, float surface, float firstLeg,
-                                   const Vec3& throughput) const -> SurfaceEvent {
+auto DistanceSampler::surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const -> SurfaceEvent {
     if (!((surface < firstLeg || !settings_.bounded) && surface < std::numeric_limits<float>::infinity())) return {};
     const Vec3 reaching = transmittance(surface);
     const float total = throughput.x + throughput.y + throughput.z;
     const float natural = !scatters_ ? 1.0f : grey_ || !(total > 0) ? reaching.x : dot(throughput, reaching) / total;
-    const float odds = settings_.surfaceOdds * (residual.way == Way::Out ? residual.exit.leaveOdds : 1.0f);
-    return {natural * odds / (natural * odds + (1.0f - natural)), reaching};
+    return {natural, reaching};
 }
 
 CandidateDraw DistanceSampler::drawOf(const Residual& residual, const Heading& ray, const Ellipse<float>& latest,
@@ -107,7 +105,7 @@ DistanceDensity DistanceSampler::density(const Residual& residual, const Heading
                                          const Vec3& throughput) const {
     const Ellipse<float> latest = residual.latest(ray.h);
     const float firstLeg = latest.firstLeg(), bound = std::min(surface, firstLeg);
-    const SurfaceEvent event = surfaceEvent(residual, surface, firstLeg, throughput);
+    const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
     if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return DistanceDensity(event.probability);
     CandidateDraw draw = drawOf(residual, ray, latest, bound, throughput);
     if (residual.low > 0) draw.kink = Ellipse<float>{residual.C, residual.low, ray.h}.firstLeg();
@@ -132,7 +130,7 @@ DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& 
         return this->sample(density(residual, ray, surface, throughput), surface, random.event, random.choice);
     const Ellipse<float> latest = residual.latest(ray.h);
     const float firstLeg = latest.firstLeg();
-    const SurfaceEvent event = surfaceEvent(residual, surface, firstLeg, throughput);
+    const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
     if (event.probability > 0 && random.event < event.probability)
         return {surface, true, event.reaching * (1.0f / event.probability)};
     const float bound = settings_.bounded ? std::min(surface, firstLeg) : surface;

@@ -84,8 +84,7 @@ class DistanceSampler {
         float probability = 0;
         Vec3 reaching;
     };
-    [[nodiscard]] SurfaceEvent surfaceEvent(const Residual& residual, float surface, float firstLeg,
-                                            const Vec3& throughput) const;
+    [[nodiscard]] SurfaceEvent surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const;
     /// Of distances in the medium, up to a bound above 0.
     [[nodiscard]] CandidateDraw drawOf(const Residual& residual, const Heading& ray, const Ellipse<float>& latest,
                                        float bound, const Vec3& throughput) const;

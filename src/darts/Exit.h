@@ -71,7 +71,6 @@ struct Exit {
     float surplus = 0;    ///< by so much the latest arrival is later than what the target itself allows
     bool connects = true; ///< light goes on straight beyond the boundary
     bool sealed = false;  ///< and does so nowhere: no connection from inside is ever complete
-    float leaveOdds = 1;  ///< factor on the odds of a flight's end at the surface ahead
     Few<Side, 4> sides;   ///< pairs of opposite ones; none if the target sees everything
 };
 

@@ -76,7 +76,6 @@ struct Settings {
         return logLinear && bounded && !lengthFirst && direction != Direction::Ris;
     }
 
-    float surfaceOdds = 1.0f; ///< factor on the odds of a surface in reach against scattering before it
     float roulette = 0.1f;    ///< walks end at random below this part of their first usefulness; 0: never
     float rouletteOut = 0.1f; ///< the same on the way out of bodies
 };

@@ -19,14 +19,8 @@ PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
         guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
-        darts::Settings view = settings, surface = settings, glossy = settings;
-        if (!scheme.published) {
-            view.surfaceOdds = tuning::ViewSurfaceOdds;
-            surface.alpha = std::max(surface.alpha, tuning::SurfaceAlpha);
-            glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
-        }
-        guides.view.emplace_back(view, coefficients);
-        guides.surfaces.emplace_back(surface, coefficients);
+        darts::Settings glossy = settings;
+        if (!scheme.published) glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
         guides.glossy.emplace_back(glossy, coefficients);
     }
     return guides;

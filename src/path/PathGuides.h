@@ -19,11 +19,9 @@ struct PathGuides {
     static PathGuides of(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan,
                          const PassWatch& watch);
 
-    std::vector<darts::Guide> media;    ///< for scattering in it, and flights
-    std::vector<darts::Guide> surfaces; ///< for leaving a surface into it
-    std::vector<darts::Guide> glossy;   ///< the same for surfaces without diffuse lobes
-    std::vector<darts::Guide> view;     ///< for flights from the camera
-    std::vector<darts::Guide> plain;    ///< bounds in time alone, where refraction hides where light goes
+    std::vector<darts::Guide> media;  ///< for flights, and for leaving scatterers and surfaces into it
+    std::vector<darts::Guide> glossy; ///< for leaving surfaces without diffuse lobes
+    std::vector<darts::Guide> plain;  ///< bounds in time alone, where refraction hides where light goes
 
     /// Of directions, in use: one for every medium that has one.
     [[nodiscard]] size_t tables() const {

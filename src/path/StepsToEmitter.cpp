@@ -43,7 +43,7 @@ const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, co
     const Medium* medium = context_.scene.medium(ahead);
     if (!medium || !medium->scatters()) return nullptr;
     const bool diffuse = (vertex.lobes() & lobe::DiffuseReflection) != 0;
-    const auto& guides = diffuse ? guided_->guides.surfaces : guided_->guides.glossy;
+    const auto& guides = diffuse ? guided_->guides.media : guided_->guides.glossy;
     const darts::Guide& guide = guides[size_t(ahead.medium)];
     return guide.settings().direction == darts::Direction::Phase ? nullptr : &guide;
 }
@@ -144,12 +144,10 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
     heading_ = headingOf(path.ray.direction);
     path.ray.tMax = bound(guide, heading_.h);
     const Ahead ahead{true, &medium, see(path.ray, known)};
-    // What the camera sees beyond the fog, or of lamps there, has been connected to by no vertex.
-    if (ahead.hit && reachable().way == darts::Way::Out && reachable().exit.connects && path.mediumScatters > 0)
-        leaveWithOdds(guided_->waysOut->leaveOdds(path.region, path.ray.direction, *ahead.hit));
     if (hasDensities())
-        distances_.emplace(
-            guideOfFlight(path).distance().density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
+        distances_.emplace(guideOf(path.region)
+                               .distance()
+                               .density(reachable(), heading_, ahead.reach(), darts::vec3(path.throughput)));
     return ahead;
 }
 
@@ -158,10 +156,6 @@ Ahead StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium, const 
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
     lookAheadFrom(path, path.ray.origin);
     return {true, &medium, see(path.ray, known)};
-}
-
-const darts::Guide& StepsToEmitter::guideOfFlight(const PathState& path) const {
-    return path.mediumScatters == 0 ? guided_->guides.view[size_t(path.region.medium)] : guideOf(path.region);
 }
 
 Flight StepsToEmitter::flight(PathState& path, const Ahead& ahead) {
@@ -179,7 +173,7 @@ Flight StepsToEmitter::flight(PathState& path, const Ahead& ahead) {
 }
 
 Flight StepsToEmitter::flyGuided(PathState& path, const Ahead& ahead) {
-    const darts::Guide& guide = guideOfFlight(path);
+    const darts::Guide& guide = guideOf(path.region);
     path.random.at(path.interactions + 1, Draw::Distance);
     const auto random = [&] { return path.random.next1D(); };
     darts::DistanceSample sample;

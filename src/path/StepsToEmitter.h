@@ -152,7 +152,6 @@ class StepsToEmitter : public transport::GuidedSteps {
     };
     Onward onward(const PathState& path, const transport::WalkVertex& vertex);
     [[nodiscard]] darts::ResponseAt response(double time) const;
-    [[nodiscard]] const darts::Guide& guideOfFlight(const PathState& path) const;
     [[nodiscard]] bool guidesSurface() const { return surfaceGuide_ && residual().alive(); }
 
     transport::Way leaveMedium(PathState& path, const transport::WalkVertex& vertex);

@@ -12,16 +12,9 @@ namespace tungsten::path::tuning {
 
 // --- Guided paths ----------------------------------------------------------------------------------------------------
 
-/// Surfaces may reflect sharply where the connection lobe sends few directions: they keep a third of the directions or
-/// more for themselves. (cbox: 1.5 times less variance than 0.1.) Bench: study cbox-128
-inline constexpr float SurfaceAlpha = 0.5f;
 /// Where nothing is diffuse guided directions hardly ever fall into the lobe; what they are given, a chain of glossy
 /// reflections lacks once per reflection. (Dragon: 1.7 times less variance than 0.5.) Bench: study dragon-160
 inline constexpr float GlossyAlpha = 5.0f;
-/// Rays from the camera go on to surfaces at better odds than by transmittance: what surfaces show varies more than
-/// what the fog before them does. (1.5 times less variance on cbox, 1.4 on staircase; 8 is too many.) Bench: study
-/// staircase-160
-inline constexpr float ViewSurfaceOdds = 4.0f;
 
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 

@@ -62,8 +62,6 @@ class GuidedSteps {
     [[nodiscard]] const darts::Residual& residual() const { return residual_; }
     /// The same for everything that the walk may find.
     [[nodiscard]] const darts::Residual& reachable() const { return reachable_; }
-    /// The flight ahead leaves the body at its end with these odds (WaysOut::leaveOdds).
-    void leaveWithOdds(float odds) { reachable_.exit.leaveOdds = odds; }
 
     // Roulette. Models of what is still to come do not compare: where another one holds, in another medium or by
     // another way out, usefulness is measured anew.

@@ -36,10 +36,6 @@ inline constexpr float LeastCosine = 0.05f;
 inline constexpr float EntryDepth = 0.05f;
 /// Other faces count up to so many times the depth under the one that the straight way leaves through.
 inline constexpr float FarthestFace = 4.0f;
-/// Factor on the odds of leaving a body where what leaves has been connected to already. MSE x CPU of paths, dense cube
-/// and lamp in fog: 3.4 and 0.94 at 1, 1.2 and 0.66 at 0.1, 1.3 and 0.78 at 0.01. Lower ones would starve what is lit
-/// from the bodies.
-inline constexpr float LeaveOdds = 0.1f;
 
 // --- Windows of sequences --------------------------------------------------------------------------------------------
 

@@ -179,13 +179,6 @@ void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region&
     residual.exit.outerSpeed = slow / std::max(residual.C - way.tMin, 1e-20f);
 }
 
-float WaysOut::leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const {
-    if (!passesStraight(scene_.bsdfOf(hit))) return 1.0f;
-    const Region beyond = regionBehind(scene_, hit, direction, region);
-    const float ahead = beyond.medium < 0 ? 0.0f : bodies_[size_t(beyond.medium)].reducedSigmaT;
-    return ahead < 0.1f * bodies_[size_t(region.medium)].reducedSigmaT ? tuning::LeaveOdds : 1.0f;
-}
-
 std::string WaysOut::describe(int medium, bool straightOnly) const {
     const Body& body = bodies_[size_t(medium)];
     const auto nameOf = [&](int primitive) {

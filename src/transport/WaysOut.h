@@ -48,9 +48,6 @@ class WaysOut {
     /// residual.exit but for its surplus. Adds the rays traced to `rays`.
     void look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
               uint64_t& rays) const;
-    /// Factor on the odds of a flight inside a body going on to a surface: what leaves the body has been connected to
-    /// the aim already.
-    [[nodiscard]] float leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const;
 
   private:
     [[nodiscard]] bool any() const;

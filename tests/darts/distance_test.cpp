@@ -133,28 +133,6 @@ TEST(DistanceSampler, MeansMatchQuadratureForEveryTargetProposalAndCount) {
                 }
 }
 
-TEST(DistanceSampler, BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean) {
-    uint64_t seed = 1500;
-    for (const DistanceCase& c : DistanceCases)
-        for (const float odds : {0.3f, 4.0f})
-            for (const bool logLinear : {false, true}) {
-                Settings settings = best(Mode::Path, 0.0f);
-                settings.surfaceOdds = odds;
-                settings.logLinear = logLinear;
-                expectUnbiased(c, settings, false, ++seed);
-            }
-    for (const bool logLinear : {false, true}) {
-        Settings settings = best(Mode::Path, 0.0f);
-        settings.surfaceOdds = 4.0f;
-        settings.logLinear = logLinear;
-        const DistanceSampler sampler(settings, Medium{{0, 0, 0}, {1, 1, 1}, 0.0f});
-        const Residual residual = Residual::of({0, 0, 1}, {3.0, 3.1});
-        const float natural = std::exp(-0.8f), reached = 4 * natural / (4 * natural + 1 - natural);
-        for (const float event : {0.99f * reached, 1.01f * reached})
-            EXPECT_EQ(sampler.sample(residual, {{}, 1.0f}, 0.8f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, event}).surface,
-                      event < reached);
-    }
-}
 TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     uint64_t seed = 900;
     for (const DistanceCase& c : DistanceCases) {

@@ -133,7 +133,7 @@ FAULTS = [
     ("src/darts/CandidateKernel.h", "Batch(useful / density[r]));", "Batch(useful * density[r]));",
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # resampled distances are biased: candidates weighed by their density instead of over it
     ("src/darts/CandidateKernel.h", "candidates.usefulness[chosen] * draw.probability);", "candidates.usefulness[chosen]);",
-     [("darts_tests", "DistanceSampler.BetterOddsForSurfacesChangeHowOftenTheyAreReachedAndNoMean")]),  # light from media before surfaces is too dark by the chance of the medium event
+     [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # light from media before surfaces is too dark by the chance of the medium event
     ("src/darts/EdaTable.h", "bins_.edge(bin)) * 6.283185307f);", "bins_.edge(bin)) * 3.141592653f);",
      [("darts_tests", "EdaTable.SamplesFollowTheDensityWhichIntegratesToOne")]),  # EDA density per solid angle twice too large
     ("src/darts/EdaTable.h", "within = (u - cumulative_[bin]) / mass(bin);", "within = u - cumulative_[bin];",

@@ -32,10 +32,6 @@ class PhotonGuidance {
 
     /// Bodies that light from outside is sent towards.
     [[nodiscard]] const std::vector<transport::BodySphere>& bodies() const { return bodies_; }
-    /// transport::WaysOut::leaveOdds
-    [[nodiscard]] float leaveOdds(const Region& region, const Vec3f& direction, const SurfaceHit& hit) const {
-        return waysOut_->leaveOdds(region, direction, hit);
-    }
 
     /// Every sensor path is one straight chain at one speed: control vertices alone are complete.
     [[nodiscard]] bool directView() const { return directView_; }

@@ -52,8 +52,6 @@ Ahead StepsToCamera::ahead(PathState& path, const std::optional<SurfaceHit>* kno
         ahead.hit = context_.scene.geometry->intersect(path.ray);
     }
     path.ray.tMax = Infinity;
-    if (guide_ && ahead.hit && residual().way == darts::Way::Out && residual().exit.connects)
-        leaveWithOdds(guidance_->leaveOdds(path.region, path.ray.direction, *ahead.hit));
     if (!hasDensities()) return ahead;
     start_ = path;
     reach_ = ahead.reach();
