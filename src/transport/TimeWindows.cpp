@@ -17,7 +17,7 @@ TimeWindows TimeWindows::ofSequence(const Scene& scene, const EffectPlan& facts,
     TimeWindows windows(arrivals);
     if (!(last > first)) return windows;
     const double wanted = std::ceil(std::log(last / first) / std::log(tuning::WindowGrowth) - 1e-6);
-    const int count = int(std::clamp(wanted, 1.0, double(std::min(sequence.frames, tuning::MostWindows))));
+    const int count = int(std::clamp(wanted, 1.0, double(sequence.frames)));
     const double growth = std::pow(last / first, 1.0 / count);
     windows.windows_.clear();
     for (int i = 0; i < count; ++i) {

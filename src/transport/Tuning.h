@@ -39,9 +39,8 @@ inline constexpr float FarthestFace = 4.0f;
 
 // --- Windows of sequences --------------------------------------------------------------------------------------------
 
-/// Each is so many times as long as the one before, unless there were more than so many. Bench: study films
+/// Each is so many times as long as the one before. Bench: study transient
 inline constexpr double WindowGrowth = 1.5;
-inline constexpr int MostWindows = 16;
 
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 

@@ -5,10 +5,11 @@
 
 namespace tungsten::path {
 
-/// What light at a place in a medium is worth to detectors, over what it was worth where its path started: the mean over
-/// detectors of what diffusion brings to each, which gets paths of about the same weight whatever its distance. With mu =
-/// sqrt(3 sigma_a (sigma_a + sigma_s (1 - g))) that is exp(-mu r) / r in a medium, and (1 + mu r) exp(-mu r) / r^3, the
-/// flux of a dipole, out of one that ends (Farrell et al. 1992). Whatever the function, the image is the same.
+/// What light at a place in a medium is worth to detectors, over what it was worth where its path started: the mean
+/// over detectors of what diffusion brings to each, which gets paths of about the same weight whatever its distance.
+/// With mu = sqrt(3 sigma_a (sigma_a + sigma_s (1 - g))) that is exp(-mu r) / r in a medium, and (1 + mu r) exp(-mu r)
+/// / r^3, the flux of a dipole, out of one that ends (Farrell et al. 1992). Whatever the function, the image is the
+/// same.
 class DetectorImportance {
   public:
     /// `start`: of the path. `inside`: the detectors are in what scatters.
