@@ -71,7 +71,7 @@ Vec3 DistanceSampler::transmittance(float distance) const {
 
 Shape DistanceSampler::shapeFor(const Residual& residual) const {
     // Without a Green's function nothing but the bound in time is wanted.
-    if (settings_.greens == Greens::None || residual.way == Way::Unknown) return Shape::TimeBound;
+    if (settings_.greens == Greens::None) return Shape::TimeBound;
     if (residual.way == Way::Through) return shapeOf(settings_.greens);
     // Behind refraction light leaves where it is not known.
     return residual.exit.connects ? Shape::FirstPassage : Shape::TimeBound;

@@ -14,7 +14,6 @@ namespace darts {
 enum class Way {
     Through, ///< through the vertex's own medium, which may be taken for infinite
     Out,     ///< out of a body of the medium: Exit
-    Unknown, ///< only bounds in time hold
 };
 
 /// Up to N of a kind, of which only those that are there are copied: residuals are copied at every vertex.

@@ -167,7 +167,7 @@ class Guide {
         const float S = residual.C + residual.excess,
                     reach = std::min(residual.excess, std::max(residual.width, 1e-6f * S));
         const float own = std::log(std::max(throughput * reach, 1e-37f));
-        if (settings_.greens == Greens::None || residual.way == Way::Unknown) return own;
+        if (settings_.greens == Greens::None) return own;
         if (residual.way == Way::Out) return std::log(std::max(throughput, 1e-37f)) + logWayOut(residual);
         if (settings_.greens == Greens::Diffusion)
             return own + DiffusionGreensFunction<float>{meanSigmaA_, meanSigmaS_, medium_.g}.log(residual.C, S);

@@ -215,7 +215,7 @@ void PathVisitor<TimeResolved, Beside>::aimThroughWall(const PathState& path, co
     if (!(density > 0.0f)) return;
     const float reach = ahead.reach(), exits = probabilityFlightExits(medium, reach, path.channels);
     const float phase = medium.phase.eval(sealed_->before, drawn->direction);
-    const float share = transport::balance(tuning::RefractedGain * density, phase * exits);
+    const float share = transport::balance(density, phase * exits);
     aimed.visitor.aimedAt_ = drawn->emitter;
     aimed.steps.lobes = lobe::SpecularTransmission;
     if (aimed.arrive(ahead, {Flight::Event::Surface, reach,
@@ -228,7 +228,7 @@ float PathVisitor<TimeResolved, Beside>::refractedShare(int emitter) const {
     if (aimedAt_ >= 0) return emitter == aimedAt_ ? 1.0f : 0.0f;
     if (!wayOut_) return 1.0f;
     const float density = context_->refracted->density(wayOut_->from, wayOut_->direction, wayOut_->face, emitter);
-    return transport::balance(wayOut_->pdf, tuning::RefractedGain * density);
+    return transport::balance(wayOut_->pdf, density);
 }
 
 template <bool TimeResolved, bool Media>

@@ -75,8 +75,7 @@ void StepsToEmitter::lookAheadFrom(const PathState& path, const Vec3f& position)
 void StepsToEmitter::lookOutFrom(const PathState& path, const transport::Start& start) {
     if (hasLookedOut() || !guided_->waysOut) return;
     const PathTarget& target = target_;
-    const transport::Aim aim{target.vertex.position(), target.vertex.region().medium, target.vertex.margin(), nullptr,
-                             true};
+    const transport::Aim aim{target.vertex.position(), target.vertex.region().medium, target.vertex.margin()};
     lookOut(*guided_->waysOut, start, path.region, aim, context_.counters.rays);
 }
 

@@ -56,9 +56,6 @@ inline constexpr int SphereSteps = 3;
 /// Of candidates in time, at most, whose ways are worked out. (Milk behind glass 0.41 without this, 0.33; a box in a
 /// long gate 0.31, 0.15.) Bench: study bodies
 inline constexpr size_t RefractedCandidates = 8;
-/// Weight of a draw's density beside that of meeting the light by chance: candidates in time make it denser. Milk
-/// behind glass: 0.44 at 1, 0.41 at 4 and 16. Bench: study bodies
-inline constexpr float RefractedGain = 4.0f;
 /// Between a way to the boundary and its normal: a guard, which no way reaches at indices above 1.02 (milk: the same
 /// bits at 0.05 and 0.5).
 inline constexpr float LeastRefractedCosine = 0.2f;

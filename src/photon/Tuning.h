@@ -145,12 +145,12 @@ inline constexpr double TrailCost = 60.0, DensityCost = 650.0, PixelCost = 400.0
 /// 0.0302, 0.0300 and 0.0298 at 32, 256 and 2048. Bench: study cbox-128
 inline constexpr uint64_t PilotPaths = 256;
 
-/// How often the vertices of a pass try to connect, about, and those of a path: more in short passes. Bench: study
-/// cbox-128
-inline constexpr double ConnectionsPerPass = 1 << 17, LeastPerPath = 4.0, MostPerPath = 16.0;
+/// How often the vertices of a path try to connect, about; the pilot of plain and guided paths chooses how many times
+/// as often. Variance x CPU of points and beams, 12 scenes, over 4 to 16, more in short passes: 0.98 and 0.96.
+inline constexpr double ConnectionsPerPath = 4.0;
 /// A pass has paths for so many tries at least, for each point but no more in all; what arrives does not decide, or
 /// dark passes would be longer. Bench: study staircase-160
-inline constexpr uint64_t ConnectionsPerPoint = 8, MostLeast = 1 << 16;
+inline constexpr uint64_t ConnectionsPerPoint = 2, MostLeast = 1 << 14;
 
 /// Light from close by is spread over so many square roots of the area that a pixel covers. cbox, MSE x CPU: 0.086 at
 /// 0.25, 0.076 at 0.5 and at 1. Bench: study cbox-128

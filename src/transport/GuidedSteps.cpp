@@ -34,7 +34,7 @@ int GuidedSteps::copiesBy(const darts::Guide& guide) {
     int copies = 1;
     if (reachable_.way == darts::Way::Out)
         copies = splits_.copies(guide.splits(reachable_));
-    else if (reachable_.way == darts::Way::Through && first_)
+    else if (first_)
         copies = guide.copies(useful_, first_->usefulness, tuning::MostCopies / lineage_);
     lineage_ *= float(copies);
     return copies;

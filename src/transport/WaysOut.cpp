@@ -82,12 +82,11 @@ void WaysOut::look(const Start& start, const Region& region, const Aim& aim, dar
     const Vec3f direction = toAim / distance;
     Ray way = start.margin.leave(position, direction);
     way.tMax = aim.margin.before(direction, distance);
-    const auto boundary = findExit(way, region, aim, residual, rays);
+    const auto boundary = findExit(way, region, rays);
     if (boundary) leave(*boundary, start.position, region, aim, residual, rays);
 }
 
-std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region, const Aim& aim,
-                                                   darts::Residual& residual, uint64_t& rays) const {
+std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region, uint64_t& rays) const {
     std::optional<Boundary> hole; // the last one entered
     Region at = region;
     float before = 0.0f; // length of the way up to the ray's origin
@@ -96,10 +95,7 @@ std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region
         const auto hit = scene_.geometry->intersect(way);
         if (!hit) return at.medium != region.medium ? hole : std::nullopt;
         const Bsdf& bsdf = scene_.bsdfOf(*hit);
-        if (!passesStraight(bsdf) && !refracts(bsdf)) { // opaque
-            if (aim.medium != region.medium) residual.way = darts::Way::Unknown;
-            return std::nullopt;
-        }
+        if (!passesStraight(bsdf) && !refracts(bsdf)) return std::nullopt; // opaque
         const Region beyond = regionBehind(scene_, *hit, way.direction, at);
         const bool outward = way.direction.dot(hit->ng) >= 0.0f;
         const float index = outward ? relativeIndex(bsdf) : 1.0f / relativeIndex(bsdf);
@@ -126,10 +122,6 @@ void WaysOut::leave(const Boundary& boundary, const Vec3f& position, const Regio
     darts::Exit& exit = residual.exit;
     exit.connects = boundary.straight;
     exit.sealed = body.isSealed();
-    if (!exit.connects && aim.straightOnly) {
-        residual.way = darts::Way::Unknown;
-        return;
-    }
     exit.gate = residual.width;
     exit.inside = std::min(boundary.exit.distance, residual.C);
     const Vec3f direction = darts::to<Vec3f>(residual.axis);

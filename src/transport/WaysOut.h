@@ -22,7 +22,6 @@ struct Aim {
     SurfaceMargin margin{}; ///< of the surface it is on, if any
     /// Unit normals, outward, of the planes through the position inside which it looks, or shines; null: everywhere.
     const std::array<Vec3f, 4>* sides = nullptr;
-    bool straightOnly = false; ///< behind refracting walls nothing about it is of use
 };
 
 /// Where a flight starts.
@@ -41,7 +40,7 @@ class WaysOut {
     /// Null where all media may be taken for infinite: not asked for, or no scattering medium ends at a boundary that
     /// light passes.
     static std::unique_ptr<const WaysOut> make(const Scene& scene, const Policy& policy);
-    /// Says in the plan which models the media get; `straightOnly` as in Aim.
+    /// Says in the plan which models the media get; `straightOnly`: behind refracting walls there is none.
     static void plan(const Scene& scene, const Policy& policy, bool straightOnly, EffectPlan& plan);
 
     /// Chooses the model for what lies between the start of a flight through `region` and the aim: residual.way, and
@@ -64,9 +63,8 @@ class WaysOut {
         SurfaceMargin margin;
     };
     /// The boundary through which a straight way from inside the region leaves its body for the aim, past what lies
-    /// inside the body. None if the aim is inside; Way::Unknown if something opaque hides it.
-    [[nodiscard]] std::optional<Boundary> findExit(Ray way, const Region& region, const Aim& aim,
-                                                   darts::Residual& residual, uint64_t& rays) const;
+    /// inside the body. None if the aim is inside, or something opaque hides it.
+    [[nodiscard]] std::optional<Boundary> findExit(Ray way, const Region& region, uint64_t& rays) const;
     void leave(const Boundary& boundary, const Vec3f& position, const Region& region, const Aim& aim,
                darts::Residual& residual, uint64_t& rays) const;
     /// Goes on through index-matched boundaries: what diffuses beyond the exit counts as depth, the rest as free.

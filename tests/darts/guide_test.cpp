@@ -109,28 +109,26 @@ TEST(Guide, LengthsBeforeASurfaceEndOnIt) {
 
 /// Directions suit the median of the lengths that are drawn, whichever was drawn.
 TEST(Guide, LobesAreOfTheMedianLength) {
-    for (const Way way : {Way::Through, Way::Unknown})
-        for (const float g : {0.0f, 0.8f})
-            for (const Geometry& geometry : Geometries) {
-                const Medium medium{{0.2f, 0.2f, 0.2f}, {2.8f, 2.8f, 2.8f}, g};
-                const Settings settings = best(Mode::Photon, g);
-                const Guide guide(settings, medium);
-                Residual residual = Residual::of({0, 0, float(geometry.C)}, {geometry.low, geometry.high});
-                residual.way = way;
-                std::vector<float> lengths;
-                for (int i = 0; i < 2001; ++i)
-                    lengths.push_back(guide.sampleConnection(residual, (float(i) + 0.5f) / 2001.0f).excess);
-                std::nth_element(lengths.begin(), lengths.begin() + 1000, lengths.end());
-                const DirectionSampler directions(settings, medium);
-                const HenyeyGreenstein phase{{0.6f, 0, 0.8f}, g};
-                for (const float h : {1e-4f, 0.02f, 1.0f}) {
-                    const Vec3 direction = directionAbout(residual.axis, h, 0.3f);
-                    const auto drawn = guide.sampleConnection(residual, 0.9f);
-                    const float expected = directions.pdf(residual, lengths[1000], direction, phase);
-                    EXPECT_NEAR(guide.pdfDirection(residual, drawn, direction, phase) / expected, 1.0f, 0.02f)
-                        << int(way) << " " << g << " " << geometry.C << " " << geometry.low << " " << h;
-                }
+    for (const float g : {0.0f, 0.8f})
+        for (const Geometry& geometry : Geometries) {
+            const Medium medium{{0.2f, 0.2f, 0.2f}, {2.8f, 2.8f, 2.8f}, g};
+            const Settings settings = best(Mode::Photon, g);
+            const Guide guide(settings, medium);
+            const Residual residual = Residual::of({0, 0, float(geometry.C)}, {geometry.low, geometry.high});
+            std::vector<float> lengths;
+            for (int i = 0; i < 2001; ++i)
+                lengths.push_back(guide.sampleConnection(residual, (float(i) + 0.5f) / 2001.0f).excess);
+            std::nth_element(lengths.begin(), lengths.begin() + 1000, lengths.end());
+            const DirectionSampler directions(settings, medium);
+            const HenyeyGreenstein phase{{0.6f, 0, 0.8f}, g};
+            for (const float h : {1e-4f, 0.02f, 1.0f}) {
+                const Vec3 direction = directionAbout(residual.axis, h, 0.3f);
+                const auto drawn = guide.sampleConnection(residual, 0.9f);
+                const float expected = directions.pdf(residual, lengths[1000], direction, phase);
+                EXPECT_NEAR(guide.pdfDirection(residual, drawn, direction, phase) / expected, 1.0f, 0.02f)
+                    << g << " " << geometry.C << " " << geometry.low << " " << h;
             }
+        }
 }
 
 /// Random configurations of every size: floats against extended precision.

@@ -4,6 +4,7 @@
 
 #include "support/PathsAndPhotons.h"
 #include "support/Render.h"
+#include "support/SeedShift.h"
 
 #include <gtest/gtest.h>
 
@@ -238,6 +239,7 @@ TEST(TimeWindows, FramesAreTheSameAtAnyShare) {
 class Balanced : public testing::TestWithParam<BalancedCase> {};
 
 TEST_P(Balanced, MeansAreTheSameAtAnyShare) {
+    const test::OtherSeeds seeds{{"/Response", 1}};
     const auto render = [&](const std::string& darts, uint32_t samples) {
         return test::renderPaths(GetParam().scene, {{"integrator.darts=" + darts}, 32, samples, 11});
     };

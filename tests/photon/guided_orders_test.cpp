@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// Directions are drawn before anything knows of points or beams.
 INSTANTIATE_TEST_SUITE_P(Switches, GuidedOrders,
                          testing::Values(OrderCase{A2, GuidingOnly, false, 150}, OrderCase{A2, EllipticalOnly},
-                                         OrderCase{A2, Phase}, OrderCase{B2, Eda, false, 60}, OrderCase{A2, Ris},
+                                         OrderCase{A2, Phase}, OrderCase{B2, Eda, false, 120}, OrderCase{A2, Ris},
                                          OrderCase{B2, Connection, false, 100}, OrderCase{C2, IndirectView},
                                          OrderCase{A2, PublishedIndirectView}, OrderCase{A2, Eda, true}),
                          guidedOrderName);

@@ -51,7 +51,7 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
     };
     const std::string json = room(RoomGate);
     const auto paths = renderPaths(json, {change, 16, 128});
-    const auto connected = renderPhotons(json, {with(GuidedAlone), 24, 1});
+    const auto connected = renderPhotons(json, {with(GuidedAlone), 32, 1});
     EXPECT_GT(connected->statistics.counter("surface connections"), 10000u);
     for (int frame = 0; frame < 2; ++frame) {
         SCOPED_TRACE(frame);

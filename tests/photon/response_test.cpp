@@ -122,7 +122,7 @@ TEST(PhotonResponseOfBodies, ConnectionsByResponseAndByLengthAgree) {
         constexpr int Seeds = 8;
         double sum = 0.0, squares = 0.0;
         for (uint64_t seed = 1; seed <= Seeds; ++seed) {
-            const double value = test::renderPhotons(json, {{"integrator.darts=" + darts}, 7, 1, seed})->mean();
+            const double value = test::renderPhotons(json, {{"integrator.darts=" + darts}, 12, 1, seed})->mean();
             sum += value / Seeds;
             squares += value * value / Seeds;
         }

@@ -101,7 +101,7 @@ def bodies_of_fog():
     yield Scene("hole-in-fog", "volumes_balls", [medium("fog", 2.0, 0.05)], [body("cube", at(0, 0, 0, 1.6, 20), "fog"),
                 body("sphere", at(0, 0, 0.2, 0.4), None, "fog"), bulb((0.1, 0.1, 0.2), 0.15)], view(), gate(4.6, 6.0), {"bodies": False})
     yield Scene("camera-in-fog", "balls", [FOG], [body("mesh", at(0, 0, 0, (1.5, 1.4, 1.6), 30), "fog", file="ball.obj"),
-                bulb((0.9, 0.9, -2.2))], view((0, 0, 1.2), inside="fog"), gate(3.0, 5.0), {"bounded": False, "focus": 0.3})
+                bulb((0.9, 0.9, -2.2))], view((0, 0, 1.2), inside="fog"), gate(3.0, 5.0), {"bounded": False})
 
 
 def refraction():

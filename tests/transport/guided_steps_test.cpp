@@ -185,9 +185,7 @@ TEST(GuidedSteps, RouletteStartsAnewWithAnotherModel) {
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f) << "vertices of one model compare";
     EXPECT_EQ(step.survival(guide, 1, 0.25f), 1.0f) << "another medium";
     EXPECT_NEAR(step.survival(guide, 1, 0.0625f), 0.5f, 1e-5f);
-    darts::Residual unknown = ahead();
-    unknown.way = darts::Way::Unknown;
-    step.setTimeBudget(unknown);
+    step.setTimeBudget(test::outOf(0.5, 3.0, 43.5, 1.0));
     EXPECT_EQ(step.survival(guide, 1, 1e-6f), 1.0f) << "another way";
 }
 

@@ -71,14 +71,12 @@ TEST(WaysOut, EveryFaceThatTheTargetSeesFromNearby) {
 
 TEST(WaysOut, RefractionHidesTheWayButNotTheDepth) {
     View view(sceneWith(Glass));
-    Aim aim{{0.0f, 0.0f, 8.0f}};
-    darts::Residual residual = view.look({0.0f, 0.0f, 1.5f}, aim);
+    const Aim aim{{0.0f, 0.0f, 8.0f}};
+    const darts::Residual residual = view.look({0.0f, 0.0f, 1.5f}, aim);
     EXPECT_EQ(residual.way, darts::Way::Out);
     EXPECT_FALSE(residual.exit.connects);
     EXPECT_TRUE(residual.exit.sealed);
     EXPECT_GT(residual.exit.mismatch, 2.5f);
-    aim.straightOnly = true;
-    EXPECT_EQ(view.look({0.0f, 0.0f, 1.5f}, aim).way, darts::Way::Unknown);
     EXPECT_TRUE(isSealed(*view.loaded.scene));
     EXPECT_FALSE(isSealed(*View(sceneWith(Forward)).loaded.scene));
 }

@@ -78,7 +78,7 @@ void reserveStores(PhotonMaps& maps, const std::vector<TracedPaths>& wave, const
 /// Light paths that surfaces are owed, however soon the volume's store is full.
 uint64_t leastPathsFor(const SurfaceConnections& connections) {
     return std::min(tuning::ConnectionsPerPoint * connections.points(), tuning::MostLeast) /
-           uint64_t(tuning::MostPerPath);
+           uint64_t(tuning::ConnectionsPerPath);
 }
 
 void report(const TracedPaths& traced, Statistics& statistics) {

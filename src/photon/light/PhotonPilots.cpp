@@ -45,20 +45,13 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
         tracePath(aim, context, sampler, &connections, trail, pilot);
     });
     std::vector<float> expectedLight;
-    uint64_t deposits = 0;
     for (const TracedPaths& pilot : pilots) {
         expectedLight.insert(expectedLight.end(), pilot.deposits.expectedLight.begin(),
                              pilot.deposits.expectedLight.end());
-        deposits += pilot.deposits.volumeRecords();
         statistics.add("rays", pilot.rays());
     }
-    // Paths until the store of photons or beams is full.
-    const double perDeposit = double(paths) / double(std::max<uint64_t>(deposits, 1));
-    const double expected = std::min(double(settings.volumePhotonCount) * perDeposit, double(settings.photonCount));
-    const double perPath =
-        std::clamp(tuning::ConnectionsPerPass / std::max(expected, 1.0), tuning::LeastPerPath, tuning::MostPerPath);
     connections.setLightPerConnection(
-        lightPerConnection(std::move(expectedLight), connectionEffort_ * perPath * double(paths)));
+        lightPerConnection(std::move(expectedLight), connectionEffort_ * tuning::ConnectionsPerPath * double(paths)));
 }
 
 std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,

@@ -53,7 +53,7 @@ std::pair<double, double> farMean(int frame, const Render& render) {
 class FarSlices : public testing::TestWithParam<FarCase> {};
 
 TEST_P(FarSlices, BringWhatPathsBring) {
-    const test::OtherSeeds seeds{{"PlainFilm", 2}};
+    const test::OtherSeeds seeds{{"PlainFilm", 2}, {"DenseFilm", 1}};
     const FarCase& c = GetParam();
     const std::string json = ballOfFog(c);
     const test::Overrides slices{std::string("integrator.volume_photon_type=") + c.type,
