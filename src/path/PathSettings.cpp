@@ -61,8 +61,8 @@ bool readRussianRoulette(const ObjectReader& block, bool timeResolved) {
 
 void acceptPhotonSettings(const ObjectReader& block) {
     block.accept({"photon_count", "volume_photon_count", "gather_photon_count", "gather_radius", "volume_gather_radius",
-                  "volume_photon_type", "volume_photon_length", "fixed_volume_radius", "alpha", "volume_alpha",
-                  "use_grid", "grid_memory", "use_frustum_grid", "exclude_non_mis", "strict_time_width",
+                  "volume_photon_type", "volume_photon_length", "fixed_volume_radius", "boundary_kernels", "alpha",
+                  "volume_alpha", "use_grid", "grid_memory", "use_frustum_grid", "exclude_non_mis", "strict_time_width",
                   "frustum_culling", "reuse_path_dir"});
 }
 

@@ -10,6 +10,8 @@
 
 #include "tungsten/render/SceneUses.h"
 
+#include <cstdio>
+
 namespace tungsten::photon {
 
 void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan) const {
@@ -23,6 +25,32 @@ void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan
     if (volume.on && !settings.radiusReason.empty())
         plan.describe("default radius", true, settings.radiusReason, {"integrator.volume_gather_radius"});
     describeSplatting(plan);
+}
+
+void PhotonPlan::describeKernels(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+    const bool points = std::holds_alternative<Points>(settings.primitive),
+               beams = std::holds_alternative<Beams>(settings.primitive), any = volume.on && (points || beams);
+    const bool surfaces = !scene.primitives.empty();
+    plan.describe("kernels end at surfaces", any && surfaces && settings.boundaryKernels,
+                  !volume.on                 ? volume.reason
+                  : !any                     ? "neither points nor beams"
+                  : !surfaces                ? "there are none"
+                  : settings.boundaryKernels ? "what they would spread beyond, where nothing gathers it, stays before"
+                                             : "boundary_kernels is off: they reach beyond, where nothing gathers them",
+                  {"integrator.boundary_kernels"});
+    if (!any || (points && !settings.fixedVolumeRadius)) return;
+    float densest = 0.0f;
+    for (const Medium& medium : scene.media)
+        if (medium.scatters() && medium.isHomogeneous()) densest = std::max(densest, maxComponent(medium.sigmaT()));
+    if (!(densest > 0.0f)) return;
+    // Light that falls away as exp(-x / mean free path): second derivatives are its square's inverse.
+    const float freePaths = settings.volumeRadius * densest, blur = sqr(freePaths) / (points ? 16.0f : 6.0f);
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "radius %.3g, %.3g mean free paths of the densest medium: light that changes over one is off by some %.2g %%",
+        double(settings.volumeRadius), double(freePaths), 100.0 * double(blur));
+    plan.describe("kernel blur", true, text, {"integrator.volume_gather_radius"});
 }
 
 void PhotonPlan::describeSplatting(EffectPlan& plan) const {
@@ -95,6 +123,7 @@ void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, Ef
     transport::countSteps(plan);
     plan.sampling = summary(scene, settings, plan);
     describeVolume(settings, plan);
+    describeKernels(scene, settings, plan);
     plan.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
     plan.describe("surface photons", surfacePhotons.on, surfacePhotons.reason, lobeUses(scene, lobe::Smooth).causes(),
                   {"stored surface photons", "photons gathered on surfaces"});

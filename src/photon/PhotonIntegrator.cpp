@@ -116,8 +116,12 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;
         Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass), pass.watch);
-        structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->culling(),
-                                                                    std::move(store), std::move(radii), rays);
+        const auto endKernels = [this, random = Sampler(pass.seed, RandomStream::Folded, pass.index, 2),
+                                 watch = pass.watch](Selection<typename Primitive::Record>& seen) {
+            if (settings_.boundaryKernels) Primitive::endAtSurfaces(*scene_, random, seen.records, seen.radii, watch);
+        };
+        structures.volume.template emplace<VolumeGather<Primitive>>(
+            *scene_, structures.sensor, photonPass_->culling(), std::move(store), std::move(radii), endKernels, rays);
     };
     std::visit(build, settings_.primitive);
 }

@@ -58,6 +58,7 @@ struct PhotonPlan {
                                           const EffectPlan& facts) const;
     void describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
     void describeVolume(const PhotonSettings& settings, EffectPlan& plan) const;
+    void describeKernels(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
     void describeSplatting(EffectPlan& plan) const;
     void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
     void chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);

@@ -113,6 +113,11 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
     settings.volumeAlpha = float(
         block.number("volume_alpha", double(settings.alpha), {"none", "the same in media", "alpha"}, Range::unit()));
     settings.policy = transport::readPolicy(block);
+    settings.boundaryKernels = block.flag(
+        "boundary_kernels", !settings.policy.sampling.published,
+        {"none",
+         "media: kernels of points and beams end at surfaces; false: they reach beyond, where nothing gathers them",
+         "false with published"});
     // Ways of building the published structures; the gathers here need no such choice.
     block.accept(
         {"use_grid", "grid_memory", "use_frustum_grid", "strict_time_width", "frustum_culling", "reuse_path_dir"});

@@ -115,8 +115,12 @@ FAULTS = [
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
     ("src/photon/surface/SharedLight.cpp", "scale_ / double(among)", "scale_ * double(among)",
      [("photon_tests", "SharedLight.KeepWhatIsTheSameEverywhere")]),
-    ("src/photon/primitives/beams/BeamGather.cpp", "(2.0f * query.radius * approach->sine)", "(2.0f * query.radius)",
+    ("src/photon/primitives/beams/BeamGather.cpp", "(ribbon.width() * approach->sine)", "ribbon.width()",
      [("photon_tests", "BeamGather.EvaluatesEveryBeamOnTheRayOnce")]),
+    ("src/photon/primitives/points/FoldedKernels.cpp", "edge.normal * (2.0f * edge.reach)", "edge.normal * edge.reach",
+     [("photon_tests", "BoundaryKernels.PointsLoseNoLight/*")]),
+    ("src/photon/primitives/beams/RibbonRange.h", "edge.reach - along * edge.normal.dot(direction)", "edge.reach",
+     [("photon_tests", "BoundaryKernels.BeamsLoseNoLight/*")]),
     ("src/photon/primitives/beams/BeamGather.cpp", "medium.transmittance(s + t)", "medium.transmittance(s)",
      [("photon_tests", "BeamGather.EvaluatesEveryBeamOnTheRayOnce")]),
     ("src/photon/primitives/points/PointGather.cpp", "double(offset.length()) * segment.inverseSpeed", "double(along) * segment.inverseSpeed",
@@ -403,7 +407,7 @@ FAULTS = [
      [("photon_tests", "BeamGather.OnlyItsMediumItsOrdersAndItsFrames")]),  # beams: max_bounces shows one order more
     ("src/photon/primitives/beams/BeamSplat.cpp", "r.time = beam.time + toFoot / speed_;", "r.time = beam.time + toFoot * speed_;",
      [("photon_tests", "Views/Splat.AddsTheBeamsThatGatheringFinds/Frames")]),  # splatted beams arrive at wrong times where light's speed is not 1
-    ("src/photon/primitives/beams/BeamSplat.cpp", "(scale_ / (2.0f * radius_))", "(scale_ / radius_)",
+    ("src/photon/primitives/beams/BeamSplat.cpp", "(scale_ / (2.0f * radius))", "(scale_ / radius)",
      [("photon_tests", "Views/Splat.AddsTheBeamsThatGatheringFinds/Frames")]),  # splatted beams twice too bright
     ("src/photon/primitives/beams/PhotonBeam.cpp", "beam.tEnd = std::min(beam.tEnd, float(part.end));", "beam.tEnd = float(part.end);",
      [("photon_tests", "BeamMap.PartsOfBeamsMakeTheSameImageAsWholeOnes")]),  # beams seen on straight rays go on behind walls

@@ -47,7 +47,7 @@ TEST(ClosestApproach, MatchesTheVerifiedVector) {
     EXPECT_NEAR(found->alongBeam, 1.3598161640, 2e-6);
     EXPECT_NEAR(found->alongCamera, 2.41, 2e-6);
     EXPECT_NEAR(found->sine, 0.9534625892, 2e-6);
-    EXPECT_NEAR(found->distance, 0.0948683298, 2e-6);
+    EXPECT_NEAR(found->distance(), 0.0948683298, 2e-6);
 }
 
 TEST(BeamGather, EvaluatesEveryBeamOnTheRayOnce) {

@@ -64,7 +64,8 @@ std::string blockScene(double index) {
 }
 
 /// What is about to leave is of use however many tries it takes. With the boundary extrapolated instead, it ended:
-/// points had an error of 590 % of a pixel (11 now), beams of 60 (16) at 39 % of the light.
+/// points had an error of 590 % of a pixel (11 now), beams of 60 (24, half as wide at surfaces) at
+/// 39 % of the light.
 TEST(PhotonMapsOfBodies, ShowLightBehindWallsThatReflectNearlyAll) {
     const auto error = [](const test::Rendered& rendered) { // of a pixel
         double squares = 0.0;
@@ -81,7 +82,7 @@ TEST(PhotonMapsOfBodies, ShowLightBehindWallsThatReflectNearlyAll) {
         // Pixels of a pass share photons: their errors add up at worst.
         const double both = std::hypot(error(*paths) / 4.0, error(*best));
         EXPECT_NEAR(best->mean(), paths->mean(), 4.5 * both + 0.04 * paths->mean()) << type; // and the kernel
-        EXPECT_LT(error(*best), 0.2 * paths->mean()) << type;
+        EXPECT_LT(error(*best), 0.3 * paths->mean()) << type;
     }
 }
 

@@ -51,7 +51,7 @@ TEST(KernelsAccuracy, ClosestApproach) {
         const Exact squared = product(normal, normal), apart = sqrt(product(offset, offset));
         sine.add(double(found->sine), sqrt(squared));
         const Exact exact = abs(product(offset, normal)) / sqrt(squared);
-        distance.add(double(found->distance), exact, apart);
+        distance.add(double(found->distance()), exact, apart);
         const Exact alongB = -product(across(offset, c), normal) / squared,
                     alongC = -product(across(offset, b), normal) / squared;
         alongBeam.add(double(found->alongBeam), alongB, abs(alongB) + apart);

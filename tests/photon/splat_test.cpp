@@ -22,7 +22,19 @@ struct SplatCase {
     bool steady, unwarped, radiusEach;
     size_t pieces;
     int onlyMedium = -1; ///< of all rays, if any
+    bool edges = false;  ///< kernels end at planes near them
 };
+
+/// Of a kernel that ends at one plane or between two; the planes pass the record within its radius.
+KernelEdges randomEdges(Sampler& sampler, float radius, const Vec3f& direction) {
+    const Vec3f normal = warp::squareToSphere(sampler.next2D());
+    const float height = radius * sampler.next1D();
+    // As seen from the record's position; a beam's plane is as high at the beam's base, and falls along it.
+    KernelEdges edges{{normal, height + std::max(4.0f * normal.dot(direction), 0.0f)}, {}};
+    if (sampler.next1D() < 0.5f)
+        edges.opposite = {-normal, radius * sampler.next1D() + std::max(-4.0f * normal.dot(direction), 0.0f)};
+    return edges;
+}
 
 /// Grey, coloured, Rayleigh and isotropic fog; a slanted camera.
 Scene foggyScene(const SplatCase& c) {
@@ -190,12 +202,17 @@ TEST_P(Splat, AddsWhatGatheringFinds) {
     std::vector<float> radii{0.15f};
     if (c.radiusEach)
         for (size_t i = 1; i < store.records.size(); ++i) radii.push_back(0.02f + 0.3f * float(i % 7) / 7.0f);
+    std::vector<KernelEdges> edges;
+    Sampler sampler(6, RandomStream::Test, 0, 0);
+    for (size_t i = 0; c.edges && i < store.records.size(); ++i)
+        edges.push_back(i % 3 == 0 ? KernelEdges{} : randomEdges(sampler, 0.15f, Vec3f(0.0f)));
     const TimeGate gate = gateOf(c);
     Film splatted(record.width, record.height, gate.frames), gathered = splatted;
     splatted.beginPass();
     gathered.beginPass();
-    const uint64_t count = splatPhotons(scene, gate, {&record}, store.records, radii, 3.0, splatted);
-    const uint64_t expected = gatherRecord(PointGather(scene, gate, store.records, radii), gate, record, gathered);
+    const Radii kernels(radii, edges);
+    const uint64_t count = splatPhotons(scene, gate, {&record}, store.records, kernels, 3.0, splatted);
+    const uint64_t expected = gatherRecord(PointGather(scene, gate, store.records, kernels), gate, record, gathered);
     // At the kernel's edge rounding decides.
     EXPECT_NEAR(double(count), double(expected), 1e-4 * double(expected) + 2.0);
     EXPECT_GT(expected, 1000u);
@@ -212,12 +229,15 @@ TEST_P(Splat, AddsTheBeamsThatGatheringFinds) {
     Film splatted(record.width, record.height, gate.frames), gathered = splatted;
     uint64_t total = 0;
     int lit = 0, compared = 0, different = 0;
+    Sampler sampler(6, RandomStream::Test, 0, 0);
     for (const PhotonBeam& beam : inMediumOf(c, beamsAround(scene.camera.position(), 400))) {
         splatted.beginPass();
         gathered.beginPass();
-        const uint64_t count = splatBeams(scene, gate, {&record}, {beam}, 0.1f, 3.0, splatted);
+        Radii kernel = 0.1f;
+        if (c.edges) kernel = {{0.1f}, {randomEdges(sampler, 0.1f, beam.direction)}};
+        const uint64_t count = splatBeams(scene, gate, {&record}, {beam}, kernel, 3.0, splatted);
         const std::vector<PhotonBeam> single{beam};
-        const uint64_t expected = gatherRecord(BeamGather(scene, gate, single, 0.1f), gate, record, gathered);
+        const uint64_t expected = gatherRecord(BeamGather(scene, gate, single, kernel), gate, record, gathered);
         EXPECT_NEAR(double(count), double(expected), 2.0);
         total += expected;
         if (count != expected)
@@ -258,7 +278,9 @@ INSTANTIATE_TEST_SUITE_P(Views, Splat,
                                          SplatCase{"IsotropicFrames", {37, 21}, 60.0f, false, false, false, 1, 3},
                                          SplatCase{"IsotropicPieces", {37, 21}, 60.0f, true, false, true, 2, 3},
                                          SplatCase{"OnlyColoured", {37, 21}, 60.0f, true, false, false, 2, 1},
-                                         SplatCase{"OnlyRayleigh", {37, 21}, 60.0f, false, false, true, 1, 2}),
+                                         SplatCase{"OnlyRayleigh", {37, 21}, 60.0f, false, false, true, 1, 2},
+                                         SplatCase{"Edges", {37, 21}, 60.0f, true, false, true, 2, -1, true},
+                                         SplatCase{"EdgesInFrames", {37, 21}, 60.0f, false, false, false, 1, 3, true}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// Pixels whose fog begins at slightly different distances see one photon, to rounding: just within the cubic's range.

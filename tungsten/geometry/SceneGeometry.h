@@ -62,6 +62,8 @@ class SceneGeometry {
     [[nodiscard]] std::optional<SurfaceHit> intersect(const Ray& ray) const;
     /// Any hit in (tMin, tMax).
     [[nodiscard]] bool occluded(const Ray& ray) const;
+    /// From `position` to the nearest point of any surface, if one is nearer than `radius`.
+    [[nodiscard]] std::optional<Vec3d> toNearest(const Vec3f& position, float radius) const;
     /// At a point that a ray has met; any two across the normal where the surface has no coordinates.
     [[nodiscard]] Tangents tangents(const SurfaceHit& hit) const;
 

@@ -1,20 +1,24 @@
 #pragma once
-// Kernel radii of a primitive's records.
+// Kernel radii of a primitive's records, and where surfaces end their kernels.
 
+#include "photon/primitives/KernelEdge.h"
 #include "photon/store/FoldedSelection.h"
 
 namespace tungsten::photon {
 
-/// One radius per record, or one for all.
+/// One radius per record, or one for all; edges per record, or none at all.
 class Radii {
   public:
     Radii() = default;
     Radii(float one) : radii_{one} {}
-    Radii(std::vector<float> radii) : radii_(std::move(radii)) {}
+    Radii(std::vector<float> radii, std::vector<KernelEdges> edges = {})
+        : radii_(std::move(radii)), edges_(std::move(edges)) {}
 
     [[nodiscard]] float operator[](size_t record) const { return radii_[single() ? 0 : record]; }
     [[nodiscard]] bool single() const { return radii_.size() == 1; }
     [[nodiscard]] const std::vector<float>& values() const { return radii_; }
+    [[nodiscard]] KernelEdges edges(size_t record) const { return edges_.empty() ? KernelEdges{} : edges_[record]; }
+    [[nodiscard]] const std::vector<KernelEdges>& edges() const { return edges_; }
 
     /// All of them times `factor`.
     void scale(float factor) {
@@ -22,20 +26,29 @@ class Radii {
     }
     /// Of the records that chooseEvenly chooses.
     [[nodiscard]] Radii chosen(double share, float u) const {
-        if (single()) return radii_.front();
         Radii part;
-        chooseEvenly(radii_.size(), share, u, [&](size_t i) { part.radii_.push_back(radii_[i]); });
+        if (single()) part.radii_ = radii_;
+        const size_t records = single() ? edges_.size() : radii_.size();
+        chooseEvenly(records, share, u, [&](size_t i) { part.append(*this, i); });
         return part;
     }
     /// Of the records dealt into `count` hands.
     [[nodiscard]] std::vector<Radii> dealt(size_t count) const {
-        if (single()) return std::vector<Radii>(count, *this);
-        const auto hands = photon::dealt(radii_, count);
-        return {hands.begin(), hands.end()};
+        std::vector<Radii> hands(count);
+        const auto radii = single() ? std::vector<std::vector<float>>(count, radii_) : photon::dealt(radii_, count);
+        const auto edges = photon::dealt(edges_, count);
+        for (size_t k = 0; k < count; ++k) hands[k] = {radii[k], edges[k]};
+        return hands;
+    }
+    /// Adds what `other` has for a record; one radius for all stays one.
+    void append(const Radii& other, size_t record) {
+        if (!other.single()) radii_.push_back(other.radii_[record]);
+        if (!other.edges_.empty()) edges_.push_back(other.edges_[record]);
     }
 
   private:
     std::vector<float> radii_;
+    std::vector<KernelEdges> edges_;
 };
 
 /// Some of a store's records.

@@ -9,6 +9,7 @@
 
 #include "tungsten/film/Film.h"
 
+#include <functional>
 #include <optional>
 
 namespace tungsten::photon {
@@ -26,13 +27,18 @@ class VolumeGather {
   public:
     using Record = typename Primitive::Record;
     static constexpr const char* GatheredCounter = Primitive::Gathered;
+    /// Ends the kernels of records that surfaces are near to.
+    using EndKernels = std::function<void(Selection<Record>&)>;
 
-    /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
+    /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box. `endKernels` is asked for what
+    /// rays are going to see, no more.
     VolumeGather(const Scene& scene, const transport::Sensor& sensor, const ArrivalCulling& culling,
-                 Store<Record> store, Radii radii, const SensorRays& rays)
-        : scene_(scene), sensor_(sensor), culling_(culling),
+                 Store<Record> store, Radii radii, EndKernels endKernels, const SensorRays& rays)
+        : scene_(scene), sensor_(sensor), culling_(culling), endKernels_(std::move(endKernels)),
           scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
         if (rays.splatted && rays.folded) selectFolded(rays);
+        allEnd_ = !rays.splatted || !selectsStraight();
+        if (allEnd_) endKernels_(all_);
         buildGathers(rays);
     }
 
@@ -69,10 +75,15 @@ class VolumeGather {
   private:
     using Gather = typename Primitive::Gather;
 
+    /// Whether straight rays see less than all.
+    [[nodiscard]] bool selectsStraight() const { return !culling_.directView() && culling_.straightTimesKnown(); }
     /// What straight rays can see, chosen when there are any.
     const Selection<Record>& straight() {
-        if (culling_.directView() || !culling_.straightTimesKnown()) return all_;
-        if (!straight_) straight_ = Primitive::straight(scene_, culling_, all_.records, all_.radii);
+        if (!selectsStraight()) return all_;
+        if (!straight_) {
+            straight_ = Primitive::straight(scene_, culling_, all_.records, all_.radii);
+            if (straight_ && !allEnd_) endKernels_(*straight_);
+        }
         return straight_ ? *straight_ : all_;
     }
     [[nodiscard]] std::unique_ptr<Gather> gatherOf(const Selection<Record>& selection, bool fewRays) const {
@@ -81,6 +92,7 @@ class VolumeGather {
     void selectFolded(const SensorRays& rays) {
         const double share = Primitive::foldedShare(all_.records, all_.radii);
         folded_ = {chosenEvenly(all_.records, share, rays.uFolded), all_.radii.chosen(share, rays.uFolded)};
+        endKernels_(folded_);
         auto hands = dealt(folded_.records, rays.parts);
         const auto radii = folded_.radii.dealt(rays.parts);
         dealt_.resize(rays.parts);
@@ -100,8 +112,10 @@ class VolumeGather {
     const Scene& scene_;
     transport::Sensor sensor_;
     const ArrivalCulling& culling_;
+    EndKernels endKernels_;
     float scale_;
     Selection<Record> all_;
+    bool allEnd_ = false;                       ///< kernels of all have been ended
     std::optional<Selection<Record>> straight_; ///< none: all, or not chosen yet
     Selection<Record> folded_;
     std::vector<Selection<Record>> dealt_;

@@ -1,6 +1,7 @@
 #include "photon/primitives/beams/BeamGather.h"
 
 #include "photon/primitives/SegmentQuery.h"
+#include "photon/primitives/beams/RibbonRange.h"
 #include "transport/BounceLimits.h"
 
 namespace tungsten::photon {
@@ -16,7 +17,7 @@ struct BeamQuery {
     const EmbreeBeams::Piece* pieces;
     const CameraSegment* segment;
     FrameSums* sums;
-    float radius;
+    const Radii* radii;
     bool timed; ///< arrivals count, with the camera's time
     uint64_t gathered;
 };
@@ -36,11 +37,18 @@ void evaluate(BeamQuery& query, uint32_t index) {
     const CameraSegment& segment = *query.segment;
     if (beam.medium != segment.medium) return;
     if (query.timed && !mayArrive(query.sensor->gate, segment, beam, piece.end)) return;
+    const float radius = (*query.radii)[piece.beam];
     const auto approach = closestApproach(beam.base, beam.direction, segment.origin, segment.direction);
-    if (!approach || !(approach->distance < query.radius)) return;
+    if (!approach || !(approach->distance() < radius)) return;
     const float s = approach->alongBeam, t = approach->alongCamera;
     // Only the piece that holds the closest point counts, so that a beam counts once.
     if (!(s >= piece.start) || s >= piece.end || !(t > 0.0f) || t > segment.length) return;
+    RibbonRange ribbon{-radius, radius};
+    if (!query.radii->edges().empty()) {
+        const Vec3f across = beam.direction.cross(segment.direction) / approach->sine;
+        ribbon = RibbonRange::of(query.radii->edges(piece.beam), s, beam.direction, across, radius);
+        if (!ribbon.holds(approach->offset)) return;
+    }
     const TransportSettings& settings = query.scene->transport;
     const int interactions = segment.interactions + beam.bounce + 1;
     if (!transport::BounceLimits(settings).renders(interactions)) return;
@@ -48,7 +56,7 @@ void evaluate(BeamQuery& query, uint32_t index) {
     float weight = 1.0f;
     if (!query.sensor->gate.steadyState) {
         // Through the beam's point, as for photon points: then ArrivalCulling's parts of beams are exact.
-        const float toCamera = settings.cameraUnwarped ? 0.0f : std::sqrt(sqr(t) + sqr(approach->distance));
+        const float toCamera = settings.cameraUnwarped ? 0.0f : std::sqrt(sqr(t) + sqr(approach->distance()));
         const double cameraTime = settings.cameraUnwarped ? 0.0 : segment.time;
         const double arrival = beam.time + cameraTime + (double(s) + double(toCamera)) * segment.inverseSpeed;
         frame = query.sensor->gate.frameOf(arrival);
@@ -56,7 +64,7 @@ void evaluate(BeamQuery& query, uint32_t index) {
         weight = query.sensor->weight(arrival);
     }
     const Medium& medium = query.scene->media[size_t(segment.medium)];
-    weight *= medium.phase.eval(beam.direction, -segment.direction) / (2.0f * query.radius * approach->sine);
+    weight *= medium.phase.eval(beam.direction, -segment.direction) / (ribbon.width() * approach->sine);
     const Rgb value = beam.power * medium.sigmaS() * medium.transmittance(s + t) * weight;
     (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
     ++query.gathered;
@@ -66,14 +74,14 @@ void evaluate(BeamQuery& query, uint32_t index) {
 
 BeamGather::BeamGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<PhotonBeam>& beams,
                        const Radii& radius, bool fewRays)
-    : scene_(scene), sensor_(sensor), beams_(beams), radius_(radius[0]), structure_(beams, radius_, fewRays) {}
+    : scene_(scene), sensor_(sensor), beams_(beams), radii_(radius), structure_(beams, radius, fewRays) {}
 
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (beams_.empty()) return 0;
     const bool timed = !sensor_.gate.steadyState && !scene_.transport.cameraUnwarped;
     BeamQuery query{{},       &scene_, &sensor_, beams_.data(), structure_.pieces().data(),
-                    &segment, &sums,   radius_,  timed,         0};
-    queryAbout<evaluate>(structure_.scene(), segment, radius_, query);
+                    &segment, &sums,   &radii_,  timed,         0};
+    queryAbout<evaluate>(structure_.scene(), segment, structure_.largestRadius(), query);
     return query.gathered;
 }
 

@@ -13,8 +13,10 @@ namespace tungsten::photon {
 struct Approach {
     float alongBeam;   ///< s, from the beam's base
     float alongCamera; ///< t_c, from the camera segment's origin
-    float distance;
-    float sine; ///< of the angle between the lines
+    float offset;      ///< of the camera's point from the beam's, along beam x camera
+    float sine;        ///< of the angle between the lines
+
+    [[nodiscard]] float distance() const { return std::abs(offset); }
 };
 namespace detail {
 
@@ -29,7 +31,7 @@ std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& directio
     if (!(squaredSine > LeastSine * LeastSine)) return std::nullopt;
     const Real sine = std::sqrt(squaredSine);
     return Approach{float(offset.cross(ray).dot(normal) / -squaredSine),
-                    float(offset.cross(beam).dot(normal) / -squaredSine), float(std::abs(offset.dot(normal)) / sine),
+                    float(offset.cross(beam).dot(normal) / -squaredSine), float(-offset.dot(normal) / sine),
                     float(sine)};
 }
 
@@ -60,7 +62,7 @@ class BeamGather {
     const Scene& scene_;
     transport::Sensor sensor_;
     const std::vector<PhotonBeam>& beams_;
-    float radius_;
+    Radii radii_;
     EmbreeBeams structure_;
 };
 

@@ -12,17 +12,26 @@ namespace {
 
 constexpr float LeastSine = 1e-4f;
 
+/// A surface's plane as a ribbon meets it (RibbonRange).
+struct RibbonEdge {
+    float height = Infinity; ///< of the foot before the plane
+    float slope = 0.0f;      ///< of the beam towards it
+    Vec3f tilt{0.0f};        ///< normal x direction: its product with a ray is as that of the normal and beam x ray
+};
+
 /// A beam as the camera sees it. Its line comes closest to the camera at `foot`, relative to the camera; distances
 /// along the beam count from there, which leaves no difference of large numbers (closestApproach).
 struct Ribbon {
     Vec3f direction, foot;
     Vec3f normal; ///< foot x direction: of the plane through camera and beam, as long as foot
-    float low, high, fromBase;
+    float low, high, fromBase, radius;
     float shortest, longest; ///< from the foot over the beam to the camera, inside the gate
     double time;             ///< at the foot, where a flight from the base would pass or would have passed
     Rgb power;               ///< with the kernel's constant and the flight's transmittance up to the foot
     ImageHalfPlane sides[2];
     bool surrounds; ///< the camera lies inside the beam's cylinder: there are no sides
+    std::array<RibbonEdge, 2> edges;
+    bool ends; ///< whether there are any
     float g, sigmaT;
     bool simple; ///< grey, isotropic or Henyey-Greenstein: a register at a time
     int medium, bounce;
@@ -31,14 +40,14 @@ struct Ribbon {
 
 class BeamSplatter {
   public:
-    BeamSplatter(const Scene& scene, const transport::Sensor& sensor, float radius, double scale, Film& film)
-        : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), footprint_(scene.camera), radius_(radius),
+    BeamSplatter(const Scene& scene, const transport::Sensor& sensor, double scale, Film& film)
+        : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), footprint_(scene.camera),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
           timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {}
 
-    [[nodiscard]] std::optional<Ribbon> ribbon(const PhotonBeam& beam) const {
-        const auto area = footprint_.around(beam.base + beam.direction * beam.tStart,
-                                            beam.base + beam.direction * beam.tEnd, radius_);
+    [[nodiscard]] std::optional<Ribbon> ribbon(const PhotonBeam& beam, float radius, const KernelEdges& edges) const {
+        const auto area =
+            footprint_.around(beam.base + beam.direction * beam.tStart, beam.base + beam.direction * beam.tEnd, radius);
         if (!area) return std::nullopt;
         const auto inDouble = [](const Vec3f& v) { return Vec3d(double(v.x), double(v.y), double(v.z)); };
         const Vec3d base = inDouble(beam.base) - inDouble(origin_), along = inDouble(beam.direction);
@@ -52,21 +61,24 @@ class BeamSplatter {
         r.low = float(double(beam.tStart) - toFoot);
         r.high = float(double(beam.tEnd) - toFoot);
         r.fromBase = float(toFoot);
+        r.radius = radius;
         r.time = beam.time + toFoot / speed_;
         r.shortest = float((sensor_.gate.start - r.time) * speed_);
         r.longest = float((sensor_.gate.end() - r.time) * speed_);
-        r.power = beam.power * medium.sigmaS() * (scale_ / (2.0f * radius_));
+        r.power = beam.power * medium.sigmaS() * (scale_ / (2.0f * radius));
         r.g = medium.phase.g();
         r.sigmaT = medium.sigmaT().x;
         r.simple = medium.isGrey() && medium.phase.isHenyeyGreenstein();
         r.medium = beam.medium;
         r.bounce = beam.bounce;
         r.area = *area;
+        r.ends = edges.nearest.exists();
+        r.edges = {edgeOf(edges.nearest, r), edgeOf(edges.opposite, r)};
         const double distance = foot.length();
-        r.surrounds = distance <= 1.0001 * double(radius_);
+        r.surrounds = distance <= 1.0001 * double(radius);
         if (!r.surrounds) {
             // The planes through the camera that touch the cylinder; both hold the beam's direction.
-            const float sine = radius_ / float(distance), cosine = std::sqrt(1.0f - sine * sine);
+            const float sine = radius / float(distance), cosine = std::sqrt(1.0f - sine * sine);
             const Vec3f towards = r.foot * (sine / float(distance)), aside = r.normal * (cosine / float(distance));
             r.sides[0] = footprint_.halfPlane(towards + aside);
             r.sides[1] = footprint_.halfPlane(towards - aside);
@@ -88,6 +100,11 @@ class BeamSplatter {
     }
 
   private:
+    static RibbonEdge edgeOf(const KernelEdge& edge, const Ribbon& r) {
+        if (!edge.exists()) return {};
+        const float slope = edge.normal.dot(r.direction);
+        return {edge.reach - r.fromBase * slope, slope, edge.normal.cross(r.direction)};
+    }
     /// Where a ray comes closest to the beam, and what it gathers there.
     struct Approaches {
         alignas(64) float alongBeam[Lanes], alongRay[Lanes], toCamera[Lanes];
@@ -141,10 +158,11 @@ class BeamSplatter {
         const Batch inverse = 1.0f / xsimd::max(squaredSine, Batch(LeastSine * LeastSine));
         const Batch t = (dx * a.x + dy * a.y + dz * a.z) * inverse, s = cosine * t;
         const Batch across = dx * n.x + dy * n.y + dz * n.z, squaredDistance = across * across * inverse;
-        const auto inside = squaredSine > LeastSine * LeastSine && squaredDistance < radius_ * radius_ && s >= r.low &&
-                            s < r.high && t > start && t <= load(piece.end);
+        auto inside = squaredSine > LeastSine * LeastSine && squaredDistance < r.radius * r.radius && s >= r.low &&
+                      s < r.high && t > start && t <= load(piece.end);
         if (!xsimd::any(inside)) return false;
         Batch weight = xsimd::sqrt(inverse);
+        if (r.ends) inside = inside && withinEdges(r, dx, dy, dz, s, across, weight);
         if (r.simple) {
             const Batch exponent = xsimd::select(inside, (start - t - s - r.fromBase) * r.sigmaT, Batch(0.0f));
             weight = weight * xsimd::exp(exponent) * henyeyGreenstein(r.g, w, dx, dy, dz);
@@ -154,6 +172,24 @@ class BeamSplatter {
         t.store_aligned(found.alongRay);
         if (!timeless_) xsimd::sqrt(t * t + squaredDistance).store_aligned(found.toCamera);
         return true;
+    }
+
+    /// Whether rays meet the ribbon before its edges; weighs them by how much narrower these make it. `weight` comes as
+    /// the inverse of the sine.
+    Batch::batch_bool_type withinEdges(const Ribbon& r, const Batch& dx, const Batch& dy, const Batch& dz,
+                                       const Batch& s, const Batch& across, Batch& weight) const {
+        Batch low(-r.radius), high(r.radius);
+        const Batch offset = -across * weight;
+        for (const RibbonEdge& edge : r.edges) {
+            if (!(edge.height < Infinity)) continue;
+            const Batch slope = (dx * edge.tilt.x + dy * edge.tilt.y + dz * edge.tilt.z) * weight;
+            const Batch end =
+                xsimd::max(edge.height - s * edge.slope, Batch(0.0f)) / xsimd::max(xsimd::abs(slope), Batch(1e-6f));
+            high = xsimd::select(slope > 0.0f, xsimd::min(high, end), high);
+            low = xsimd::select(slope > 0.0f, low, xsimd::max(low, -end));
+        }
+        weight *= 2.0f * r.radius / xsimd::max(high - low, Batch(1e-6f * r.radius));
+        return offset >= low && offset < high;
     }
 
     [[nodiscard]] bool rendered(int interactions) const {
@@ -191,7 +227,7 @@ class BeamSplatter {
     transport::Sensor sensor_;
     Vec3f origin_;
     ImageFootprint footprint_;
-    float radius_, scale_;
+    float scale_;
     Film& film_;
     double speed_;
     bool timeless_, oneFrame_; ///< without a gate; no frame to choose and no response to weigh by
@@ -200,14 +236,14 @@ class BeamSplatter {
 } // namespace
 
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
+                    const std::vector<PhotonBeam>& beams, const Radii& radii, double scale, Film& film,
                     const PassWatch& watch) {
-    const BeamSplatter splatter(scene, sensor, radius, scale, film);
+    const BeamSplatter splatter(scene, sensor, scale, film);
     const size_t bands = ImageBand::count(scene.camera.resolution.y);
     std::vector<std::optional<Ribbon>> ribbons(beams.size());
     tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) {
         watch.pollWithin(1024, i);
-        ribbons[i] = splatter.ribbon(beams[i]);
+        ribbons[i] = splatter.ribbon(beams[i], radii[i], radii.edges(i));
     });
     // Beams by band, in their own order: the sums do not depend on the threads.
     std::vector<std::vector<uint32_t>> byBand(bands);

@@ -1,6 +1,7 @@
 #pragma once
 // Photon beams brought to the pixels instead of pixels to the beams: for straight rays from one point.
 
+#include "photon/primitives/Radii.h"
 #include "photon/primitives/beams/PhotonBeam.h"
 #include "photon/view/SensorRecord.h"
 #include "transport/Sensor.h"
@@ -13,7 +14,7 @@ namespace tungsten::photon {
 /// visits the pixels that its ribbon covers. Returns the number of beams gathered, one per pixel and beam. `sensor` has
 /// the pass's gate.
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                    const std::vector<PhotonBeam>& beams, float radius, double scale, Film& film,
+                    const std::vector<PhotonBeam>& beams, const Radii& radii, double scale, Film& film,
                     const PassWatch& watch = {});
 
 } // namespace tungsten::photon

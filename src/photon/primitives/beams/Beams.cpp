@@ -3,6 +3,7 @@
 #include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/beams/BeamSplat.h"
+#include "photon/primitives/beams/CutBeams.h"
 
 namespace tungsten::photon {
 
@@ -23,16 +24,30 @@ Radii Beams::radii(const KernelSettings& settings, bool deltaGate, const std::ve
     return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
+void Beams::endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radii,
+                          const PassWatch& watch) {
+    cutAtSurfaces(scene, random, beams, radii, watch);
+}
+
 Selection<PhotonBeam> Beams::straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<PhotonBeam>& beams, const Radii& radii) {
-    return {straightParts(scene, culling, beams), radii};
+    Selection<PhotonBeam> seen;
+    if (radii.single()) seen.radii = radii[0];
+    for (size_t i = 0; i < beams.size(); ++i) {
+        const auto part = straightPart(scene, culling, beams[i]);
+        if (!part) continue;
+        seen.records.push_back(*part);
+        seen.radii.append(radii, i);
+    }
+    return seen;
 }
 
 double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii) {
     constexpr double MeanSine = 0.25 * double(Pi);
-    const float radius = radii[0];
     FoldedMeeting meeting;
-    for (const PhotonBeam& beam : beams) {
+    for (size_t i = 0; i < beams.size(); ++i) {
+        const PhotonBeam& beam = beams[i];
+        const float radius = radii[i];
         meeting.include(beam.base + beam.direction * beam.tStart, radius);
         meeting.include(beam.base + beam.direction * beam.tEnd, radius);
         meeting.addArea(MeanSine * 2.0 * double(radius) * double(beam.tEnd - beam.tStart));
@@ -42,7 +57,7 @@ double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& rad
 
 uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch) {
-    return splatBeams(scene, sensor, records, beams.records, beams.radii[0], scale, film, watch);
+    return splatBeams(scene, sensor, records, beams.records, beams.radii, scale, film, watch);
 }
 
 } // namespace tungsten::photon

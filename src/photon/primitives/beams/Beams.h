@@ -31,6 +31,8 @@ struct Beams {
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
                        uint32_t step, const PassWatch& watch);
+    static void endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radii,
+                              const PassWatch& watch);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
     static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);

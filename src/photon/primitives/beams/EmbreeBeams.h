@@ -1,6 +1,7 @@
 #pragma once
 // An Embree structure over photon beams, owned.
 
+#include "photon/primitives/Radii.h"
 #include "photon/primitives/beams/PhotonBeam.h"
 
 #include "tungsten/geometry/Embree.h"
@@ -9,7 +10,7 @@
 
 namespace tungsten::photon {
 
-/// Ray-facing ribbons (RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE) of half-width `radius`: exactly the support of the
+/// Ray-facing ribbons (RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE) of their half-width: exactly the support of the
 /// one-dimensional beam-beam kernel. Long beams are cut in pieces, so that boxes stay small.
 class EmbreeBeams {
   public:
@@ -21,7 +22,7 @@ class EmbreeBeams {
 
     /// `fewRays`: beams stay whole, which builds faster (staircase, 100 000 beams: 0.17 s instead of 0.28) and queries
     /// slower.
-    EmbreeBeams(const std::vector<PhotonBeam>& beams, float radius, bool fewRays);
+    EmbreeBeams(const std::vector<PhotonBeam>& beams, const Radii& radii, bool fewRays);
     ~EmbreeBeams();
     EmbreeBeams(const EmbreeBeams&) = delete;
     EmbreeBeams& operator=(const EmbreeBeams&) = delete;
@@ -29,12 +30,15 @@ class EmbreeBeams {
     /// By Embree's primitive index.
     [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
 
+    [[nodiscard]] float largestRadius() const { return largestRadius_; }
+
   private:
-    void cut(const std::vector<PhotonBeam>& beams, float radius, float mostPieces);
+    void cut(const std::vector<PhotonBeam>& beams, const Radii& radii, float mostPieces);
 
     RTCDevice device_;
     RTCScene scene_;
     std::vector<Piece> pieces_;
+    float largestRadius_ = 0.0f;
 };
 
 } // namespace tungsten::photon

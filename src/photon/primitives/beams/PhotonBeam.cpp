@@ -21,17 +21,13 @@ std::optional<PhotonBeam> clippedBeam(const ArrivalCulling& culling, const Mediu
     return flight;
 }
 
-std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& culling,
-                                      const std::vector<PhotonBeam>& beams) {
-    std::vector<PhotonBeam> parts;
-    for (PhotonBeam beam : beams) {
-        const double speed = double(scene.media[size_t(beam.medium)].speedOfLight);
-        const FlightPart part = culling.straightPart(beam.base, beam.direction, beam.time, speed);
-        beam.tStart = std::max(beam.tStart, float(part.start));
-        beam.tEnd = std::min(beam.tEnd, float(part.end));
-        if (beam.tStart < beam.tEnd) parts.push_back(beam);
-    }
-    return parts;
+std::optional<PhotonBeam> straightPart(const Scene& scene, const ArrivalCulling& culling, PhotonBeam beam) {
+    const double speed = double(scene.media[size_t(beam.medium)].speedOfLight);
+    const FlightPart part = culling.straightPart(beam.base, beam.direction, beam.time, speed);
+    beam.tStart = std::max(beam.tStart, float(part.start));
+    beam.tEnd = std::min(beam.tEnd, float(part.end));
+    if (!(beam.tStart < beam.tEnd)) return std::nullopt;
+    return beam;
 }
 
 } // namespace tungsten::photon

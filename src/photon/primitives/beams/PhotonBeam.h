@@ -27,9 +27,8 @@ float visibleReach(const Medium& medium);
 /// the next surface (Infinity if there is none).
 std::optional<PhotonBeam> clippedBeam(const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight);
 
-/// The parts of the beams that sensor paths without mirror or refraction can see inside the gate; needs
+/// The part of a beam that sensor paths without mirror or refraction can see inside the gate, if there is one; needs
 /// culling.straightTimesKnown().
-std::vector<PhotonBeam> straightParts(const Scene& scene, const ArrivalCulling& culling,
-                                      const std::vector<PhotonBeam>& beams);
+std::optional<PhotonBeam> straightPart(const Scene& scene, const ArrivalCulling& culling, PhotonBeam beam);
 
 } // namespace tungsten::photon

@@ -17,6 +17,7 @@ struct PointQuery {
     const transport::Sensor* sensor;
     const std::vector<Photon>* photons;
     const std::vector<float>* squaredRadii;
+    const std::vector<KernelEdges>* edges;
     const CameraSegment* segment;
     FrameSums* sums;
     uint64_t gathered;
@@ -31,8 +32,10 @@ void evaluate(PointQuery& query, uint32_t index) {
     if (!(along > 0.0f) || along > segment.length) return;
     const float squaredRadius =
         query.squaredRadii->size() == 1 ? query.squaredRadii->front() : (*query.squaredRadii)[index];
-    const float kernel = biweight((offset - segment.direction * along).length2(), squaredRadius);
+    const Vec3f toPhoton = offset - segment.direction * along;
+    const float kernel = biweight(toPhoton.length2(), squaredRadius);
     if (kernel <= 0.0f) return;
+    if (!query.edges->empty() && !(*query.edges)[index].nearest.holds(-toPhoton)) return;
     const TransportSettings& settings = query.scene->transport;
     const int interactions = segment.interactions + photon.bounce;
     if (!transport::BounceLimits(settings).renders(interactions)) return;
@@ -71,7 +74,7 @@ float usualDistance(const std::vector<Photon>& photons) {
 
 PointGather::PointGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<Photon>& photons,
                          const Radii& radii, bool)
-    : scene_(scene), sensor_(sensor), photons_(photons) {
+    : scene_(scene), sensor_(sensor), photons_(photons), edges_(radii.edges()) {
     std::vector<PointWithRadius> points;
     points.reserve(photons.size());
     for (size_t i = 0; i < photons.size(); ++i) points.push_back({photons[i].position, radii[i]});
@@ -81,7 +84,7 @@ PointGather::PointGather(const Scene& scene, const transport::Sensor& sensor, co
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     if (photons_.empty()) return 0;
-    PointQuery query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &segment, &sums, 0};
+    PointQuery query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &edges_, &segment, &sums, 0};
     queryAbout<evaluate>(points_->scene(), segment, points_->largestRadius(), query);
     return query.gathered;
 }

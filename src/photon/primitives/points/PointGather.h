@@ -37,6 +37,7 @@ class PointGather {
     transport::Sensor sensor_;
     const std::vector<Photon>& photons_;
     std::vector<float> squaredRadii_;
+    std::vector<KernelEdges> edges_; ///< by photon, or none
     std::unique_ptr<EmbreePoints> points_;
 };
 

@@ -31,6 +31,7 @@ struct alignas(64) Disc {
     Vec3f offset{0.0f}, direction{0.0f};
     Rgb power{0.0f}; ///< with the kernel's constant and the sensor's weight
     float inverseSquaredRadius;
+    KernelEdge edge;
     ImageDisc image;
 };
 
@@ -50,6 +51,9 @@ struct Meeting {
         const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
         part = 1.0f - (px * px + py * py + pz * pz) * disc.inverseSquaredRadius;
         inside = part > 0.0f && t > start && t <= Batch::load_unaligned(piece.end.data() + i);
+        if (!disc.edge.exists()) return;
+        const Vec3f& n = disc.edge.normal;
+        inside = inside && px * n.x + py * n.y + pz * n.z > -disc.edge.reach;
     }
 };
 
@@ -59,7 +63,7 @@ class PointSplatter {
         : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), scale_(float(scale)),
           footprint_(scene.camera), media_(scene.media.begin(), scene.media.end()) {}
 
-    [[nodiscard]] Disc disc(const Photon& photon, float radius) const {
+    [[nodiscard]] Disc disc(const Photon& photon, float radius, const KernelEdge& edge) const {
         Disc unseen{};
         unseen.frame = -1;
         float weight = scale_;
@@ -80,6 +84,7 @@ class PointSplatter {
                 photon.direction,
                 photon.power * (weight * 3.0f * InvPi * inverse),
                 inverse,
+                edge,
                 *image};
     }
 
@@ -225,7 +230,7 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
     std::vector<Disc> discs(photons.size());
     tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) {
         watch.pollWithin(1024, i);
-        discs[i] = splatter.disc(photons[i], radii[i]);
+        discs[i] = splatter.disc(photons[i], radii[i], radii.edges(i).nearest);
     });
     const auto byBand = discsByBand(discs, scene.camera.resolution);
     watch.stage("splat", byBand.size());

@@ -2,6 +2,7 @@
 
 #include "photon/PhotonSettings.h"
 #include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/points/FoldedKernels.h"
 #include "photon/primitives/points/PointGather.h"
 #include "photon/primitives/points/PointSplat.h"
 
@@ -30,16 +31,20 @@ Radii Points::radii(const KernelSettings& settings, bool, const std::vector<Phot
     return radii;
 }
 
+void Points::endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
+                           const PassWatch& watch) {
+    foldAtSurfaces(scene, random, photons, radii, watch);
+}
+
 Selection<Photon> Points::straight(const Scene&, const ArrivalCulling& culling, const std::vector<Photon>& photons,
                                    const Radii& radii) {
     Selection<Photon> seen;
-    std::vector<float> own;
+    if (radii.single()) seen.radii = radii[0];
     for (size_t i = 0; i < photons.size(); ++i) {
         if (!culling.seenStraight(photons[i].position, photons[i].time)) continue;
         seen.records.push_back(photons[i]);
-        if (!radii.single()) own.push_back(radii[i]);
+        seen.radii.append(radii, i);
     }
-    seen.radii = radii.single() ? Radii(radii[0]) : Radii(std::move(own));
     return seen;
 }
 

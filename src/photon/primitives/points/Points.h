@@ -39,6 +39,9 @@ struct Points {
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
                        uint32_t step, const PassWatch& watch);
+    /// Ends kernels at surfaces: records and radii become those of the ended kernels.
+    static void endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
+                              const PassWatch& watch);
     /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<Photon>& photons, const Radii& radii);

@@ -45,6 +45,9 @@ struct Slices {
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
                        uint32_t step, const PassWatch& watch);
+    /// Slices have no kernels.
+    static void endAtSurfaces(const Scene&, const Sampler&, const std::vector<CollapsedFlights>&, const Radii&,
+                              const PassWatch&) {}
     /// All.
     static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,
                                                                const std::vector<CollapsedFlights>&, const Radii&) {
