@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What kernels lose: image means of plain photon maps against paths, at the radii that scenes name, and error^2 x CPU.
 
-usage: means.py TUNGSTEN SCENES [--seconds 2] [--seeds 2] [--methods points,beams] [--only NAME,...] [--csv FILE]
+usage: means.py TUNGSTEN SCENES [--seconds 2] [--seeds 2] [--methods points,beams] [--only NAME,...] [--csv FILE] [--like CSV]
                 [--set FIELD=VALUE]...
 
 SCENES holds NAME.json and reference/NAME.npz (arrays mean and halfdifference, half the difference of two independent
@@ -32,8 +32,10 @@ def render(args, scene, method, seed, folder):
     out = os.path.join(folder, "image.npz")
     settings = {"integrator.type": "transient_photon_map", "integrator.volume_photon_type": METHODS[method], "integrator.darts": "off", "renderer.spp_step": 1}
     sets = [f"{key}={value}" for key, value in settings.items()] + args.set
-    command = [args.tungsten, os.path.join(args.scenes, scene + ".json"), "--quiet", "--no-frames", "-t", "1", "-s", str(seed), "--timeout", f"{args.seconds}s",
-               "-d", folder, "-e", out, "--allow-outside", "--spp", "100000000"]
+    command = [args.tungsten, os.path.join(args.scenes, scene + ".json"), "--quiet", "--no-frames", "-t", "1", "-s", str(seed),
+               "-d", folder, "-e", out, "--allow-outside"]
+    passes = args.passes_like.get((scene, method))
+    command += ["--spp", str(passes)] if passes else ["--timeout", f"{args.seconds}s", "--spp", "100000000"]
     run = subprocess.run(command + [part for text in sets for part in ("--set", text)], capture_output=True, text=True)
     if run.returncode:
         raise RuntimeError((run.stderr + run.stdout).strip()[:300])
@@ -68,8 +70,13 @@ def main():
     parser.add_argument("--methods", default="points,beams")
     parser.add_argument("--only", default="")
     parser.add_argument("--csv", default="", help="the table, beside what is printed")
+    parser.add_argument("--like", default="", help="table of an earlier run: as many passes as there, so that biases are compared at equal noise")
     parser.add_argument("--set", action="append", default=[], help="of the scenes, as the command has it")
     args = parser.parse_args()
+    args.passes_like = {}
+    if args.like:
+        with open(args.like, newline="") as file:
+            args.passes_like = {(row["scene"], row["method"]): int(row["passes"]) // args.seeds for row in csv.DictReader(file)}
     names = sorted(file[:-5] for file in os.listdir(args.scenes) if file.endswith(".json"))
     rows = []
     for name in names:

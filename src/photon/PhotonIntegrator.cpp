@@ -120,8 +120,9 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
                                  watch = pass.watch](Selection<typename Primitive::Record>& seen) {
             if (settings_.boundaryKernels) Primitive::endAtSurfaces(*scene_, random, seen.records, seen.radii, watch);
         };
-        structures.volume.template emplace<VolumeGather<Primitive>>(
-            *scene_, structures.sensor, photonPass_->culling(), std::move(store), std::move(radii), endKernels, rays);
+        structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->culling(),
+                                                                    std::move(store), std::move(radii), endKernels,
+                                                                    rays, pass.bias != nullptr);
     };
     std::visit(build, settings_.primitive);
 }

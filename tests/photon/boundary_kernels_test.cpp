@@ -50,7 +50,8 @@ class Rays {
         double sum = 0.0;
         for (int i = 0; i < Count; ++i) {
             const double u = (i + 0.5) / Count, v = std::fmod(i * 0.6180339887498949, 1.0); // Fibonacci's lattice
-            const Vec3f place = frame_.s * (HalfWidth * float(2.0 * u - 1.0)) + frame_.t * (HalfWidth * float(2.0 * v - 1.0));
+            const Vec3f place =
+                frame_.s * (HalfWidth * float(2.0 * u - 1.0)) + frame_.t * (HalfWidth * float(2.0 * v - 1.0));
             Shown<Gather> shown{scene_, gather, FrameSums(1, Vec3d(0.0))};
             const Sampler unused(1, RandomStream::Test, 0, 0);
             followSensorPath(scene_, Ray{place - direction_ * 20.0f, direction_}, {}, unused, shown);
@@ -115,7 +116,8 @@ class BoundaryKernels : public testing::TestWithParam<BoundaryCase> {
         Sampler sampler(3, RandomStream::Test, 0, 0);
         for (const Vec3f& x : points(5000)) {
             const Vec3f direction = warp::squareToSphere(sampler.next2D());
-            all.push_back({0.0, x, direction, Rgb(1.0f), 0.0f, scene().geometry->intersect({x, direction})->t, 0, mediumAt(x)});
+            all.push_back(
+                {0.0, x, direction, Rgb(1.0f), 0.0f, scene().geometry->intersect({x, direction})->t, 0, mediumAt(x)});
         }
         return all;
     }
@@ -170,8 +172,8 @@ const auto within = [](float x, float y, float z) {
 const auto inBall = [](float radius) { return [radius](const Vec3f& p) { return p.length() < radius; }; };
 
 std::string shape(const std::string& type, const std::string& transform, const std::string& medium = "fog") {
-    return R"({"type": ")" + type + R"(", "int_medium": ")" + medium + R"(", "bsdf": {"type": "forward"}, "transform": {)" +
-           transform + "}}";
+    return R"({"type": ")" + type + R"(", "int_medium": ")" + medium +
+           R"(", "bsdf": {"type": "forward"}, "transform": {)" + transform + "}}";
 }
 std::string twoCubes(const std::string& second) {
     return shape("cube", R"("position": [-0.5, 0, 0])") + ", " + shape("cube", R"("position": [0.5, 0, 0])", second);
@@ -180,20 +182,26 @@ std::string twoCubes(const std::string& second) {
 // Few of a sheet's kernels meet a ray: 20 000 rays tell what they bring to 2 %, that of the others to 0.2 %.
 INSTANTIATE_TEST_SUITE_P(
     , BoundaryKernels,
-    testing::Values(BoundaryCase{{"Cube", shape("cube", R"("scale": 1)"), within(0.5f, 0.5f, 0.5f)}, 0.06f},
-                    BoundaryCase{{"Slab", shape("cube", R"("scale": [2, 0.3, 2])"), within(1.0f, 0.15f, 1.0f)}, 0.1f},
-                    BoundaryCase{{"Sheet", shape("cube", R"("scale": [1.6, 0.01, 1.6])"), within(0.8f, 0.005f, 0.8f)}, 0.06f, 0.06},
-                    BoundaryCase{{"TurnedBox", shape("cube", R"("scale": [1, 0.6, 1], "rotation": [0, 0, 45])"),
-                                  [](const Vec3f& p) { return std::abs(p.x + p.y) < std::sqrt(0.5f) && std::abs(p.x - p.y) < 0.6f * std::sqrt(0.5f) && std::abs(p.z) < 0.5f; }}, 0.06f},
-                    BoundaryCase{{"Ball", shape("sphere", R"("scale": 0.7)"), inBall(0.7f)}, 0.06f},
-                    BoundaryCase{{"SmallBall", shape("sphere", R"("scale": 0.12)"), inBall(0.12f)}, 0.06f, 0.02},
-                    BoundaryCase{{"TouchingCubes", twoCubes("haze"), within(1.0f, 0.5f, 0.5f), true}, 0.06f},
-                    BoundaryCase{{"CubesOfOneMedium", twoCubes("fog"), within(1.0f, 0.5f, 0.5f)}, 0.06f}),
+    testing::Values(
+        BoundaryCase{{"Cube", shape("cube", R"("scale": 1)"), within(0.5f, 0.5f, 0.5f)}, 0.06f},
+        BoundaryCase{{"Slab", shape("cube", R"("scale": [2, 0.3, 2])"), within(1.0f, 0.15f, 1.0f)}, 0.1f},
+        BoundaryCase{{"Sheet", shape("cube", R"("scale": [1.6, 0.01, 1.6])"), within(0.8f, 0.005f, 0.8f)}, 0.06f, 0.06},
+        BoundaryCase{{"TurnedBox", shape("cube", R"("scale": [1, 0.6, 1], "rotation": [0, 0, 45])"),
+                      [](const Vec3f& p) {
+                          return std::abs(p.x + p.y) < std::sqrt(0.5f) &&
+                                 std::abs(p.x - p.y) < 0.6f * std::sqrt(0.5f) && std::abs(p.z) < 0.5f;
+                      }},
+                     0.06f},
+        BoundaryCase{{"Ball", shape("sphere", R"("scale": 0.7)"), inBall(0.7f)}, 0.06f},
+        BoundaryCase{{"SmallBall", shape("sphere", R"("scale": 0.12)"), inBall(0.12f)}, 0.06f, 0.02},
+        BoundaryCase{{"TouchingCubes", twoCubes("haze"), within(1.0f, 0.5f, 0.5f), true}, 0.06f},
+        BoundaryCase{{"CubesOfOneMedium", twoCubes("fog"), within(1.0f, 0.5f, 0.5f)}, 0.06f}),
     [](const auto& tested) { return tested.param.body.name; });
 
 class KernelsInACube : public BoundaryKernels {};
 INSTANTIATE_TEST_SUITE_P(, KernelsInACube,
-                         testing::Values(BoundaryCase{{"", shape("cube", R"("scale": 1)"), within(0.5f, 0.5f, 0.5f)}, 0.1f}));
+                         testing::Values(BoundaryCase{{"", shape("cube", R"("scale": 1)"), within(0.5f, 0.5f, 0.5f)},
+                                                      0.1f}));
 
 /// Light and what rays make of it both fall away from a face, as exp(-4 d): kernels that reach beyond it lose as the
 /// radius, ended ones are off as its square, -r^2 / 16 * 4 * 4 of it.
@@ -211,7 +219,10 @@ TEST_P(KernelsInACube, ErrorsFallAsTheSquareOfTheRadius) {
         Radii radii = radius;
         if (ends) foldAtSurfaces(scene(), random_, photons, radii, {});
         const PointGather gather(scene(), sensor(), photons, radii);
-        return Rays(scene(), Vec3f(0, 1, 0)).energy(gather, [&](const Vec3f& p) { return std::exp(-Fall * depth(p)); }) / exact - 1.0;
+        return Rays(scene(), Vec3f(0, 1, 0))
+                       .energy(gather, [&](const Vec3f& p) { return std::exp(-Fall * depth(p)); }) /
+                   exact -
+               1.0;
     };
     EXPECT_NEAR(error(0.2f, true), -0.03, 0.01);
     EXPECT_NEAR(error(0.1f, true), -0.01, 0.004);
@@ -278,7 +289,10 @@ TEST(BoundaryKernelsOfABall, ShowTheLightThatPathsShow) {
         for (const std::string ends : {"true", "false"}) {
             const SeedMean photons([&](uint64_t seed) {
                 return test::renderPhotons(scene, {{"integrator.darts=off", "integrator.volume_photon_type=" + type,
-                                                    "integrator.boundary_kernels=" + ends}, 8, 4, seed});
+                                                    "integrator.boundary_kernels=" + ends},
+                                                   8,
+                                                   4,
+                                                   seed});
             });
             const double error = std::hypot(photons.error, paths.error);
             EXPECT_LT(error, 0.006 * paths.mean);

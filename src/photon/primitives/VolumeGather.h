@@ -31,15 +31,14 @@ class VolumeGather {
     using EndKernels = std::function<void(Selection<Record>&)>;
 
     /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box. `endKernels` is asked for what
-    /// rays are going to see, no more.
+    /// rays are going to see, no more. `narrows`: narrow() will be called, which needs records whose kernels go on.
     VolumeGather(const Scene& scene, const transport::Sensor& sensor, const ArrivalCulling& culling,
-                 Store<Record> store, Radii radii, EndKernels endKernels, const SensorRays& rays)
+                 Store<Record> store, Radii radii, EndKernels endKernels, const SensorRays& rays, bool narrows = false)
         : scene_(scene), sensor_(sensor), culling_(culling), endKernels_(std::move(endKernels)),
           scale_(store.scale()), all_{std::move(store.records), std::move(radii)} {
         if (rays.splatted && rays.folded) selectFolded(rays);
-        allEnd_ = !rays.splatted || !selectsStraight();
-        if (allEnd_) endKernels_(all_);
-        buildGathers(rays);
+        if (narrows) before_ = {all_, folded_};
+        build(rays);
     }
 
     VolumeGather(const VolumeGather&) = delete;
@@ -48,11 +47,11 @@ class VolumeGather {
     /// Looks at the same records with radii times `factor` and another gate from now on.
     void narrow(float factor, const transport::Sensor& sensor, const SensorRays& rays) {
         sensor_ = sensor;
-        all_.radii.scale(factor);
-        folded_.radii.scale(factor);
-        if (straight_) straight_->radii.scale(factor);
-        for (auto& hand : dealt_) hand.radii.scale(factor);
-        buildGathers(rays);
+        all_ = before_->all;
+        folded_ = before_->folded;
+        for (Selection<Record>* selection : {&all_, &folded_}) selection->radii.scale(factor);
+        straight_.reset();
+        build(rays);
     }
 
     /// On the records' power: 1 / number of paths.
@@ -92,11 +91,22 @@ class VolumeGather {
     void selectFolded(const SensorRays& rays) {
         const double share = Primitive::foldedShare(all_.records, all_.radii);
         folded_ = {chosenEvenly(all_.records, share, rays.uFolded), all_.radii.chosen(share, rays.uFolded)};
-        endKernels_(folded_);
-        auto hands = dealt(folded_.records, rays.parts);
-        const auto radii = folded_.radii.dealt(rays.parts);
-        dealt_.resize(rays.parts);
-        for (size_t k = 0; k < rays.parts; ++k) dealt_[k] = {std::move(hands[k]), radii[k]};
+    }
+    void deal(size_t parts) {
+        auto hands = dealt(folded_.records, parts);
+        const auto radii = folded_.radii.dealt(parts);
+        dealt_.resize(parts);
+        for (size_t k = 0; k < parts; ++k) dealt_[k] = {std::move(hands[k]), radii[k]};
+    }
+    /// Ends kernels and makes structures.
+    void build(const SensorRays& rays) {
+        if (rays.splatted && rays.folded) {
+            endKernels_(folded_);
+            deal(rays.parts);
+        }
+        allEnd_ = !rays.splatted || !selectsStraight();
+        if (allEnd_) endKernels_(all_);
+        buildGathers(rays);
     }
     void buildGathers(const SensorRays& rays) {
         if (!rays.splatted) {
@@ -118,6 +128,10 @@ class VolumeGather {
     bool allEnd_ = false;                       ///< kernels of all have been ended
     std::optional<Selection<Record>> straight_; ///< none: all, or not chosen yet
     Selection<Record> folded_;
+    struct Selections {
+        Selection<Record> all, folded;
+    };
+    std::optional<Selections> before_; ///< with kernels that have not ended
     std::vector<Selection<Record>> dealt_;
     std::unique_ptr<Gather> gather_, straightGather_;
     std::vector<std::unique_ptr<Gather>> parts_;

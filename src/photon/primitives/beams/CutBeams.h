@@ -9,10 +9,10 @@
 namespace tungsten::photon {
 
 /// Each beam becomes parts without a surface within the radius, which are as before, and parts of at most so many radii
-/// as structures cut beams into (tuning::PieceInRadii), which know the planes of the surfaces about their middles: what of
-/// the ribbon lies before them is the kernel there. These are narrower, tuning::WidthAtSurfaces, and no wider than the room
-/// between two surfaces. What curved surfaces and
-/// corners still cut off is made up for on average. `random`: of the pass.
+/// as structures cut beams into (tuning::PieceInRadii), which know the planes of the surfaces about their middles: what
+/// of the ribbon lies before them is the kernel there. These are narrower, tuning::WidthAtSurfaces, and no wider than
+/// the room between two surfaces. What curved surfaces and corners still cut off is made up for on average. `random`:
+/// of the pass.
 void cutAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radius,
                    const PassWatch& watch);
 
