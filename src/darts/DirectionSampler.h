@@ -133,7 +133,7 @@ class DirectionSampler {
     template <typename Scatterer>
     [[nodiscard]] std::optional<HenyeyGreenstein> peakOf(const Scatterer& scatterer) const {
         if constexpr (requires { scatterer.asHenyeyGreenstein(); })
-            if (settings_.strata) return scatterer.asHenyeyGreenstein();
+            if (settings_.direction == Direction::Product) return scatterer.asHenyeyGreenstein();
         return std::nullopt;
     }
     /// The density, per solid angle, of the last turn of a connection that leaves in this direction.
@@ -174,7 +174,7 @@ class DirectionSampler {
         const auto about = [&](const auto& lobe) { return use(AboutTarget{lobe, residual.axis}); };
         if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
         // All lengths at once, of which `excess` is the median.
-        if (settings_.medianLobe && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
+        if (settings_.knownDensities && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
             excess > residual.low)
             return about(GateLobe<float>(C, residual.low, 2.0f * (excess - residual.low)));
         return about(connectionLobe(C, delta));

@@ -126,7 +126,7 @@ DistanceSample DistanceSampler::sample(const DistanceDensity& density, float sur
 DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
                                        const Vec3& throughput, const DistanceRandom& random) const {
     DistanceSample sample;
-    if (settings_.logLinear && settings_.bounded)
+    if (settings_.knownDensities && settings_.bounded)
         return this->sample(density(residual, ray, surface, throughput), surface, random.event, random.choice);
     const Ellipse<float> latest = residual.latest(ray.h);
     const float firstLeg = latest.firstLeg();

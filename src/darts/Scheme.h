@@ -35,7 +35,6 @@ struct Scheme {
             if (value) field = *value;
         };
         set(s.direction, direction);
-        if (direction) s.strata = false; // just what it names
         set(s.greens, greens);
         set(s.proposals, proposals);
         set(s.candidates, candidates);

@@ -31,6 +31,7 @@ enum class Direction {
     Phase,      ///< the phase function (or emission, or BSDF) alone
     Eda,        ///< one-sample MIS with the elliptical diffusion approximation's table (He et al. 2024)
     Connection, ///< one-sample MIS with the lobe of the connection's weight
+    Product,    ///< peaked phase functions times the lobe (DirectionStrata); other scatterers as Connection
     Ris,        ///< resampled from both; phase-aware, for |g| >= 0.5
 };
 
@@ -54,26 +55,24 @@ struct Settings {
     Direction direction = Direction::Connection;
     Lobe lobe = Lobe::Path;
     float alpha = 0.1f;          ///< share of the phase function: gamma = (C/S) / (C/S + alpha) is the guide's
-    bool strata = false;         ///< peaked phase functions are multiplied with the guide (DirectionStrata), not mixed
     int directionCandidates = 4; ///< of Direction::Ris: half phase function, half lobe; even, at most 8
     bool lengthFirst = true;     ///< the connection's length is drawn before the direction, and shapes it
-    bool medianLobe = false;     ///< if it is not: directions suit its median length, instead of the longest one
     bool guideEmission = true;   ///< the emitted direction is guided as well
 
     bool bounded = true; ///< distances end where no path can be in time any more
-    /// Distances are drawn by a density that is known (LogLinearDistance), instead of resampled from candidates.
-    bool logLinear = false;
+    /// Draws have densities that are known: distances are log-linear (LogLinearDistance) instead of resampled,
+    /// directions suit the median length instead of the longest one, and half of the lengths forward peaks (g >= 0.5).
+    bool knownDensities = false;
     Greens greens = Greens::Causal;
     Proposals proposals = Proposals::MixedUniform;
     int candidates = 8;  ///< 1, 4, 8 or 16
     bool overlap = true; ///< usefulness includes the part of the gate that is still reachable
 
     bool elliptical = true;     ///< control vertices at all
-    bool peakLengths = false;   ///< half of the connection lengths are drawn for forward peaks (g >= 0.5)
     bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
     /// Every draw has a density that is known: what finds a path can be weighed against what else does.
     [[nodiscard]] bool hasDensities() const {
-        return logLinear && bounded && !lengthFirst && direction != Direction::Ris;
+        return knownDensities && bounded && !lengthFirst && direction != Direction::Ris;
     }
 
     float roulette = 0.1f;    ///< walks end at random below this part of their first usefulness; 0: never
@@ -106,11 +105,9 @@ inline Settings best(Mode mode, float g) {
     const bool peaked = std::abs(g) >= 0.5f;
     Settings s;
     s.mode = mode;
-    s.logLinear = true;
-    s.direction = Direction::Connection;
+    s.knownDensities = true;
+    s.direction = peaked ? Direction::Product : Direction::Connection;
     s.lengthFirst = false;
-    s.medianLobe = true;
-    s.peakLengths = s.strata = peaked;
     if (mode == Mode::Photon) {
         s.lobe = Lobe::Photon;
         s.alpha = 0.2f;
@@ -138,7 +135,7 @@ inline Settings plainFlights(Settings s) {
 inline Settings timeBoundAlone(const Settings& settings) {
     Settings s = plainFlights(settings);
     s.direction = Direction::Phase;
-    s.elliptical = s.peakLengths = false;
+    s.elliptical = false;
     s.roulette = s.rouletteOut = 0.0f;
     return s;
 }

@@ -6,6 +6,7 @@
 #include "path/techniques/RefractedLight.h"
 
 #include "transport/DetectorLight.h"
+#include "transport/GuidancePlan.h"
 #include "transport/SamplingSummary.h"
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
@@ -23,18 +24,15 @@ bool noConnection(const Scene& scene, const PathSettings& settings, const Effect
 }
 
 std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
-    if (!settings.policy.guides()) return "the scene does not ask for it";
-    if (!facts.timeResolved) return "steady state: there is no gate to aim at";
+    const std::string obstacle = transport::guidanceObstacle(settings.policy, facts);
+    if (!obstacle.empty()) return obstacle;
     if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
-    if (!facts.mediumScattering) return facts.noScattering();
-    if (!facts.heterogeneousMedia.empty()) return facts.heterogeneity();
     if (noConnection(scene, settings, facts))
         return "all that scatters lies behind walls that refract: no connection is complete";
     return {};
 }
 
 Choice refractedOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
-    if (!settings.policy.guides()) return {false, "the scene does not ask for it"};
     if (!facts.timeResolved || !facts.mediumScattering || !facts.heterogeneousMedia.empty() ||
         !settings.lightSampling || !settings.volumeLightSampling || !noConnection(scene, settings, facts))
         return {false, "not all that scatters is sealed by walls that refract, in a time-resolved render"};
@@ -62,28 +60,11 @@ std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const 
     return {};
 }
 
-/// Media whose directions come from a table.
-Choice tablesOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts, const Choice& guidance) {
-    if (!guidance.on) return {false, "paths are not guided"};
-    const darts::Scheme& scheme = settings.policy.sampling;
-    const auto tabled = [&](const Medium& medium) {
-        const auto of = scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
-        return medium.scatters() && of.direction == darts::Direction::Eda && (of.elliptical || scheme.direction);
-    };
-    bool any = false;
-    for (size_t i = 0; i < scene.media.size(); ++i) any = any || (tabled(scene.media[i]) && !facts.isOutOfTime(i));
-    return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
-}
-
 Choice balanceOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
     if (!guidance.on) return {false, "paths are not guided"};
     if (scene.transport.gate.delta) return {false, "no plain path meets a gate of width 0"};
-    const darts::Scheme& scheme = settings.policy.sampling;
-    const bool known = std::all_of(scene.media.begin(), scene.media.end(), [&](const Medium& medium) {
-        const auto of = scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
-        return !medium.scatters() || of.hasDensities();
-    });
-    if (!known) return {false, "the published method, or switches that leave densities unknown"};
+    if (!transport::haveDensities(scene, settings.policy, darts::Mode::Path))
+        return {false, "the published method, or switches that leave densities unknown"};
     return {true, "plain paths beside guided ones, each weighed by how densely both find what it has found"};
 }
 
@@ -108,7 +89,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
                                                                "DARTS sampling of scattering media"};
     plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
                                                                         : "off by default in time-resolved renders"};
-    plan.edaTable = tablesOf(scene, settings, facts, plan.guidance);
+    plan.edaTable = transport::tablesOf(scene, settings.policy, darts::Mode::Path, facts, plan.guidance.on);
     plan.balance = balanceOf(scene, settings, plan.guidance);
     plan.refracted = refractedOf(scene, settings, facts);
     plan.chooseLightPaths(scene, settings, facts);

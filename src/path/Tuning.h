@@ -56,19 +56,5 @@ inline constexpr int SphereSteps = 3;
 /// Of candidates in time, at most, whose ways are worked out. (Milk behind glass 0.41 without this, 0.33; a box in a
 /// long gate 0.31, 0.15.) Bench: study bodies
 inline constexpr size_t RefractedCandidates = 8;
-/// Between a way to the boundary and its normal: a guard, which no way reaches at indices above 1.02 (milk: the same
-/// bits at 0.05 and 0.5).
-inline constexpr float LeastRefractedCosine = 0.2f;
-/// Points of a light in a pass; triangles of one at most: each is asked whether a direction meets it. Scenes with more
-/// lights have none of these: a bound on the points of a pass, and on what a vertex looks through. Variance x CPU of
-/// milk behind glass and of the ball: 0.121 and 0.33 at 64 points, 0.127 and 0.42 at 1024, 0.120 and 0.42 at 4096: no
-/// difference beyond noise. Bench: study bodies
-inline constexpr size_t LampPoints = 1024, MostLampTriangles = 64, MostLamps = 64;
-/// Ways from under the boundary of a body that tell how late its light arrives through what else is in between, of
-/// which so many quantiles are kept, and so many that hold them all, for rare ways; boundaries on one of them. Little
-/// depends on them: variance x CPU of milk behind glass 0.096, 0.111, 0.100 with 256, 2048, 16384 ways, 0.116, 0.116,
-/// 0.108 with 1, 4, 32 that hold all. Bench: study bodies
-inline constexpr size_t DelayPilots = 2048, DelayQuantiles = 32, WholeDelays = 4;
-inline constexpr int MostBoundaries = 16;
 
 } // namespace tungsten::path::tuning

@@ -5,12 +5,11 @@
 
 #include "transport/Body.h"
 #include "transport/DetectorLight.h"
+#include "transport/GuidancePlan.h"
 
 namespace tungsten::photon {
 
 namespace {
-
-constexpr const char* OutOfTime = "what surfaces show arrives after the sensor has closed";
 
 /// What a plan is made from.
 struct Given {
@@ -43,12 +42,10 @@ bool anyGlossyOnly(const Scene& scene) {
 
 Choice guidanceOf(const Given& given) {
     const EffectPlan& facts = given.facts;
-    if (!given.policy().guides()) return {false, "the scene does not ask for it"};
-    if (!facts.timeResolved) return {false, "steady state: there is no gate to aim at"};
-    if (!facts.mediumScattering) return {false, facts.noScattering()};
-    if (!facts.heterogeneousMedia.empty()) return {false, facts.heterogeneity()};
-    const std::string obstacle =
-        given.ofPrimitive([&](const auto& p) { return p.guidanceObstacle(given.scene, facts.speedsDiffer); });
+    std::string obstacle = transport::guidanceObstacle(given.policy(), facts);
+    if (obstacle.empty())
+        obstacle =
+            given.ofPrimitive([&](const auto& p) { return p.guidanceObstacle(given.scene, facts.speedsDiffer); });
     if (!obstacle.empty()) return {false, obstacle};
     const bool needsPlace = given.ofPrimitive([](const auto& p) { return p.NeedsPlace; }) || !given.unwarped();
     if (needsPlace && given.scene.camera.hasParallelRays())
@@ -56,28 +53,17 @@ Choice guidanceOf(const Given& given) {
     return {true, "the scene asks for DARTS"};
 }
 
-/// Media whose directions come from a table.
-Choice tablesOf(const Given& given, const PhotonPlan& plan) {
-    if (!plan.guidance.on) return {false, "light paths are not guided"};
-    if (given.unwarped()) return {false, "camera_unwarped: there is nothing to aim at"};
-    const auto tabled = [&](const Medium& medium) {
-        return medium.scatters() &&
-               given.policy()
-                       .sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase)
-                       .direction == darts::Direction::Eda;
-    };
-    const std::vector<Medium>& media = given.scene.media;
-    for (size_t i = 0; i < media.size(); ++i)
-        if (tabled(media[i]) && !given.facts.isOutOfTime(i))
-            return {true, "directions are drawn from the published table"};
-    return {false, "directions come from closed forms"};
+Choice surfacesOf(const Given& given) {
+    if (!given.settings.includeSurfaces) return {false, "include_surfaces is false"};
+    if (given.facts.surfacesOutOfTime) return {false, "what surfaces show arrives after the sensor has closed"};
+    if (!given.facts.surfaceScattering) return {false, "no surface has a smooth lobe"};
+    return {true, "smooth surfaces are gathered"};
 }
 
 Choice glossyPathsOf(const Given& given, const PhotonPlan& plan) {
-    if (!plan.guidance.on) return {false, plan.guidance.reason};
+    if (!plan.guidance.on) return plan.guidance;
     if (!anyGlossyOnly(given.scene)) return {false, "no surface is glossy without being diffuse"};
-    if (!given.settings.includeSurfaces) return {false, "include_surfaces is false"};
-    if (given.facts.surfacesOutOfTime) return {false, OutOfTime};
+    if (const Choice surfaces = surfacesOf(given); !surfaces.on) return surfaces;
     // Time without camera segments ends at the first surface that is no mirror.
     if (given.unwarped()) return {false, "camera_unwarped: time stops at glossy surfaces, which are left to photons"};
     if (!given.policy().followsGlossy())
@@ -93,19 +79,13 @@ Choice framesOneByOneOf(const Given& given, bool exact) {
 }
 
 Choice sideBySideOf(const Given& given, const PhotonPlan& plan) {
-    if (!plan.guidance.on) return {false, plan.guidance.reason};
+    if (!plan.guidance.on) return plan.guidance;
     if (given.policy().plainShare == 0.0f) return {false, "plain_share is 0"};
     if (plan.framesOneByOne.on) return {false, "frames one by one"};
     if (given.policy().directView == transport::DirectView::On)
         return {false, "direct_view asks for control vertices alone"};
     if (plan.meetsDeltaGate) return {false, "delta gate: control vertices lie on it, where no plain photon arrives"};
-    const auto hasDensities = [&](const Medium& medium) {
-        return !medium.scatters() ||
-               given.policy()
-                   .sampling.settings(darts::Mode::Photon, medium.phase.g(), medium.guided, medium.guidedPhase)
-                   .hasDensities();
-    };
-    if (!std::ranges::all_of(given.scene.media, hasDensities))
+    if (!transport::haveDensities(given.scene, given.policy(), darts::Mode::Photon))
         return {false, "the published method, or switches that leave densities unknown"};
     return {true, "plain and guided light paths, weighed by how densely both leave each record"};
 }
@@ -123,9 +103,8 @@ Choice ordinaryPhotonsOf(const Given& given, const PhotonPlan& plan) {
 }
 
 Choice connectionsOf(const Given& given, const PhotonPlan& plan) {
-    if (!plan.guidance.on) return {false, plan.guidance.reason};
-    if (given.facts.surfacesOutOfTime) return {false, OutOfTime};
-    if (!given.settings.includeSurfaces || !given.facts.surfaceScattering) return {false, "no surface is gathered"};
+    if (!plan.guidance.on) return plan.guidance;
+    if (const Choice surfaces = surfacesOf(given); !surfaces.on) return surfaces;
     if (!plan.straightRays) return {false, "a thin lens, or different speeds of light"};
     if (!given.policy().connectsSurfaces())
         return {false, "the preset or surface_connections leaves surfaces to photons"};
@@ -148,12 +127,11 @@ Choice temporalKernelOf(const Given& given, const PhotonPlan& plan) {
 }
 
 Choice surfacePhotonsOf(const Given& given, const PhotonPlan& plan) {
-    if (!given.settings.includeSurfaces) return {false, "include_surfaces is false"};
-    if (given.facts.surfacesOutOfTime) return {false, OutOfTime};
-    if (!given.facts.surfaceScattering) return {false, "no surface has a smooth lobe"};
-    return {true, plan.connections.on ? "for what connections cannot bring: light by way of mirrors or refraction or "
-                                        "of a single direction, and to glossy surfaces"
-                                      : "smooth surfaces are gathered"};
+    Choice surfaces = surfacesOf(given);
+    if (surfaces.on && plan.connections.on)
+        surfaces.reason = "for what connections cannot bring: light by way of mirrors or refraction or of a single "
+                          "direction, and to glossy surfaces";
+    return surfaces;
 }
 
 Choice detectorLightOf(const Given& given) {
@@ -179,7 +157,7 @@ uint32_t affordedCameraPaths(const Given& given) {
 }
 
 Choice moreCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t paths) {
-    if (!plan.guidance.on) return {false, plan.guidance.reason};
+    if (!plan.guidance.on) return plan.guidance;
     if (given.policy().sampling.published) return {false, "the preset has one"};
     if (plan.glossyPaths.on) return {false, "paths on from glossy surfaces take long"};
     if (!given.ofPrimitive([](const auto& p) { return p.SplatsOften; })) return {false, "slices take long to draw"};
@@ -201,7 +179,8 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
     plan.guidance = guidanceOf(given);
-    plan.edaTable = tablesOf(given, plan);
+    plan.edaTable =
+        transport::tablesOf(scene, settings.policy, darts::Mode::Photon, facts, plan.guidance.on && !given.unwarped());
     plan.glossyPaths = glossyPathsOf(given, plan);
     plan.folds = facts.specularSensorPaths || plan.glossyPaths.on;
     plan.looksAgain = settings.includeSurfaces;

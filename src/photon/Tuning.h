@@ -141,10 +141,6 @@ inline constexpr double TrailCost = 60.0, DensityCost = 650.0, PixelCost = 400.0
 
 // --- Connections to surfaces -----------------------------------------------------------------------------------------
 
-/// Light paths before a pass that tell what connections bring. Variance x CPU of best points, cornell-fog, the same:
-/// 0.0302, 0.0300 and 0.0298 at 32, 256 and 2048. Bench: study cbox-128
-inline constexpr uint64_t PilotPaths = 256;
-
 /// How often the vertices of a path try to connect, about; the pilot of plain and guided paths chooses how many times
 /// as often. Variance x CPU of points and beams, 12 scenes, over 4 to 16, more in short passes: 0.98 and 0.96.
 inline constexpr double ConnectionsPerPath = 4.0;

@@ -1,5 +1,6 @@
 #include "transport/SamplingSummary.h"
 
+#include "transport/GuidancePlan.h"
 #include "transport/WaysOut.h"
 
 #include "tungsten/scene/Field.h"
@@ -17,7 +18,7 @@ std::string distancesOf(const darts::Settings& settings) {
     if (settings.greens == darts::Greens::None)
         return settings.bounded ? "by transmittance up to the bound in time" : "by transmittance";
     const std::string light = "by the light still to arrive in time";
-    return (settings.logLinear ? light : "resampled " + light) +
+    return (settings.knownDensities ? light : "resampled " + light) +
            (settings.greens == darts::Greens::Diffusion ? " (diffusion)" : " (causal)");
 }
 
@@ -28,8 +29,9 @@ std::string directionsOf(const darts::Settings& settings) {
     case darts::Direction::Eda:
         return "by phase functions and the published table";
     case darts::Direction::Connection:
-        return settings.strata ? "by phase functions times the connection's lobe"
-                               : "by phase functions and the connection's lobe";
+        return "by phase functions and the connection's lobe";
+    case darts::Direction::Product:
+        return "by phase functions times the connection's lobe";
     case darts::Direction::Ris:
         return "resampled from phase functions and the connection's lobe";
     }
@@ -56,10 +58,7 @@ std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mo
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
         if (!medium.scatters() || facts.isOutOfTime(i)) continue;
-        darts::Settings settings = policy.sampling.settings(mode, medium.phase.g(), medium.guided, medium.guidedPhase);
-        const bool connects = mode == darts::Mode::Photon || settings.elliptical || policy.sampling.direction;
-        if (!aims || !connects) settings.direction = darts::Direction::Phase;
-        if (!aims) settings.greens = darts::Greens::None;
+        const darts::Settings settings = settingsIn(medium, policy, mode, aims);
         addOnce(distances, distancesOf(settings), " or ");
         addOnce(directions, directionsOf(settings), " or ");
     }

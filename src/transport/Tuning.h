@@ -27,10 +27,6 @@ inline constexpr float ThinDepth = 1.0f;
 /// shorter: light hardly scatters twice on its way out. (Two rooms and several lights, paths; the test
 /// agreement.SingleScattering, coloured and slow, points.)
 inline constexpr float ThinBody = 2.0f, ShortRest = 6.0f;
-/// Media that a way goes through before what is beyond counts as unknown.
-inline constexpr int MostLayers = 8;
-/// Between a way and the normal of the face it leaves through.
-inline constexpr float LeastCosine = 0.05f;
 /// Flights that enter a body look out from so many transport mean free paths on: from the boundary itself the way out
 /// would miss it.
 inline constexpr float EntryDepth = 0.05f;

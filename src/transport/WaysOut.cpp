@@ -8,6 +8,11 @@ namespace tungsten::transport {
 
 namespace {
 
+/// Media that a way goes through before what is beyond counts as unknown.
+constexpr int MostLayers = 8;
+/// Between a way and the normal of the face it leaves through: a guard.
+constexpr float LeastCosine = 0.05f;
+
 Region regionBehind(const Scene& scene, const SurfaceHit& hit, const Vec3f& direction, const Region& region) {
     return regionBeyond(makeInteraction(scene, hit, direction), direction, region);
 }
@@ -90,7 +95,7 @@ std::optional<WaysOut::Boundary> WaysOut::findExit(Ray way, const Region& region
     std::optional<Boundary> hole; // the last one entered
     Region at = region;
     float before = 0.0f; // length of the way up to the ray's origin
-    for (int layer = 0; layer < tuning::MostLayers; ++layer) {
+    for (int layer = 0; layer < MostLayers; ++layer) {
         ++rays;
         const auto hit = scene_.geometry->intersect(way);
         if (!hit) return at.medium != region.medium ? hole : std::nullopt;
@@ -125,7 +130,7 @@ void WaysOut::leave(const Boundary& boundary, const Vec3f& position, const Regio
     exit.gate = residual.width;
     exit.inside = std::min(boundary.exit.distance, residual.C);
     const Vec3f direction = darts::to<Vec3f>(residual.axis);
-    exit.slant = 1.0f / std::max(direction.dot(boundary.exit.face.normal), tuning::LeastCosine);
+    exit.slant = 1.0f / std::max(direction.dot(boundary.exit.face.normal), LeastCosine);
     exit.faces.add(faceOf(body, boundary.exit.face, position, aim.position));
     for (const Body::Face& face : body.faces) {
         if (exit.faces.full()) break;
@@ -153,7 +158,7 @@ void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region&
     Ray ahead = boundary.margin.leave(way.at(way.tMin), way.direction);
     ahead.tMax = way.tMax - way.tMin;
     float from = way.tMin, slow = 0.0f; // length, and the time it takes as a length at the body's speed
-    for (int layer = 0; layer < tuning::MostLayers && from < way.tMax; ++layer) {
+    for (int layer = 0; layer < MostLayers && from < way.tMax; ++layer) {
         ++rays;
         const auto hit = scene_.geometry->intersect(ahead);
         const float to = hit ? from + hit->t : residual.C, length = to - from;

@@ -158,7 +158,6 @@ TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
         for (const int count : {2, 4, 8}) {
             Settings settings = best(Mode::Photon, 0.7f);
             settings.direction = Direction::Ris;
-            settings.strata = false;
             settings.directionCandidates = count;
             const DirectionSampler sampler(settings, coloured(c.g));
             const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});

@@ -112,7 +112,7 @@ void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar
 /// The preset, but for distances resampled from candidates.
 Settings resampling(Mode mode) {
     Settings settings = best(mode, 0.0f);
-    settings.logLinear = false;
+    settings.knownDensities = false;
     return settings;
 }
 
@@ -237,7 +237,7 @@ TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
         Settings settings = best(Mode::Path, float(g));
         settings.greens = s.next1D() < 0.5f ? Greens::Causal : Greens::Diffusion;
         if (s.next1D() < 0.2f) settings = published(Mode::Path);
-        if (s.next1D() < 0.4f) settings.logLinear = false;
+        if (s.next1D() < 0.4f) settings.knownDensities = false;
         const DistanceSampler sampler(settings, medium);
         const Residual residual = Residual::of({0, 0, float(C)}, {S * (1.0 - 1e-7), S});
         const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(s, 1e-12, 2.0));

@@ -57,7 +57,7 @@ TEST(LastTurns, MeansMatchTheIntegral) {
         for (const float g : {0.5f, 0.8f, 0.99f})
             for (const bool strata : {true, false}) {
                 Settings settings = best(Mode::Path, g);
-                settings.strata = strata;
+                settings.direction = strata ? Direction::Product : Direction::Connection;
                 const DirectionSampler sampler(settings, thickMedium(g));
                 const Residual residual = outOf(depth, 3.0, 3.0 + depth + 0.06, 0.05);
                 EXPECT_TRUE(LastTurns::of(residual, thickMedium(g))) << depth << " " << g;
@@ -170,7 +170,7 @@ TEST(DistancesOut, NothingIsRareBehindRefraction) {
 TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
     const auto spread = [](bool logLinear) {
         Settings settings = best(Mode::Path, 0.0f);
-        settings.logLinear = logLinear;
+        settings.knownDensities = logLinear;
         const DistanceSampler sampler(settings, thickMedium(0.0f));
         const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
         double squares = 0.0;

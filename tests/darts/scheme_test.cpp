@@ -87,8 +87,8 @@ TEST(Scheme, PresetsAndFlags) {
     // A phase function that does not ask for the table gets none.
     EXPECT_EQ(published.scheme.settings(Mode::Path, 0.0f, true, false).direction, Direction::Phase);
     const Settings peaked = Reading(Fields{{"darts", "best"}}).scheme.settings(Mode::Photon, 0.7f, true, true);
-    EXPECT_EQ(peaked.direction, Direction::Connection);
-    EXPECT_TRUE(peaked.strata && peaked.logLinear && peaked.medianLobe && !peaked.lengthFirst);
+    EXPECT_EQ(peaked.direction, Direction::Product);
+    EXPECT_TRUE(peaked.knownDensities && !peaked.lengthFirst);
 }
 
 TEST(Scheme, EverySwitchWorksAlone) {
@@ -123,7 +123,7 @@ TEST(Scheme, SwitchesOfResamplingWorkWithThePublishedPreset) {
     EXPECT_EQ(settings({{"direction", "ris"}}).direction, Direction::Ris);
     EXPECT_EQ(settings({{"proposals", "equiangular"}}).proposals, Proposals::Equiangular);
     EXPECT_EQ(settings({{"candidates", 16.0}}).candidates, 16);
-    EXPECT_EQ(settings({{"candidates", 16.0}}).logLinear, false);
+    EXPECT_EQ(settings({{"candidates", 16.0}}).knownDensities, false);
     EXPECT_TRUE(settings({{"length_first", true}}).lengthFirst);
 }
 
@@ -143,7 +143,7 @@ TEST(Scheme, SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout) {
             EXPECT_EQ(settings.proposals, preset.proposals);
             EXPECT_EQ(settings.direction, preset.direction);
             EXPECT_EQ(settings.lengthFirst, preset.lengthFirst);
-            EXPECT_TRUE(settings.logLinear && settings.strata);
+            EXPECT_TRUE(settings.knownDensities);
         }
     };
     expectIgnored("candidates", 16.0, "has no effect with the preset best, whose distances");
@@ -156,9 +156,9 @@ TEST(Scheme, SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout) {
 TEST(Scheme, DirectionsThatAreNamedAreJustThose) {
     for (const char* direction : {"phase", "eda", "connection"}) {
         const SwitchReading reading(Fields{{"direction", direction}});
-        EXPECT_FALSE(reading.scheme.settings(Mode::Path, 0.8f, true, true).strata) << direction;
+        EXPECT_NE(reading.scheme.settings(Mode::Path, 0.8f, true, true).direction, Direction::Product) << direction;
     }
-    EXPECT_TRUE(SwitchReading(Fields{}).scheme.settings(Mode::Path, 0.8f, true, true).strata);
+    EXPECT_EQ(SwitchReading(Fields{}).scheme.settings(Mode::Path, 0.8f, true, true).direction, Direction::Product);
 }
 
 TEST(Scheme, TheRendererReadsSwitchesOfItsOwnFromTheObject) {

@@ -194,8 +194,8 @@ FAULTS = [
      [("darts_tests", "ConnectionLength.HalfOfThemAreShorterThanTheMedian")]),  # lobes are of the longer median: more variance
     ("src/darts/Guide.h", "return residual.low + lengths(residual).median();", "return residual.low + lengths(residual).sample(0.5f).offset;",
      [("darts_tests", "Guide.LobesAreOfTheMedianLength")]),  # lobes of forward peaks are needles
-    ("src/darts/Scheme.h", "if (direction) s.strata = false;", ";",
-     [("darts_tests", "Scheme.DirectionsThatAreNamedAreJustThose")]),  # eda and connection have no effect at forward peaks
+    ("src/darts/Scheme.h", "set(s.direction, direction);", ";",
+     [("darts_tests", "Scheme.DirectionsThatAreNamedAreJustThose")]),  # the direction that is named has no effect
     ("src/darts/Scheme.h", "if (!scheme.published) ignoreWithBest(block, scheme);", ";",
      [("darts_tests", "Scheme.SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout")]),  # switches undo the known densities of best
     ("src/darts/ConnectionLobe.h", "1 / (Real(TwoPi) * (kappa_ + h) * range_)", "1 / (Real(TwoPi) * (kappa_ + h))",

@@ -13,9 +13,10 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 
 TUNING = ["src/path/Tuning.h", "src/photon/Tuning.h", "src/transport/Tuning.h"]
-PLANS = ["src/path/PathPlan.cpp", "src/photon/PhotonPlan.cpp", "src/photon/primitives/sliced/Slices.cpp"]
+PLANS = ["src/path/PathPlan.cpp", "src/photon/PhotonPlan.cpp", "src/photon/primitives/sliced/Slices.cpp",
+         "src/transport/GuidancePlan.cpp"]
 #: Today's figures, and what they are to come down to.
-CAPS = {"constants": 58, "switches": 10, "reasons": 89}
+CAPS = {"constants": 51, "switches": 7, "reasons": 71}
 GOALS = {"constants": 40, "switches": 2, "reasons": 30}
 
 REASONED = re.compile(r'return\s+(?:\{\s*(?:true|false|on|any)\s*,|")')

@@ -6,13 +6,21 @@ namespace tungsten::path {
 
 using transport::Body;
 
+namespace {
+
+/// Of one light: each is asked whether a direction meets it.
+constexpr size_t MostLampTriangles = 64;
+/// Between a way to the boundary and its normal: a guard, which no way reaches at indices above 1.02.
+constexpr float LeastRefractedCosine = 0.2f;
+
+} // namespace
+
 bool RefractedLamp::isOne(const Emitter& emitter) {
     const AreaEmitter* area = emitter.surface();
     if (!area || !(area->areaSampler->area() > 0.0f)) return false;
-    return std::visit(
-        Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size() <= tuning::MostLampTriangles; },
-                   [](const OneOf<Sphere, Disk> auto&) { return true; }},
-        *area->shape);
+    return std::visit(Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size() <= MostLampTriangles; },
+                                 [](const OneOf<Sphere, Disk> auto&) { return true; }},
+                      *area->shape);
 }
 
 /// Moeller and Trumbore 1997.
@@ -34,7 +42,7 @@ RefractedView::RefractedView(const Vec3f& vertex, const Body::Face& face, float 
     : position(vertex), normal(face.normal), depth((face.point - vertex).dot(face.normal)), index(relativeIndex),
       speedInside(speed), lamp(emitter) {
     foot = vertex + normal * depth;
-    leastCosine = std::max(std::sqrt(std::max(1.0f - 1.0f / sqr(index), 0.0f)), tuning::LeastRefractedCosine);
+    leastCosine = std::max(std::sqrt(std::max(1.0f - 1.0f / sqr(index), 0.0f)), LeastRefractedCosine);
     widest = depth * std::sqrt(1.0f / sqr(leastCosine) - 1.0f);
 }
 

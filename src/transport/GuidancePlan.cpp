@@ -1,0 +1,34 @@
+#include "transport/GuidancePlan.h"
+
+namespace tungsten::transport {
+
+std::string guidanceObstacle(const Policy& policy, const EffectPlan& facts) {
+    if (!policy.guides()) return "the scene does not ask for it";
+    if (!facts.timeResolved) return "steady state: there is no gate to aim at";
+    return facts.mediumScattering ? facts.heterogeneity() : facts.noScattering();
+}
+
+darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mode mode, bool aims) {
+    darts::Settings settings = policy.sampling.settings(mode, medium.phase.g(), medium.guided, medium.guidedPhase);
+    // Directions of camera paths are guided for the sake of control vertices.
+    const bool connects = mode == darts::Mode::Photon || settings.elliptical || policy.sampling.direction;
+    if (!aims || !connects) settings.direction = darts::Direction::Phase;
+    if (!aims) settings.greens = darts::Greens::None;
+    return settings;
+}
+
+Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const EffectPlan& facts, bool aims) {
+    bool any = false;
+    for (size_t i = 0; i < scene.media.size(); ++i)
+        any = any || (scene.media[i].scatters() && !facts.isOutOfTime(i) &&
+                      settingsIn(scene.media[i], policy, mode, aims).direction == darts::Direction::Eda);
+    return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
+}
+
+bool haveDensities(const Scene& scene, const Policy& policy, darts::Mode mode) {
+    return std::ranges::all_of(scene.media, [&](const Medium& medium) {
+        return !medium.scatters() || settingsIn(medium, policy, mode).hasDensities();
+    });
+}
+
+} // namespace tungsten::transport
