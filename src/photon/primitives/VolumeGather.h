@@ -49,7 +49,8 @@ class VolumeGather {
         sensor_ = sensor;
         all_ = before_->all;
         folded_ = before_->folded;
-        for (Selection<Record>* selection : {&all_, &folded_}) selection->radii.scale(factor);
+        all_.radii.scale(factor);
+        folded_.radii.scale(factor);
         straight_.reset();
         build(rays);
     }
