@@ -110,6 +110,7 @@ SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settin
     const transport::Policy& policy = settings.policy;
     SamplingSummary said;
     said.paths = transport::describeStrategies("camera paths", guidance, balance, policy.plainShare);
+    if (balance.on && scene.transport.gate.frames > 1) said.paths += "; guided ones aim at windows of the sequence";
     said.vertices = guidance.on ? transport::describeVertices(scene, policy, darts::Mode::Path, facts, true)
                                 : transport::PlainVertices;
     const bool connects = settings.lightSampling || settings.volumeLightSampling;

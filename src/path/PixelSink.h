@@ -85,7 +85,8 @@ class PixelSink {
             ++counters_.nonFinite;
             return;
         }
-        float weight = (sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_) / window_.probability;
+        float weight = sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;
+        weight /= window_.probability;
         logRatio = logRatio.plus(logOfWindow_);
         if (pilot_) return tellPilot(meanComponent(radiance) * weight, frame, logRatio, found);
         weight *= balance_.weight(strategy_, logRatio.weighed);

@@ -83,16 +83,19 @@ LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader&
 void LightTracer::plan(EffectPlan& plan) const {
     leaveOutLate(*scene_, lastTime(*scene_), plan);
     countArrivals(plan);
-    plan.sampling = {"plain light paths: there is no guidance for them",
+    const bool detectors = scene_->camera.detectors() != nullptr;
+    const bool splits = detectors && plan.mediumScattering;
+    plan.sampling = {splits ? "plain light paths, split on their way to detectors by what diffusion would bring"
+                            : "plain light paths: there is no guidance for them",
                      transport::PlainVertices + std::string(russianRoulette_ ? ", Russian roulette by throughput" : ""),
-                     "connections to the camera"};
+                     detectors ? "connections to detectors, and directions that meet them"
+                               : "connections to the camera"};
     plan.describe("light paths", emitters_.total() > 0.0,
                   emitters_.total() > 0.0 ? "one for every sample of a pixel, connected to the camera at each vertex"
                                           : "nothing shines",
                   {"integrator.type"}, {"light paths"});
     plan.describe("emission in view", plan.surfaceEmission,
                   plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
-    const bool detectors = scene_->camera.detectors() != nullptr;
     if (plan.environment && !detectors)
         plan.lack("environment in view", "no light path starts on the way from the camera to infinity");
     if (plan.specularSensorPaths && !detectors)
