@@ -152,7 +152,8 @@ class DirectionSampler {
                 }};
     }
     /// By the product of the phase function and the connection's lobe.
-    [[nodiscard]] auto multiplied(const HenyeyGreenstein& phase, const Residual& residual, float excess) const {
+    [[nodiscard]] DirectionStrata<AboutTarget<ConnectionLobe<float>>>
+    multiplied(const HenyeyGreenstein& phase, const Residual& residual, float excess) const {
         const AboutTarget lobe{connectionLobe(residual.C, excess), residual.axis};
         return strata(phase, lobe, residual, excess);
     }
