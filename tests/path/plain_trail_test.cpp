@@ -1,6 +1,7 @@
 // What guided steps say of a way afterwards is what they summed while they drew it.
 
 #include "path/guided_setup.h"
+#include "support/PlainState.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ class Replay : public transport::VisitorBase {
     }
     bool ahead(PathState& path, StepsToEmitter&, const Ahead& ahead) {
         before_ = path.channels;
-        trail_.fly(plainly(path), ahead);
+        trail_.fly(test::plainly(path), ahead);
         return true;
     }
     bool arrive(PathState& path, StepsToEmitter& steps, const Ahead& ahead, const Flight& flight) {
@@ -39,7 +40,7 @@ class Replay : public transport::VisitorBase {
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(path.channels[c], channels[c], 1e-5f);
         }
         const float ending = collided ? steps.inMedium(flight.distance).logRatio : steps.logRatioOnSurface();
-        trail_.arrive(plainly(path), ahead, plain);
+        trail_.arrive(test::plainly(path), ahead, plain);
         const float tolerance = 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(path.logRatio));
         EXPECT_NEAR(trail_.atVertex(emitter_, 0.0, false), ending, tolerance) << path.interactions;
         EXPECT_NEAR(trail_.there(emitter_), path.logRatio, tolerance) << path.interactions;
@@ -57,12 +58,6 @@ class Replay : public transport::VisitorBase {
     static inline float largest = 0.0f;
 
   private:
-    static PathState plainly(const PathState& path) {
-        PathState plain = path;
-        plain.throughput = path.throughput * std::exp(path.logRatio);
-        return plain;
-    }
-
     const GuidedContext* context_;
     PlainTrail trail_; ///< a value: copies of a path that is split have one each
     size_t emitter_ = 0;

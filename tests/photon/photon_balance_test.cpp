@@ -5,6 +5,7 @@
 #include "photon/light/DepositVisitor.h"
 
 #include "support/PathsAndPhotons.h"
+#include "support/PlainState.h"
 #include "support/SceneFile.h"
 #include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
@@ -62,7 +63,7 @@ class Replay : public transport::VisitorBase {
     [[nodiscard]] bool mayGoOn(const PathState& path) const { return path.interactions < 40; }
     bool ahead(PathState& path, StepsToCamera&, const Ahead& ahead) {
         before_ = path.channels;
-        trail_.fly(plainly(path), ahead);
+        trail_.fly(test::plainly(path), ahead);
         expectSame(trail_.onFlight(), path.logRatio, path);
         return true;
     }
@@ -70,7 +71,7 @@ class Replay : public transport::VisitorBase {
         const bool collided = flight.event == Flight::Event::Collision;
         Flight plain = flight;
         plain.pdf = transport::PlainFlight{ahead.medium, ahead.reach(), before_}.like(flight).pdf;
-        trail_.arrive(plainly(path), ahead, plain);
+        trail_.arrive(test::plainly(path), ahead, plain);
         if (collided) expectSame(trail_.inMedium(), steps.inMedium(flight.distance).logRatio, path);
         expectSame(trail_.there(), path.logRatio, path);
         largest = std::max(largest, std::abs(path.logRatio));
@@ -86,11 +87,6 @@ class Replay : public transport::VisitorBase {
     static inline float largest = 0.0f;
 
   private:
-    static PathState plainly(const PathState& path) {
-        PathState plain = path;
-        plain.throughput = path.throughput * std::exp(path.logRatio);
-        return plain;
-    }
     static void expectSame(float asked, float summed, const PathState& path) {
         EXPECT_NEAR(asked, summed, 1e-4f * float(1 + path.interactions) * (1.0f + std::abs(summed)))
             << path.interactions;

@@ -94,6 +94,10 @@ void LightTracer::plan(EffectPlan& plan) const {
                   emitters_.total() > 0.0 ? "one for every sample of a pixel, connected to the camera at each vertex"
                                           : "nothing shines",
                   {"integrator.type"}, {"light paths"});
+    if (detectors)
+        plan.describe("splits towards detectors", splits,
+                      splits ? "light paths go on in more copies the more diffusion brings to detectors from there"
+                             : "no medium scatters");
     plan.describe("emission in view", plan.surfaceEmission,
                   plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
     if (plan.environment && !detectors)

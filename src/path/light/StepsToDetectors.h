@@ -55,7 +55,10 @@ class StepsToDetectors : public transport::PlainLightSteps {
     int copies(transport::PathState& path, const transport::WalkVertex& vertex) {
         if (!vertex.medium) return 1;
         const float worth = meanComponent(path.throughput) * importance_->at(vertex.position, *vertex.medium);
-        if (worth > 2.0f) return int(worth);
+        if (worth > 2.0f && splits_ < MostSplits) {
+            ++splits_;
+            return int(worth);
+        }
         if (!(worth < 0.5f)) return 1;
         path.random.at(path.interactions, Draw::Connection);
         if (!(path.random.next1D() < worth)) return 0;
@@ -64,7 +67,11 @@ class StepsToDetectors : public transport::PlainLightSteps {
     }
 
   private:
+    /// Copies run within each other: a bound on the stack, which paths of a million bounces to and fro would meet.
+    static constexpr int MostSplits = 1000;
+
     std::optional<DetectorImportance> importance_;
+    int splits_ = 0; ///< of the path and those that it is a copy of
 };
 
 } // namespace tungsten::path
