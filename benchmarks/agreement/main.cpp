@@ -6,8 +6,7 @@
 // colour where the deviation reaches what is allowed. Exits with 1 if a method disagrees.
 
 #include "support/AgreementScenes.h"
-
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/io/Writers.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,4 @@
-"""Images as pages keep them: the Python side of tungsten/film/FilmCode.h, which says how, for single images."""
+"""Images as pages keep them: the Python side of tungsten/io/FilmCode.h, which says how, for single images."""
 
 import base64
 import zlib

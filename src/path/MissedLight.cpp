@@ -5,8 +5,8 @@
 #include "transport/PlainSteps.h"
 
 #include "tungsten/core/Warp.h"
-#include "tungsten/render/EarliestArrival.h"
-#include "tungsten/render/SceneUses.h"
+#include "tungsten/integrator/EarliestArrival.h"
+#include "tungsten/integrator/SceneElements.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include "darts/Guide.h"
 #include "darts/Scheme.h"
 
-#include "tungsten/render/EffectPlan.h"
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
+#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/Scene.h"
 
 #include <algorithm>

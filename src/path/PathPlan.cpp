@@ -11,7 +11,7 @@
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
-#include "tungsten/render/SceneUses.h"
+#include "tungsten/integrator/SceneElements.h"
 
 namespace tungsten::path {
 

@@ -3,7 +3,7 @@
 
 #include "path/PathSettings.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 namespace tungsten::path {
 

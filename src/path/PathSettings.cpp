@@ -1,6 +1,6 @@
 #include "path/PathSettings.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include "transport/SharePilot.h"
 #include "transport/Tuning.h"
 
-#include "tungsten/render/EarliestArrival.h"
+#include "tungsten/integrator/EarliestArrival.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/enumerable_thread_specific.h>

@@ -11,7 +11,7 @@
 #include "transport/SharePilot.h"
 #include "tungsten/scene/LightChoice.h"
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 namespace tungsten::path {
 

@@ -3,7 +3,7 @@
 #include "path/PathTracer.h"
 #include "path/light/LightTracer.h"
 
-#include "tungsten/render/Plugin.h"
+#include "tungsten/integrator/Plugin.h"
 
 namespace {
 

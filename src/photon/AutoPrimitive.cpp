@@ -4,7 +4,7 @@
 
 #include "transport/Body.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 namespace tungsten::photon {
 

@@ -8,7 +8,7 @@
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
-#include "tungsten/render/SceneUses.h"
+#include "tungsten/integrator/SceneElements.h"
 
 #include <cstdio>
 

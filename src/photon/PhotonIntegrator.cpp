@@ -5,7 +5,7 @@
 #include "photon/surface/SharedLight.h"
 #include "transport/SharePilot.h"
 
-#include "tungsten/render/EarliestArrival.h"
+#include "tungsten/integrator/EarliestArrival.h"
 
 #include <tbb/parallel_for.h>
 

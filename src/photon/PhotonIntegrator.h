@@ -6,7 +6,7 @@
 #include "photon/light/PhotonPass.h"
 #include "transport/DetectorLight.h"
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 namespace tungsten::photon {
 

@@ -3,7 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 #include <string>
 

@@ -2,7 +2,7 @@
 
 #include "photon/PhotonIntegrator.h"
 
-#include "tungsten/render/Plugin.h"
+#include "tungsten/integrator/Plugin.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Whether light can still arrive while the sensor is open, before its exact time is known.
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 namespace tungsten::transport {
 

@@ -3,7 +3,7 @@
 
 #include "transport/Policy.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 namespace tungsten::transport {
 

@@ -2,10 +2,10 @@
 // What a walk did on its way, counted by one worker: the work of the plan's effects.
 
 #include "tungsten/bsdf/Bsdf.h"
+#include "tungsten/integrator/ProgressToken.h"
+#include "tungsten/integrator/SceneFacts.h"
+#include "tungsten/integrator/Statistics.h"
 #include "tungsten/medium/Medium.h"
-#include "tungsten/render/EffectPlan.h"
-#include "tungsten/render/PassWatch.h"
-#include "tungsten/render/Statistics.h"
 
 namespace tungsten::transport {
 

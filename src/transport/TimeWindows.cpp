@@ -2,7 +2,7 @@
 
 #include "transport/Tuning.h"
 
-#include "tungsten/render/EarliestArrival.h"
+#include "tungsten/integrator/EarliestArrival.h"
 
 namespace tungsten::transport {
 

@@ -2,7 +2,7 @@
 // When light arrives, cut into windows: a guided path aims at one of them, and counts there alone (docs/method.md,
 // section 11).
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/Scene.h"
 
 #include <algorithm>

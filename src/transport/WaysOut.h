@@ -6,7 +6,7 @@
 
 #include "darts/ResidualRange.h"
 
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 
 #include <array>
 #include <memory>

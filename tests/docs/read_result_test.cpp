@@ -3,7 +3,7 @@
 #include "read_result.h"
 
 #include "tungsten/core/Errors.h"
-#include "tungsten/film/ResultFile.h"
+#include "tungsten/io/Result.h"
 
 #include <gtest/gtest.h>
 

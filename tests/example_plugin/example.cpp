@@ -3,7 +3,7 @@
 
 #include "tungsten/core/Random.h"
 #include "tungsten/core/Warp.h"
-#include "tungsten/render/Plugin.h"
+#include "tungsten/integrator/Plugin.h"
 
 #include <tbb/parallel_for.h>
 

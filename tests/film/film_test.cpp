@@ -4,9 +4,11 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Random.h"
-#include "tungsten/film/AtomicFile.h"
 #include "tungsten/film/Film.h"
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/image/AtomicFile.h"
+#include "tungsten/image/ReadImage.h"
+#include "tungsten/io/Outputs.h"
+#include "tungsten/io/Writers.h"
 
 #include <gtest/gtest.h>
 

@@ -6,11 +6,11 @@
 #include "darts/EdaTableFile.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Hash.h"
-#include "tungsten/render/Checkpoint.h"
-#include "tungsten/render/PartialState.h"
 #include "tungsten/scene/Duration.h"
 #include "tungsten/scene/Json.h"
 #include "tungsten/scene/SceneLoader.h"
+#include "tungsten/session/Checkpoint.h"
+#include "tungsten/session/PartialState.h"
 #include "tungsten/texture/Texture.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "path/PathTracer.h"
 #include "tungsten/core/Errors.h"
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include "support/PathsAndPhotons.h"

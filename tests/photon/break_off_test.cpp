@@ -5,12 +5,12 @@
 
 #include "path/light/LightTracer.h"
 
+#include "app/command.h"
 #include "path/PathTracer.h"
 #include "photon/PhotonIntegrator.h"
-#include "render/command.h"
-#include "tungsten/render/EffectPlan.h"
-#include "tungsten/render/SceneFilm.h"
+#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/SceneLoader.h"
+#include "tungsten/session/Memory.h"
 
 #include <tbb/global_control.h>
 

@@ -1,7 +1,7 @@
 // Guided light paths in whole scenes: sequences, several pulses, full stores, threads.
 
 #include "photon/light/PhotonPass.h"
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/Scene.h"
 #include "tungsten/scene/SceneLoader.h"
 

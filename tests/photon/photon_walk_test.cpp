@@ -1,7 +1,7 @@
 // Light paths: which photons they store.
 
 #include "photon/light/PhotonPass.h"
-#include "tungsten/render/EffectPlan.h"
+#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include "support/GroundTruthScenes.h"

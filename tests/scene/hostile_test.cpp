@@ -2,7 +2,7 @@
 
 #include "scene/problems_of.h"
 
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/io/Writers.h"
 #include "tungsten/scene/JsonWriter.h"
 
 #include <gtest/gtest.h>

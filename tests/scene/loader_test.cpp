@@ -4,7 +4,7 @@
 
 #include "support/Folders.h"
 
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/io/Writers.h"
 #include "tungsten/scene/Interaction.h"
 
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 
 #include "support/Folders.h"
 
-#include "tungsten/render/Plugin.h"
-#include "tungsten/render/SceneFilm.h"
 #include "tungsten/scene/SceneLoader.h"
+#include "tungsten/session/Job.h"
+#include "tungsten/session/Memory.h"
 
 #include <optional>
 #include <ostream>

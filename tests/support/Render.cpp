@@ -3,9 +3,9 @@
 #include "support/SeedShift.h"
 
 #include "tungsten/film/KernelBias.h"
-#include "tungsten/render/Integrator.h"
-#include "tungsten/render/SceneFilm.h"
+#include "tungsten/integrator/Integrator.h"
 #include "tungsten/scene/SceneLoader.h"
+#include "tungsten/session/Memory.h"
 
 #include <tbb/global_control.h>
 

@@ -4,7 +4,7 @@
 #include "support/SceneFile.h"
 
 #include "tungsten/film/Film.h"
-#include "tungsten/render/Statistics.h"
+#include "tungsten/integrator/Statistics.h"
 
 #include <filesystem>
 #include <functional>

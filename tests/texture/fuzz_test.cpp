@@ -3,7 +3,7 @@
 #include "image_files.h"
 #include "support/Fuzz.h"
 #include "support/LargestAllocation.h"
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/io/Writers.h"
 #include "tungsten/texture/Texture.h"
 
 #define STB_IMAGE_WRITE_STATIC

@@ -3,7 +3,7 @@
 #include "image_files.h"
 #include "support/Folders.h"
 #include "tungsten/core/Errors.h"
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/io/Writers.h"
 
 #include <gtest/gtest.h>
 

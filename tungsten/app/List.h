@@ -1,7 +1,7 @@
 #pragma once
 // The answer to `--list`.
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 #include <iosfwd>
 

@@ -3,10 +3,10 @@
 #include "tungsten/app/OptionValues.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
-#include "tungsten/film/ImageIo.h"
-#include "tungsten/render/PartialState.h"
-#include "tungsten/render/Progress.h"
-#include "tungsten/render/ResultDescription.h"
+#include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Result.h"
+#include "tungsten/session/PartialState.h"
+#include "tungsten/session/Progress.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Values of options as texts. Each throws UsageError, with what was expected, for what it cannot read.
 
-#include "tungsten/render/PartialState.h"
+#include "tungsten/session/PartialState.h"
 
 #include <cstdint>
 #include <string>

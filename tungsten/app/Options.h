@@ -1,8 +1,8 @@
 #pragma once
 // The command line of `tungsten`.
 
-#include "tungsten/render/Outputs.h"
-#include "tungsten/render/PartialState.h"
+#include "tungsten/io/Outputs.h"
+#include "tungsten/session/PartialState.h"
 
 #include <filesystem>
 #include <optional>

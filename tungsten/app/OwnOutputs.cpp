@@ -1,7 +1,7 @@
 #include "tungsten/app/OwnOutputs.h"
 
 #include "tungsten/core/Errors.h"
-#include "tungsten/render/Outputs.h"
+#include "tungsten/io/Outputs.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <map>

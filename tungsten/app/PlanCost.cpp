@@ -1,9 +1,9 @@
 #include "tungsten/app/PlanCost.h"
 
 #include "tungsten/core/Errors.h"
-#include "tungsten/film/ImageIo.h"
-#include "tungsten/render/CostPilot.h"
+#include "tungsten/image/AtomicFile.h"
 #include "tungsten/scene/JsonWriter.h"
+#include "tungsten/session/CostPilot.h"
 
 #include <tbb/global_control.h>
 

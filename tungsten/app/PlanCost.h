@@ -2,7 +2,7 @@
 // `tungsten --plan-cost`: what an error costs by each method.
 
 #include "tungsten/app/Options.h"
-#include "tungsten/render/Job.h"
+#include "tungsten/session/Job.h"
 
 #include <atomic>
 

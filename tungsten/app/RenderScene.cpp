@@ -4,10 +4,9 @@
 #include "tungsten/app/PlanCost.h"
 #include "tungsten/app/Signals.h"
 #include "tungsten/core/Errors.h"
-#include "tungsten/render/BlackImage.h"
-#include "tungsten/render/PlanReport.h"
-#include "tungsten/render/Progress.h"
-#include "tungsten/render/RenderSession.h"
+#include "tungsten/session/Progress.h"
+#include "tungsten/session/Report.h"
+#include "tungsten/session/Session.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -2,8 +2,8 @@
 // One scene of the command: loaded, then explained, priced or rendered.
 
 #include "tungsten/app/Options.h"
-#include "tungsten/render/Job.h"
-#include "tungsten/render/Team.h"
+#include "tungsten/session/Job.h"
+#include "tungsten/session/ProcessGroup.h"
 
 namespace tungsten {
 

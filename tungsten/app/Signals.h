@@ -1,7 +1,7 @@
 #pragma once
 // Signals that ask for an end.
 
-#include "tungsten/render/Team.h"
+#include "tungsten/session/ProcessGroup.h"
 
 #include <atomic>
 

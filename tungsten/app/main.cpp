@@ -11,8 +11,8 @@
 #include "tungsten/app/Silence.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/SystemError.h"
-#include "tungsten/render/Describe.h"
-#include "tungsten/render/Memory.h"
+#include "tungsten/session/Memory.h"
+#include "tungsten/session/Report.h"
 
 #include <tbb/global_control.h>
 

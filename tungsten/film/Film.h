@@ -8,6 +8,7 @@
 #include "tungsten/film/MeanUpdate.h"
 #include "tungsten/film/PassBatches.h"
 #include "tungsten/film/PassScatter.h"
+#include "tungsten/image/Image.h"
 
 #include <algorithm>
 #include <atomic>
@@ -18,27 +19,11 @@
 
 namespace tungsten {
 
-/// Row-major RGB image, row 0 at the top.
-struct Image {
-    int width = 0, height = 0;
-    std::vector<Rgb> pixels;
-
-    Image() = default;
-    Image(int w, int h) : width(w), height(h), pixels(size_t(w) * size_t(h), Rgb(0.0f)) {}
-    [[nodiscard]] Rgb& at(int x, int y) { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
-    [[nodiscard]] const Rgb& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
-};
-
 /// What the weight of a pass says.
 enum class PassWeight {
     Samples, ///< the pass is the mean of so many samples: its variance is inversely proportional to them
     Repeats, ///< the pass stands for so many like it; all have one variance
 };
-
-/// Rec. 709, of linear RGB.
-inline float luminanceOf(const Rgb& value) {
-    return 0.2126f * value.x + 0.7152f * value.y + 0.0722f * value.z;
-}
 
 /// A pass that has been folded in, on its way to the film's figures.
 struct FoldedPass {

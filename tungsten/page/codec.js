@@ -1,4 +1,4 @@
-// Films as the page keeps them (tungsten/film/FilmCode.h says how): base64 of deflated planes of bytes.
+// Films as the page keeps them (tungsten/io/FilmCode.h says how): base64 of deflated planes of bytes.
 
 async function unpack(base64) {
   const text = atob(base64.trim());

@@ -2,10 +2,8 @@
 
 #include "tungsten/python/Result.h"
 
-#include "tungsten/render/BlackImage.h"
-#include "tungsten/render/DefaultsTaken.h"
-#include "tungsten/render/Describe.h"
-#include "tungsten/render/Progress.h"
+#include "tungsten/session/Progress.h"
+#include "tungsten/session/Report.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

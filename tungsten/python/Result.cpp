@@ -1,6 +1,7 @@
 #include "tungsten/python/Result.h"
 
-#include "tungsten/render/ResultDescription.h"
+#include "tungsten/io/Result.h"
+#include "tungsten/session/Report.h"
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

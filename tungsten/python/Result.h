@@ -1,8 +1,8 @@
 #pragma once
 // A render as Python sees it.
 
-#include "tungsten/render/Job.h"
-#include "tungsten/render/RenderSession.h"
+#include "tungsten/session/Job.h"
+#include "tungsten/session/Session.h"
 
 #include <pybind11/numpy.h>
 

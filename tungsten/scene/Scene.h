@@ -6,8 +6,8 @@
 #include "tungsten/core/TimeProfile.h"
 #include "tungsten/emitter/Emitter.h"
 #include "tungsten/film/FilmContents.h"
-#include "tungsten/film/ToneMap.h"
 #include "tungsten/geometry/SceneGeometry.h"
+#include "tungsten/image/ToneMap.h"
 #include "tungsten/medium/Medium.h"
 
 #include <deque>

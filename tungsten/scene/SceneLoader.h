@@ -1,7 +1,7 @@
 #pragma once
 // Scene files in, typed scenes out.
 
-#include "tungsten/film/Exposure.h"
+#include "tungsten/image/Exposure.h"
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 

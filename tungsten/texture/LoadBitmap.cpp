@@ -2,7 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
-#include "tungsten/film/ImageIo.h"
+#include "tungsten/image/ReadImage.h"
 #include "tungsten/texture/ImageGuards.h"
 #include "tungsten/texture/Texture.h"
 

@@ -3,7 +3,7 @@
 
 #include "tungsten/camera/ReconstructionFilter.h"
 #include "tungsten/film/Film.h"
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 
 #include <vector>
 

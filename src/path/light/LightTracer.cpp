@@ -6,7 +6,7 @@
 
 #include "transport/SamplingSummary.h"
 
-#include "tungsten/render/EarliestArrival.h"
+#include "tungsten/integrator/EarliestArrival.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include <tbb/parallel_for.h>

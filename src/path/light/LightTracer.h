@@ -4,7 +4,7 @@
 
 #include "path/light/CameraConnections.h"
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 namespace tungsten::path {
 

@@ -6,7 +6,7 @@
 
 #include "transport/GateBounds.h"
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 #include <tbb/parallel_for.h>
 

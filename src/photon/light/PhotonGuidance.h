@@ -9,7 +9,7 @@
 
 #include "transport/WaysOut.h"
 
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
 
 #include <memory>

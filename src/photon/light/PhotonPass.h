@@ -9,7 +9,7 @@
 #include "photon/surface/SurfaceConnections.h"
 #include "transport/StrategyBalance.h"
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 namespace tungsten::photon {
 

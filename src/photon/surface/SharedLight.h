@@ -7,7 +7,7 @@
 #include "transport/Sensor.h"
 
 #include "tungsten/film/Film.h"
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 
 namespace tungsten::photon {
 

@@ -5,7 +5,7 @@
 #include "photon/view/SensorPath.h"
 #include "transport/Vertex.h"
 
-#include "tungsten/render/Integrator.h"
+#include "tungsten/integrator/Integrator.h"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include "photon/primitives/Radii.h"
 #include "photon/primitives/beams/PhotonBeam.h"
 
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 
 namespace tungsten::photon {
 

@@ -4,7 +4,7 @@
 #include "photon/primitives/Radii.h"
 #include "photon/store/Store.h"
 
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
 
 namespace tungsten::photon {

@@ -7,7 +7,7 @@
 #include "photon/view/CameraSegment.h"
 #include "transport/Sensor.h"
 
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
 
 #include <functional>

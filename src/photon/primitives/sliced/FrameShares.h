@@ -3,7 +3,7 @@
 
 #include "photon/primitives/sliced/CollapsedFlights.h"
 
-#include "tungsten/render/PassWatch.h"
+#include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
 
 #include <span>

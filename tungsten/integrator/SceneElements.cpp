@@ -1,0 +1,109 @@
+#include "tungsten/integrator/SceneElements.h"
+
+#include "tungsten/core/Overloaded.h"
+
+#include <algorithm>
+
+namespace tungsten {
+
+namespace {
+
+/// Some texture of the model, or of one that it consists of, varies over the surface.
+bool varies(const Bsdf& bsdf);
+
+bool varies(const BsdfModel& model) {
+    const auto textured = [](const Texture& texture) { return !texture.isConstant(); };
+    return std::visit(
+        Overloaded{
+            [&](const OneOf<OrenNayar, RoughConductor, RoughDielectric, RoughPlastic, PbrtPlastic> auto& rough) {
+                return textured(rough.roughness);
+            },
+            [&](const Transparency& t) { return textured(t.alpha) || varies(*t.base); },
+            [&](const Mixed& mixed) { return textured(mixed.ratio) || varies(*mixed.bsdf0) || varies(*mixed.bsdf1); },
+            [](const OneOf<Lambert, Mirror, Conductor, Dielectric, Plastic, Null, Forward> auto&) { return false; }},
+        model);
+}
+
+bool varies(const Bsdf& bsdf) {
+    return !bsdf.albedo.isConstant() || bsdf.bump || varies(bsdf.model);
+}
+
+/// Over a surface.
+bool varies(const Emitter& emitter) {
+    return std::visit(Overloaded{[](const AreaEmitter& area) { return !area.radiance.isConstant(); },
+                                 [](const OneOf<PointEmitter, DirectionalPointEmitter, CollimatedEmitter, SpotEmitter,
+                                                InfiniteSphereEmitter> auto&) { return false; }},
+                      emitter.model);
+}
+
+bool isTransparent(const Bsdf& bsdf) {
+    return std::visit(
+        Overloaded{[](const Transparency&) { return true; },
+                   [](const Mixed& mixed) { return isTransparent(*mixed.bsdf0) || isTransparent(*mixed.bsdf1); },
+                   [](const OneOf<Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric,
+                                  Plastic, RoughPlastic, PbrtPlastic, Null, Forward> auto&) { return false; }},
+        bsdf.model);
+}
+
+} // namespace
+
+void Uses::add(const std::string& name, const std::string& path) {
+    if (++count_ > MostListed) return;
+    names_.push_back(name);
+    if (!path.empty() && std::find(causes_.begin(), causes_.end(), path) == causes_.end()) causes_.push_back(path);
+}
+
+std::string Uses::names() const {
+    std::string list;
+    for (const std::string& name : names_) list += (list.empty() ? "" : ", ") + name;
+    return count_ > names_.size() ? list + " and " + std::to_string(count_ - names_.size()) + " more" : list;
+}
+
+std::string Uses::counted(const std::string& element, const std::string& what) const {
+    return std::to_string(count_) + " " + element + (count_ == 1 ? " " : "s ") + what + ", first " + names_.front();
+}
+
+std::set<int> reachableMedia(const Scene& scene) {
+    std::set<int> media{scene.cameraRegion.medium};
+    for (const Emitter& emitter : scene.emitters) media.insert(emitter.medium);
+    for (const Primitive& primitive : scene.primitives)
+        if (primitive.boundsMedium) media.insert({primitive.inside.medium, primitive.outside.medium});
+    media.erase(-1);
+    return media;
+}
+
+Speeds reachableSpeeds(const Scene& scene) {
+    std::set<float> speeds;
+    Uses uses;
+    const auto add = [&](const Region& region, const std::string& path) {
+        if (speeds.insert(region.speed).second)
+            uses.add("", region.medium >= 0 ? scene.media[size_t(region.medium)].path + ".speed_of_light" : path);
+    };
+    add(scene.cameraRegion, "camera");
+    for (const Emitter& emitter : scene.emitters) add(scene.regionOf(emitter), emitter.path);
+    for (const Primitive& primitive : scene.primitives)
+        if (primitive.boundsRegion)
+            for (const Region& side : {primitive.inside, primitive.outside}) add(side, primitive.path);
+    return {speeds.size(), *speeds.begin(), *speeds.rbegin(), uses.causes()};
+}
+
+std::string pathOf(const Bsdf& bsdf, const Primitive& primitive) {
+    return bsdf.name.empty() ? primitive.path + ".bsdf" : "bsdfs." + bsdf.name;
+}
+
+Uses lobeUses(const Scene& scene, LobeMask mask) {
+    return bsdfUses(scene, [mask](const Bsdf& bsdf) { return (bsdf.lobes() & mask) != 0; });
+}
+
+Uses textureUses(const Scene& scene) {
+    Uses uses = bsdfUses(scene, [](const Bsdf& bsdf) { return varies(bsdf); });
+    for (const Emitter& emitter : scene.emitters)
+        if (varies(emitter)) uses.add("'" + emitter.name + "'", emitter.path);
+    return uses;
+}
+
+Uses transparencyUses(const Scene& scene) {
+    return bsdfUses(scene, [](const Bsdf& bsdf) { return isTransparent(bsdf); });
+}
+
+} // namespace tungsten

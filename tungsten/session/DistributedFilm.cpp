@@ -1,0 +1,229 @@
+#include "tungsten/session/DistributedFilm.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace tungsten {
+
+namespace {
+
+template <typename Value>
+void append(Bytes& bytes, const Value* values, size_t count) {
+    const auto* begin = reinterpret_cast<const char*>(values);
+    bytes.insert(bytes.end(), begin, begin + count * sizeof(Value));
+}
+
+Bytes bytesOf(const std::string& text) {
+    return {text.begin(), text.end()};
+}
+
+constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// One line for each counter, then one for each stage with its CPU seconds, those of the process, and its memory.
+Bytes statisticsText(const Statistics& statistics) {
+    std::ostringstream text;
+    text.precision(17);
+    for (const auto& [name, value] : statistics.counters()) text << "counter " << value << ' ' << name << '\n';
+    for (const auto& [name, stage] : statistics.stages()) text << "stage " << stage.cpuSeconds << ' ' << name << '\n';
+    text << "process " << processCpuSeconds() << " cpu\nmemory " << peakMemoryBytes() << " peak\n";
+    const std::string all = text.str();
+    return {all.begin(), all.end()};
+}
+
+/// Wall seconds are rank 0's.
+void addText(const Bytes& bytes, SessionResult& result) {
+    std::istringstream text(std::string(bytes.begin(), bytes.end()));
+    std::string kind, name;
+    for (double value = 0.0; text >> kind >> value && std::getline(text.ignore(1), name);) {
+        if (kind == "counter") result.statistics.add(name, uint64_t(value));
+        if (kind == "stage") result.statistics.addStage(name, 0.0, value);
+        if (kind == "process") result.othersCpuSeconds += value;
+        if (kind == "memory") result.othersPeakMemory = std::max(result.othersPeakMemory, value);
+    }
+}
+
+} // namespace
+
+TeamFilm::TeamFilm(Team* team, Film& film) : team_(team), film_(film) {}
+
+int TeamFilm::firstRowOf(int rank) const {
+    const int together = film_.contents().rowsTogether();
+    const int64_t groups = (film_.height() + together - 1) / together;
+    return std::min(int(groups * rank / team_->size()) * together, film_.height());
+}
+
+/// For each rank the rows of this rank's pass image that it owns: their places, each with its values.
+std::vector<Bytes> TeamFilm::rowsFor() const {
+    std::vector<Bytes> parts(size_t(team_->size()));
+    std::vector<float> values(film_.rowValues());
+    for (int rank = 0; rank < team_->size(); ++rank)
+        for (int frame = 0; frame < film_.frames(); ++frame)
+            for (int y = firstRowOf(rank); y < firstRowOf(rank + 1); ++y) {
+                const uint64_t row = uint64_t(frame) * uint64_t(film_.height()) + uint64_t(y);
+                if (!film_.passRowIsLit(row)) continue;
+                append(parts[size_t(rank)], &row, 1);
+                film_.readPassRow(row, values.data());
+                append(parts[size_t(rank)], values.data(), values.size());
+            }
+    return parts;
+}
+
+void TeamFilm::collect(size_t passes) {
+    if (!team_) return;
+    const bool mine = size_t(team_->rank()) < passes;
+    const std::vector<Bytes> parts = mine ? rowsFor() : std::vector<Bytes>(size_t(team_->size()));
+    for (size_t rank = 0; rank < parts.size(); ++rank)
+        if (int(rank) != team_->rank()) bytesSent_ += parts[rank].size();
+    received_ = team_->exchange(parts);
+}
+
+void TeamFilm::fold(size_t rank, double weight) {
+    if (!team_) return film_.endPass(weight);
+    film_.beginPass();
+    Bytes& rows = received_[rank];
+    const size_t size = film_.rowValues() * sizeof(float);
+    std::vector<float> values(film_.rowValues());
+    for (size_t at = 0; at + sizeof(uint64_t) + size <= rows.size(); at += sizeof(uint64_t) + size) {
+        uint64_t row = 0;
+        std::memcpy(&row, rows.data() + at, sizeof row);
+        std::memcpy(values.data(), rows.data() + at + sizeof row, size);
+        film_.setPassRow(row, values.data());
+    }
+    Bytes().swap(rows);
+    folded_.push_back(film_.foldRows(weight, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1)));
+}
+
+void TeamFilm::settle() {
+    std::vector<Bytes> parts(size_t(team_->size()));
+    for (const FoldedPass& pass : folded_) append(parts[0], pass.rows.data(), pass.rows.size());
+    const std::vector<Bytes> received = team_->exchange(parts);
+    if (team_->rank() == 0)
+        for (size_t pass = 0; pass < folded_.size(); ++pass) {
+            FoldedPass& folded = folded_[pass];
+            folded.rows.assign(size_t(film_.height()), {});
+            for (int rank = 0; rank < team_->size(); ++rank) {
+                const auto rows = size_t(firstRowOf(rank + 1) - firstRowOf(rank));
+                std::memcpy(folded.rows.data() + firstRowOf(rank),
+                            received[size_t(rank)].data() + pass * rows * sizeof(PassDeviation),
+                            rows * sizeof(PassDeviation));
+            }
+            film_.settle(folded);
+        }
+    folded_.clear();
+}
+
+void TeamFilm::gather() {
+    if (!team_) return;
+    settle();
+    std::vector<Bytes> parts(size_t(team_->size()));
+    if (team_->rank() > 0) {
+        std::ostringstream state;
+        const uint64_t nonFinite = film_.nonFiniteSamples() - told_;
+        state.write(reinterpret_cast<const char*>(&nonFinite), sizeof nonFinite);
+        film_.writeRows(state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
+        parts[0] = bytesOf(state.str());
+        told_ = film_.nonFiniteSamples();
+    }
+    const std::vector<Bytes> received = team_->exchange(parts);
+    for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
+        const Bytes& part = received[size_t(rank)];
+        std::istringstream state(std::string(part.begin(), part.end()));
+        uint64_t nonFinite = 0;
+        state.read(reinterpret_cast<char*>(&nonFinite), sizeof nonFinite);
+        film_.countNonFinite(nonFinite);
+        film_.readRows(state, firstRowOf(rank), firstRowOf(rank + 1));
+    }
+}
+
+void TeamFilm::scatter() {
+    if (!team_) return;
+    std::vector<Bytes> parts(size_t(team_->size()));
+    for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
+        std::ostringstream state;
+        film_.writeRows(state, firstRowOf(rank), firstRowOf(rank + 1));
+        parts[size_t(rank)] = bytesOf(state.str());
+    }
+    const std::vector<Bytes> received = team_->exchange(parts);
+    if (team_->rank() == 0) return;
+    std::istringstream state(std::string(received[0].begin(), received[0].end()));
+    film_.readRows(state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
+}
+
+SharedResult::SharedResult(Team* team, SessionResult& result)
+    : team_(team), result_(result), film_(team, result.film),
+      bias_(team, result.bias), shown_{Unknown, Unknown, {0.0, 0.0}} {
+    if (team) result.ranks = team->size();
+}
+
+std::vector<double> SharedResult::largest(std::vector<double> values) {
+    if (!team_) return values;
+    const StageTimer timer(result_.statistics, "wait for other ranks");
+    return team_->largest(std::move(values));
+}
+
+void SharedResult::shareResumed() {
+    if (!team_ || largest({double(result_.film.passes())})[0] == 0.0) return;
+    film_.scatter();
+    if (result_.estimatesBias()) bias_.scatter();
+    result_.samples = uint64_t(result_.film.totalWeight());
+}
+
+void SharedResult::collect(size_t passes) {
+    if (!team_) return;
+    const StageTimer timer(result_.statistics, "exchange passes");
+    film_.collect(passes);
+    if (result_.estimatesBias()) bias_.collect(passes);
+}
+
+void SharedResult::fold(size_t rank, double weight) {
+    const uint32_t standsFor = result_.estimatesBias() ? passesOfItsBias(result_.film.passes()) : 0;
+    std::optional<StageTimer> timer;
+    if (team_) timer.emplace(result_.statistics, "fold passes");
+    film_.fold(rank, weight);
+    if (standsFor > 0) bias_.fold(rank, double(standsFor));
+    whole_ = !team_;
+}
+
+void SharedResult::gather() {
+    if (!team_ || whole_) return;
+    const StageTimer timer(result_.statistics, "gather film");
+    const auto start = Clock::now();
+    film_.gather();
+    if (result_.estimatesBias()) bias_.gather();
+    whole_ = true;
+    gathered_ = Clock::now();
+    gathering_ = gathered_ - start;
+}
+
+bool SharedResult::errorIsBelow(double target) {
+    gather();
+    return largest({double(speaks() && result_.errorBound() <= target)})[0] > 0.0;
+}
+
+bool SharedResult::mayShow() const {
+    constexpr int Part = 20;
+    constexpr std::chrono::seconds Least(2);
+    return team_ && Clock::now() - gathered_ > std::max<Clock::duration>(Part * gathering_, Least);
+}
+
+ShownErrors SharedResult::errors() {
+    if (whole_)
+        shown_ = {result_.film.relativeStandardError(), result_.film.relativeErrorBound(), result_.relativeBias()};
+    return shown_;
+}
+
+void SharedResult::gatherStatistics() {
+    if (!team_) return;
+    result_.statistics.add("bytes of passes to other ranks", film_.bytesSent() + bias_.bytesSent());
+    std::vector<Bytes> parts(size_t(team_->size()));
+    if (!speaks()) parts[0] = statisticsText(result_.statistics);
+    const std::vector<Bytes> received = team_->exchange(parts);
+    if (!speaks()) return;
+    for (size_t rank = 1; rank < received.size(); ++rank) addText(received[rank], result_);
+}
+
+} // namespace tungsten

@@ -1,0 +1,334 @@
+
+#include "tungsten/session/Report.h"
+
+#include "tungsten/integrator/BounceCuts.h"
+#include "tungsten/io/Result.h"
+#include "tungsten/scene/Json.h"
+#include "tungsten/scene/JsonWriter.h"
+#include "tungsten/session/Progress.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iomanip>
+#include <ostream>
+
+namespace tungsten {
+
+namespace {
+
+/// Whether the effect is that of leaving something out, and does.
+bool leavesOut(const Effect& effect, const EffectPlan& plan) {
+    const bool surfaces = plan.surfaceScattering || plan.surfaceEmission || plan.specularSensorPaths;
+    if (effect.name == "surfaces in time") return surfaces && plan.surfacesOutOfTime;
+    if (effect.name == "media in time") return !plan.mediaOutOfTime.empty();
+    constexpr std::array LeftOut{"late emitters left out", "black image", "frames before all light", LightCut};
+    return effect.on && std::ranges::find(LeftOut, effect.name) != LeftOut.end();
+}
+
+using Descriptions = std::vector<std::shared_ptr<Description>>;
+
+/// The reader of scenes takes any type: which there are the registry alone knows, with those of plugins.
+void nameTypes(std::vector<Field>& fields, const IntegratorRegistry& registry) {
+    std::vector<std::string> types;
+    for (const auto& [type, entry] : registry.entries()) types.push_back(type);
+    for (Field& field : fields)
+        if (field.name == "type") field.accepted = listOf(types);
+}
+
+std::shared_ptr<Description> describeIntegrator(const std::string& type, const IntegratorRegistry& registry,
+                                                const std::shared_ptr<const Scene>& scene) {
+    const IntegratorRegistry::Entry& entry = registry.entries().at(type);
+    auto description = std::make_shared<Description>();
+    description->name = type;
+    description->note = entry.description;
+    const ObjectReader reader = ObjectReader::describing(description, type);
+    describeTransport(reader, type);
+    nameTypes(description->fields, registry);
+    try {
+        (void)entry.factory(scene, reader);
+    } catch (const std::exception& error) {
+        description->note +=
+            " (fields may be missing: it does not take an empty scene: " + std::string(error.what()) + ")";
+    }
+    return description;
+}
+
+/// Adds the blocks within `description`, once each.
+void collectBlocks(const Description& description, Descriptions& blocks) {
+    for (const auto& block : description.blocks) {
+        const bool known = std::any_of(blocks.begin(), blocks.end(), [&](const std::shared_ptr<Description>& other) {
+            return other->name == block->name && other->fields == block->fields;
+        });
+        if (!known) blocks.push_back(block);
+        collectBlocks(*block, blocks);
+    }
+}
+
+bool isCountOrLength(const Field& field) {
+    const bool counted = field.unit == "none" || field.unit == "length" || field.unit == "samples/pixel";
+    return counted && field.fallback != "0" && field.accepted.find("number") != std::string::npos;
+}
+
+/// The reason of an effect whose cause is the field: what was made for the scene.
+std::string madeFor(const EffectPlan& plan, const std::string& field) {
+    const auto causes = [&](const Effect& effect) {
+        return std::find(effect.causes.begin(), effect.causes.end(), field) != effect.causes.end();
+    };
+    const auto effect = std::find_if(plan.effects.begin(), plan.effects.end(), causes);
+    return effect == plan.effects.end() ? "" : effect->reason;
+}
+
+std::string subtitle(const LoadedScene& loaded, const SessionResult& result) {
+    const TimeGate& gate = loaded.scene->transport.gate;
+    char text[200];
+    std::snprintf(text, sizeof text, "%s, %d x %d pixels, %s, %u passes, %.1f s (%s)", loaded.integratorType.c_str(),
+                  result.film.width(), result.film.height(),
+                  gate.steadyState  ? "steady state"
+                  : gate.delta      ? "a single moment"
+                  : gate.frames > 1 ? (std::to_string(gate.frames) + " frames").c_str()
+                                    : "one time gate",
+                  result.film.passes(), result.renderSeconds, toString(result.reason).c_str());
+    return text;
+}
+
+} // namespace
+
+void printPlan(const EffectPlan& plan, std::ostream& out) {
+    out << "  paths     " << plan.sampling.paths << "\n  vertices  " << plan.sampling.vertices << "\n  ends      "
+        << plan.sampling.ends << '\n';
+    for (const std::string& lack : plan.lacks) out << "  lacks     " << lack << '\n';
+    for (const Effect& effect : plan.effects)
+        if (leavesOut(effect, plan)) out << "  left out  " << effect.name << ": " << effect.reason << '\n';
+}
+
+void printEffects(const EffectPlan& plan, std::ostream& out) {
+    size_t width = 0;
+    for (const Effect& effect : plan.effects) width = std::max(width, effect.name.size());
+    for (const Effect& effect : plan.effects)
+        out << "  " << (effect.on ? "on " : "off") << "  " << std::left << std::setw(int(width)) << effect.name << "  "
+            << effect.reason << '\n';
+}
+
+void writeEffects(const std::vector<Effect>& effects, const Statistics& statistics, JsonWriter& json) {
+    json.beginArray("effects");
+    for (const Effect& effect : effects) {
+        json.beginObject();
+        json.field("name", effect.name);
+        json.field("on", effect.on);
+        json.field("reason", effect.reason);
+        json.field("causes", effect.causes);
+        json.beginObject("counters");
+        for (const std::string& counter : effect.counters) json.field(counter, statistics.counter(counter));
+        json.endObject();
+        json.endObject();
+    }
+    json.endArray();
+}
+
+void printDefaults(const std::vector<DefaultTaken>& defaults, std::ostream& out) {
+    size_t width = 0;
+    for (const DefaultTaken& taken : defaults) width = std::max(width, taken.field.size());
+    if (!defaults.empty()) out << "what the scene leaves open\n";
+    for (const DefaultTaken& taken : defaults)
+        out << "  " << std::left << std::setw(int(width)) << taken.field << "  " << taken.value << " (" << taken.meaning
+            << ")\n";
+}
+
+std::string planJson(const Job& job, const std::vector<DefaultTaken>& defaults) {
+    JsonWriter json;
+    json.field("scene", job.loaded.scene->file.string());
+    json.field("integrator", job.loaded.integratorType);
+    json.beginObject("sampling");
+    json.field("paths", job.plan.sampling.paths);
+    json.field("vertices", job.plan.sampling.vertices);
+    json.field("ends", job.plan.sampling.ends);
+    json.endObject();
+    writeEffects(job.plan.effects, {}, json);
+    json.field("lacks", job.plan.lacks);
+    json.beginArray("defaults");
+    for (const DefaultTaken& taken : defaults) {
+        json.beginObject();
+        json.field("field", taken.field);
+        json.field("value", taken.value);
+        json.field("meaning", taken.meaning);
+        json.endObject();
+    }
+    json.endArray();
+    return json.finish();
+}
+
+std::vector<DescribedKind> describeAll(const IntegratorRegistry& registry) {
+    std::vector<DescribedKind> kinds = describeScene();
+    const std::shared_ptr<const Scene> scene = emptyScene();
+    DescribedKind integrators{"integrators", {}};
+    for (const auto& [type, entry] : registry.entries())
+        integrators.types.push_back(describeIntegrator(type, registry, scene));
+    kinds.insert(kinds.begin() + 1, std::move(integrators));
+    Descriptions blocks = kinds.front().types;
+    for (const DescribedKind& kind : kinds)
+        for (const auto& type : kind.types) collectBlocks(*type, blocks);
+    kinds.front().types = std::move(blocks);
+    return kinds;
+}
+
+std::vector<DescribedKind> selectDescriptions(const std::vector<DescribedKind>& all, const std::string& name) {
+    if (name.empty()) return all;
+    std::vector<DescribedKind> selected;
+    std::vector<std::string> names;
+    for (const DescribedKind& kind : all) {
+        names.push_back(kind.kind);
+        DescribedKind part{kind.kind, {}};
+        for (const auto& type : kind.types) {
+            names.push_back(type->name);
+            if (name == type->name || name == kind.kind) part.types.push_back(type);
+        }
+        if (!part.types.empty()) selected.push_back(std::move(part));
+    }
+    if (!selected.empty()) return selected;
+    const std::string near = nearestName(name, names);
+    throw UsageError("--describe " + name + ": no such type" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                     " (--list shows all)");
+}
+
+std::vector<DefaultTaken> defaultsTaken(const Job& job, const IntegratorRegistry& registry) {
+    const auto document = parseJson(job.loaded.text, job.loaded.diagnostics->file);
+    const ObjectReader root(document, nodeOf(*document), "", std::make_shared<Diagnostics>());
+    const auto described = describeAll(registry);
+    std::vector<DefaultTaken> taken;
+    for (const auto& [block, type] : {std::pair<std::string, std::string>{"integrator", job.loaded.integratorType},
+                                      std::pair<std::string, std::string>{"renderer", "renderer"}}) {
+        const auto given = root.object(block, {"none", ""});
+        for (const DescribedKind& kind : selectDescriptions(described, type))
+            for (const auto& description : kind.types)
+                for (const Field& field : description->fields) {
+                    if (!isCountOrLength(field) || (given && given->has(field.name))) continue;
+                    const std::string path = block + "." + field.name, made = madeFor(job.plan, path);
+                    taken.push_back({path, made.empty() ? field.fallback : made, field.meaning});
+                }
+    }
+    return taken;
+}
+
+std::string toString(StopReason reason) {
+    switch (reason) {
+    case StopReason::Finished:
+        return "all samples taken";
+    case StopReason::TimedOut:
+        return "time-out";
+    case StopReason::TargetReached:
+        return "target error reached";
+    case StopReason::Interrupted:
+        return "interrupted";
+    }
+    return "";
+}
+
+std::string whyNoPass(const SessionOptions& options, const SessionResult& result) {
+    const auto text = [](const char* format, double number) {
+        char buffer[64];
+        std::snprintf(buffer, sizeof buffer, format, number);
+        return std::string(buffer);
+    };
+    const double limit = options.timeoutSeconds;
+    const auto stages = result.statistics.stages();
+    const auto prepare = stages.find("prepare");
+    const double preparing = prepare == stages.end() ? 0.0 : prepare->second.wallSeconds;
+    std::string why = "not one pass ended within " + text("%.3g s", limit);
+    if (preparing >= 0.9 * limit) {
+        why += ", which went into preparing";
+        if (!stages.contains("passes") && !result.brokenOff.stage.empty())
+            why += " (" + result.brokenOff.stage + text(", %.0f %% done)", 100.0 * result.brokenOff.ofStage);
+        return why + "; nothing was written. Give it more time: that is spent before the first photon or sample";
+    }
+    if (preparing >= 0.5 * limit) why += text(", of which %.2g s went into preparing", preparing);
+    return why + "; nothing was written. Give it more time, a smaller resolution, fewer samples in a pass "
+                 "(renderer.spp_step) or fewer photons";
+}
+
+std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result) {
+    const Scene& scene = *loaded.scene;
+    JsonWriter json;
+    json.field("scene", scene.file.string());
+    json.field("integrator", loaded.integratorType);
+    json.field("width", uint64_t(scene.camera.resolution.x));
+    json.field("height", uint64_t(scene.camera.resolution.y));
+    json.field("frames", uint64_t(scene.transport.gate.frames));
+    json.field("seed", options.seed);
+    json.field("threads", uint64_t(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    json.field("passes", uint64_t(result.film.passes()));
+    const double taken = result.film.totalWeight(); // parts of samples where passes were cut
+    taken == double(result.samples) ? json.field("samples per pixel", result.samples)
+                                    : json.field("samples per pixel", taken);
+    json.field("resumed samples per pixel", result.resumedSamples);
+    json.field("stopped because", toString(result.reason));
+    if (options.targetError > 0.0) {
+        json.field("target error", options.targetError);
+        json.field("target error reached", result.errorBound() <= options.targetError);
+    }
+    json.field("relative standard error", result.film.relativeStandardError());
+    json.field("relative error bound", result.film.relativeErrorBound());
+    if (result.estimatesBias()) {
+        const RelativeBias bias = result.relativeBias();
+        json.field("relative bias", bias.estimate);
+        json.field("relative bias bound", bias.bound);
+        json.field("passes measured for bias", uint64_t(result.bias.passes()));
+    }
+    json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
+    json.field("render wall seconds", result.renderSeconds);
+    if (result.ranks > 1) json.field("ranks", uint64_t(result.ranks));
+    json.field("process CPU seconds", processCpuSeconds() + result.othersCpuSeconds);
+    json.field("peak memory bytes", std::max(peakMemoryBytes(), uint64_t(result.othersPeakMemory)));
+    writeEffects(result.effects, result.statistics, json);
+    json.beginObject("counters");
+    for (const auto& [name, value] : result.statistics.counters()) json.field(name, value);
+    json.endObject();
+    json.beginObject("stages");
+    for (const auto& [name, stage] : result.statistics.stages()) {
+        json.beginObject(name);
+        json.field("wall seconds", stage.wallSeconds);
+        json.field("CPU seconds", stage.cpuSeconds);
+        json.field("runs", stage.runs);
+        json.endObject();
+    }
+    json.endObject();
+    return json.finish();
+}
+
+std::optional<Problem> blackImage(const Scene& scene, const EffectPlan& plan, const SessionResult& result) {
+    if (plan.nothingArrives || result.film.passes() == 0 || !(result.film.meanSquare() == 0.0)) return std::nullopt;
+    const TransportSettings& transport = scene.transport;
+    std::string text = "the image is black: no path found light";
+    for (const std::string& lack : plan.lacks) text += "; it lacks " + lack;
+    if (transport.minBounces >= transport.maxBounces)
+        text += "; min_bounces and max_bounces leave no number of interactions between them";
+    else if (!plan.timeResolved)
+        text += "; look at where lights and camera stand, what lies between them, and at max_bounces";
+    else
+        text += "; look at the times of the gate (a film of many frames shows when light arrives)";
+    if (plan.timeResolved && !transport.cameraUnwarped)
+        text += "; they count the way to the camera, unless the scene says \"camera_unwarped\": true";
+    return Problem{scene.file.string(), "integrator", text};
+}
+
+PageContent pageOf(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result) {
+    const double error = result.film.relativeStandardError();
+    const std::string known =
+        std::isnan(error) ? "" : errorText(error, result.film.relativeErrorBound(), result.relativeBias());
+    PageContent content{
+        result.film,
+        *loaded.scene,
+        loaded.integratorType,
+        subtitle(loaded, result),
+        {{"error", known}, {"command", options.command}, {"machine", machineText()}, {"build", buildText()}},
+        {},
+        statisticsJson(loaded, options, result)};
+    for (const TraceEntry& entry : result.trace)
+        content.curve.push_back({entry.cpuSeconds, entry.wallSeconds, entry.relativeError});
+    return content;
+}
+
+} // namespace tungsten
