@@ -5,7 +5,6 @@
 #include "path/techniques/LightPaths.h"
 #include "path/techniques/RefractedLight.h"
 
-#include "transport/DetectorLight.h"
 #include "transport/GuidancePlan.h"
 #include "transport/SamplingSummary.h"
 #include "transport/StepCounters.h"
@@ -23,49 +22,40 @@ bool noConnection(const Scene& scene, const PathSettings& settings, const Effect
            transport::isSealed(scene);
 }
 
-std::string guidanceObstacle(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+Choice guidanceOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
     const std::string obstacle = transport::guidanceObstacle(settings.policy, facts);
-    if (!obstacle.empty()) return obstacle;
-    if (!settings.lightSampling || !settings.volumeLightSampling) return "paths shall not connect to emitters";
-    if (noConnection(scene, settings, facts))
-        return "all that scatters lies behind walls that refract: no connection is complete";
-    return {};
+    if (!obstacle.empty()) return {false, obstacle};
+    const bool on = settings.lightSampling && settings.volumeLightSampling && !noConnection(scene, settings, facts);
+    const char* preset = settings.policy.sampling.published ? "published DARTS sampling of scattering media"
+                                                            : "DARTS sampling of scattering media";
+    return {on, on ? preset
+                   : "paths connect to no emitter: light sampling is off, or all that scatters lies behind walls that "
+                     "refract"};
 }
 
 Choice refractedOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
-    if (!facts.timeResolved || !facts.mediumScattering || !facts.heterogeneousMedia.empty() ||
-        !settings.lightSampling || !settings.volumeLightSampling || !noConnection(scene, settings, facts))
-        return {false, "not all that scatters is sealed by walls that refract, in a time-resolved render"};
-    if (!RefractedLight::helpsWith(scene))
-        return {false, "no light with a simple surface is outside the bodies, or many are"};
-    return {true, "paths aim from inside bodies at points of lights that refraction brings them to in time"};
+    const bool on = facts.timeResolved && facts.mediumScattering && facts.heterogeneousMedia.empty() &&
+                    settings.lightSampling && settings.volumeLightSampling && noConnection(scene, settings, facts) &&
+                    RefractedLight::helpsWith(scene);
+    return {on, on ? "paths aim from inside bodies at points of lights that refraction brings them to in time"
+                   : "no gate, not all that scatters is sealed by walls that refract, or no light with a simple "
+                     "surface is outside"};
 }
 
 Choice firstScatteringOf(const Scene& scene, const EffectPlan& facts, bool lasers) {
-    if (!lasers) return {true, "every light shines in more than one direction"};
-    if (!scene.camera.detectors())
-        return {false, "camera paths meet it with probability zero where it is scattered for the first time"};
-    if (facts.specularSensorPaths)
-        return {false, "mirrors and refraction show where it is scattered for the first time with probability zero"};
-    return {true, "places of detectors are connected to it"};
+    const bool on = !lasers || (scene.camera.detectors() && !facts.specularSensorPaths);
+    return {on, on ? "no light of a single direction, or places of detectors are connected to it"
+                   : "camera paths meet it with probability zero where it is scattered for the first time"};
 }
 
-std::string lightVertexObstacle(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
-                                const EffectPlan& facts) {
-    if (!plan.guidance.on) return "paths are not guided";
-    if (!settings.policy.connectsSurfaces()) return "not in the published method, or surface_connections is false";
-    if (!facts.surfaceScattering) return "no surface has a smooth lobe";
-    if (facts.speedsDiffer) return "light does not travel at one speed";
-    if (!LightPaths::helpWith(scene)) return "too many emitters, or none that shines in more than one direction";
-    return {};
-}
-
-Choice balanceOf(const Scene& scene, const PathSettings& settings, const Choice& guidance) {
-    if (!guidance.on) return {false, "paths are not guided"};
-    if (scene.transport.gate.delta) return {false, "no plain path meets a gate of width 0"};
-    if (!transport::haveDensities(scene, settings.policy, darts::Mode::Path))
-        return {false, "the published method, or switches that leave densities unknown"};
-    return {true, "plain paths beside guided ones, each weighed by how densely both find what it has found"};
+Choice lightVerticesOf(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
+                       const EffectPlan& facts) {
+    if (!plan.guidance.on) return plan.guidance;
+    const bool on = settings.policy.connectsSurfaces() && facts.surfaceScattering && !facts.speedsDiffer &&
+                    LightPaths::helpWith(scene);
+    return {on, on ? "paths connect to surface points that light reaches first"
+                   : "the preset or surface_connections, no smooth surface, several speeds of light, or too many "
+                     "emitters or none that shines in more than one direction"};
 }
 
 } // namespace
@@ -79,31 +69,20 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
     plan.lasers = std::any_of(scene.emitters.begin(), scene.emitters.end(),
                               [](const Emitter& emitter) { return emitter.isDelta(); });
     plan.firstScatteringInView = firstScatteringOf(scene, facts, plan.lasers);
-    const bool reaches = transport::DetectorLight::mayReach(scene, facts);
-    plan.detectorLight = {reaches, reaches ? "places of detectors are connected to lights that no ray meets"
-                                           : "no detector, or rays meet every light"};
-    const std::string obstacle = guidanceObstacle(scene, settings, facts);
-    const bool published = settings.policy.sampling.published;
-    plan.guidance = {obstacle.empty(), !obstacle.empty() ? obstacle
-                                                         : std::string(published ? "published " : "") +
-                                                               "DARTS sampling of scattering media"};
+    plan.detectorLight = transport::detectorLightOf(scene, facts, true);
+    plan.guidance = guidanceOf(scene, settings, facts);
     plan.roulette = {settings.russianRoulette, settings.russianRoulette ? "enable_rr, or its default in steady state"
                                                                         : "off by default in time-resolved renders"};
     plan.edaTable = transport::tablesOf(scene, settings.policy, darts::Mode::Path, facts, plan.guidance.on);
-    plan.balance = balanceOf(scene, settings, plan.guidance);
+    plan.balance =
+        transport::balanceOf(scene, settings.policy, darts::Mode::Path, plan.guidance, !scene.transport.gate.delta);
     plan.refracted = refractedOf(scene, settings, facts);
-    plan.chooseLightPaths(scene, settings, facts);
+    plan.lightVertices = lightVerticesOf(plan, scene, settings, facts);
+    plan.reflectedLight.on = plan.lightVertices.on && LightPaths::reflectedIn(scene);
+    plan.reflectedLight.reason = !plan.lightVertices.on   ? plan.lightVertices.reason
+                                 : plan.reflectedLight.on ? "paths connect to where glossy surfaces throw light"
+                                                          : "no glossy surface";
     return plan;
-}
-
-void PathPlan::chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
-    const std::string obstacle = lightVertexObstacle(*this, scene, settings, facts);
-    lightVertices = {obstacle.empty(),
-                     obstacle.empty() ? "paths connect to surface points that light reaches first" : obstacle};
-    reflectedLight.on = lightVertices.on && LightPaths::reflectedIn(scene);
-    reflectedLight.reason = !lightVertices.on   ? obstacle
-                            : reflectedLight.on ? "paths connect to where glossy surfaces throw light"
-                                                : "no glossy surface";
 }
 
 SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) const {
@@ -158,12 +137,9 @@ void countArrivals(EffectPlan& plan) {
 std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
     if (!PathPlan::of(scene, settings, facts).guidance.on || !settings.policy.sampling.elliptical)
         return "plain paths meet a delta gate with probability zero; give the gate a width, or set \"darts\": \"best\"";
-    if (facts.surfaceScattering || facts.surfaceEmission)
-        return "light from diffuse, glossy or emitting surfaces meets a delta gate with probability zero; give the "
-               "gate a width";
-    if (facts.speedsDiffer)
-        return "connections through regions of different speeds meet a delta gate with probability zero; give the "
-               "gate a width";
+    if (facts.surfaceScattering || facts.surfaceEmission || facts.speedsDiffer)
+        return "light from diffuse, glossy or emitting surfaces, or through regions of different speeds, meets a delta "
+               "gate with probability zero; give the gate a width";
     return {};
 }
 

@@ -34,7 +34,6 @@ struct PathPlan {
   private:
     [[nodiscard]] SamplingSummary summary(const Scene& scene, const PathSettings& settings,
                                           const EffectPlan& facts) const;
-    void chooseLightPaths(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
 };
 
 /// Why a delta gate cannot be rendered; empty if it can. Only control vertices arrive at one moment.

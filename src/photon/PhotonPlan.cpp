@@ -4,7 +4,6 @@
 #include "photon/view/SensorPath.h"
 
 #include "transport/Body.h"
-#include "transport/DetectorLight.h"
 #include "transport/GuidancePlan.h"
 
 namespace tungsten::photon {
@@ -38,92 +37,83 @@ bool anyGlossyOnly(const Scene& scene) {
     });
 }
 
-// Each of these says what is done, and why: the first reason that holds decides.
+// Each of these says what is done, and why.
 
 Choice guidanceOf(const Given& given) {
-    const EffectPlan& facts = given.facts;
-    std::string obstacle = transport::guidanceObstacle(given.policy(), facts);
-    if (obstacle.empty())
-        obstacle =
-            given.ofPrimitive([&](const auto& p) { return p.guidanceObstacle(given.scene, facts.speedsDiffer); });
+    std::string obstacle = transport::guidanceObstacle(given.policy(), given.facts);
+    if (!obstacle.empty()) return {false, obstacle};
+    obstacle =
+        given.ofPrimitive([&](const auto& p) { return p.guidanceObstacle(given.scene, given.facts.speedsDiffer); });
     if (!obstacle.empty()) return {false, obstacle};
     const bool needsPlace = given.ofPrimitive([](const auto& p) { return p.NeedsPlace; }) || !given.unwarped();
-    if (needsPlace && given.scene.camera.hasParallelRays())
-        return {false, "parallel rays, or detectors, have no one position to aim at"};
-    return {true, "the scene asks for DARTS"};
+    const bool on = !needsPlace || !given.scene.camera.hasParallelRays();
+    return {on, on ? "the scene asks for DARTS" : "parallel rays, or detectors, have no one position to aim at"};
 }
 
 Choice surfacesOf(const Given& given) {
-    if (!given.settings.includeSurfaces) return {false, "include_surfaces is false"};
     if (given.facts.surfacesOutOfTime) return {false, "what surfaces show arrives after the sensor has closed"};
-    if (!given.facts.surfaceScattering) return {false, "no surface has a smooth lobe"};
-    return {true, "smooth surfaces are gathered"};
+    const bool on = given.settings.includeSurfaces && given.facts.surfaceScattering;
+    return {on, on ? "smooth surfaces are gathered" : "include_surfaces is false, or no surface has a smooth lobe"};
 }
 
 Choice glossyPathsOf(const Given& given, const PhotonPlan& plan) {
     if (!plan.guidance.on) return plan.guidance;
-    if (!anyGlossyOnly(given.scene)) return {false, "no surface is glossy without being diffuse"};
     if (const Choice surfaces = surfacesOf(given); !surfaces.on) return surfaces;
     // Time without camera segments ends at the first surface that is no mirror.
-    if (given.unwarped()) return {false, "camera_unwarped: time stops at glossy surfaces, which are left to photons"};
-    if (!given.policy().followsGlossy())
-        return {false, "the preset or glossy_sensor_paths leaves glossy surfaces to photons"};
-    return {true, "sensor paths go on at surfaces that are glossy only, as at mirrors"};
+    const bool on = anyGlossyOnly(given.scene) && !given.unwarped() && given.policy().followsGlossy();
+    return {on, on ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
+                   : "no surface is glossy without being diffuse, or camera_unwarped, the preset or "
+                     "glossy_sensor_paths leaves them to photons"};
 }
 
 Choice framesOneByOneOf(const Given& given, bool exact) {
-    if (given.ofPrimitive([](const auto& p) { return p.ManyFrames; }))
-        return {false, "a sliced primitive shows in many frames"};
-    const bool on = exact && given.scene.transport.gate.frames > 1 && given.policy().aimsAtSingleFrames();
+    const bool manyFrames = given.ofPrimitive([](const auto& p) { return p.ManyFrames; });
+    const bool on =
+        exact && !manyFrames && given.scene.transport.gate.frames > 1 && given.policy().aimsAtSingleFrames();
     return {on, on ? "each light path aims at one frame" : "light paths aim at the whole sequence as one gate"};
 }
 
 Choice sideBySideOf(const Given& given, const PhotonPlan& plan) {
-    if (!plan.guidance.on) return plan.guidance;
-    if (given.policy().plainShare == 0.0f) return {false, "plain_share is 0"};
-    if (plan.framesOneByOne.on) return {false, "frames one by one"};
-    if (given.policy().directView == transport::DirectView::On)
-        return {false, "direct_view asks for control vertices alone"};
-    if (plan.meetsDeltaGate) return {false, "delta gate: control vertices lie on it, where no plain photon arrives"};
-    if (!transport::haveDensities(given.scene, given.policy(), darts::Mode::Photon))
-        return {false, "the published method, or switches that leave densities unknown"};
-    return {true, "plain and guided light paths, weighed by how densely both leave each record"};
+    const transport::Policy& policy = given.policy();
+    if (plan.guidance.on && (policy.plainShare == 0.0f || policy.directView == transport::DirectView::On))
+        return {false, "plain_share is 0, or direct_view asks for control vertices alone"};
+    return transport::balanceOf(given.scene, policy, darts::Mode::Photon, plan.guidance,
+                                !plan.framesOneByOne.on && !plan.meetsDeltaGate);
 }
 
 Choice ordinaryPhotonsOf(const Given& given, const PhotonPlan& plan) {
-    if (!given.atVertices()) return {false, "no points are stored: there are no control vertices"};
-    if (plan.sideBySide.on) return {true, "they share with plain light paths, too"};
-    if (!plan.directView)
-        return {true, "mirrors, refraction or different speeds: control vertices alone are not complete"};
-    if (plan.meetsDeltaGate) return {false, "delta gate: none of them arrives on it"};
-    if (plan.drawsByResponse) return {false, "control vertices are drawn by the sensor's response"};
-    if (given.policy().directView != transport::DirectView::Auto || given.policy().sampling.published)
-        return {false, "the preset or direct_view: control vertices alone are complete"};
-    return {true, "by the balance heuristic, where the gate lets as many of them pass"};
+    // What is drawn for one moment, or by the sensor's response, no ordinary photon is found by as well.
+    const bool complete = plan.directView && (plan.meetsDeltaGate || plan.drawsByResponse ||
+                                              given.policy().directView != transport::DirectView::Auto ||
+                                              given.policy().sampling.published);
+    const bool on = given.atVertices() && (plan.sideBySide.on || !complete);
+    return {on, on ? "they share with control vertices by the balance heuristic"
+                   : "control vertices alone are complete, or no points are stored"};
 }
 
 Choice connectionsOf(const Given& given, const PhotonPlan& plan) {
     if (!plan.guidance.on) return plan.guidance;
     if (const Choice surfaces = surfacesOf(given); !surfaces.on) return surfaces;
-    if (!plan.straightRays) return {false, "a thin lens, or different speeds of light"};
-    if (!given.policy().connectsSurfaces())
-        return {false, "the preset or surface_connections leaves surfaces to photons"};
-    return {true, "light paths connect to the surface points that the camera sees in time"};
+    const bool on = plan.straightRays && given.policy().connectsSurfaces();
+    return {on, on ? "light paths connect to the surface points that the camera sees in time"
+                   : "a thin lens, different speeds of light, the preset or surface_connections leaves surfaces to "
+                     "photons"};
 }
 
 Choice volumeOf(const Given& given, const PhotonPlan& plan) {
-    if (!given.facts.mediumScattering)
-        return {false, given.facts.noScattering() + ": no volume photon is stored or gathered"};
-    if (!plan.homogeneous && !given.atVertices()) return {false, given.facts.heterogeneity()};
-    if (!given.settings.primitiveReason.empty()) return {true, given.settings.primitiveReason};
-    return {true, given.ofPrimitive([](const auto& p) { return std::string(p.Reason); })};
+    const bool constant = plan.homogeneous || given.atVertices(), on = given.facts.mediumScattering && constant;
+    if (!on) return {on, constant ? given.facts.noScattering() : given.facts.heterogeneity()};
+    const std::string& chosen = given.settings.primitiveReason;
+    return {on, chosen.empty() ? given.ofPrimitive([](const auto& p) { return std::string(p.Reason); }) : chosen};
 }
 
 Choice temporalKernelOf(const Given& given, const PhotonPlan& plan) {
-    if (!given.delta()) return {false, "the gate has a width, or none"};
-    const std::string kernel = "delta gate: a box about it that narrows with the radius";
-    return {true,
-            plan.meetsDeltaGate && given.atVertices() ? kernel + "; control vertices lie on the gate itself" : kernel};
+    const bool on = given.delta();
+    return {on, !on ? "the gate has a width, or none"
+                : plan.meetsDeltaGate && given.atVertices()
+                    ? "delta gate: a box about it that narrows with the radius; "
+                      "control vertices lie on the gate itself"
+                    : "delta gate: a box about it that narrows with the radius"};
 }
 
 Choice surfacePhotonsOf(const Given& given, const PhotonPlan& plan) {
@@ -134,18 +124,11 @@ Choice surfacePhotonsOf(const Given& given, const PhotonPlan& plan) {
     return surfaces;
 }
 
-Choice detectorLightOf(const Given& given) {
-    if (!given.settings.includeSurfaces) return {false, "include_surfaces is false"};
-    const bool on = transport::DetectorLight::mayReach(given.scene, given.facts);
-    return {on, on ? "places of detectors are connected to lights that no ray meets"
-                   : "no detector, or rays meet every light"};
-}
-
 Choice exactCullingOf(const Given& given, const PhotonPlan& plan) {
-    if (!given.facts.timeResolved) return {false, "steady state: every photon counts"};
-    if (!plan.straightRays || plan.folds)
-        return {false, "sensor paths can fold, change speed or start at many points: photons are tested when gathered"};
-    return {true, "direct view: photons that arrive outside the gate are not stored"};
+    const bool on = given.facts.timeResolved && plan.straightRays && !plan.folds;
+    return {on, on ? "direct view: photons that arrive outside the gate are not stored"
+                   : "steady state, or sensor paths that can fold, change speed or start at many points: photons are "
+                     "tested when gathered"};
 }
 
 /// As many camera paths for each sample of a pixel as little time is left to, at least one.
@@ -158,12 +141,12 @@ uint32_t affordedCameraPaths(const Given& given) {
 
 Choice moreCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t paths) {
     if (!plan.guidance.on) return plan.guidance;
-    if (given.policy().sampling.published) return {false, "the preset has one"};
-    if (plan.glossyPaths.on) return {false, "paths on from glossy surfaces take long"};
-    if (!given.ofPrimitive([](const auto& p) { return p.SplatsOften; })) return {false, "slices take long to draw"};
-    if (paths == 1) return {false, "the image has many pixels, or passes have few light paths"};
-    return {true, std::to_string(paths) + " for each sample of a pixel: the image is small, and they take little time "
-                                          "beside guided light paths"};
+    const bool on = paths > 1 && !given.policy().sampling.published && !plan.glossyPaths.on &&
+                    given.ofPrimitive([](const auto& p) { return p.SplatsOften; });
+    return {on, on ? std::to_string(paths) + " for each sample of a pixel: the image is small, and they take little "
+                                             "time beside guided light paths"
+                   : "many pixels or few light paths, slices or paths on from glossy surfaces, which take long, or the "
+                     "preset has one"};
 }
 
 } // namespace
@@ -186,7 +169,7 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     plan.looksAgain = settings.includeSurfaces;
     plan.chooseGuidance(scene, settings, facts);
     plan.connections = connectionsOf(given, plan);
-    plan.detectorLight = detectorLightOf(given);
+    plan.detectorLight = transport::detectorLightOf(scene, facts, settings.includeSurfaces);
     plan.chooseStores(scene, settings, facts);
     return plan;
 }

@@ -1,5 +1,7 @@
 #include "transport/GuidancePlan.h"
 
+#include "transport/DetectorLight.h"
+
 namespace tungsten::transport {
 
 std::string guidanceObstacle(const Policy& policy, const EffectPlan& facts) {
@@ -25,10 +27,21 @@ Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, cons
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
 
-bool haveDensities(const Scene& scene, const Policy& policy, darts::Mode mode) {
-    return std::ranges::all_of(scene.media, [&](const Medium& medium) {
+Choice balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, const Choice& guidance, bool meets) {
+    if (!guidance.on) return guidance;
+    const bool known = std::ranges::all_of(scene.media, [&](const Medium& medium) {
         return !medium.scatters() || settingsIn(medium, policy, mode).hasDensities();
     });
+    const bool on = meets && known;
+    return {on, on ? "plain paths beside guided ones, each weighed by how densely both find what it has found"
+                   : "the published method, single switches, a delta gate or frames one by one, in which plain paths "
+                     "have no part"};
+}
+
+Choice detectorLightOf(const Scene& scene, const EffectPlan& facts, bool shown) {
+    const bool on = shown && DetectorLight::mayReach(scene, facts);
+    return {on, on ? "places of detectors are connected to lights that no ray meets"
+                   : "no detector, rays meet every light, or include_surfaces is false"};
 }
 
 } // namespace tungsten::transport

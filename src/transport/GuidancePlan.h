@@ -16,7 +16,10 @@ darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mo
 /// Whether the directions of some medium come from a table. `aims` as above; false where nothing is guided.
 Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const EffectPlan& facts, bool aims);
 
-/// Every draw in every medium has a density that is known: plain walks can run beside guided ones.
-bool haveDensities(const Scene& scene, const Policy& policy, darts::Mode mode);
+/// Whether plain walks run beside guided ones. `meets`: they meet what those aim at.
+Choice balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, const Choice& guidance, bool meets);
+
+/// Whether places of detectors are connected to lights, where paths without scattering are `shown`.
+Choice detectorLightOf(const Scene& scene, const EffectPlan& facts, bool shown);
 
 } // namespace tungsten::transport
