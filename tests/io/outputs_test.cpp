@@ -266,7 +266,7 @@ TEST(Outputs, CheckpointsAreOfTheMainImagesOnly) {
     outputs.colors = {{"c.png", "d.exr"}};
     outputs.series = {{"e.png", ""}};
     std::vector<fs::path> files;
-    for (const PlannedImage& image : plannedImages(outputs, 3, "_checkpoint")) files.push_back(image.file);
+    for (const OutputImage& image : plannedImages(outputs, 3, "_checkpoint")) files.push_back(image.file);
     EXPECT_EQ(files, (std::vector<fs::path>{"a_checkpoint.png", "b_checkpoint.pfm"}));
     EXPECT_EQ(plannedImages(outputs, 3, "").size(), 9u) << "four, the cube with its metadata, and three frames";
 }

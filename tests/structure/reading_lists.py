@@ -41,8 +41,8 @@ def text_of(name):
 
 
 def defines(text, name):
-    """A class, or a function: at the start of a line, behind a type."""
-    return re.search(rf"\b(class|struct) {name}\b[^;(]*{{|^(?! *return\b) *[\w:<>,&*\[\] ]*[\w>&*\]] [&*]?(\w+(<\w+>)?::)*{name}\(", text, re.MULTILINE)
+    """A class, a constant, or a function: at the start of a line, behind a type."""
+    return re.search(rf"\b(class|struct) {name}\b[^;(]*{{|^extern const \w+ {name}\b|^(?! *return\b) *[\w:<>,&*\[\] ]*[\w>&*\]] [&*]?(\w+(<\w+>)?::)*{name}\(", text, re.MULTILINE)
 
 
 def wrong(page):

@@ -4,6 +4,7 @@
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Outputs.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/session/PartialState.h"
 #include "tungsten/session/Progress.h"
@@ -28,13 +29,15 @@ constexpr const char* Purpose = "Puts the partial states of --passes together: t
 
 void declareOptions(CLI::App& app, MergeOptions& options) {
     app.add_option("states", options.states, "all passes of one render, from its first on, each once")->required();
-    app.add_option("-o,--output-file", options.outputs.ldr, "tone-mapped image (.png)");
-    app.add_option("-e,--hdr-output-file", options.outputs.hdr, "linear image: .exr, .npz, .h5, .pfm or .npy");
+    app.add_option("-o,--output-file", options.outputs.ldr,
+                   "tone-mapped image (" + formatsText(output_use::Shown) + ")");
+    app.add_option("-e,--hdr-output-file", options.outputs.hdr, "linear image: " + formatsText(output_use::Linear));
     app.add_option("--exposure", options.exposure,
                    "stops that 8-bit images are brightened by, or auto (default: the scene's)");
     app.add_flag("--no-frames", options.noFrames, "no 8-bit image of each frame of a sequence");
-    app.add_option("--sheet", options.outputs.sheet, "frames of a sequence at a glance (.png)");
-    app.add_option("--video", options.outputs.video, "a sequence as .mp4 or .gif, by ffmpeg");
+    app.add_option("--sheet", options.outputs.sheet,
+                   "frames of a sequence at a glance (" + formatsText(output_use::Sheet) + ")");
+    app.add_option("--video", options.outputs.video, "a sequence as " + formatsText(output_use::Video) + ", by ffmpeg");
     app.add_option("--stats", options.outputs.statistics,
                    "write what was measured, of every state too, to this JSON file");
     app.add_flag("--quiet", options.quiet, "print errors and warnings only");

@@ -114,14 +114,13 @@ void declareInputs(CLI::App& app, Options& options, OptionTexts& text) {
 }
 
 void declareOutputs(CLI::App& app, Options& options, OptionTexts& text) {
-    app.add_option("-o,--output-file", text.ldr, "tone-mapped image (.png)");
-    app.add_option("-e,--hdr-output-file", text.hdr,
-                   "linear image: .exr with standard error, .npz or .h5 with all that is known, .pfm, or .npy");
+    app.add_option("-o,--output-file", text.ldr, "tone-mapped image (" + formatsText(output_use::Shown) + ")");
+    app.add_option("-e,--hdr-output-file", text.hdr, "linear image: " + formatsWithNotes(output_use::Linear));
     app.add_option("--exposure", text.exposure,
                    "stops that 8-bit images are brightened by, or auto (default: the scene's; auto with a time gate)");
     app.add_flag("--no-frames", options.outputs.noFrames, "no 8-bit image of each frame of a sequence");
-    app.add_option("--sheet", text.sheet, "frames of a sequence at a glance (.png)");
-    app.add_option("--video", text.video, "a sequence as .mp4 or .gif, by ffmpeg");
+    app.add_option("--sheet", text.sheet, "frames of a sequence at a glance (" + formatsText(output_use::Sheet) + ")");
+    app.add_option("--video", text.video, "a sequence as " + formatsText(output_use::Video) + ", by ffmpeg");
     app.add_option("--stats", text.statistics, "write times, counters, memory and standard error to this JSON file");
     app.add_option("--html", text.page,
                    "write a page to look at the result with: film, arrival histograms, figures (one file, no network)");

@@ -1,5 +1,8 @@
 #include "tungsten/io/ContactSheet.h"
 
+#include "tungsten/io/Format.h"
+#include "tungsten/io/Writers.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,5 +60,14 @@ Image contactSheet(const std::vector<int>& frames, const std::function<Image(int
     }
     return sheet;
 }
+
+extern const OutputFormat SheetFormat{.extension = ".png",
+                                      .uses = output_use::Sheet,
+                                      .holdsFrames = true,
+                                      .write = [](const OutputFilm& film, const OutputImage& image) {
+                                          const auto shown = [&](int frame) { return film.shownFrame(frame); };
+                                          writePng(image.file, contactSheet(sheetFrames(film.frames()), shown),
+                                                   film.scene().toneMap);
+                                      }};
 
 } // namespace tungsten

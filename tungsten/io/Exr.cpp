@@ -2,6 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Format.h"
 #include "tungsten/io/Writers.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -13,6 +14,8 @@
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
+
+#include <cstdio>
 
 namespace tungsten {
 
@@ -99,6 +102,28 @@ void writeParts(std::ostream& stream, const std::filesystem::path& file, int par
     }
 }
 
+ExrPart partOf(const OutputFilm& film, int frame) {
+    const TimeGate& gate = film.scene().transport.gate;
+    char name[32];
+    std::snprintf(name, sizeof name, "frame.%04d", frame);
+    ExrPart part{.name = name,
+                 .colour = film.frame(frame),
+                 .standardError = film.overFrame(film.film().standardError(frame)),
+                 .hasTime = !gate.steadyState,
+                 .timeStart = gate.frameStart(frame),
+                 .timeEnd = gate.frameStart(frame + 1)};
+    if (frame >= film.bias().frames()) return part;
+    part.bias = film.overFrame(film.bias().mean(frame));
+    part.biasError = film.overFrame(film.bias().standardError(frame));
+    return part;
+}
+
+void writeFilmAsExr(const OutputFilm& film, const OutputImage& image) {
+    const int parts = image.frame ? 1 : film.frames();
+    const auto part = [&](int i) { return partOf(film, image.frame.value_or(i)); };
+    writeExr(image.file, parts, part, film.metadata());
+}
+
 } // namespace
 
 void writeExr(const std::filesystem::path& file, const std::vector<ExrPart>& parts, const std::string& metadata) {
@@ -110,5 +135,13 @@ void writeExr(const std::filesystem::path& file, int parts, const std::function<
               const std::string& metadata) {
     writeAtomically(file, [&](std::ostream& out) { writeParts(out, file, parts, part, metadata); });
 }
+
+/// OpenEXR keeps a header of 28 KiB for every part, in memory and while it writes.
+extern const OutputFormat ExrFormat{.extension = ".exr",
+                                    .uses = output_use::Linear | output_use::Series,
+                                    .note = "with standard error",
+                                    .holdsFrames = true,
+                                    .mostFrames = 10000,
+                                    .write = writeFilmAsExr};
 
 } // namespace tungsten

@@ -2,6 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Format.h"
 #include "tungsten/io/Result.h"
 
 #include <hdf5.h>
@@ -134,5 +135,15 @@ void writeHdf5(const std::filesystem::path& file, const ResultContent& content) 
         }
     });
 }
+
+extern const OutputFormat Hdf5Format{
+    .extension = ".h5",
+    .uses = output_use::Linear,
+    .note = "with all that is known",
+    .holdsFrames = true,
+    .holdsArrays = true,
+    .write = [](const OutputFilm& film, const OutputImage& image) {
+        writeHdf5(image.file, resultContent(film.film(), film.bias(), film.scene(), film.metadata()));
+    }};
 
 } // namespace tungsten

@@ -2,6 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Format.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/io/Writers.h"
 
@@ -153,5 +154,24 @@ void writeNpz(const std::filesystem::path& file, const ResultContent& content) {
         }
     });
 }
+
+extern const OutputFormat NpyFormat{.extension = ".npy",
+                                    .uses = output_use::Linear,
+                                    .holdsFrames = true,
+                                    .holdsArrays = true,
+                                    .needsMetadata = true,
+                                    .write = [](const OutputFilm& film, const OutputImage& image) {
+                                        writeNpy(image.file, film.frames(), [&](int i) { return film.frame(i); });
+                                    }};
+
+extern const OutputFormat NpzFormat{
+    .extension = ".npz",
+    .uses = output_use::Linear,
+    .note = "with all that is known",
+    .holdsFrames = true,
+    .holdsArrays = true,
+    .write = [](const OutputFilm& film, const OutputImage& image) {
+        writeNpz(image.file, resultContent(film.film(), film.bias(), film.scene(), film.metadata()));
+    }};
 
 } // namespace tungsten

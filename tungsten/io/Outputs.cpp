@@ -4,14 +4,8 @@
 #include "tungsten/core/InsideFolder.h"
 #include "tungsten/image/AtomicFile.h"
 #include "tungsten/image/Destination.h"
-#include "tungsten/image/ToneMap.h"
-#include "tungsten/io/ContactSheet.h"
-#include "tungsten/io/Result.h"
-#include "tungsten/io/Video.h"
-#include "tungsten/io/Writers.h"
 
 #include <algorithm>
-#include <cctype>
 #include <climits>
 #include <set>
 
@@ -22,9 +16,6 @@ namespace tungsten {
 namespace {
 
 namespace fs = std::filesystem;
-using Content = PlannedImage::Content;
-
-const std::vector<std::string> HdrExtensions{".exr", ".npz", ".h5", ".pfm", ".npy"};
 
 /// The name, or the name with 001, 002, ... before its extension, whichever is free first.
 fs::path freeName(const fs::path& file) {
@@ -37,18 +28,16 @@ fs::path freeName(const fs::path& file) {
     return candidate;
 }
 
-void checkExtension(const fs::path& file, const std::vector<std::string>& accepted) {
-    if (file.empty() || std::find(accepted.begin(), accepted.end(), extensionOf(file)) != accepted.end()) return;
-    throw InputError(file.string(),
-                     "unknown image type '" + file.extension().string() + "'; accepted: " + listOf(accepted));
+void checkFormat(const fs::path& file, OutputUses uses) {
+    if (!file.empty()) (void)formatOf(file, uses);
 }
 
 /// All files of a render.
 std::vector<fs::path> plannedFiles(const OutputFiles& outputs, const OutputPlan& plan) {
     std::vector<fs::path> files;
-    for (const PlannedImage& image : plannedImages(outputs, plan.frames, "")) files.push_back(image.file);
+    for (const OutputImage& image : plannedImages(outputs, plan.frames, "")) files.push_back(image.file);
     if (plan.checkpoints)
-        for (const PlannedImage& image : plannedImages(outputs, plan.frames, CheckpointSuffix))
+        for (const OutputImage& image : plannedImages(outputs, plan.frames, CheckpointSuffix))
             files.push_back(image.file);
     if (!outputs.statistics.empty()) files.push_back(outputs.statistics);
     if (!outputs.page.empty()) files.push_back(outputs.page);
@@ -113,35 +102,35 @@ void requireOwnNames(const std::vector<fs::path>& files, const OutputPlan& plan)
     }
 }
 
-/// OpenEXR keeps a header of 28 KiB for every part, in memory and while it writes.
+/// Formats that take any number are named.
 void requireFewFrames(const fs::path& file, int frames) {
-    constexpr int MostParts = 10000;
-    if (extensionOf(file) == ".exr" && frames > MostParts)
-        throw InputError(file.string(), "cannot hold " + std::to_string(frames) + " frames; .exr takes " +
-                                            std::to_string(MostParts) + ", .npz, .h5 and .npy any number of them");
-}
-
-/// Files that hold all frames as arrays.
-bool holdsArrays(const fs::path& file) {
-    const std::string extension = extensionOf(file);
-    return extension == ".npy" || extension == ".npz" || extension == ".h5";
+    if (file.empty()) return;
+    const OutputFormat& format = formatOf(file, output_use::Linear);
+    if (format.mostFrames == 0 || frames <= format.mostFrames) return;
+    std::vector<std::string> others;
+    for (const OutputFormat* other : outputFormats())
+        if ((other->uses & output_use::Linear) != 0 && other->holdsFrames && other->mostFrames == 0)
+            others.emplace_back(other->extension);
+    throw InputError(file.string(), "cannot hold " + std::to_string(frames) + " frames; " +
+                                        std::string(format.extension) + " takes " + std::to_string(format.mostFrames) +
+                                        ", " + listOf(others) + " any number of them");
 }
 
 /// Writes what it can: a file that fails does not keep the others from being written.
 class ImageWriter {
   public:
-    ImageWriter(const Film& film, const Film& bias, const Scene& scene, const std::string& metadata,
-                const std::optional<ExposureChoice>& exposure)
-        : film_(film), bias_(bias), scene_(scene), metadata_(metadata),
-          exposure_(exposure.value_or(ExposureChoice{!scene.transport.gate.steadyState, 0.0})) {}
+    explicit ImageWriter(const OutputFilm& film) : film_(film) {}
 
     /// What an array holds is told (by the file that follows it) only where the array was written.
-    void write(const PlannedImage& image) {
-        if (image.content == Content::Metadata && lastFailed_) return;
+    void write(const OutputImage& image) {
+        if (!image.format && lastFailed_) return;
         lastFailed_ = true;
         try {
             makeFolderOf(image.file);
-            writeContent(image);
+            if (image.format)
+                image.format->write(film_, image);
+            else
+                writeTextFile(image.file, film_.metadata());
             written_.push_back(image.file);
             lastFailed_ = false;
         } catch (const InputError& error) {
@@ -155,85 +144,7 @@ class ImageWriter {
     }
 
   private:
-    void writeContent(const PlannedImage& image) {
-        const bool frame = image.content == Content::Frame;
-        const std::string extension = extensionOf(image.file);
-        if (image.content == Content::Metadata)
-            writeTextFile(image.file, metadata_);
-        else if (image.content == Content::Cube || extension == ".npy")
-            writeCube(image.file);
-        else if (extension == ".npz")
-            writeNpz(image.file, resultContent(film_, bias_, scene_, metadata_));
-        else if (extension == ".h5")
-            writeHdf5(image.file, resultContent(film_, bias_, scene_, metadata_));
-        else if (extension == ".exr")
-            writeExr(
-                image.file, frame ? 1 : film_.frames(), [&](int i) { return exrPart(frame ? image.frame : i); },
-                metadata_);
-        else if (extension == ".pfm")
-            writePfm(image.file, frame ? overFrame(film_.mean(image.frame)) : wholeImage());
-        else
-            writeShown(image);
-    }
-    /// 8-bit images of frames have one exposure, so that they can be compared; that of the whole gate has its own.
-    void writeShown(const PlannedImage& image) {
-        if (image.linear) return writePng(image.file, wholeImage(), ToneMap::Linear);
-        const auto shown = [this](int frame) { return exposed(overFrame(film_.mean(frame)), framesFactor()); };
-        if (image.content == Content::Video)
-            writeVideo(image.file, {film_.width(), film_.height()}, film_.frames(),
-                       [&](int frame) { return toneMapped(shown(frame), scene_.toneMap); });
-        else if (image.content == Content::Sheet)
-            writePng(image.file, contactSheet(sheetFrames(film_.frames()), shown), scene_.toneMap);
-        else if (image.content == Content::Frame)
-            writePng(image.file, shown(image.frame), scene_.toneMap);
-        else
-            writePng(image.file, exposed(wholeImage(), wholeFactor()), scene_.toneMap);
-    }
-    [[nodiscard]] static Image exposed(Image image, float factor) {
-        for (Rgb& pixel : image.pixels) pixel *= factor;
-        return image;
-    }
-    [[nodiscard]] float wholeFactor() const {
-        if (!exposure_.automatic) return exposureFactor(exposure_.stops);
-        const auto automatic = std::make_unique<AutomaticExposure>();
-        automatic->include(wholeImage());
-        return automatic->factor();
-    }
-    [[nodiscard]] float framesFactor() {
-        if (!exposure_.automatic) return exposureFactor(exposure_.stops);
-        if (!framesFactor_) {
-            const auto automatic = std::make_unique<AutomaticExposure>();
-            for (int frame = 0; frame < film_.frames(); ++frame) automatic->include(overFrame(film_.mean(frame)));
-            framesFactor_ = automatic->factor();
-        }
-        return *framesFactor_;
-    }
-    [[nodiscard]] Image overFrame(Image average) const { return inOutputUnits(std::move(average), scene_, 1); }
-    [[nodiscard]] Image wholeImage() const { return inOutputUnits(film_.meanOverFrames(), scene_, film_.frames()); }
-    [[nodiscard]] ExrPart exrPart(int frame) const {
-        const TimeGate& gate = scene_.transport.gate;
-        char name[32];
-        std::snprintf(name, sizeof name, "frame.%04d", frame);
-        ExrPart part{.name = name,
-                     .colour = overFrame(film_.mean(frame)),
-                     .standardError = overFrame(film_.standardError(frame)),
-                     .hasTime = !gate.steadyState,
-                     .timeStart = gate.frameStart(frame),
-                     .timeEnd = gate.frameStart(frame + 1)};
-        if (frame >= bias_.frames()) return part;
-        part.bias = overFrame(bias_.mean(frame));
-        part.biasError = overFrame(bias_.standardError(frame));
-        return part;
-    }
-    void writeCube(const fs::path& file) const {
-        writeNpy(file, film_.frames(), [this](int frame) { return overFrame(film_.mean(frame)); });
-    }
-
-    const Film &film_, &bias_;
-    const Scene& scene_;
-    const std::string& metadata_;
-    ExposureChoice exposure_;
-    std::optional<float> framesFactor_; ///< once it is known
+    const OutputFilm& film_;
     bool lastFailed_ = false;
     std::vector<fs::path> written_;
     std::vector<Problem> problems_;
@@ -323,24 +234,25 @@ void checkWritable(const fs::path& named, const std::optional<fs::path>& within)
 }
 
 void checkOutputs(const OutputFiles& outputs, const OutputPlan& plan) {
-    checkExtension(outputs.ldr, {".png"});
-    checkExtension(outputs.hdr, HdrExtensions);
-    checkExtension(outputs.page, {".html", ".htm"});
-    checkExtension(outputs.sheet, {".png"});
-    checkExtension(outputs.video, {".mp4", ".gif"});
+    checkFormat(outputs.ldr, output_use::Shown);
+    checkFormat(outputs.hdr, output_use::Linear);
+    if (!outputs.page.empty()) requireExtension(outputs.page, {".html", ".htm"});
+    checkFormat(outputs.sheet, output_use::Sheet);
+    checkFormat(outputs.video, output_use::Video);
     requireFewFrames(outputs.hdr, plan.frames);
     for (const OutputBuffer& buffer : outputs.colors) requireFewFrames(buffer.hdrFile, plan.frames);
-    if (!outputs.video.empty()) requireFfmpeg(outputs.video);
     for (const fs::path& film : {outputs.sheet, outputs.video})
         if (!film.empty() && plan.frames <= 1)
             throw InputError(film.string(), "would show the frames of a sequence, but the scene has one image; give it "
                                             "an integrator.frame_num");
-    const auto check = [](const OutputBuffer& buffer, const std::vector<std::string>& hdrExtensions) {
-        checkExtension(buffer.ldrFile, {".png"});
-        checkExtension(buffer.hdrFile, hdrExtensions);
+    const auto check = [](const OutputBuffer& buffer, OutputUses uses) {
+        checkFormat(buffer.ldrFile, output_use::Shown);
+        checkFormat(buffer.hdrFile, uses);
     };
-    for (const OutputBuffer& buffer : outputs.colors) check(buffer, HdrExtensions);
-    for (const OutputBuffer& buffer : outputs.series) check(buffer, {".exr", ".pfm"});
+    for (const OutputBuffer& buffer : outputs.colors) check(buffer, output_use::Linear);
+    for (const OutputBuffer& buffer : outputs.series) check(buffer, output_use::Series);
+    for (const OutputImage& image : plannedImages(outputs, plan.frames, ""))
+        if (image.format && image.format->require) image.format->require(image.file);
     if (plan.state && outputs.state.empty())
         throw InputError("", "the resume state has no name: renderer.resume_render_file is empty");
     const std::vector<fs::path> files = plannedFiles(outputs, plan);
@@ -360,50 +272,46 @@ fs::path withSuffix(const fs::path& file, const std::string& suffix) {
     return file.parent_path() / (file.stem().string() + suffix + file.extension().string());
 }
 
-std::string extensionOf(const fs::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
-
-std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, const std::string& suffix) {
-    std::vector<PlannedImage> images;
-    const auto add = [&](const fs::path& file, Content content = Content::Whole, int frame = 0, bool linear = false) {
+std::vector<OutputImage> plannedImages(const OutputFiles& outputs, int frames, const std::string& suffix) {
+    std::vector<OutputImage> images;
+    const auto add = [&](const fs::path& file, OutputUses uses, std::optional<int> frame = {}, bool linear = false) {
         if (file.empty()) return;
-        images.push_back({file, content, frame, linear});
-        if (extensionOf(file) == ".npy") images.push_back({file.string() + ".json", Content::Metadata, 0, false});
+        const OutputFormat& format = formatOf(file, uses);
+        images.push_back({file, &format, frame, linear});
+        if (format.needsMetadata) images.push_back({file.string() + ".json"});
     };
-    const auto series = [&](const fs::path& file) {
-        for (int frame = 0; frame < frames && !file.empty(); ++frame)
-            add(framePath(file, frame, frames), Content::Frame, frame);
+    const auto series = [&](const fs::path& file, OutputUses uses) {
+        for (int frame = 0; frame < frames && !file.empty(); ++frame) add(framePath(file, frame, frames), uses, frame);
     };
     const fs::path hdr = outputs.hdr.empty() ? fs::path() : withSuffix(outputs.hdr, suffix);
-    add(withSuffix(outputs.ldr, suffix));
-    add(hdr);
+    add(withSuffix(outputs.ldr, suffix), output_use::Shown);
+    add(hdr, output_use::Linear);
     if (!suffix.empty()) return images;
     for (const OutputBuffer& buffer : outputs.colors) {
-        add(buffer.ldrFile, Content::Whole, 0, true);
-        add(buffer.hdrFile);
+        add(buffer.ldrFile, output_use::Shown, {}, true);
+        add(buffer.hdrFile, output_use::Linear);
     }
     if (frames <= 1) return images;
-    if (!hdr.empty() && !holdsArrays(hdr)) add(fs::path(hdr).replace_extension(".npy"), Content::Cube);
-    add(outputs.sheet, Content::Sheet);
-    add(outputs.video, Content::Video);
+    const OutputFormat* linear = hdr.empty() ? nullptr : &formatOf(hdr, output_use::Linear);
+    if (linear && !linear->holdsArrays) add(fs::path(hdr).replace_extension(".npy"), output_use::Linear);
+    add(outputs.sheet, output_use::Sheet);
+    add(outputs.video, output_use::Video);
     if (outputs.series.empty()) {
-        if (outputs.frames) series(outputs.ldr);
-        if (extensionOf(hdr) == ".pfm") series(hdr);
+        if (outputs.frames) series(outputs.ldr, output_use::Shown);
+        if (linear && !linear->holdsFrames) series(hdr, output_use::Linear);
     }
     for (const OutputBuffer& buffer : outputs.series) {
-        series(buffer.ldrFile);
-        series(buffer.hdrFile);
+        series(buffer.ldrFile, output_use::Shown);
+        series(buffer.hdrFile, output_use::Series);
     }
     return images;
 }
 
 std::vector<fs::path> writeImages(const Film& film, const Film& bias, const Scene& scene, const OutputFiles& outputs,
                                   const std::string& metadata, const std::string& suffix) {
-    ImageWriter writer(film, bias, scene, metadata, outputs.exposure);
-    for (const PlannedImage& image : plannedImages(outputs, film.frames(), suffix)) writer.write(image);
+    const OutputFilm shown(film, bias, scene, metadata, outputs.exposure);
+    ImageWriter writer(shown);
+    for (const OutputImage& image : plannedImages(outputs, film.frames(), suffix)) writer.write(image);
     return writer.finish();
 }
 

@@ -3,6 +3,7 @@
 
 #include "tungsten/film/Film.h"
 #include "tungsten/image/Exposure.h"
+#include "tungsten/io/Format.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <filesystem>
@@ -13,15 +14,15 @@ namespace tungsten {
 
 /// Where results go; relative paths are relative to the process directory.
 struct OutputFiles {
-    std::filesystem::path ldr;        ///< PNG, always written
-    std::filesystem::path hdr;        ///< .exr, .npz, .h5, .pfm or .npy; empty: none
+    std::filesystem::path ldr;        ///< output_use::Shown, always written
+    std::filesystem::path hdr;        ///< output_use::Linear; empty: none
     std::vector<OutputBuffer> colors; ///< further files of the image, the LDR ones not tone-mapped (resolved names)
     std::vector<OutputBuffer> series; ///< per-frame files of sequences (resolved names)
     std::filesystem::path state;      ///< resume state
     std::filesystem::path statistics; ///< JSON; empty: none
     std::filesystem::path page;       ///< HTML; empty: none
-    std::filesystem::path sheet{};    ///< PNG of all frames; empty: none
-    std::filesystem::path video{};    ///< .mp4 or .gif; empty: none
+    std::filesystem::path sheet{};    ///< output_use::Sheet, of all frames; empty: none
+    std::filesystem::path video{};    ///< output_use::Video; empty: none
     bool frames = true;               ///< each as an 8-bit image, beside `ldr`
     std::optional<ExposureChoice> exposure{};      ///< of 8-bit images; none: automatic where there is a gate, else 0
     std::optional<std::filesystem::path> within{}; ///< the folder that links in it must not lead out of; none: any may
@@ -75,27 +76,15 @@ void checkWritable(const std::filesystem::path& file, const std::optional<std::f
 /// Names a file whatever links lead to it; it need not exist.
 std::filesystem::path identityOf(const std::filesystem::path& file);
 
-/// One file of a film: the image of the whole gate (formats that hold several frames get all of them), one frame, all
-/// frames as an array, as a sheet or as a video, or what is known about them.
-struct PlannedImage {
-    enum class Content { Whole, Frame, Cube, Sheet, Video, Metadata };
-    std::filesystem::path file;
-    Content content = Content::Whole;
-    int frame = 0;
-    bool linear = false; ///< not tone-mapped, where it is an 8-bit image
-};
-
 /// Every image that is written, with a `suffix` (which goes before the extension: checkpoints) only the main ones.
-std::vector<PlannedImage> plannedImages(const OutputFiles& outputs, int frames, const std::string& suffix);
+std::vector<OutputImage> plannedImages(const OutputFiles& outputs, int frames, const std::string& suffix);
 
 /// `NAME<suffix>.ext` for NAME.ext.
 std::filesystem::path withSuffix(const std::filesystem::path& file, const std::string& suffix);
-/// Lower case, dot included.
-std::string extensionOf(const std::filesystem::path& file);
-
 /// Writes every image of the film, and of its bias where `bias` has frames, and returns the files' names; with a
-/// `suffix` (which goes before the extension: checkpoints) only the main ones. `metadata` (ResultDescription.h) goes
-/// into the files that can hold it, and beside NPY. Throws InputError after trying all of them if any failed.
+/// `suffix` (which goes before the extension: checkpoints) only the main ones. `metadata` (Result.h) goes
+/// into the files that can hold it, and beside those that cannot. Throws InputError after trying all of them if any
+/// failed.
 std::vector<std::filesystem::path> writeImages(const Film& film, const Film& bias, const Scene& scene,
                                                const OutputFiles& outputs, const std::string& metadata,
                                                const std::string& suffix = "");

@@ -1,6 +1,7 @@
 // PFM: `PF`, little-endian floats, rows bottom to top.
 
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Format.h"
 #include "tungsten/io/Writers.h"
 
 namespace tungsten {
@@ -19,5 +20,11 @@ void writePfm(const std::filesystem::path& file, const Image& image) {
         for (int y = image.height - 1; y >= 0; --y) writeRow(out, image, y);
     });
 }
+
+extern const OutputFormat PfmFormat{.extension = ".pfm",
+                                    .uses = output_use::Linear | output_use::Series,
+                                    .write = [](const OutputFilm& film, const OutputImage& image) {
+                                        writePfm(image.file, image.frame ? film.frame(*image.frame) : film.whole());
+                                    }};
 
 } // namespace tungsten

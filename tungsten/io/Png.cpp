@@ -4,6 +4,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/io/Format.h"
 
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -30,5 +31,11 @@ void writePng(const std::filesystem::path& file, const Image& image, ToneMap ton
             throw InputError(file.string(), "cannot be written: out of memory");
     });
 }
+
+extern const OutputFormat PngFormat{
+    .extension = ".png", .uses = output_use::Shown, .write = [](const OutputFilm& film, const OutputImage& image) {
+        if (image.linear) return writePng(image.file, film.whole(), ToneMap::Linear);
+        writePng(image.file, image.frame ? film.shownFrame(*image.frame) : film.shownWhole(), film.scene().toneMap);
+    }};
 
 } // namespace tungsten

@@ -3,6 +3,8 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/SystemError.h"
 #include "tungsten/image/AtomicFile.h"
+#include "tungsten/image/ToneMap.h"
+#include "tungsten/io/Format.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -162,6 +164,11 @@ class Encoder {
     int input_ = -1;
 };
 
+void writeFilmAsVideo(const OutputFilm& film, const OutputImage& image) {
+    writeVideo(image.file, {film.film().width(), film.film().height()}, film.frames(),
+               [&](int frame) { return toneMapped(film.shownFrame(frame), film.scene().toneMap); });
+}
+
 } // namespace
 
 void requireFfmpeg(const fs::path& video) {
@@ -188,5 +195,17 @@ void writeVideo(const fs::path& file, const Vec2i& size, int frames,
     }
     writeAtomically(file, [&](std::ostream& out) { video.copyTo(out); });
 }
+
+extern const OutputFormat Mp4Format{.extension = ".mp4",
+                                    .uses = output_use::Video,
+                                    .holdsFrames = true,
+                                    .require = requireFfmpeg,
+                                    .write = writeFilmAsVideo};
+
+extern const OutputFormat GifFormat{.extension = ".gif",
+                                    .uses = output_use::Video,
+                                    .holdsFrames = true,
+                                    .require = requireFfmpeg,
+                                    .write = writeFilmAsVideo};
 
 } // namespace tungsten

@@ -69,7 +69,7 @@ Result::Result(LoadedScene loaded, const SessionOptions& options, std::unique_pt
 
 std::vector<std::string> Result::write(const std::filesystem::path& file) const {
     OutputFiles outputs;
-    (file.extension() == ".png" ? outputs.ldr : outputs.hdr) = file;
+    (hasFormat(file, output_use::Shown) ? outputs.ldr : outputs.hdr) = file;
     checkOutputs(outputs, {session_->film.frames(), false, false, loaded_.inputs});
     std::vector<std::string> names;
     for (const auto& written : writeImages(session_->film, session_->bias, scene(), outputs, metadata_))
@@ -136,7 +136,9 @@ void declareResult(py::module_& module) {
             "error_bound", [](const Result& r) { return r.session().film.relativeErrorBound(); },
             "what the relative error does not exceed with a confidence of 95 %")
         .def("write", &Result::write, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
-             "Writes .exr, .npz, .h5, .pfm, .npy or .png and what goes beside them; returns the names.")
+             ("Writes " + formatsText(output_use::Linear | output_use::Shown) +
+              " and what goes beside them; returns the names.")
+                 .c_str())
         .def("__repr__", textOf);
 }
 

@@ -17,7 +17,7 @@ class Result {
     [[nodiscard]] const SessionResult& session() const { return *session_; }
     [[nodiscard]] const Scene& scene() const { return *loaded_.scene; }
     [[nodiscard]] const std::string& metadata() const { return metadata_; }
-    /// Writes .exr, .npz, .h5, .pfm, .npy or .png, with what goes beside them. Returns the files' names.
+    /// Writes an image of output_use::Linear or Shown, with what goes beside it. Returns the files' names.
     [[nodiscard]] std::vector<std::string> write(const std::filesystem::path& file) const;
 
     /// Read-only views (frames, height, width, 3) that keep `self` alive.

@@ -18,9 +18,8 @@ void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
         {"none", "color: further files of the image; transients: a series of frames; others are not written",
          "required"});
     if (!buffer.has("type")) buffer.problem("type", "an output buffer needs a type: " + listOf(types));
-    const OutputBuffer files{
-        buffer.text("ldr_output_file", "", {"none", "8-bit image (.png)"}),
-        buffer.text("hdr_output_file", "", {"none", "linear image (.exr, .npz, .h5, .pfm or .npy)"})};
+    const OutputBuffer files{buffer.text("ldr_output_file", "", {"none", meaning::EightBitImage}),
+                             buffer.text("hdr_output_file", "", {"none", meaning::LinearImage})};
     for (const char* variance : {"two_buffer_variance", "sample_variance"})
         if (buffer.flag(variance, false, {"none", "not produced: the EXR has a stderr layer"}))
             buffer.warn(variance, "not produced; the stderr layer of an EXR holds each pixel's standard error");
@@ -196,10 +195,8 @@ RendererSettings readRenderer(const ObjectReader& reader) {
     RendererSettings renderer;
     renderer.outputDirectory =
         reader.text("output_directory", "", {"none", "base of the files below", "the scene's folder"});
-    renderer.outputFile = reader.text("output_file", renderer.outputFile, {"none", "tone-mapped image (.png)"});
-    renderer.hdrOutputFile = reader.text(
-        "hdr_output_file", "",
-        {"none", "linear image (.exr with standard error, .npz or .h5 with all that is known, .pfm or .npy)"});
+    renderer.outputFile = reader.text("output_file", renderer.outputFile, {"none", meaning::ToneMappedImage});
+    renderer.hdrOutputFile = reader.text("hdr_output_file", "", {"none", meaning::LinearImage});
     renderer.exposure = readExposure(reader);
     const std::string state =
         reader.text("resume_render_file", "",

@@ -14,6 +14,13 @@
 
 namespace tungsten {
 
+/// Of fields that name images. Which formats there are is not known here: whoever describes them adds it.
+namespace meaning {
+inline constexpr const char* ToneMappedImage = "tone-mapped image";
+inline constexpr const char* EightBitImage = "8-bit image";
+inline constexpr const char* LinearImage = "linear image";
+} // namespace meaning
+
 /// An entry of `output_buffers`.
 struct OutputBuffer {
     std::string ldrFile, hdrFile; ///< empty: not written

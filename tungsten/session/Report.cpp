@@ -2,6 +2,7 @@
 #include "tungsten/session/Report.h"
 
 #include "tungsten/integrator/BounceCuts.h"
+#include "tungsten/io/Format.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/scene/Json.h"
 #include "tungsten/scene/JsonWriter.h"
@@ -37,6 +38,15 @@ void nameTypes(std::vector<Field>& fields, const IntegratorRegistry& registry) {
     for (const auto& [type, entry] : registry.entries()) types.push_back(type);
     for (Field& field : fields)
         if (field.name == "type") field.accepted = listOf(types);
+}
+
+/// The same of images: the table of formats knows which there are.
+void nameFormats(std::vector<Field>& fields) {
+    for (Field& field : fields) {
+        if (field.meaning == meaning::ToneMappedImage || field.meaning == meaning::EightBitImage)
+            field.meaning += " (" + formatsText(output_use::Shown) + ")";
+        if (field.meaning == meaning::LinearImage) field.meaning += " (" + formatsWithNotes(output_use::Linear) + ")";
+    }
 }
 
 std::shared_ptr<Description> describeIntegrator(const std::string& type, const IntegratorRegistry& registry,
@@ -171,6 +181,7 @@ std::vector<DescribedKind> describeAll(const IntegratorRegistry& registry) {
     Descriptions blocks = kinds.front().types;
     for (const DescribedKind& kind : kinds)
         for (const auto& type : kind.types) collectBlocks(*type, blocks);
+    for (const auto& block : blocks) nameFormats(block->fields);
     kinds.front().types = std::move(blocks);
     return kinds;
 }
