@@ -1,5 +1,6 @@
 #include "photon/PhotonIntegrator.h"
 
+#include "photon/PrimitivePilot.h"
 #include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/surface/SharedLight.h"
@@ -31,6 +32,9 @@ uint32_t surfaceSamples(const Vec2i& resolution) {
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive)
     : scene_(std::move(scene)), settings_(readPhotonSettings(settings, *scene_, progressive)) {}
 
+PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, PhotonSettings settings)
+    : scene_(std::move(scene)), settings_(std::move(settings)) {}
+
 void PhotonIntegrator::plan(EffectPlan& plan) const {
     // The temporal kernel of a delta gate reaches beyond it, in the first pass the most.
     leaveOutLate(*scene_, lastTime(*scene_) + (scene_->transport.gate.delta ? settings_.temporalRadius : 0.0), plan);
@@ -38,6 +42,7 @@ void PhotonIntegrator::plan(EffectPlan& plan) const {
 }
 
 void PhotonIntegrator::prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) {
+    if (settings_.alternatives.size() > 1) choosePrimitive(plan, watch, statistics);
     plan_ = PhotonPlan::of(*scene_, settings_, plan);
     forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
     if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, plan, transport::BounceLimits(scene_->transport));
@@ -47,6 +52,15 @@ void PhotonIntegrator::prepare(const EffectPlan& plan, const PassWatch& watch, S
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
     if (plan_.sideBySide.on) chooseShare(watch, statistics);
+}
+
+void PhotonIntegrator::choosePrimitive(const EffectPlan& facts, const PassWatch& watch, Statistics& statistics) {
+    const StageTimer timer(statistics, "pilot of volume primitives");
+    const MeasuredPrimitive measured = measurePrimitives(scene_, settings_, facts, watch);
+    statistics.add("pilot passes of volume primitives", measured.passes);
+    settings_.primitive = measured.primitive;
+    settings_.primitiveReason = measured.reason;
+    settings_.alternatives.clear();
 }
 
 void PhotonIntegrator::chooseShare(const PassWatch& watch, Statistics& statistics) {
@@ -69,7 +83,9 @@ void PhotonIntegrator::chooseShare(const PassWatch& watch, Statistics& statistic
 double PhotonIntegrator::memoryBytes() const {
     const auto ofRecord = []<typename Primitive>(const Primitive&) { return sizeof(typename Primitive::Record); };
     const double surface = settings_.includeSurfaces ? double(settings_.photonCount) * double(sizeof(Photon)) : 0.0;
-    const double volume = double(settings_.volumePhotonCount) * double(std::visit(ofRecord, settings_.primitive));
+    size_t record = std::visit(ofRecord, settings_.primitive);
+    for (const VolumePrimitive& one : settings_.alternatives) record = std::max(record, std::visit(ofRecord, one));
+    const double volume = double(settings_.volumePhotonCount) * double(record);
     const bool scatters =
         std::any_of(scene_->media.begin(), scene_->media.end(), [](const Medium& medium) { return medium.scatters(); });
     return surface + (scatters ? volume : 0.0);

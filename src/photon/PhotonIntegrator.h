@@ -15,6 +15,7 @@ namespace tungsten::photon {
 class PhotonIntegrator : public Integrator {
   public:
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
+    PhotonIntegrator(std::shared_ptr<const Scene> scene, PhotonSettings settings);
     void plan(EffectPlan& plan) const override;
     void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) override;
     [[nodiscard]] double memoryBytes() const override;
@@ -23,8 +24,12 @@ class PhotonIntegrator : public Integrator {
     [[nodiscard]] bool cutsLightPaths() const override { return true; }
     [[nodiscard]] double kernelWidth(uint32_t pass) const override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
+    /// Nanoseconds of a pass that do not grow with its light paths; after prepare().
+    [[nodiscard]] double passOverhead() const { return photonPass_->passOverhead(); }
 
   private:
+    /// Of `alternatives`, and with it the plan.
+    void choosePrimitive(const EffectPlan& facts, const PassWatch& watch, Statistics& statistics);
     /// Of plain and guided light paths.
     void chooseShare(const PassWatch& watch, Statistics& statistics);
     /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that

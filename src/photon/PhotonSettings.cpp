@@ -1,7 +1,7 @@
 #include "photon/PhotonSettings.h"
 
-#include "photon/AutoPrimitive.h"
 #include "photon/DefaultRadius.h"
+#include "photon/PrimitivePilot.h"
 
 namespace tungsten::photon {
 
@@ -42,6 +42,24 @@ bool readShortFlights(const ObjectReader& block) {
     return length == "short";
 }
 
+/// Every primitive that can make the scene's light. Beams blur by a radius that only a scene can name. What a pilot
+/// cannot see are biases: kernels of points and beams are the scene's own, slices have none.
+std::vector<VolumePrimitive> alternativesIn(const Scene& scene, const PhotonSettings& settings) {
+    std::vector<VolumePrimitive> alternatives{Points{}};
+    const EffectPlan facts = analyseScene(scene);
+    if (!facts.mediumScattering || !facts.heterogeneousMedia.empty()) return alternatives;
+    const bool hasRadius = settings.volumeRadius < Unbounded;
+    if (hasRadius) alternatives.push_back(Beams{});
+    if (facts.speedsDiffer && !scene.transport.cameraUnwarped) return alternatives; // slices would have to be gathered
+    for (const SliceName& name : SliceNames) {
+        const bool isBest = name.kind == SliceKind::MisVolumesBalls || name.kind == SliceKind::Hypervolumes;
+        if (!isBest || (scene.transport.gate.steadyState && !name.steadyState)) continue;
+        const SliceClasses classes = SliceClasses::of(name.kind, scene.transport.gate.steadyState, true, false);
+        if (hasRadius || !slicesNeedBeams(scene, classes)) alternatives.push_back(Slices{name.kind, {}});
+    }
+    return alternatives;
+}
+
 /// The primitive, radius and temporal kernel of the volume store.
 void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& settings) {
     const auto primitive = readPrimitive(block);
@@ -52,13 +70,7 @@ void readKernels(const ObjectReader& block, const Scene& scene, PhotonSettings& 
          "gather_radius is left out too; other points: without effect, their radii follow the density",
          "gather_radius"},
         Range::positive()));
-    if (primitive) {
-        settings.primitive = *primitive;
-    } else {
-        const auto chosen = AutoPrimitive::of(scene, settings.volumeRadius < Unbounded);
-        settings.primitive = chosen.primitive;
-        settings.primitiveReason = chosen.reason;
-    }
+    settings.alternatives = primitive ? std::vector{*primitive} : alternativesIn(scene, settings);
     settings.fixedVolumeRadius = block.flag(
         "fixed_volume_radius", false, {"none", "points: one radius, instead of one that follows the photons' density"});
     if (!scene.transport.gate.delta) return;
@@ -125,7 +137,10 @@ PhotonSettings readPhotonSettings(const ObjectReader& block, const Scene& scene,
         block.flag("exclude_non_mis", false,
                    {"none", "volumes and balls: without what scatters once or twice after a light or surface"});
     settings.shortFlights = readShortFlights(block);
-    std::visit([&](auto& primitive) { primitive.read(block, scene, settings); }, settings.primitive);
+    for (VolumePrimitive& one : settings.alternatives)
+        std::visit([&](auto& primitive) { primitive.read(block, scene, settings); }, one);
+    settings.primitive = settings.alternatives.front();
+    if (settings.alternatives.size() > 1) settings.primitiveReason = primitivesToMeasure(settings.alternatives);
     return settings;
 }
 

@@ -16,19 +16,20 @@ struct PhotonSettings : KernelSettings {
     /// With counts for a part of a pass (PassInfo::share).
     [[nodiscard]] PhotonSettings ofShare(double share) const;
 
-    VolumePrimitive primitive;
-    std::string primitiveReason;          ///< of its choice, where the scene leaves it open
-    uint64_t photonCount = 1000000;       ///< light paths per pass, and capacity of the surface store
-    uint64_t volumePhotonCount = 1000000; ///< capacity of the volume store, points or beams
-    uint32_t gatherCount = 20;            ///< nearest surface photons, the last of which gives the radius; at least 2
-    std::string radiusReason;             ///< of volumeRadius, where the scene leaves it open
-    float gatherRadius = 1e30f;           ///< largest distance of a gathered surface photon
-    double temporalRadius = 0.0;          ///< half-width of a delta gate's temporal kernel in the first pass
-    bool lowOrderScattering = true;       ///< false: no photon on the first medium vertex after a light or surface, and
-                                          ///< no beam from a light or surface
-    bool excludeNonMis = false;           ///< slices: classes alone that volumes and balls both make
-    bool shortFlights = false;            ///< slices: flights end at random lengths
-    bool includeSurfaces = true;          ///< false: no surface photons, no visible emission
+    VolumePrimitive primitive;                 ///< the first of the alternatives until one has been chosen
+    std::vector<VolumePrimitive> alternatives; ///< volume_photon_type auto: what a pilot chooses from
+    std::string primitiveReason;               ///< of its choice, where a pilot has made it
+    uint64_t photonCount = 1000000;            ///< light paths per pass, and capacity of the surface store
+    uint64_t volumePhotonCount = 1000000;      ///< capacity of the volume store, points or beams
+    uint32_t gatherCount = 20;      ///< nearest surface photons, the last of which gives the radius; at least 2
+    std::string radiusReason;       ///< of volumeRadius, where the scene leaves it open
+    float gatherRadius = 1e30f;     ///< largest distance of a gathered surface photon
+    double temporalRadius = 0.0;    ///< half-width of a delta gate's temporal kernel in the first pass
+    bool lowOrderScattering = true; ///< false: no photon on the first medium vertex after a light or surface, and
+                                    ///< no beam from a light or surface
+    bool excludeNonMis = false;     ///< slices: classes alone that volumes and balls both make
+    bool shortFlights = false;      ///< slices: flights end at random lengths
+    bool includeSurfaces = true;    ///< false: no surface photons, no visible emission
     bool progressive = true;
     transport::Policy policy; ///< how light paths are guided
 

@@ -40,48 +40,9 @@ inline constexpr uint32_t HighlightPaths = 16;
 /// Bench: study bodies
 inline constexpr float TowardsBodies = 0.2f;
 
-/// Slices, as `auto` chooses them, up to this |g| of phase functions, with and without the camera's leg, and their
-/// guided paths with it. Variance x CPU of mis_volumes_balls against beams, fog seen from 1.5 away: 0.17 at g = 0, 0.9
-/// at 0.3, 5.5 at 0.5; without the leg 0.07 at 0.7 and, against points, 1.6 at 0.9. Guided against plain: 0.5 at 0, 0.8
-/// at 0.5, 1.3 at 0.7, 7 at 0.9; without the leg 0.5 at 0 and 0.7, 1.1 at 0.9. Bench: study liu-primitives
-inline constexpr float MostSlicedPeak = 0.4f, MostUnwarpedPeak = 0.8f, MostGuidedPeak = 0.6f;
-
-/// Pixels of the largest image for which `auto` chooses slices: variance x CPU of the best of them against beams, in
-/// small and in large images. Fog without surfaces: fog seen from 1.5 away, delta 0.17 at 80 x 60, 0.36 at 240 x 180;
-/// box 0.32, 1.2; laser-in-fog, delta 0.3 at 96 x 72, 0.7 at 288 x 216; without the leg 0.04 to 0.1 and 0.13 to 0.4.
-/// Index-matched boundaries: box of fog, delta 0.27 at 32 x 32, 3.0 at 240 x 180, amber 1.4 and 4.4; without the leg
-/// 0.3 and 0.5. Bench: study liu-primitives
-inline constexpr double MostSlicedInOpenFog = 6e4, MostSlicedUnwarped = 5e4, MostSlicedBehindBoundaries = 7e3;
-
-/// The same among surfaces, without the camera's leg, for each scattering before the gate: at delta gates and at
-/// others. Variance x CPU of mis_volumes_balls against beams, scatterings in brackets: fogged-box (0.8), delta 0.7 at
-/// 32 x 32, 3.6 at 96 x 96, box 1.7 at 32 x 32, 3.6 at 64 x 64; the published volumetric-caustic (1.4), delta 0.37 at
-/// 80 x 44, 0.8 at 160 x 88, box 1.05 at 80 x 44; a card and a ball in fog (1.7), delta 0.28, 1.3, 3.5 at 32 x 32, 96 x
-/// 96, 160 x 160, box 0.55 to 1.2, 2.3, 4.5, and with what surfaces show 1.24 and 1.4 at 32 x 32, 2.0 and 4.6 at 64 x
-/// 64; two rooms (12), delta 0.33 at 32 x 32, 0.49 at 64 x 64, box 0.48 and 0.73; (18), delta 0.56 at 32 x 32. Bench:
-/// study liu-primitives
-inline constexpr double MostSlicedPerScattering = 2700.0, MostGatedPerScattering = 800.0;
-
-/// With the camera's leg: pixels at delta gates, up to so many scatterings and without lenses. Others are left to
-/// beams. As above: fogged-box (2.7), delta 0.31 at 32 x 32, 0.63 at 64 x 64, 1.1 at 96 x 96, box 1.6 at 32 x 32, 4.5
-/// at 64 x 64; a card and a ball in fog (6.6) at 32 x 32, delta 1.9, box 0.98, and with what surfaces show 0.94 and
-/// 0.71, at 64 x 64 1.5 and 2.6; two rooms (18), delta 8 and 2.7, box 3.2 and 21. Bench: study liu-primitives
-inline constexpr double MostSlicedAmongSurfaces = 4200.0, MostScatteringsAmongSurfaces = 4.0;
-
-/// Pixels of the largest image for which `auto` chooses planes where lenses alone are in light's way, at gates that
-/// last without the camera's leg. What lenses gather and scatter once is left to beams by every slice; planes cost
-/// little beside them, but their time is in proportion to the pixels. Variance x CPU of planes against beams,
-/// volumetric-caustic: 0.16 at 48 x 27, 0.5 at 128 x 72, 2.2 at 256 x 144. A ball of glass beside a lamp that is a
-/// sphere 1.5 at 32 x 32, 2.5 at 96 x 96; with walls about (the published one) 1.7 at 80 x 44. At delta gates 0.12 on
-/// the first, where blur is nearly all of the error, and 4.4 on the second, where mis_volumes_balls has 0.44. Bench:
-/// study liu-primitives
-inline constexpr double MostPlanedBehindLenses = 1.6e4;
-
-/// Scatterings before the gate, on the average, above which `auto` chooses hypervolumes about a camera in fog, and
-/// points anywhere. Variance x CPU of hypervolumes against mis_volumes_balls in fog seen from within, delta gates: 1.5
-/// at 2.8 scatterings, 0.45 at 4.5 and 6, 0.25 at 9, 0.36 at 24; against points 0.46 at 24 and 3.0 at 70; dense bodies
-/// seen from outside 43 (dense cube 10) and 2.8 (60). Bench: study liu-primitives
-inline constexpr double MostSharedScatterings = 4.0, MostSlicedScatterings = 40.0;
+/// Guided paths of slices, up to this |g| of phase functions. Variance x CPU, guided against plain: 0.5 at 0, 0.8 at
+/// 0.5, 1.3 at 0.7, 7 at 0.9; without the leg 0.5 at 0 and 0.7, 1.1 at 0.9. Bench: study liu-primitives
+inline constexpr float MostGuidedPeak = 0.6f;
 
 /// Where beams make the first order, the part of the other slices that is kept: beams want many light paths, and are
 /// cheap; of what volumes and balls share, which is far less noisy, half as many. Variance / mean^2 x CPU seconds of 8
@@ -128,6 +89,24 @@ struct Rates {
     double path, vertex, ray, controlVertex;
 };
 inline constexpr Rates PlainRates{115.0, 120.0, 100.0, 0.0}, GuidedRates{50.0, 200.0, 200.0, 500.0};
+/// What passes cost in nanoseconds, as the pilot of volume primitives counts them: walks by their counters, and the
+/// records of a primitive. All fitted to CPU seconds and counters of 350 renders of 43 scenes, 24 to 200 pixels wide.
+struct CountedCost {
+    const char* counter;
+    double nanoseconds;
+};
+inline constexpr CountedCost WalkCosts[] = {{"photons", 210.0},
+                                            {"rays", 180.0},
+                                            {"medium events", 60.0},
+                                            {"surface events", 300.0},
+                                            {"control vertices", 220.0},
+                                            {"surface connections", 220.0},
+                                            {"flights with densities of guided paths", 3600.0}};
+struct RecordCosts {
+    double stored, perPixel, splatted, gathered; ///< perPixel: of each in an image that it is splatted to all of
+};
+inline constexpr RecordCosts PointCosts{400.0, 0.0, 3.0, 100.0}, BeamCosts{750.0, 0.0, 20.0, 240.0},
+    SliceCosts{1300.0, 0.9, 0.0, 400.0};
 /// And a ray to a surface point; a record, with what is built and splatted of it; to keep a vertex of a plain path, and
 /// the densities of a flight; a path of a pixel in a pass. All fitted to CPU seconds and counters of 37 scenes
 /// (statistics of renders at a plain_share of 0, 0.5 and 1).

@@ -86,8 +86,8 @@ struct Scene {
     ToneMap toneMap = ToneMap::Gamma;
     FilmContents film;
     TransportSettings transport;
-    double lengthUnit = 0.0; ///< metres; 0: the scene does not say
-    std::unique_ptr<SceneGeometry> geometry;
+    double lengthUnit = 0.0;                       ///< metres; 0: the scene does not say
+    std::shared_ptr<const SceneGeometry> geometry; ///< of these primitives, or of those that this is a copy of
 
     [[nodiscard]] const Bsdf& bsdfOf(const SurfaceHit& hit) const {
         const Primitive& primitive = primitives[hit.shape];

@@ -61,7 +61,7 @@ void finishGeometry(Scene& scene, const LoadWatch& watch = {}) {
                                         [](const BsdfPtr& bsdf) { return (bsdf->lobes() & lobe::Through) != 0; });
         opaque.push_back(!passes && primitive.emitter < 0);
     }
-    scene.geometry = std::make_unique<SceneGeometry>(shapes, opaque, watch);
+    scene.geometry = std::make_shared<const SceneGeometry>(shapes, opaque, watch);
     const Vec3f low = scene.geometry->boundsMin(), high = scene.geometry->boundsMax();
     const float radius = std::max((high - low).length() * 0.5f, 1e-6f);
     for (Emitter& emitter : scene.emitters) encloseScene(emitter, (low + high) * 0.5f, radius);

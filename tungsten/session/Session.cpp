@@ -298,6 +298,13 @@ class Session {
         }
     }
 
+    /// With what pilots have decided meanwhile.
+    [[nodiscard]] std::vector<Effect> effectsNow(const EffectPlan& before) const {
+        EffectPlan now = analyseScene(*loaded_.scene, before.everything);
+        integrator_.plan(now);
+        return now.effects;
+    }
+
     /// False: it was broken off, in some rank, and there are no passes.
     bool prepare(const EffectPlan& plan) {
         bool whole = true;
@@ -307,6 +314,7 @@ class Session {
                 if (!black_) integrator_.prepare(plan, pass.watch.part(0.0, 0.0), statistics);
             };
             whole = watched_.run({}, limit_.end(), build);
+            if (whole) result_.effects = effectsNow(plan);
         });
         watched_.rethrow();
         agree(whole, false);

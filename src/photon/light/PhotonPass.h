@@ -48,6 +48,8 @@ class PhotonPass {
     [[nodiscard]] const ArrivalCulling& culling() const { return culling_; }
     /// Null when light paths are sampled plainly.
     [[nodiscard]] const PhotonGuidance* guidance() const { return guidance_.get(); }
+    /// What a pass costs however many its paths are, in counted nanoseconds.
+    [[nodiscard]] double passOverhead() const;
 
   private:
     /// Of its part of a whole pass, and with its kernels.
@@ -66,9 +68,6 @@ class PhotonPass {
     /// Guided slices: how many records a base leaves, from what a few paths find.
     [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const PhotonSettings& settings,
                                                              Statistics& statistics) const;
-
-    /// What a pass costs however many its paths are, in counted nanoseconds.
-    [[nodiscard]] double passOverhead() const;
 
     [[nodiscard]] PhotonMaps emptyMaps() const;
     /// Paths [first, last) in batches of consecutive ones.

@@ -1,0 +1,213 @@
+#include "photon/PrimitivePilot.h"
+
+#include "photon/PhotonIntegrator.h"
+#include "photon/Tuning.h"
+#include "transport/SharePilot.h"
+#include "transport/Tuning.h"
+
+#include <cmath>
+
+namespace tungsten::photon {
+
+namespace {
+
+/// Pixels of the pilots' image, at most: enough for kernels and paths of light to look as they will.
+constexpr double MostPixels = 4096.0;
+/// Light paths of a pilot's pass.
+constexpr double PathsOfPass = 256.0;
+/// Passes of each primitive: all have the first number of them, those that are not far worse twice as many, and so on.
+constexpr uint32_t LeastPasses = 16, MostPasses = 512, SlicePasses = 1024;
+constexpr double FarWorse = 8.0, LeastEffective = 6.0;
+/// Radii shrink from pass to pass: those of this one stand for all.
+constexpr double MiddlePass = 15.0;
+/// Nanoseconds of all passes, about.
+constexpr double MostCost = transport::tuning::MostPilotCost;
+
+/// The scene as seen in a smaller image, over the same geometry.
+std::shared_ptr<const Scene> smallScene(const Scene& scene) {
+    auto small = std::make_shared<Scene>(scene);
+    if (small->camera.detectors()) return small;
+    Vec2i& size = small->camera.resolution;
+    const double part = std::sqrt(MostPixels / (double(size.x) * double(size.y)));
+    if (part >= 1.0) return small;
+    size = {std::max(int(double(size.x) * part), 1), std::max(int(double(size.y) * part), 1)};
+    return small;
+}
+
+double pixelsOf(const Scene& scene) {
+    return double(scene.camera.resolution.x) * double(scene.camera.resolution.y);
+}
+
+/// Nanoseconds of what passes of an image of so many pixels have counted, had it `ratio` times as many.
+double costOf(const Statistics& counted, const VolumePrimitive& primitive, double pixels, double ratio) {
+    const auto count = [&](const char* counter) { return double(counted.counter(counter)); };
+    double cost = 0.0;
+    for (const tuning::CountedCost& one : tuning::WalkCosts) cost += one.nanoseconds * count(one.counter);
+    const auto ofRecords = [&]<typename Primitive>(const Primitive& p) {
+        const tuning::RecordCosts& costs = Primitive::AtVertices      ? tuning::PointCosts
+                                           : Primitive::CountsRecords ? tuning::SliceCosts
+                                                                      : tuning::BeamCosts;
+        const double stored = count(p.Stored), splatted = count("splatted records");
+        return costs.stored * stored +
+               ratio * ((splatted > 0.0 ? costs.perPixel * pixels * stored : 0.0) + costs.splatted * splatted +
+                        costs.gathered * (count(p.Gathered) - splatted));
+    };
+    return cost + std::visit(ofRecords, primitive);
+}
+
+/// One primitive's passes.
+class Pilot {
+  public:
+    Pilot(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings, const EffectPlan& facts,
+          const PassWatch& watch)
+        : primitive_(settings.primitive), progressive_(settings.progressive), integrator_(scene, settings),
+          film_(scene->camera.resolution.x, scene->camera.resolution.y, scene->transport.gate.frames) {
+        Statistics unreported;
+        integrator_.prepare(facts, watch, unreported);
+        pass_.watch = watch;
+        pass_.share = std::min(1.0, PathsOfPass / double(settings.photonCount));
+    }
+    void render(uint32_t passes) {
+        if (film_.passes() == 0) renderPass(pass_.share * 1e-6, camera_);
+        while (film_.passes() < passes) {
+            renderPass(pass_.share, counted_);
+            const double before = double(film_.passes()) * film_.meanValue();
+            film_.endPass(1.0);
+            const double own = double(film_.passes()) * film_.meanValue() - before;
+            squares_ += own * own;
+        }
+    }
+    [[nodiscard]] const VolumePrimitive& primitive() const { return primitive_; }
+    [[nodiscard]] uint32_t passes() const { return film_.passes(); }
+    [[nodiscard]] double cost() const { return costOf(counted_, primitive_, pixels(), 1.0); }
+    /// Passes of one brightness that would vary as these do in their mean: few, where most light came with a few.
+    [[nodiscard]] double effectivePasses() const {
+        const double sum = double(film_.passes()) * film_.meanValue();
+        return squares_ > 0.0 ? sum * sum / squares_ : 0.0;
+    }
+    [[nodiscard]] double mean() const { return film_.meanValue(); }
+    /// Variance times cost of a whole pass in an image of so many times the pixels. `brightest`: the largest mean of
+    /// the primitives; what this one has not seen of it in n passes comes at most once in n, with a variance of n times
+    /// its square at least: dark images have little noise. Infinite where nothing has arrived.
+    [[nodiscard]] double error(double pixelRatio, double brightest) const {
+        const double passes = double(film_.passes()), deviation = film_.relativeErrorBound() * mean();
+        if (!std::isfinite(deviation)) return Infinity;
+        const double missed = brightest - mean(), variance = passes * std::max(deviation * deviation, missed * missed);
+        // A pass without light paths costs what camera paths do.
+        const double camera = costOf(camera_, primitive_, pixels(), 1.0);
+        const double lightPaths = std::max(costOf(counted_, primitive_, pixels(), pixelRatio) / passes - camera, 0.0);
+        return variance * (lightPaths + pixelRatio * camera * pass_.share);
+    }
+
+  private:
+    [[nodiscard]] double pixels() const { return double(film_.width()) * double(film_.height()); }
+
+    VolumePrimitive primitive_;
+    bool progressive_;
+    PhotonIntegrator integrator_;
+    Film film_;
+    PassInfo pass_;
+    double squares_ = 0.0;        ///< of the passes' means
+    Statistics counted_, camera_; ///< of all passes; of one that has hardly any light paths
+
+    void renderPass(double share, Statistics& counted) {
+        PassInfo pass = pass_;
+        pass.share = share;
+        pass.index = progressive_ ? uint32_t(std::min(std::round(MiddlePass / share), 4e9)) : 0;
+        pass.firstSample = film_.passes();
+        pass.seed = transport::PilotKey + film_.passes();
+        film_.beginPass();
+        integrator_.renderPass(pass, film_, counted);
+    }
+};
+
+/// The primitives that are still in the running, the best one first.
+class Comparison {
+  public:
+    Comparison(std::vector<std::unique_ptr<Pilot>> pilots, double pixelRatio)
+        : best_(pilots.front()->primitive()), pilots_(std::move(pilots)), pixelRatio_(pixelRatio) {}
+
+    [[nodiscard]] bool undecided() const {
+        return pilots_.size() > 1 && next_ <= MostPasses && cost_ < (slicesAhead_ ? 2.0 : 1.0) * MostCost;
+    }
+    /// Renders as many passes of each again as there are, and drops what is far worse.
+    void render() {
+        double brightest = 0.0;
+        cost_ = 0.0;
+        for (const auto& pilot : pilots_) {
+            pilot->render(next_);
+            cost_ += pilot->cost();
+            brightest = std::max(brightest, pilot->mean());
+        }
+        const auto error = [&](const auto& pilot) { return pilot->error(pixelRatio_, brightest); };
+        std::stable_sort(pilots_.begin(), pilots_.end(),
+                         [&](const auto& a, const auto& b) { return error(a) < error(b); });
+        // Variances of so many passes are known to about this factor.
+        const double least = error(pilots_.front()), most = (1.0 + FarWorse / std::sqrt(double(next_))) * least;
+        // What slices contribute has no bound. Were their variance to grow with the number of passes, as it does with
+        // the heaviest tails, they would be ahead of kernels until so many.
+        const auto kernel =
+            std::find_if(pilots_.begin(), pilots_.end(), [](const auto& pilot) { return isKernel(*pilot); });
+        const bool ahead = kernel == pilots_.end() || double(next_) * error(*kernel) > SlicePasses * least;
+        slicesAhead_ = !isKernel(*pilots_.front());
+        best_ = (ahead ? pilots_.front() : *kernel)->primitive();
+        if (pilots_.front()->effectivePasses() >= LeastEffective && std::isfinite(most))
+            std::erase_if(pilots_, [&](const auto& pilot) {
+                if (error(pilot) <= most || (!ahead && isKernel(*pilot))) return false;
+                dropped_ += pilot->passes();
+                return true;
+            });
+        next_ *= 2;
+    }
+    [[nodiscard]] const VolumePrimitive& best() const { return best_; }
+    [[nodiscard]] uint64_t passes() const {
+        uint64_t passes = dropped_;
+        for (const auto& pilot : pilots_) passes += pilot->passes();
+        return passes;
+    }
+
+  private:
+    static bool isKernel(const Pilot& pilot) { return !std::holds_alternative<Slices>(pilot.primitive()); }
+
+    VolumePrimitive best_;
+    std::vector<std::unique_ptr<Pilot>> pilots_;
+    double pixelRatio_, cost_ = 0.0;
+    bool slicesAhead_ = false;
+    uint32_t next_ = LeastPasses; ///< passes of each
+    uint64_t dropped_ = 0;        ///< passes of those that are no longer in the running
+};
+
+std::string typeOf(const VolumePrimitive& primitive) {
+    return std::visit(Overloaded{[](const Slices& slices) { return std::string(sliceName(slices.kind).type); },
+                                 [](const auto& kernels) { return std::string(kernels.Type); }},
+                      primitive);
+}
+
+} // namespace
+
+std::string primitivesToMeasure(const std::vector<VolumePrimitive>& alternatives) {
+    std::string all;
+    for (const VolumePrimitive& one : alternatives) all += (all.empty() ? "" : ", ") + typeOf(one);
+    return "measured before the first pass: " + all;
+}
+
+MeasuredPrimitive measurePrimitives(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings,
+                                    const EffectPlan& facts, const PassWatch& watch) {
+    const std::shared_ptr<const Scene> small = smallScene(*scene);
+    PhotonSettings one = settings;
+    one.alternatives.clear();
+    std::vector<std::unique_ptr<Pilot>> pilots;
+    for (const VolumePrimitive& primitive : settings.alternatives) {
+        one.primitive = primitive;
+        pilots.push_back(std::make_unique<Pilot>(small, one, facts, watch));
+    }
+    MeasuredPrimitive measured{settings.alternatives.front(), "", 0};
+    Comparison comparison(std::move(pilots), pixelsOf(*scene) / pixelsOf(*small));
+    while (comparison.undecided()) comparison.render();
+    return {comparison.best(),
+            typeOf(comparison.best()) + ": least variance x cost of " + std::to_string(settings.alternatives.size()) +
+                " primitives in a pilot",
+            comparison.passes()};
+}
+
+} // namespace tungsten::photon

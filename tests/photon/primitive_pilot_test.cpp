@@ -1,0 +1,115 @@
+// volume_photon_type auto: what a pilot chooses from, and what it chooses.
+
+#include "photon/PhotonIntegrator.h"
+#include "photon/PrimitivePilot.h"
+
+#include "support/SceneFile.h"
+
+#include "tungsten/scene/SceneLoader.h"
+
+#include <gtest/gtest.h>
+
+#include <tbb/global_control.h>
+
+namespace tungsten::photon {
+namespace {
+
+struct Loaded {
+    std::shared_ptr<const Scene> scene;
+    PhotonSettings settings;
+
+    [[nodiscard]] MeasuredPrimitive measured() const {
+        PhotonIntegrator integrator(scene, settings);
+        EffectPlan plan = analyseScene(*scene);
+        integrator.plan(plan);
+        return measurePrimitives(scene, settings, plan, {});
+    }
+};
+
+/// A ball of fog of `scattering` a unit seen from outside, with a lamp beside it, and a gate.
+Loaded load(const std::string& scattering, const std::vector<std::string>& further = {},
+            const std::string& boundary = "forward") {
+    const test::SceneFile file(R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": )" + scattering + R"(}],
+        "camera": {"type": "pinhole", "fov": 30, "resolution": 16, "transform": {"position": [0, 0, -4]}},
+        "primitives": [
+            {"type": "sphere", "int_medium": "fog", "bsdf": {"type": ")" + boundary + R"("}},
+            {"type": "sphere", "emission": 10, "bsdf": {"type": "null"},
+             "transform": {"position": [1.5, 0, 0], "scale": 0.3}}],
+        "integrator": {"type": "progressive_transient_photon_map", "volume_photon_type": "auto", "darts": "best",
+            "photon_count": 20000, "volume_photon_count": 200000, "fixed_volume_radius": true,
+            "volume_gather_radius": 0.02, "transient_time_center": 6, "transient_time_width": 0.6}})");
+    const LoadedScene loaded = loadScene(file.path(), {{}, further});
+    return {loaded.scene, readPhotonSettings(loaded.integratorSettings, *loaded.scene, true)};
+}
+
+std::vector<std::string> alternativesOf(const Loaded& loaded) {
+    std::vector<std::string> types;
+    for (const VolumePrimitive& one : loaded.settings.alternatives)
+        types.push_back(std::visit(
+            Overloaded{[](const Slices& slices) { return std::string(sliceName(slices.kind).type); },
+                       [](const auto& kernels) { return std::string(kernels.Type); }},
+            one));
+    return types;
+}
+using Types = std::vector<std::string>;
+
+TEST(PrimitivePilot, ChoosesFromWhatTheSceneAllows) {
+    EXPECT_EQ(alternativesOf(load("2")), (Types{"points", "beams", "mis_volumes_balls", "hypervolumes"}));
+    EXPECT_EQ(alternativesOf(load("0")), Types{"points"}) << "nothing scatters";
+    EXPECT_EQ(alternativesOf(load("2", {"media.fog.speed_of_light=0.5"})), (Types{"points", "beams"}))
+        << "slices need one speed of light";
+    EXPECT_EQ(alternativesOf(load("2", {"integrator.volume_gather_radius=1e30"})), Types{"points"})
+        << "no radius for beams, to which slices leave what comes in through surfaces";
+    EXPECT_EQ(alternativesOf(load("2", {"integrator.volume_photon_type=beams"})), Types{"beams"});
+}
+
+/// One scattering on the way: a beam says more of it than a point. With many, and behind glass, points do.
+TEST(PrimitivePilot, ChoosesByVarianceAndCost) {
+    const MeasuredPrimitive thin = load("0.05").measured(), milk = load("20", {}, "dielectric").measured();
+    EXPECT_TRUE(std::holds_alternative<Beams>(thin.primitive)) << thin.reason;
+    EXPECT_TRUE(std::holds_alternative<Points>(milk.primitive)) << milk.reason;
+}
+
+TEST(PrimitivePilot, ChoosesAlikeWithAnyThreads) {
+    const Loaded loaded = load("3");
+    std::vector<MeasuredPrimitive> measured;
+    for (const size_t threads : {1, 2}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        measured.push_back(loaded.measured());
+    }
+    EXPECT_EQ(measured[0].reason, measured[1].reason);
+    EXPECT_EQ(measured[0].passes, measured[1].passes);
+}
+
+/// The pilot's random numbers are its own.
+TEST(PrimitivePilot, RendersAsTheChosenPrimitive) {
+    const Loaded loaded = load("0.05");
+    PhotonSettings chosen = loaded.settings;
+    chosen.primitive = loaded.measured().primitive;
+    chosen.alternatives = {chosen.primitive};
+    std::vector<Film> films;
+    for (const PhotonSettings& settings : {loaded.settings, chosen}) {
+        PhotonIntegrator integrator(loaded.scene, settings);
+        EffectPlan plan = analyseScene(*loaded.scene);
+        integrator.plan(plan);
+        Statistics statistics;
+        integrator.prepare(plan, {}, statistics);
+        Film& film = films.emplace_back(16, 16, 1);
+        film.beginPass();
+        integrator.renderPass({.seed = 7}, film, statistics);
+        film.endPass(1.0);
+    }
+    ASSERT_GT(films[0].meanValue(), 0.0);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) EXPECT_EQ(films[0].mean(0).at(x, y), films[1].mean(0).at(x, y)) << x << ' ' << y;
+}
+
+/// Also where nothing arrives at all, and nothing can be told.
+TEST(PrimitivePilot, EndsWhereAllIsBlack) {
+    const MeasuredPrimitive dark = load("1", {"integrator.transient_time_center=4.2", "integrator.transient_time_width=0.01"}).measured();
+    EXPECT_FALSE(dark.reason.empty());
+}
+
+} // namespace
+} // namespace tungsten::photon
