@@ -26,12 +26,12 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
     return all;
 }
 
-ArrivalBound::ArrivalBound(const Scene& scene, const EffectPlan& plan)
-    : bounds_(transport::Delays::of(scene).arrivals(scene.transport.gate), plan), highestSpeed_(plan.highestSpeed) {
+ArrivalBound::ArrivalBound(const Scene& scene, const SceneFacts& facts)
+    : bounds_(transport::Delays::of(scene).arrivals(scene.transport.gate), facts), highestSpeed_(facts.highestSpeed) {
     // Environments never arrive; single directions are never found.
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
-        const bool late = !plan.late.empty() && plan.late[i];
+        const bool late = !facts.excludedEmitters.empty() && facts.excludedEmitters[i];
         if (!late && !emitter.isInfinite() && !emitter.isDelta()) sources_.push_back(sourceOf(emitter));
     }
     if (sources_.size() > MostSources) sources_ = {merged(sources_)};

@@ -10,7 +10,7 @@ namespace tungsten::path {
 /// Exact culling by time of flight in a time-resolved render; the tests leave room for rounding at the gate's ends.
 class ArrivalBound {
   public:
-    ArrivalBound(const Scene& scene, const EffectPlan& plan);
+    ArrivalBound(const Scene& scene, const SceneFacts& facts);
 
     /// A camera path that took `time` from the sensor to `position` may still meet light inside the gate.
     [[nodiscard]] bool mayArrive(const Vec3f& position, double time) const;

@@ -4,7 +4,7 @@
 
 namespace tungsten::path {
 
-PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan,
+PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const SceneFacts& facts,
                           const PassWatch& watch) {
     PathGuides guides;
     watch.stage("guides of media", scene.media.size());
@@ -14,7 +14,7 @@ PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const
         darts::Settings settings =
             scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
         // Directions are guided for the sake of control vertices.
-        if (!medium.scatters() || plan.isOutOfTime(i) || (!settings.elliptical && !scheme.direction))
+        if (!medium.scatters() || facts.isExcluded(i) || (!settings.elliptical && !scheme.direction))
             settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);

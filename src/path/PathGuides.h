@@ -16,7 +16,7 @@ namespace tungsten::path {
 /// Sampling by medium.
 struct PathGuides {
     /// `plan`: media that light is out of time in are not guided in.
-    static PathGuides of(const Scene& scene, const darts::Scheme& scheme, const EffectPlan& plan,
+    static PathGuides of(const Scene& scene, const darts::Scheme& scheme, const SceneFacts& facts,
                          const PassWatch& watch);
 
     std::vector<darts::Guide> media;  ///< for flights, and for leaving scatterers and surfaces into it

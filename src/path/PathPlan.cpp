@@ -10,6 +10,7 @@
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
+#include "tungsten/integrator/Names.h"
 #include "tungsten/integrator/SceneElements.h"
 
 namespace tungsten::path {
@@ -17,13 +18,13 @@ namespace tungsten::path {
 namespace {
 
 /// No vertex can be connected to an emitter.
-bool noConnection(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+bool noConnection(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
     return settings.policy.followsBodies() && !facts.surfaceScattering && !scene.transport.gate.delta &&
            transport::isSealed(scene);
 }
 
-Choice guidanceOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
-    const std::string obstacle = transport::guidanceObstacle(settings.policy, facts);
+Choice guidanceOf(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
+    const std::string obstacle = transport::guidanceObstacle(scene, settings.policy, facts);
     if (!obstacle.empty()) return {false, obstacle};
     const bool on = settings.lightSampling && settings.volumeLightSampling && !noConnection(scene, settings, facts);
     const char* preset = settings.policy.sampling.published ? "published DARTS sampling of scattering media"
@@ -33,7 +34,7 @@ Choice guidanceOf(const Scene& scene, const PathSettings& settings, const Effect
                      "refract"};
 }
 
-Choice refractedOf(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+Choice refractedOf(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
     const bool on = facts.timeResolved && facts.mediumScattering && facts.heterogeneousMedia.empty() &&
                     settings.lightSampling && settings.volumeLightSampling && noConnection(scene, settings, facts) &&
                     RefractedLight::helpsWith(scene);
@@ -42,14 +43,14 @@ Choice refractedOf(const Scene& scene, const PathSettings& settings, const Effec
                      "surface is outside"};
 }
 
-Choice firstScatteringOf(const Scene& scene, const EffectPlan& facts, bool lasers) {
+Choice firstScatteringOf(const Scene& scene, const SceneFacts& facts, bool lasers) {
     const bool on = !lasers || (scene.camera.detectors() && !facts.specularSensorPaths);
     return {on, on ? "no light of a single direction, or places of detectors are connected to it"
                    : "camera paths meet it with probability zero where it is scattered for the first time"};
 }
 
 Choice lightVerticesOf(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
-                       const EffectPlan& facts) {
+                       const SceneFacts& facts) {
     if (!plan.guidance.on) return plan.guidance;
     const bool on = settings.policy.connectsSurfaces() && facts.surfaceScattering && !facts.speedsDiffer &&
                     LightPaths::helpWith(scene);
@@ -60,7 +61,7 @@ Choice lightVerticesOf(const PathPlan& plan, const Scene& scene, const PathSetti
 
 } // namespace
 
-PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
     PathPlan plan;
     plan.timeResolved = facts.timeResolved;
     plan.media = !scene.media.empty() || facts.everything;
@@ -85,7 +86,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Ef
     return plan;
 }
 
-SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) const {
+SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) const {
     const transport::Policy& policy = settings.policy;
     SamplingSummary said;
     said.paths = transport::describeStrategies("camera paths", guidance, balance, policy.plainShare);
@@ -103,38 +104,38 @@ SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settin
     return said;
 }
 
-void PathPlan::describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const {
+void PathPlan::describe(const Scene& scene, const PathSettings& settings, const SceneFacts& facts,
+                        Features& features) const {
     const auto add = [&](const std::string& name, const Choice& choice, const std::vector<std::string>& causes,
                          const std::vector<std::string>& counters = {}) {
-        plan.describe(name, choice.on, choice.reason, causes, counters);
+        features.describe(name, choice.on, choice.reason, causes, counters);
     };
-    countArrivals(plan);
-    plan.sampling = summary(scene, settings, plan);
-    if (!firstScatteringInView.on) plan.lack("light of a single direction in view", firstScatteringInView.reason);
+    countArrivals(features);
+    features.sampling = summary(scene, settings, facts);
+    if (!firstScatteringInView.on) features.limit("light of a single direction in view", firstScatteringInView.reason);
     if (settings.missed)
-        plan.lack("light of points by mirrors and refraction",
-                  settings.missed->description() + " is met with probability zero");
-    if (scene.camera.detectors())
-        add("lights at detectors", detectorLight, {"camera"}, {"arrivals from lights at detectors"});
+        features.limit("light of points by mirrors and refraction",
+                       settings.missed->description() + " is met with probability zero");
+    if (scene.camera.detectors()) add("lights at detectors", detectorLight, {"camera"}, {counter::ArrivalsAtDetectors});
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
-    add("guided paths", guidance, {"integrator.darts"}, {"control vertices"});
-    add("plain paths beside them", balance, {"integrator.darts"}, {"pilot paths"});
-    add("light through walls", refracted, {"integrator.darts"}, {"ways through walls"});
-    add("EDA table", edaTable, {"integrator.darts"}, {"direction tables"});
-    if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, plan);
-    add("light vertices", lightVertices, {"integrator.darts"}, {"light vertex connections", "light paths"});
+    add("guided paths", guidance, {"integrator.darts"}, {counter::ControlVertices});
+    add("plain paths beside them", balance, {"integrator.darts"}, {counter::PilotPaths});
+    add("light through walls", refracted, {"integrator.darts"}, {counter::WaysThroughWalls});
+    add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
+    if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, features);
+    add("light vertices", lightVertices, {"integrator.darts"}, {counter::LightVertexConnections, counter::LightPaths});
     add("reflected light", reflectedLight, lobeUses(scene, lobe::GlossyReflection | lobe::SpecularReflection).causes(),
-        {"reflected light connections"});
+        {counter::ReflectedLightConnections});
 }
 
-void countArrivals(EffectPlan& plan) {
-    transport::countSteps(plan);
-    plan.count("time of flight", {"arrivals inside the gate"});
-    plan.count("frames", {"arrivals in later frames"});
-    plan.count("temporal response", {"arrivals weighed by the response"});
+void countArrivals(Features& features) {
+    transport::countSteps(features);
+    features.count(feature::TimeOfFlight, {counter::ArrivalsInGate});
+    features.count(feature::Frames, {counter::ArrivalsInLaterFrames});
+    features.count(feature::TemporalResponse, {counter::ArrivalsByResponse});
 }
 
-std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts) {
+std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
     if (!PathPlan::of(scene, settings, facts).guidance.on || !settings.policy.sampling.elliptical)
         return "plain paths meet a delta gate with probability zero; give the gate a width, or set \"darts\": \"best\"";
     if (facts.surfaceScattering || facts.surfaceEmission || facts.speedsDiffer)

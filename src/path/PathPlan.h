@@ -3,7 +3,7 @@
 
 #include "path/PathSettings.h"
 
-#include "tungsten/integrator/SceneFacts.h"
+#include "tungsten/integrator/Features.h"
 
 namespace tungsten::path {
 
@@ -11,9 +11,9 @@ using transport::Choice;
 
 struct PathPlan {
     /// `facts`: what the scene calls for (analyseScene). Builds nothing.
-    static PathPlan of(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
+    static PathPlan of(const Scene& scene, const PathSettings& settings, const SceneFacts& facts);
     /// Adds every choice to the plan's effects.
-    void describe(const Scene& scene, const PathSettings& settings, EffectPlan& plan) const;
+    void describe(const Scene& scene, const PathSettings& settings, const SceneFacts& facts, Features& features) const;
 
     Choice firstScatteringInView; ///< of light of a single direction, which no camera path finds
     Choice detectorLight;         ///< places of detectors are connected to lights that no ray meets
@@ -33,13 +33,13 @@ struct PathPlan {
 
   private:
     [[nodiscard]] SamplingSummary summary(const Scene& scene, const PathSettings& settings,
-                                          const EffectPlan& facts) const;
+                                          const SceneFacts& facts) const;
 };
 
 /// Why a delta gate cannot be rendered; empty if it can. Only control vertices arrive at one moment.
-std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const EffectPlan& facts);
+std::string deltaGateProblem(const Scene& scene, const PathSettings& settings, const SceneFacts& facts);
 
 /// Names in the plan the counters of steps and arrivals that every integrator of this plugin keeps.
-void countArrivals(EffectPlan& plan);
+void countArrivals(Features& features);
 
 } // namespace tungsten::path

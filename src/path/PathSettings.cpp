@@ -8,7 +8,7 @@ namespace tungsten::path {
 
 namespace {
 
-void warnAboutUnguided(const ObjectReader& block, const EffectPlan& facts, const PathSettings& settings) {
+void warnAboutUnguided(const ObjectReader& block, const SceneFacts& facts, const PathSettings& settings) {
     if (!settings.policy.guides()) return;
     if (!facts.timeResolved) {
         if (block.has("darts")) block.warn("darts", "guides time-resolved renders only");
@@ -20,7 +20,7 @@ void warnAboutUnguided(const ObjectReader& block, const EffectPlan& facts, const
 
 /// A camera path meets such light with probability zero; it is found from the first vertex on. Places of detectors are
 /// connected to that vertex.
-void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene, const EffectPlan& facts) {
+void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene, const SceneFacts& facts) {
     const bool detectors = scene.camera.detectors() != nullptr;
     if (detectors && !facts.specularSensorPaths) return;
     const auto laser = std::find_if(scene.emitters.begin(), scene.emitters.end(),
@@ -68,7 +68,7 @@ void acceptPhotonSettings(const ObjectReader& block) {
 
 PathSettings readPathSettings(const ObjectReader& block, const Scene& scene) {
     PathSettings settings;
-    const EffectPlan facts = analyseScene(scene);
+    const SceneFacts facts = analyseScene(scene);
     settings.lightSampling =
         block.flag("enable_light_sampling", true, {"none", "surface vertices connect to emitters"});
     settings.volumeLightSampling =

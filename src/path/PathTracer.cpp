@@ -7,6 +7,7 @@
 #include "transport/Tuning.h"
 
 #include "tungsten/integrator/EarliestArrival.h"
+#include "tungsten/integrator/Names.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -27,21 +28,21 @@ constexpr double GoldenRatio = 0.6180339887498949;
 void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("camera paths", counters.paths);
     statistics.add("rays", counters.rays);
-    statistics.add("shadow rays", counters.shadowRays);
-    statistics.add("control vertices", counters.controlVertices);
+    statistics.add(counter::ShadowRays, counters.shadowRays);
+    statistics.add(counter::ControlVertices, counters.controlVertices);
     statistics.add("plain paths beside guided ones", counters.plainPaths);
     statistics.add("vertices with densities of guided paths", counters.densities);
-    statistics.add("light vertex connections", counters.lightVertices);
-    statistics.add("reflected light connections", counters.reflectedLight);
-    statistics.add("ways through walls", counters.refracted);
+    statistics.add(counter::LightVertexConnections, counters.lightVertices);
+    statistics.add(counter::ReflectedLightConnections, counters.reflectedLight);
+    statistics.add(counter::WaysThroughWalls, counters.refracted);
     statistics.add("connections", counters.connections);
-    statistics.add("arrivals from lights at detectors", counters.intoDetectors);
+    statistics.add(counter::ArrivalsAtDetectors, counters.intoDetectors);
     statistics.add("arrivals while the sensor is open", counters.arrivals);
-    statistics.add("arrivals inside the gate", counters.timed);
-    statistics.add("arrivals in later frames", counters.laterFrames);
-    statistics.add("arrivals weighed by the response", counters.weighed);
+    statistics.add(counter::ArrivalsInGate, counters.timed);
+    statistics.add(counter::ArrivalsInLaterFrames, counters.laterFrames);
+    statistics.add(counter::ArrivalsByResponse, counters.weighed);
     transport::reportSteps(counters, statistics);
-    statistics.add("non-finite samples", counters.nonFinite);
+    statistics.add(counter::NonFiniteSamples, counters.nonFinite);
 }
 
 /// Base-2 radical inverse: any 2^k consecutive numbers spread evenly.
@@ -65,34 +66,35 @@ PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& s
     if (!problem.empty()) settings.problem("delta_time_gate", problem);
 }
 
-void PathTracer::plan(EffectPlan& plan) const {
-    leaveOutLate(*scene_, lastTime(*scene_), plan);
-    PathPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
+void PathTracer::plan(SceneFacts& facts, Features& features) const {
+    excludeLate(*scene_, lastTime(*scene_), facts, features);
+    PathPlan::of(*scene_, settings_, facts).describe(*scene_, settings_, facts, features);
 }
 
-void PathTracer::prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) {
-    plan_ = PathPlan::of(*scene_, settings_, plan);
-    bound_.emplace(*scene_, plan);
-    lights_.emplace(*scene_, plan.late);
+void PathTracer::prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) {
+    plan_ = PathPlan::of(*scene_, settings_, facts);
+    bound_.emplace(*scene_, facts);
+    lights_.emplace(*scene_, facts.excludedEmitters);
     using Emitters = TargetChoice::Emitters;
     const bool beside = plan_.balance.on && settings_.policy.plainShare != 0.0f;
-    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, plan.late, beside);
-    if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, plan, settings_.limits);
+    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, facts.excludedEmitters,
+                     beside);
+    if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, facts, settings_.limits);
     if (plan_.refracted.on) {
         const StageTimer timer(statistics, "light through walls");
-        refracted_.emplace().prepare(*scene_, plan.late, watch);
+        refracted_.emplace().prepare(*scene_, facts.excludedEmitters, watch);
     }
     if (!plan_.guidance.on) return;
     const StageTimer timer(statistics, "guide preparation");
-    guides_ = PathGuides::of(*scene_, settings_.policy.sampling, plan, watch);
-    if (plan_.edaTable.on) statistics.add("direction tables", uint64_t(guides_.tables()));
+    guides_ = PathGuides::of(*scene_, settings_.policy.sampling, facts, watch);
+    if (plan_.edaTable.on) statistics.add(counter::DirectionTables, uint64_t(guides_.tables()));
     waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
-    windows_ = plan_.balance.on ? transport::TimeWindows::ofSequence(*scene_, plan, sensor_.arrivals)
+    windows_ = plan_.balance.on ? transport::TimeWindows::ofSequence(*scene_, facts, sensor_.arrivals)
                                 : transport::TimeWindows(sensor_.arrivals);
     if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, watch, statistics);
     if (plan_.balance.on) chooseShare(watch, statistics);
     // Plain paths connect to the virtual sources of lasers alone.
-    if (balance_.guided == 0.0f) targets_.emplace(*scene_, Emitters::SingleDirections, plan.late);
+    if (balance_.guided == 0.0f) targets_.emplace(*scene_, Emitters::SingleDirections, facts.excludedEmitters);
 }
 
 void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
@@ -303,7 +305,7 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
     }
     const double time = asked ? double(*asked) : pilot.choose(costs);
     balance_ = costs.ofTime(time);
-    statistics.add("pilot paths", traced);
+    statistics.add(counter::PilotPaths, traced);
 }
 
 } // namespace tungsten::path

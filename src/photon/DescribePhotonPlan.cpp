@@ -8,36 +8,39 @@
 #include "transport/StepCounters.h"
 #include "transport/WaysOut.h"
 
+#include "tungsten/integrator/Names.h"
 #include "tungsten/integrator/SceneElements.h"
 
 #include <cstdio>
 
 namespace tungsten::photon {
 
-void PhotonPlan::describeVolume(const PhotonSettings& settings, EffectPlan& plan) const {
+void PhotonPlan::describeVolume(const PhotonSettings& settings, Features& features) const {
     const std::vector<std::string> type{"integrator.volume_photon_type"};
     forEachPrimitive(settings.primitive, [&](const auto& p) {
         using Primitive = std::decay_t<decltype(p)>;
         const bool used = std::holds_alternative<Primitive>(settings.primitive);
         const std::string other = std::visit([](const auto& q) { return std::string(q.Effect); }, settings.primitive);
-        plan.describe(p.Effect, used && volume.on, used ? volume.reason : "volumes store " + other, type, {p.Stored});
+        features.describe(p.Effect, used && volume.on, used ? volume.reason : "volumes store " + other, type,
+                          {p.Stored});
     });
     if (volume.on && !settings.radiusReason.empty())
-        plan.describe("default radius", true, settings.radiusReason, {"integrator.volume_gather_radius"});
-    describeSplatting(plan);
+        features.describe("default radius", true, settings.radiusReason, {"integrator.volume_gather_radius"});
+    describeSplatting(features);
 }
 
-void PhotonPlan::describeKernels(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+void PhotonPlan::describeKernels(const Scene& scene, const PhotonSettings& settings, Features& features) const {
     const bool points = std::holds_alternative<Points>(settings.primitive),
                beams = std::holds_alternative<Beams>(settings.primitive), any = volume.on && (points || beams);
     const bool surfaces = !scene.primitives.empty();
-    plan.describe("kernels end at surfaces", any && surfaces && settings.boundaryKernels,
-                  !volume.on                 ? volume.reason
-                  : !any                     ? "neither points nor beams"
-                  : !surfaces                ? "there are none"
-                  : settings.boundaryKernels ? "what they would spread beyond, where nothing gathers it, stays before"
-                                             : "boundary_kernels is off: they reach beyond, where nothing gathers them",
-                  {"integrator.boundary_kernels"});
+    features.describe("kernels end at surfaces", any && surfaces && settings.boundaryKernels,
+                      !volume.on  ? volume.reason
+                      : !any      ? "neither points nor beams"
+                      : !surfaces ? "there are none"
+                      : settings.boundaryKernels
+                          ? "what they would spread beyond, where nothing gathers it, stays before"
+                          : "boundary_kernels is off: they reach beyond, where nothing gathers them",
+                      {"integrator.boundary_kernels"});
     if (!any || (points && !settings.fixedVolumeRadius)) return;
     float densest = 0.0f;
     for (const Medium& medium : scene.media)
@@ -50,54 +53,56 @@ void PhotonPlan::describeKernels(const Scene& scene, const PhotonSettings& setti
         text, sizeof text,
         "radius %.3g, %.3g mean free paths of the densest medium: light that changes over one is off by some %.2g %%",
         double(settings.volumeRadius), double(freePaths), 100.0 * double(blur));
-    plan.describe("kernel blur", true, text, {"integrator.volume_gather_radius"});
+    features.describe("kernel blur", true, text, {"integrator.volume_gather_radius"});
 }
 
-void PhotonPlan::describeSplatting(EffectPlan& plan) const {
+void PhotonPlan::describeSplatting(Features& features) const {
     const bool splatted = volume.on && splats(), gathered = volume.on && (!splats() || folds);
-    plan.describe("splatting", splatted,
-                  !volume.on ? volume.reason
-                  : splatted ? "straight rays: every record visits the pixels that see it"
-                             : "rays are not straight, or not of one speed",
-                  {"camera"}, {"splatted records"});
-    plan.describe("gathering", gathered,
-                  !volume.on ? volume.reason
-                  : gathered ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
-                             : "all rays are straight: records are splatted",
-                  {"camera"}, {"gathered records"});
-    plan.describe("more camera paths", moreCameraPaths.on, moreCameraPaths.reason, {"camera"});
+    features.describe("splatting", splatted,
+                      !volume.on ? volume.reason
+                      : splatted ? "straight rays: every record visits the pixels that see it"
+                                 : "rays are not straight, or not of one speed",
+                      {"camera"}, {counter::SplattedRecords});
+    features.describe("gathering", gathered,
+                      !volume.on ? volume.reason
+                      : gathered
+                          ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
+                          : "all rays are straight: records are splatted",
+                      {"camera"}, {counter::GatheredRecords});
+    features.describe("more camera paths", moreCameraPaths.on, moreCameraPaths.reason, {"camera"});
 }
 
-void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
+void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, Features& features) const {
     const std::vector<std::string> darts{"integrator.darts"};
     const bool atVertices = std::visit([](const auto& p) { return p.AtVertices; }, settings.primitive);
-    plan.describe("guided light paths", guidance.on, guidance.reason, darts,
-                  atVertices ? std::vector<std::string>{"control vertices"} : std::vector<std::string>{});
-    plan.describe("EDA table", edaTable.on, edaTable.reason, darts, {"direction tables"});
-    plan.describe("surface connections", connections.on, connections.reason, darts, {"surface connections"});
-    plan.describe("sharing", connections.on,
-                  connections.on ? "what a surface point receives is shared among neighbouring pixels"
-                                 : connections.reason,
-                  darts, {"surface connections"});
-    plan.describe("glossy sensor paths", glossyPaths.on, glossyPaths.reason,
-                  bsdfUses(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).causes(),
-                  {"glossy sensor reflections"});
+    features.describe("guided light paths", guidance.on, guidance.reason, darts,
+                      atVertices ? std::vector<std::string>{counter::ControlVertices} : std::vector<std::string>{});
+    features.describe("EDA table", edaTable.on, edaTable.reason, darts, {counter::DirectionTables});
+    features.describe("surface connections", connections.on, connections.reason, darts, {counter::SurfaceConnections});
+    features.describe("sharing", connections.on,
+                      connections.on ? "what a surface point receives is shared among neighbouring pixels"
+                                     : connections.reason,
+                      darts, {counter::SurfaceConnections});
+    features.describe("glossy sensor paths", glossyPaths.on, glossyPaths.reason,
+                      bsdfUses(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).causes(),
+                      {counter::GlossySensorReflections});
     if (!guidance.on) return;
-    plan.describe("plain light paths beside guided ones", sideBySide.on, sideBySide.reason, darts,
-                  {"plain light paths beside guided ones"});
-    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, plan);
+    features.describe("plain light paths beside guided ones", sideBySide.on, sideBySide.reason, darts,
+                      {counter::PlainBesideGuided});
+    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, features);
     const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
-    plan.describe("light towards bodies", bodies > 0,
-                  bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +
-                                   (bodies > 1 ? " bodies" : " body") + " of it"
-                             : "no body of fog in what does not scatter, or left alone",
-                  darts);
+    features.describe("light towards bodies", bodies > 0,
+                      bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +
+                                       (bodies > 1 ? " bodies" : " body") + " of it"
+                                 : "no body of fog in what does not scatter, or left alone",
+                      darts);
     if (scene.transport.gate.frames > 1)
-        plan.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts, {"frames aimed at"});
-    plan.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
+        features.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts,
+                          {counter::FramesAimedAt});
+    features.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
 }
 
-SamplingSummary PhotonPlan::summary(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) const {
+SamplingSummary PhotonPlan::summary(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) const {
     const transport::Policy& policy = settings.policy;
     SamplingSummary said;
     said.paths = transport::describeStrategies("light paths", guidance, sideBySide, policy.plainShare);
@@ -119,19 +124,21 @@ SamplingSummary PhotonPlan::summary(const Scene& scene, const PhotonSettings& se
     return said;
 }
 
-void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const {
-    transport::countSteps(plan);
-    plan.sampling = summary(scene, settings, plan);
-    describeVolume(settings, plan);
-    describeKernels(scene, settings, plan);
-    plan.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
-    plan.describe("surface photons", surfacePhotons.on, surfacePhotons.reason, lobeUses(scene, lobe::Smooth).causes(),
-                  {"stored surface photons", "photons gathered on surfaces"});
+void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts,
+                          Features& features) const {
+    transport::countSteps(features);
+    features.sampling = summary(scene, settings, facts);
+    describeVolume(settings, features);
+    describeKernels(scene, settings, features);
+    features.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
+    features.describe("surface photons", surfacePhotons.on, surfacePhotons.reason,
+                      lobeUses(scene, lobe::Smooth).causes(),
+                      {counter::StoredSurfacePhotons, counter::GatheredOnSurfaces});
     if (scene.camera.detectors())
-        plan.describe("lights at detectors", detectorLight.on, detectorLight.reason, {"camera"},
-                      {"arrivals from lights at detectors"});
-    describeGuidance(scene, settings, plan);
-    plan.describe("exact arrival culling", exactCulling.on, exactCulling.reason, {"integrator"});
+        features.describe("lights at detectors", detectorLight.on, detectorLight.reason, {"camera"},
+                          {counter::ArrivalsAtDetectors});
+    describeGuidance(scene, settings, features);
+    features.describe("exact arrival culling", exactCulling.on, exactCulling.reason, {"integrator"});
 }
 
 } // namespace tungsten::photon

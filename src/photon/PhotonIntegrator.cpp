@@ -7,6 +7,7 @@
 #include "transport/SharePilot.h"
 
 #include "tungsten/integrator/EarliestArrival.h"
+#include "tungsten/integrator/Names.h"
 
 #include <tbb/parallel_for.h>
 
@@ -35,26 +36,28 @@ PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, const Obj
 PhotonIntegrator::PhotonIntegrator(std::shared_ptr<const Scene> scene, PhotonSettings settings)
     : scene_(std::move(scene)), settings_(std::move(settings)) {}
 
-void PhotonIntegrator::plan(EffectPlan& plan) const {
+void PhotonIntegrator::plan(SceneFacts& facts, Features& features) const {
     // The temporal kernel of a delta gate reaches beyond it, in the first pass the most.
-    leaveOutLate(*scene_, lastTime(*scene_) + (scene_->transport.gate.delta ? settings_.temporalRadius : 0.0), plan);
-    PhotonPlan::of(*scene_, settings_, plan).describe(*scene_, settings_, plan);
+    excludeLate(*scene_, lastTime(*scene_) + (scene_->transport.gate.delta ? settings_.temporalRadius : 0.0), facts,
+                features);
+    PhotonPlan::of(*scene_, settings_, facts).describe(*scene_, settings_, facts, features);
 }
 
-void PhotonIntegrator::prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) {
-    if (settings_.alternatives.size() > 1) choosePrimitive(plan, watch, statistics);
-    plan_ = PhotonPlan::of(*scene_, settings_, plan);
-    forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
-    if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, plan, transport::BounceLimits(scene_->transport));
+void PhotonIntegrator::prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) {
+    if (settings_.alternatives.size() > 1) choosePrimitive(facts, watch, statistics);
+    plan_ = PhotonPlan::of(*scene_, settings_, facts);
+    forwardBoundaries_ = facts.forwardBoundaries || facts.everything;
+    if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, facts, transport::BounceLimits(scene_->transport));
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_, watch);
-    if (plan_.edaTable.on) statistics.add("direction tables", photonPass_->guidance()->tables());
-    if (plan_.framesOneByOne.on) statistics.add("frames aimed at", uint64_t(photonPass_->guidance()->frames().frames));
+    if (plan_.edaTable.on) statistics.add(counter::DirectionTables, photonPass_->guidance()->tables());
+    if (plan_.framesOneByOne.on)
+        statistics.add(counter::FramesAimedAt, uint64_t(photonPass_->guidance()->frames().frames));
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
-    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, plan);
+    if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, facts);
     if (plan_.sideBySide.on) chooseShare(watch, statistics);
 }
 
-void PhotonIntegrator::choosePrimitive(const EffectPlan& facts, const PassWatch& watch, Statistics& statistics) {
+void PhotonIntegrator::choosePrimitive(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) {
     const StageTimer timer(statistics, "pilot of volume primitives");
     const MeasuredPrimitive measured = measurePrimitives(scene_, settings_, facts, watch);
     statistics.add("pilot passes of volume primitives", measured.passes);
@@ -91,7 +94,7 @@ double PhotonIntegrator::memoryBytes() const {
     return surface + (scatters ? volume : 0.0);
 }
 
-bool PhotonIntegrator::leavesBias(const EffectPlan& facts) const {
+bool PhotonIntegrator::leavesBias(const SceneFacts& facts) const {
     const PhotonPlan plan = PhotonPlan::of(*scene_, settings_, facts);
     return plan.volume.on || plan.surfacePhotons.on || plan.connections.on;
 }
@@ -153,7 +156,7 @@ void PhotonIntegrator::splat(GatherStructures& structures, const SensorRecords& 
                               const uint64_t met =
                                   gather.splat(records, double(gather.scale()) / perSample, film, pass.watch);
                               statistics.add(gather.GatheredCounter, met);
-                              statistics.add("splatted records", met);
+                              statistics.add(counter::SplattedRecords, met);
                           }},
                structures.volume);
 }
@@ -205,10 +208,10 @@ void PhotonIntegrator::addDetectorLight(const transport::Sensor& sensor, const P
             const Vec3d value = sums[size_t(frame)] * scale;
             const Rgb pixel{float(value.x), float(value.y), float(value.z)};
             if (isFinite(pixel)) film.add(frame, column, 0, pixel);
-            if (!isFinite(pixel)) statistics.add("non-finite samples", 1);
+            if (!isFinite(pixel)) statistics.add(counter::NonFiniteSamples, 1);
         }
-        statistics.add("shadow rays", rays);
-        statistics.add("arrivals from lights at detectors", arrivals);
+        statistics.add(counter::ShadowRays, rays);
+        statistics.add(counter::ArrivalsAtDetectors, arrivals);
     });
 }
 

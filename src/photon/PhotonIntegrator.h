@@ -16,10 +16,10 @@ class PhotonIntegrator : public Integrator {
   public:
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
     PhotonIntegrator(std::shared_ptr<const Scene> scene, PhotonSettings settings);
-    void plan(EffectPlan& plan) const override;
-    void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) override;
+    void plan(SceneFacts& facts, Features& features) const override;
+    void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) override;
     [[nodiscard]] double memoryBytes() const override;
-    [[nodiscard]] bool leavesBias(const EffectPlan& plan) const override;
+    [[nodiscard]] bool leavesBias(const SceneFacts& facts) const override;
     /// Of the volume's kernels, where there are any, else of surfaces'.
     [[nodiscard]] bool cutsLightPaths() const override { return true; }
     [[nodiscard]] double kernelWidth(uint32_t pass) const override;
@@ -29,7 +29,7 @@ class PhotonIntegrator : public Integrator {
 
   private:
     /// Of `alternatives`, and with it the plan.
-    void choosePrimitive(const EffectPlan& facts, const PassWatch& watch, Statistics& statistics);
+    void choosePrimitive(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics);
     /// Of plain and guided light paths.
     void chooseShare(const PassWatch& watch, Statistics& statistics);
     /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that

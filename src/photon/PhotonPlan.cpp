@@ -14,7 +14,7 @@ namespace {
 struct Given {
     const Scene& scene;
     const PhotonSettings& settings;
-    const EffectPlan& facts;
+    const SceneFacts& facts;
 
     [[nodiscard]] const transport::Policy& policy() const { return settings.policy; }
     [[nodiscard]] bool unwarped() const { return scene.transport.cameraUnwarped; }
@@ -40,7 +40,7 @@ bool anyGlossyOnly(const Scene& scene) {
 // Each of these says what is done, and why.
 
 Choice guidanceOf(const Given& given) {
-    std::string obstacle = transport::guidanceObstacle(given.policy(), given.facts);
+    std::string obstacle = transport::guidanceObstacle(given.scene, given.policy(), given.facts);
     if (!obstacle.empty()) return {false, obstacle};
     obstacle =
         given.ofPrimitive([&](const auto& p) { return p.guidanceObstacle(given.scene, given.facts.speedsDiffer); });
@@ -102,7 +102,7 @@ Choice connectionsOf(const Given& given, const PhotonPlan& plan) {
 
 Choice volumeOf(const Given& given, const PhotonPlan& plan) {
     const bool constant = plan.homogeneous || given.atVertices(), on = given.facts.mediumScattering && constant;
-    if (!on) return {on, constant ? given.facts.noScattering() : given.facts.heterogeneity()};
+    if (!on) return {on, constant ? whyNoScattering(given.facts) : heterogeneity(given.scene, given.facts)};
     const std::string& chosen = given.settings.primitiveReason;
     return {on, chosen.empty() ? given.ofPrimitive([](const auto& p) { return std::string(p.Reason); }) : chosen};
 }
@@ -151,13 +151,13 @@ Choice moreCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t pa
 
 } // namespace
 
-PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) {
     const Given given{scene, settings, facts};
     PhotonPlan plan;
     plan.highestSpeed = facts.highestSpeed;
-    plan.lateEmitters = facts.late;
-    plan.mediaOutOfTime = facts.mediaOutOfTime;
-    plan.darkFrames = facts.darkFrames;
+    plan.lateEmitters = facts.excludedEmitters;
+    plan.mediaOutOfTime = facts.excludedMedia;
+    plan.darkFrames = facts.emptyFrames;
     plan.oneSpeed = !facts.speedsDiffer;
     plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
@@ -174,7 +174,7 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     return plan;
 }
 
-void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) {
     const Given given{scene, settings, facts};
     const bool straight = !folds && oneSpeed;
     directView = settings.policy.directView == transport::DirectView::Auto
@@ -189,7 +189,7 @@ void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settin
     ordinaryPhotons = ordinaryPhotonsOf(given, *this);
 }
 
-void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts) {
+void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) {
     const Given given{scene, settings, facts};
     const bool oneTime = oneSpeed || given.unwarped();
     primitiveSplats = given.ofPrimitive([&](const auto& p) { return p.splats(straightRays, oneTime); });

@@ -3,7 +3,7 @@
 
 #include "photon/PhotonSettings.h"
 
-#include "tungsten/integrator/SceneFacts.h"
+#include "tungsten/integrator/Features.h"
 
 #include <string>
 
@@ -13,9 +13,10 @@ using transport::Choice;
 
 struct PhotonPlan {
     /// `facts`: what the scene calls for (analyseScene). Builds nothing.
-    static PhotonPlan of(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
+    static PhotonPlan of(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts);
     /// Adds every choice to the plan's effects.
-    void describe(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
+    void describe(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts,
+                  Features& features) const;
 
     Choice volume;          ///< records of the volume primitive are stored
     Choice temporalKernel;  ///< about a delta gate
@@ -31,9 +32,9 @@ struct PhotonPlan {
     Choice detectorLight;   ///< places of detectors are connected to lights that no ray meets
     Choice moreCameraPaths; ///< through a pixel than its samples
 
-    std::vector<bool> lateEmitters;   ///< EffectPlan::late
-    std::vector<bool> mediaOutOfTime; ///< EffectPlan::mediaOutOfTime
-    int darkFrames = 0;               ///< EffectPlan::darkFrames
+    std::vector<bool> lateEmitters;   ///< SceneFacts::excludedEmitters
+    std::vector<bool> mediaOutOfTime; ///< SceneFacts::excludedMedia
+    int darkFrames = 0;               ///< SceneFacts::emptyFrames
 
     float highestSpeed = 1.0f; ///< of light, wherever a path can get
     bool oneSpeed = true;
@@ -55,13 +56,13 @@ struct PhotonPlan {
 
   private:
     [[nodiscard]] SamplingSummary summary(const Scene& scene, const PhotonSettings& settings,
-                                          const EffectPlan& facts) const;
-    void describeGuidance(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
-    void describeVolume(const PhotonSettings& settings, EffectPlan& plan) const;
-    void describeKernels(const Scene& scene, const PhotonSettings& settings, EffectPlan& plan) const;
-    void describeSplatting(EffectPlan& plan) const;
-    void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
-    void chooseStores(const Scene& scene, const PhotonSettings& settings, const EffectPlan& facts);
+                                          const SceneFacts& facts) const;
+    void describeGuidance(const Scene& scene, const PhotonSettings& settings, Features& features) const;
+    void describeVolume(const PhotonSettings& settings, Features& features) const;
+    void describeKernels(const Scene& scene, const PhotonSettings& settings, Features& features) const;
+    void describeSplatting(Features& features) const;
+    void chooseGuidance(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts);
+    void chooseStores(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts);
 };
 
 } // namespace tungsten::photon

@@ -46,7 +46,7 @@ bool readShortFlights(const ObjectReader& block) {
 /// cannot see are biases: kernels of points and beams are the scene's own, slices have none.
 std::vector<VolumePrimitive> alternativesIn(const Scene& scene, const PhotonSettings& settings) {
     std::vector<VolumePrimitive> alternatives{Points{}};
-    const EffectPlan facts = analyseScene(scene);
+    const SceneFacts facts = analyseScene(scene);
     if (!facts.mediumScattering || !facts.heterogeneousMedia.empty()) return alternatives;
     const bool hasRadius = settings.volumeRadius < Unbounded;
     if (hasRadius) alternatives.push_back(Beams{});

@@ -58,7 +58,7 @@ double costOf(const Statistics& counted, const VolumePrimitive& primitive, doubl
 /// One primitive's passes.
 class Pilot {
   public:
-    Pilot(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings, const EffectPlan& facts,
+    Pilot(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings, const SceneFacts& facts,
           const PassWatch& watch)
         : primitive_(settings.primitive), progressive_(settings.progressive), integrator_(scene, settings),
           film_(scene->camera.resolution.x, scene->camera.resolution.y, scene->transport.gate.frames) {
@@ -192,7 +192,7 @@ std::string primitivesToMeasure(const std::vector<VolumePrimitive>& alternatives
 }
 
 MeasuredPrimitive measurePrimitives(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings,
-                                    const EffectPlan& facts, const PassWatch& watch) {
+                                    const SceneFacts& facts, const PassWatch& watch) {
     const std::shared_ptr<const Scene> small = smallScene(*scene);
     PhotonSettings one = settings;
     one.alternatives.clear();

@@ -3,6 +3,8 @@
 #include "photon/SensorGather.h"
 #include "photon/Tuning.h"
 
+#include "tungsten/integrator/Names.h"
+
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
@@ -15,13 +17,13 @@ constexpr size_t TileSide = 8;
 void report(const SensorCounters& counters, const VolumeGathers& volume, Statistics& statistics) {
     report(counters.steps, statistics);
     statistics.add("gathered photons", counters.gathered);
-    statistics.add("photons gathered on surfaces", counters.gathered);
-    statistics.add("gathered records", counters.gatheredInVolumes);
+    statistics.add(counter::GatheredOnSurfaces, counters.gathered);
+    statistics.add(counter::GatheredRecords, counters.gatheredInVolumes);
     std::visit(
         Overloaded{[](std::monostate) {},
                    [&](const auto& gather) { statistics.add(gather.GatheredCounter, counters.gatheredInVolumes); }},
         volume);
-    statistics.add("non-finite samples", counters.nonFinite);
+    statistics.add(counter::NonFiniteSamples, counters.nonFinite);
 }
 
 /// Follows a highlight path.

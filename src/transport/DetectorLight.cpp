@@ -8,9 +8,9 @@ namespace tungsten::transport {
 
 namespace {
 
-Distribution1D pointLikeEmitters(const Scene& scene, const EffectPlan& facts) {
+Distribution1D pointLikeEmitters(const Scene& scene, const SceneFacts& facts) {
     return emitterDistribution(
-        scene, [](const Emitter& emitter) { return emitter.isPointLike(); }, facts.late);
+        scene, [](const Emitter& emitter) { return emitter.isPointLike(); }, facts.excludedEmitters);
 }
 
 /// Follows light along specular and forward lobes, and tells where each begins that something has changed.
@@ -50,11 +50,11 @@ std::optional<Connection> meetDetector(const Connector& connector, const Detecto
     return Connection{power * seen.transmittance / float(detector.etendue()), seen.time, seen.crossings, seen.oneSpeed};
 }
 
-bool DetectorLight::mayReach(const Scene& scene, const EffectPlan& facts) {
+bool DetectorLight::mayReach(const Scene& scene, const SceneFacts& facts) {
     return scene.camera.detectors() && pointLikeEmitters(scene, facts).total() > 0.0;
 }
 
-DetectorLight::DetectorLight(const Scene& scene, const EffectPlan& facts, const BounceLimits& limits)
+DetectorLight::DetectorLight(const Scene& scene, const SceneFacts& facts, const BounceLimits& limits)
     : scene_(scene), limits_(limits), connector_(scene, facts.forwardBoundaries || facts.everything),
       emitters_(pointLikeEmitters(scene, facts)), specular_(facts.specularSensorPaths) {}
 

@@ -23,10 +23,10 @@ class DetectorLight {
 
     /// `facts` also says whose light is too late. The scene must be one of mayReach(). Nothing is found if `limits`
     /// render no path without scattering.
-    DetectorLight(const Scene& scene, const EffectPlan& facts, const BounceLimits& limits);
+    DetectorLight(const Scene& scene, const SceneFacts& facts, const BounceLimits& limits);
 
     /// The scene has detectors, and such lights.
-    [[nodiscard]] static bool mayReach(const Scene& scene, const EffectPlan& facts);
+    [[nodiscard]] static bool mayReach(const Scene& scene, const SceneFacts& facts);
     /// One sample of what the detector in `column` gets. Adds the rays traced to `rays`. Throws PassBrokenOff where the
     /// watch does.
     void sample(size_t column, Sampler& sampler, const PassWatch& watch, uint64_t& rays, const Put& put) const;

@@ -13,9 +13,9 @@ inline constexpr double FlightSlack = 1e-6;
 class GateBounds {
   public:
     GateBounds() = default;
-    GateBounds(const TimeGate& gate, const EffectPlan& plan)
-        : limited_(!gate.steadyState), oneSpeed_(!plan.speedsDiffer), start_(gate.start), end_(gate.end()),
-          slowness_(1.0 / double(plan.highestSpeed)) {}
+    GateBounds(const TimeGate& gate, const SceneFacts& facts)
+        : limited_(!gate.steadyState), oneSpeed_(!facts.speedsDiffer), start_(gate.start), end_(gate.end()),
+          slowness_(1.0 / double(facts.highestSpeed)) {}
 
     /// The same scene, the sensor open at another time.
     [[nodiscard]] GateBounds during(const TimeGate& gate) const {

@@ -4,10 +4,10 @@
 
 namespace tungsten::transport {
 
-std::string guidanceObstacle(const Policy& policy, const EffectPlan& facts) {
+std::string guidanceObstacle(const Scene& scene, const Policy& policy, const SceneFacts& facts) {
     if (!policy.guides()) return "the scene does not ask for it";
     if (!facts.timeResolved) return "steady state: there is no gate to aim at";
-    return facts.mediumScattering ? facts.heterogeneity() : facts.noScattering();
+    return facts.mediumScattering ? heterogeneity(scene, facts) : whyNoScattering(facts);
 }
 
 darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mode mode, bool aims) {
@@ -19,10 +19,10 @@ darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mo
     return settings;
 }
 
-Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const EffectPlan& facts, bool aims) {
+Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts, bool aims) {
     bool any = false;
     for (size_t i = 0; i < scene.media.size(); ++i)
-        any = any || (scene.media[i].scatters() && !facts.isOutOfTime(i) &&
+        any = any || (scene.media[i].scatters() && !facts.isExcluded(i) &&
                       settingsIn(scene.media[i], policy, mode, aims).direction == darts::Direction::Eda);
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
@@ -38,7 +38,7 @@ Choice balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, con
                      "have no part"};
 }
 
-Choice detectorLightOf(const Scene& scene, const EffectPlan& facts, bool shown) {
+Choice detectorLightOf(const Scene& scene, const SceneFacts& facts, bool shown) {
     const bool on = shown && DetectorLight::mayReach(scene, facts);
     return {on, on ? "places of detectors are connected to lights that no ray meets"
                    : "no detector, rays meet every light, or include_surfaces is false"};

@@ -52,12 +52,12 @@ std::string describeStrategies(const std::string& walks, const Choice& guidance,
                        : "a pilot will choose the share of either");
 }
 
-std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mode mode, const EffectPlan& facts,
+std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts,
                              bool aims) {
     std::string distances, directions;
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
-        if (!medium.scatters() || facts.isOutOfTime(i)) continue;
+        if (!medium.scatters() || facts.isExcluded(i)) continue;
         const darts::Settings settings = settingsIn(medium, policy, mode, aims);
         addOnce(distances, distancesOf(settings), " or ");
         addOnce(directions, directionsOf(settings), " or ");

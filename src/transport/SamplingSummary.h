@@ -13,7 +13,7 @@ std::string describeStrategies(const std::string& walks, const Choice& guidance,
 /// How plain walks draw distances and directions.
 inline constexpr const char* PlainVertices = "plain ones: distances by transmittance, directions by phase functions";
 /// How guided walks draw them in media that scatter in time. `aims`: at a target, not at a moment alone.
-std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mode mode, const EffectPlan& facts,
+std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts,
                              bool aims);
 /// The reasons of those that are on, in order.
 std::string describeEnds(const std::vector<Choice>& ends);

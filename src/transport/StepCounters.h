@@ -2,8 +2,8 @@
 // What a walk did on its way, counted by one worker: the work of the plan's effects.
 
 #include "tungsten/bsdf/Bsdf.h"
+#include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/ProgressToken.h"
-#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/integrator/Statistics.h"
 #include "tungsten/medium/Medium.h"
 
@@ -67,15 +67,15 @@ inline void reportSteps(const StepCounters& counters, Statistics& statistics) {
 }
 
 /// Names those counters in the plan.
-inline void countSteps(EffectPlan& plan) {
-    plan.count("medium scattering", {"medium events"});
-    plan.count("anisotropic scattering", {"scatterings with preferred directions"});
-    plan.count("coloured media", {"scatterings in coloured media"});
-    plan.count("absorption only", {"flights through absorbing media"});
-    plan.count("surface scattering", {"surface scatterings"});
-    plan.count("specular sensor paths", {"mirror reflections"});
-    plan.count("refraction", {"refractions"});
-    plan.count("index-matched boundaries", {"straight passages"});
+inline void countSteps(Features& features) {
+    features.count(feature::MediumScattering, {"medium events"});
+    features.count(feature::AnisotropicScattering, {"scatterings with preferred directions"});
+    features.count(feature::ColouredMedia, {"scatterings in coloured media"});
+    features.count(feature::AbsorptionOnly, {"flights through absorbing media"});
+    features.count(feature::SurfaceScattering, {"surface scatterings"});
+    features.count(feature::SpecularSensorPaths, {"mirror reflections"});
+    features.count(feature::Refraction, {"refractions"});
+    features.count(feature::IndexMatchedBoundaries, {"straight passages"});
 }
 
 } // namespace tungsten::transport

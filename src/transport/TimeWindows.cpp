@@ -6,7 +6,7 @@
 
 namespace tungsten::transport {
 
-TimeWindows TimeWindows::ofSequence(const Scene& scene, const EffectPlan& facts, const TimeGate& arrivals) {
+TimeWindows TimeWindows::ofSequence(const Scene& scene, const SceneFacts& facts, const TimeGate& arrivals) {
     const TimeGate& sequence = scene.transport.gate;
     double origin = Infinity, earliest = Infinity;
     for (const Emitter& emitter : scene.emitters) origin = std::min(origin, emitter.emissionTime);

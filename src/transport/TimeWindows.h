@@ -27,7 +27,7 @@ class TimeWindows {
     /// The whole gate.
     explicit TimeWindows(const TimeGate& arrivals) : windows_{{arrivals.start, arrivals.end(), 1.0f}} {}
     /// Of what is recorded in a sequence of frames: windows that grow with the time since the first light started.
-    static TimeWindows ofSequence(const Scene& scene, const EffectPlan& facts, const TimeGate& arrivals);
+    static TimeWindows ofSequence(const Scene& scene, const SceneFacts& facts, const TimeGate& arrivals);
 
     [[nodiscard]] size_t size() const { return windows_.size(); }
     [[nodiscard]] const TimeWindow& operator[](size_t index) const { return windows_[index]; }

@@ -43,17 +43,17 @@ std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const Policy& p
     return waysOut->any() ? std::move(waysOut) : nullptr;
 }
 
-void WaysOut::plan(const Scene& scene, const Policy& policy, bool straightOnly, EffectPlan& plan) {
+void WaysOut::plan(const Scene& scene, const Policy& policy, bool straightOnly, Features& features) {
     const auto waysOut = make(scene, policy);
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
         if (!medium.scatters()) continue;
         const std::string name =
             "model of " + (medium.name.empty() ? "#" + std::to_string(i) : "'" + medium.name + "'");
-        plan.describe(name, true,
-                      waysOut                  ? waysOut->describe(int(i), straightOnly)
-                      : policy.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
-                                               : "infinite medium: the preset or bodies leaves boundaries alone");
+        features.describe(name, true,
+                          waysOut                  ? waysOut->describe(int(i), straightOnly)
+                          : policy.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
+                                                   : "infinite medium: the preset or bodies leaves boundaries alone");
     }
 }
 

@@ -6,7 +6,7 @@
 
 #include "darts/ResidualRange.h"
 
-#include "tungsten/integrator/SceneFacts.h"
+#include "tungsten/integrator/Features.h"
 
 #include <array>
 #include <memory>
@@ -41,7 +41,7 @@ class WaysOut {
     /// light passes.
     static std::unique_ptr<const WaysOut> make(const Scene& scene, const Policy& policy);
     /// Says in the plan which models the media get; `straightOnly`: behind refracting walls there is none.
-    static void plan(const Scene& scene, const Policy& policy, bool straightOnly, EffectPlan& plan);
+    static void plan(const Scene& scene, const Policy& policy, bool straightOnly, Features& features);
 
     /// Chooses the model for what lies between the start of a flight through `region` and the aim: residual.way, and
     /// residual.exit but for its surplus. Adds the rays traced to `rays`.

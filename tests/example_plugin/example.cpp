@@ -18,10 +18,10 @@ class AmbientOcclusion : public Integrator {
           distance_(float(
               settings.number("distance", 1.0, {"length", "how far rays must travel freely"}, Range::positive()))) {}
 
-    void plan(EffectPlan& plan) const override {
-        plan.describe("ambient occlusion", true, "the hemisphere above the first surface is tested");
+    void plan(SceneFacts&, Features& features) const override {
+        features.describe("ambient occlusion", true, "the hemisphere above the first surface is tested");
     }
-    void prepare(const EffectPlan&, const PassWatch&, Statistics&) override {}
+    void prepare(const SceneFacts&, const PassWatch&, Statistics&) override {}
 
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {
         const StageTimer timer(statistics, "occlusion");

@@ -12,14 +12,18 @@
 namespace tungsten {
 namespace {
 
-EffectPlan planOf(const std::string& json) {
-    const test::SceneFile file(json);
-    return analyseScene(*loadScene(file.path()).scene);
-}
+struct Analysed {
+    explicit Analysed(const std::string& json)
+        : file(json), scene(loadScene(file.path()).scene), facts(analyseScene(*scene)) {}
 
-std::string textOf(const EffectPlan& plan) {
+    test::SceneFile file;
+    std::shared_ptr<const Scene> scene;
+    SceneFacts facts;
+};
+
+std::string textOf(const Analysed& of) {
     std::ostringstream out;
-    printEffects(plan, out);
+    printFeatures(describeScene(*of.scene, of.facts), out);
     return out.str();
 }
 
@@ -30,21 +34,22 @@ void expectIn(const std::string& text, const std::vector<std::string>& parts) {
 const char* const Bare = R"({"primitives": [{"type": "point", "emission": 1},
     {"name": "floor", "type": "quad", "bsdf": {"type": "lambert"}}]})";
 
-TEST(EffectPlan, ABareSceneCallsForLittle) {
-    const EffectPlan plan = planOf(Bare);
-    EXPECT_FALSE(plan.timeResolved);
-    EXPECT_FALSE(plan.mediumScattering);
-    EXPECT_TRUE(plan.greyMedia);
-    EXPECT_EQ(plan.heterogeneity(), "");
-    EXPECT_TRUE(plan.surfaceScattering);
-    EXPECT_FALSE(plan.specularSensorPaths);
-    EXPECT_FALSE(plan.forwardBoundaries);
-    EXPECT_FALSE(plan.surfaceEmission);
-    EXPECT_FALSE(plan.environment);
-    EXPECT_FALSE(plan.textures);
-    EXPECT_FALSE(plan.speedsDiffer);
-    EXPECT_EQ(plan.highestSpeed, 1.0f);
-    expectIn(textOf(plan), {"steady state", "'floor'", "no reachable medium scatters"});
+TEST(SceneFacts, ABareSceneCallsForLittle) {
+    const Analysed of(Bare);
+    const SceneFacts& facts = of.facts;
+    EXPECT_FALSE(facts.timeResolved);
+    EXPECT_FALSE(facts.mediumScattering);
+    EXPECT_TRUE(facts.greyMedia);
+    EXPECT_EQ(heterogeneity(*of.scene, facts), "");
+    EXPECT_TRUE(facts.surfaceScattering);
+    EXPECT_FALSE(facts.specularSensorPaths);
+    EXPECT_FALSE(facts.forwardBoundaries);
+    EXPECT_FALSE(facts.surfaceEmission);
+    EXPECT_FALSE(facts.environment);
+    EXPECT_FALSE(facts.textures);
+    EXPECT_FALSE(facts.speedsDiffer);
+    EXPECT_EQ(facts.highestSpeed, 1.0f);
+    expectIn(textOf(of), {"steady state", "'floor'", "no reachable medium scatters"});
 }
 
 const char* const Rich = R"({
@@ -57,35 +62,37 @@ const char* const Rich = R"({
          "transform": {"position": [0, 3, 0]}}],
     "integrator": {"type": "path_tracer", "start_time": 1, "transient_time_width": 0.25, "frame_num": 4}})";
 
-TEST(EffectPlan, EveryEffectOfARichSceneIsOnWithItsReason) {
-    const EffectPlan plan = planOf(Rich);
-    EXPECT_TRUE(plan.timeResolved);
-    EXPECT_TRUE(plan.multipleFrames);
-    EXPECT_TRUE(plan.mediumScattering);
-    EXPECT_FALSE(plan.greyMedia);
-    EXPECT_TRUE(plan.surfaceScattering);
-    EXPECT_TRUE(plan.specularSensorPaths);
-    EXPECT_TRUE(plan.forwardBoundaries);
-    EXPECT_TRUE(plan.surfaceEmission);
-    EXPECT_TRUE(plan.textures);
-    EXPECT_TRUE(plan.speedsDiffer);
-    const std::string text = textOf(plan);
+TEST(SceneFacts, EveryEffectOfARichSceneIsOnWithItsReason) {
+    const Analysed of(Rich);
+    const SceneFacts& facts = of.facts;
+    EXPECT_TRUE(facts.timeResolved);
+    EXPECT_TRUE(facts.multipleFrames);
+    EXPECT_TRUE(facts.mediumScattering);
+    EXPECT_FALSE(facts.greyMedia);
+    EXPECT_TRUE(facts.surfaceScattering);
+    EXPECT_TRUE(facts.specularSensorPaths);
+    EXPECT_TRUE(facts.forwardBoundaries);
+    EXPECT_TRUE(facts.surfaceEmission);
+    EXPECT_TRUE(facts.textures);
+    EXPECT_TRUE(facts.speedsDiffer);
+    const std::string text = textOf(of);
     expectIn(text, {"4 frames of width 0.25 over [1, 2)", "'smoke'", "'cloud'", "'looking glass'", "'panel'",
                     "2 speeds, from 0.5 to 1"});
     EXPECT_EQ(text.find("unused"), std::string::npos) << "a medium that no path can reach does not count";
 }
 
-TEST(EffectPlan, SpeedsDoNotMatterInSteadyState) {
+TEST(SceneFacts, SpeedsDoNotMatterInSteadyState) {
     std::string steady = Rich;
     steady.erase(steady.find(R"(, "start_time")"),
                  std::string(R"(, "start_time": 1, "transient_time_width": 0.25, "frame_num": 4)").size());
-    EXPECT_FALSE(planOf(steady).speedsDiffer);
+    EXPECT_FALSE(Analysed(steady).facts.speedsDiffer);
 }
 
-TEST(EffectPlan, AnEnvironmentIsNamed) {
-    const EffectPlan plan = planOf(R"({"primitives": [{"name": "sky", "type": "infinite_sphere", "emission": 1}]})");
-    EXPECT_TRUE(plan.environment);
-    expectIn(textOf(plan), {"escaping rays see 'sky'"});
+TEST(SceneFacts, AnEnvironmentIsNamed) {
+    const Analysed of(R"({"primitives": [{"name": "sky", "type": "infinite_sphere", "emission": 1}]})");
+    const SceneFacts& facts = of.facts;
+    EXPECT_TRUE(facts.environment);
+    expectIn(textOf(of), {"escaping rays see 'sky'"});
 }
 
 } // namespace

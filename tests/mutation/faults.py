@@ -7,9 +7,9 @@ FAULTS = [
      [("path_tests", "TimeBounds.NarrowGatesShowTheSameFrameOfASequence")]),
     ("tungsten/integrator/EarliestArrival.cpp", "- double(camera.aperture());", "+ double(camera.aperture());",
      [("tests/plan/left_out_test.py", "")]),
-    ("tungsten/integrator/EarliestArrival.cpp", "start + gap / double(plan.highestSpeed) - Slack * std::abs(start));", "start + gap * double(plan.highestSpeed) - Slack * std::abs(start));",
+    ("tungsten/integrator/EarliestArrival.cpp", "start + gap / double(facts.highestSpeed) - Slack * std::abs(start));", "start + gap * double(facts.highestSpeed) - Slack * std::abs(start));",
      [("tests/plan/left_out_test.py", "")]),
-    ("tungsten/integrator/EarliestArrival.cpp", "plan.late.push_back(time > end);", "plan.late.push_back(time < end);",
+    ("tungsten/integrator/EarliestArrival.cpp", "facts.excludedEmitters.push_back(time > end);", "facts.excludedEmitters.push_back(time < end);",
      [("photon_sliced_tests", "Gates/SharedPaths.AreNoNoisierThanTheBetterOfVolumesAndBalls/WarpedDelta")]),
     ("tungsten/integrator/SceneElements.cpp", "*speeds.begin(), *speeds.rbegin(),", "*speeds.begin(), *speeds.begin(),",
      [("path_tests", "PathTracer.DeltaGatesAreRefusedWhereNoControlVertexCanMeetThem")]),
@@ -254,7 +254,7 @@ FAULTS = [
      [("transport_tests", "GuidedSteps.ConnectionGoesOnThroughBoundaries")]),  # control vertices behind an index-matched boundary lie too far away
     ("src/transport/GuidedSteps.h", "residual_.shortest + double(connection.excess - residual_.low)", "residual_.shortest + double(connection.excess)",
      [("transport_tests", "GuidedSteps.ConnectionDrawnInFlight")]),  # control vertices arrive in later frames than they are made for
-    ("src/transport/GateBounds.h", "slowness_(1.0 / double(plan.highestSpeed))", "slowness_(double(plan.highestSpeed))",
+    ("src/transport/GateBounds.h", "slowness_(1.0 / double(facts.highestSpeed))", "slowness_(double(facts.highestSpeed))",
      [("transport_tests", "TransportAccuracy.TimesOfArrival")]),  # light is culled as too late where its speed is not 1
     ("src/transport/GateBounds.h", "(!oneSpeed_ || arrival >= start_ - slack)", "arrival >= start_ - slack",
      [("path_tests", "LightTracer.ShowsSlowLight")]),  # slow media: connections that arrive in time are culled as too early

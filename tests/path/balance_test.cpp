@@ -192,7 +192,7 @@ const char* const OpenFog = R"({"media": [{"name": "fog", "type": "homogeneous",
 
 TEST(TimeWindows, FollowEachOtherAndGrow) {
     const GuidedSetup setup(OpenFog);
-    const auto windows = transport::TimeWindows::ofSequence(setup.scene, setup.effects, setup.sensor.arrivals);
+    const auto windows = transport::TimeWindows::ofSequence(setup.scene, setup.facts, setup.sensor.arrivals);
     ASSERT_EQ(windows.size(), 4u) << "log(20 / 4) / log(1.5)";
     EXPECT_DOUBLE_EQ(windows[0].begin, 4.0);
     EXPECT_DOUBLE_EQ(windows[3].end, 20.0);

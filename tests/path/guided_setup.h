@@ -16,7 +16,7 @@ namespace tungsten::path {
 
 struct GuidedSetup {
     explicit GuidedSetup(const std::string& json) : file(json), loaded(loadScene(file.path())) {
-        effects.late.resize(scene.emitters.size());
+        facts.excludedEmitters.resize(scene.emitters.size());
     }
     GuidedSetup(const GuidedSetup&) = delete;
     GuidedSetup& operator=(const GuidedSetup&) = delete;
@@ -30,13 +30,13 @@ struct GuidedSetup {
     LoadedScene loaded;
     const Scene& scene = *loaded.scene;
     PathSettings settings = readPathSettings(loaded.integratorSettings, scene);
-    EffectPlan effects = analyseScene(scene);
+    SceneFacts facts = analyseScene(scene);
     PassWatch watch;
     transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
     transport::TimeWindows windows{sensor.arrivals};
-    PathGuides guides = PathGuides::of(scene, settings.policy.sampling, effects, watch);
+    PathGuides guides = PathGuides::of(scene, settings.policy.sampling, facts, watch);
     LightPaths lightPaths; ///< none
-    ArrivalBound bound{scene, effects};
+    ArrivalBound bound{scene, facts};
     std::unique_ptr<const transport::WaysOut> waysOut = transport::WaysOut::make(scene, settings.policy);
     TargetChoice targets{scene, TargetChoice::Emitters::All, {}, true};
     LightChoice lights{scene, std::vector<bool>(scene.emitters.size())};

@@ -91,17 +91,18 @@ TEST_P(MissedLightCases, AreSaid) {
             {"position": [0, 1, 7], "look_at": [0, 0, 0]}}, "integrator": {"type": "path_tracer", "darts": ")" +
                                    darts + "\"" + given.integrator + "}}");
         const LoadedScene loaded = loadScene(file.path());
-        EffectPlan plan = analyseScene(*loaded.scene);
-        PathTracer(loaded.scene, loaded.integratorSettings).plan(plan);
-        std::string text, lacks;
+        SceneFacts facts = analyseScene(*loaded.scene);
+        Features features = describeScene(*loaded.scene, facts);
+        PathTracer(loaded.scene, loaded.integratorSettings).plan(facts, features);
+        std::string text, limitations;
         for (const Problem& warning : loaded.diagnostics->warnings)
             if (warning.message.find("paths miss light of") != std::string::npos) text += warning.message;
-        for (const std::string& lack : plan.lacks)
-            if (lack.find("light of points by mirrors and refraction") == 0) lacks += lack;
+        for (const std::string& limitation : features.limitations)
+            if (limitation.find("light of points by mirrors and refraction") == 0) limitations += limitation;
         EXPECT_EQ(text.empty(), given.warning.empty()) << text;
         EXPECT_NE(text.find(given.warning), std::string::npos) << text;
-        EXPECT_EQ(lacks.empty(), given.warning.empty()) << lacks;
-        EXPECT_NE(lacks.find(given.warning), std::string::npos) << lacks;
+        EXPECT_EQ(limitations.empty(), given.warning.empty()) << limitations;
+        EXPECT_NE(limitations.find(given.warning), std::string::npos) << limitations;
     }
 }
 

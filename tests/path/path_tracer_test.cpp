@@ -223,14 +223,15 @@ TEST(GuidedPaths, StagesThatAreOffCountNothing) {
 }
 
 TEST(GuidedPaths, ThePlanSaysWhy) {
-    const auto planned = [](const std::string& darts, const std::string& effect) {
+    const auto planned = [](const std::string& darts, const std::string& feature) {
         const test::SceneFile file(
             test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4, "darts": )" + darts));
         const LoadedScene loaded = loadScene(file.path(), {{}, {"integrator.type=path_tracer"}});
-        EffectPlan plan = analyseScene(*loaded.scene);
-        PathTracer(loaded.scene, loaded.integratorSettings).plan(plan);
-        for (const Effect& e : plan.effects)
-            if (e.name == effect) return std::string(e.on ? "on: " : "off: ") + e.reason;
+        SceneFacts facts = analyseScene(*loaded.scene);
+        Features features = describeScene(*loaded.scene, facts);
+        PathTracer(loaded.scene, loaded.integratorSettings).plan(facts, features);
+        for (const Feature& f : features.all)
+            if (f.name == feature) return std::string(f.on ? "on: " : "off: ") + f.reason;
         return std::string();
     };
     EXPECT_EQ(planned(R"("best")", "guided paths"), "on: DARTS sampling of scattering media");
@@ -249,10 +250,11 @@ TEST(PathTracer, SaysThatLightOfASingleDirectionIsMissedInView) {
             "camera": {"resolution": 1, "transform": {"position": [0, 2, 2], "look_at": [0, 0, 0]}},
             "integrator": {"type": "path_tracer"}})");
         const LoadedScene loaded = loadScene(file.path());
-        EffectPlan plan = analyseScene(*loaded.scene);
-        PathTracer(loaded.scene, loaded.integratorSettings).plan(plan);
-        const bool planned = std::any_of(plan.effects.begin(), plan.effects.end(), [](const Effect& effect) {
-            return effect.name == "light of a single direction in view";
+        SceneFacts facts = analyseScene(*loaded.scene);
+        Features features = describeScene(*loaded.scene, facts);
+        PathTracer(loaded.scene, loaded.integratorSettings).plan(facts, features);
+        const bool planned = std::any_of(features.all.begin(), features.all.end(), [](const Feature& feature) {
+            return feature.name == "light of a single direction in view";
         });
         std::string text;
         for (const Problem& warning : loaded.diagnostics->warnings) text += warning.text();

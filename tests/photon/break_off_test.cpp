@@ -40,9 +40,10 @@ class Render {
         : file_(json), loaded_(loadScene(file_.path())), integrator_(make()), film_(filmOf(*loaded_.scene)),
           bias_(filmOf(*loaded_.scene, PassWeight::Repeats)) {
         throwIfProblems(*loaded_.diagnostics);
-        EffectPlan plan = analyseScene(*loaded_.scene);
-        integrator_->plan(plan);
-        integrator_->prepare(plan, {}, statistics_);
+        SceneFacts facts = analyseScene(*loaded_.scene);
+        Features features = describeScene(*loaded_.scene, facts);
+        integrator_->plan(facts, features);
+        integrator_->prepare(facts, {}, statistics_);
     }
 
     /// Renders a pass that stops at the poll of this number; false: it did. Counts polls and notes stages.

@@ -20,9 +20,10 @@ struct Loaded {
 
     [[nodiscard]] MeasuredPrimitive measured() const {
         PhotonIntegrator integrator(scene, settings);
-        EffectPlan plan = analyseScene(*scene);
-        integrator.plan(plan);
-        return measurePrimitives(scene, settings, plan, {});
+        SceneFacts facts = analyseScene(*scene);
+        Features features;
+        integrator.plan(facts, features);
+        return measurePrimitives(scene, settings, facts, {});
     }
 };
 
@@ -30,10 +31,12 @@ struct Loaded {
 Loaded load(const std::string& scattering, const std::vector<std::string>& further = {},
             const std::string& boundary = "forward") {
     const test::SceneFile file(R"({
-        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": )" + scattering + R"(}],
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": )" +
+                               scattering + R"(}],
         "camera": {"type": "pinhole", "fov": 30, "resolution": 16, "transform": {"position": [0, 0, -4]}},
         "primitives": [
-            {"type": "sphere", "int_medium": "fog", "bsdf": {"type": ")" + boundary + R"("}},
+            {"type": "sphere", "int_medium": "fog", "bsdf": {"type": ")" +
+                               boundary + R"("}},
             {"type": "sphere", "emission": 10, "bsdf": {"type": "null"},
              "transform": {"position": [1.5, 0, 0], "scale": 0.3}}],
         "integrator": {"type": "progressive_transient_photon_map", "volume_photon_type": "auto", "darts": "best",
@@ -46,10 +49,10 @@ Loaded load(const std::string& scattering, const std::vector<std::string>& furth
 std::vector<std::string> alternativesOf(const Loaded& loaded) {
     std::vector<std::string> types;
     for (const VolumePrimitive& one : loaded.settings.alternatives)
-        types.push_back(std::visit(
-            Overloaded{[](const Slices& slices) { return std::string(sliceName(slices.kind).type); },
-                       [](const auto& kernels) { return std::string(kernels.Type); }},
-            one));
+        types.push_back(
+            std::visit(Overloaded{[](const Slices& slices) { return std::string(sliceName(slices.kind).type); },
+                                  [](const auto& kernels) { return std::string(kernels.Type); }},
+                       one));
     return types;
 }
 using Types = std::vector<std::string>;
@@ -91,10 +94,11 @@ TEST(PrimitivePilot, RendersAsTheChosenPrimitive) {
     std::vector<Film> films;
     for (const PhotonSettings& settings : {loaded.settings, chosen}) {
         PhotonIntegrator integrator(loaded.scene, settings);
-        EffectPlan plan = analyseScene(*loaded.scene);
-        integrator.plan(plan);
+        SceneFacts facts = analyseScene(*loaded.scene);
+        Features features;
+        integrator.plan(facts, features);
         Statistics statistics;
-        integrator.prepare(plan, {}, statistics);
+        integrator.prepare(facts, {}, statistics);
         Film& film = films.emplace_back(16, 16, 1);
         film.beginPass();
         integrator.renderPass({.seed = 7}, film, statistics);
@@ -107,7 +111,8 @@ TEST(PrimitivePilot, RendersAsTheChosenPrimitive) {
 
 /// Also where nothing arrives at all, and nothing can be told.
 TEST(PrimitivePilot, EndsWhereAllIsBlack) {
-    const MeasuredPrimitive dark = load("1", {"integrator.transient_time_center=4.2", "integrator.transient_time_width=0.01"}).measured();
+    const MeasuredPrimitive dark =
+        load("1", {"integrator.transient_time_center=4.2", "integrator.transient_time_width=0.01"}).measured();
     EXPECT_FALSE(dark.reason.empty());
 }
 

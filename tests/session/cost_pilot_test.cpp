@@ -25,9 +25,9 @@ class KnownPasses : public Integrator {
     bool kernels = true, shared = false; ///< shared: noise of the bias is the same for all pixels
     std::vector<uint32_t> indices;
 
-    void plan(EffectPlan&) const override {}
-    void prepare(const EffectPlan&, const PassWatch&, Statistics&) override {}
-    [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return kernels; }
+    void plan(SceneFacts&, Features&) const override {}
+    void prepare(const SceneFacts&, const PassWatch&, Statistics&) override {}
+    [[nodiscard]] bool leavesBias(const SceneFacts&) const override { return kernels; }
     [[nodiscard]] double kernelWidth(uint32_t pass) const override {
         return std::pow(double(pass) + 1.0, widthExponent);
     }

@@ -22,12 +22,12 @@ class FakeIntegrator : public Integrator {
     bool prepared = false;
     bool cutsPaths = false; ///< that it says it can
 
-    void plan(EffectPlan& plan) const override { plan.describe("fake", true, "a test"); }
-    void prepare(const EffectPlan&, const PassWatch& watch, Statistics&) override {
+    void plan(SceneFacts&, Features& features) const override { features.describe("fake", true, "a test"); }
+    void prepare(const SceneFacts&, const PassWatch& watch, Statistics&) override {
         preparing(watch);
         prepared = true;
     }
-    [[nodiscard]] bool leavesBias(const EffectPlan&) const override { return bias > 0.0f; }
+    [[nodiscard]] bool leavesBias(const SceneFacts&) const override { return bias > 0.0f; }
     [[nodiscard]] bool cutsLightPaths() const override { return cutsPaths; }
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {
         for (int frame = 0; frame < film.frames(); ++frame)
@@ -65,9 +65,10 @@ class SessionFixture {
     }
     const SessionResult& run() {
         SessionResult& result = results.emplace_back();
-        EffectPlan plan = analyseScene(*loaded.scene);
-        integrator.plan(plan);
-        runSession(loaded, integrator, plan, outputs, options, result);
+        SceneFacts facts = analyseScene(*loaded.scene);
+        Features features = describeScene(*loaded.scene, facts);
+        integrator.plan(facts, features);
+        runSession(loaded, integrator, facts, features, outputs, options, result);
         return result;
     }
     [[nodiscard]] std::filesystem::path folder() const { return file.path().parent_path(); }

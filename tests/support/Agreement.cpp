@@ -124,9 +124,10 @@ class PassRenderer {
         for (const Problem& warning : loaded.diagnostics->warnings)
             if (warning.path.rfind("integrator", 0) == 0) loaded.diagnostics->problems.push_back(warning);
         throwIfProblems(*loaded.diagnostics);
-        EffectPlan plan = analyseScene(*scene_);
-        integrator_->plan(plan);
-        integrator_->prepare(plan, {}, statistics_);
+        SceneFacts facts = analyseScene(*scene_);
+        Features features = describeScene(*scene_, facts);
+        integrator_->plan(facts, features);
+        integrator_->prepare(facts, {}, statistics_);
         film_ = filmOf(*scene_);
     }
     /// The film holds the pass until the next one.

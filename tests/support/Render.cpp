@@ -25,9 +25,10 @@ std::unique_ptr<Rendered> render(const std::filesystem::path& file, const Render
     rendered->scene = loaded.scene;
     const std::unique_ptr<Integrator> integrator = make(loaded.scene, loaded.integratorSettings);
     throwIfProblems(*loaded.diagnostics);
-    EffectPlan plan = analyseScene(*loaded.scene);
-    integrator->plan(plan);
-    integrator->prepare(plan, {}, rendered->statistics);
+    SceneFacts facts = analyseScene(*loaded.scene);
+    Features features = describeScene(*loaded.scene, facts);
+    integrator->plan(facts, features);
+    integrator->prepare(facts, {}, rendered->statistics);
     rendered->film = filmOf(*loaded.scene);
     rendered->bias = filmOf(*loaded.scene, PassWeight::Repeats);
     for (uint32_t pass = 0; pass < options.passes; ++pass) {

@@ -81,21 +81,21 @@ TEST(TransportAccuracy, TimesOfArrival) {
         gate.steadyState = false;
         gate.start = logUniform(s, 1e-3, 1e5);
         gate.frameWidth = gate.start * logUniform(s, 1e-7, 1.0);
-        EffectPlan plan;
-        plan.highestSpeed = float(logUniform(s, 1e-3, 1e3));
-        const GateBounds bounds(gate, plan);
+        SceneFacts facts;
+        facts.highestSpeed = float(logUniform(s, 1e-3, 1e3));
+        const GateBounds bounds(gate, facts);
         const double time = gate.start * s.nextDouble(), left = gate.start + gate.frameWidth * s.nextDouble() - time;
-        const double first = (gate.start - time) * double(plan.highestSpeed),
-                     distance = left * double(plan.highestSpeed);
-        soonest.add(bounds.soonest(time, distance), time + Exact(distance) / plan.highestSpeed);
+        const double first = (gate.start - time) * double(facts.highestSpeed),
+                     distance = left * double(facts.highestSpeed);
+        soonest.add(bounds.soonest(time, distance), time + Exact(distance) / facts.highestSpeed);
         for (const double in : {first, distance}) {
             EXPECT_TRUE(bounds.mayArrive(time, in));
             EXPECT_TRUE(bounds.beforeEnd(time, in));
         }
-        const double late = (gate.end() * (1.0 + 2.0 * FlightSlack) - time) * double(plan.highestSpeed);
+        const double late = (gate.end() * (1.0 + 2.0 * FlightSlack) - time) * double(facts.highestSpeed);
         EXPECT_FALSE(bounds.mayArrive(time, late));
         EXPECT_FALSE(bounds.beforeEnd(time, late));
-        const double early = (gate.start * (1.0 - 2.0 * FlightSlack) - time) * double(plan.highestSpeed);
+        const double early = (gate.start * (1.0 - 2.0 * FlightSlack) - time) * double(facts.highestSpeed);
         if (early > 0.0) {
             EXPECT_FALSE(bounds.mayArrive(time, early));
         }

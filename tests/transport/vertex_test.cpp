@@ -137,10 +137,10 @@ TEST_F(Lamp, OnlySingleDirectionsCannotBeConnected) {
 }
 
 TEST(GateBounds, RejectOnlyWhatCannotArrive) {
-    EffectPlan plan;
-    plan.highestSpeed = 2.0f;
+    SceneFacts facts;
+    facts.highestSpeed = 2.0f;
     const TimeGate gate{false, false, 4.0, 1.0, 2}; // [4, 6)
-    const GateBounds bounds(gate, plan);
+    const GateBounds bounds(gate, facts);
     EXPECT_FALSE(bounds.mayArrive(3.0, 1.9)); // at 3.95
     EXPECT_TRUE(bounds.mayArrive(3.0, 2.0));
     EXPECT_TRUE(bounds.mayArrive(3.0, 2.0 - 1e-6)); // rounding
@@ -148,9 +148,9 @@ TEST(GateBounds, RejectOnlyWhatCannotArrive) {
     EXPECT_FALSE(bounds.mayArrive(3.0, 6.1));
     EXPECT_TRUE(bounds.beforeEnd(3.0, 0.0));
     EXPECT_FALSE(bounds.beforeEnd(3.0, 6.1));
-    plan.speedsDiffer = true;
-    EXPECT_TRUE(GateBounds(gate, plan).mayArrive(3.0, 1.0)); // may be slower
-    EXPECT_TRUE(GateBounds(TimeGate{}, plan).mayArrive(0.0, double(Infinity)));
+    facts.speedsDiffer = true;
+    EXPECT_TRUE(GateBounds(gate, facts).mayArrive(3.0, 1.0)); // may be slower
+    EXPECT_TRUE(GateBounds(TimeGate{}, facts).mayArrive(0.0, double(Infinity)));
     EXPECT_FALSE(bounds.mayArrive(0.0, double(Infinity)));
     EXPECT_TRUE(bounds.during(TimeGate{false, false, 0.0, 1.0, 1}).mayArrive(0.0, 1.0));
 }

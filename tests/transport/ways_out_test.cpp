@@ -133,17 +133,17 @@ TEST(WaysOut, NoneWhereNothingEndsOrThePolicyLeavesThemOut) {
     EXPECT_EQ(WaysOut::make(*View(sceneWith(R"({"type": "lambert"})")).loaded.scene, policy), nullptr);
     policy.bodies = false;
     EXPECT_EQ(WaysOut::make(*view.loaded.scene, policy), nullptr);
-    EffectPlan plan;
+    Features features;
     policy.bodies = true;
-    WaysOut::plan(*view.loaded.scene, policy, true, plan);
-    ASSERT_EQ(plan.effects.size(), 3u);
-    EXPECT_NE(plan.effects[0].reason.find("half-space where light must get out"), std::string::npos);
+    WaysOut::plan(*view.loaded.scene, policy, true, features);
+    ASSERT_EQ(features.all.size(), 3u);
+    EXPECT_NE(features.all[0].reason.find("half-space where light must get out"), std::string::npos);
     // What paths do behind refraction, photons do not.
     const View sealed(sceneWith(Glass));
     for (const bool straightOnly : {false, true}) {
-        EffectPlan models;
+        Features models;
         WaysOut::plan(*sealed.loaded.scene, policy, straightOnly, models);
-        EXPECT_EQ(models.effects[0].reason.find("bounds in time alone") != std::string::npos, straightOnly);
+        EXPECT_EQ(models.all[0].reason.find("bounds in time alone") != std::string::npos, straightOnly);
     }
 }
 

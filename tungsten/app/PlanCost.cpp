@@ -53,11 +53,11 @@ void measure(Method& method, const std::filesystem::path& file, const Options& o
              double seconds, const std::atomic<bool>& interrupted) {
     try {
         const Job job = makeJob(file, loadOptions(options, method.settings), plugins);
-        if (!job.plan.lacks.empty()) {
-            method.refusal = "lacks " + job.plan.lacks.front();
+        if (!job.features.limitations.empty()) {
+            method.refusal = "lacks " + job.features.limitations.front();
             return;
         }
-        method.costs = measurePasses(*job.loaded.scene, *job.integrator, job.plan,
+        method.costs = measurePasses(*job.loaded.scene, *job.integrator, job.facts,
                                      {.seed = options.seed,
                                       .samplesPerPass = uint32_t(job.loaded.renderer.sppStep),
                                       .seconds = seconds,

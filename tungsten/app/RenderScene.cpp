@@ -61,7 +61,8 @@ void explain(const std::filesystem::path& file, const Job& job, const std::vecto
         return;
     }
     std::cout << file.string() << " (" << job.loaded.integratorType << ")\n";
-    how == Explanation::Effects ? printEffects(job.plan, std::cout) : printPlan(job.plan, std::cout);
+    how == Explanation::Effects ? printFeatures(job.features, std::cout)
+                                : printPlan(job.facts, job.features, std::cout);
     printDefaults(defaults, std::cout);
 }
 
@@ -104,10 +105,11 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
     OutputFiles outputs;
     together(team, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
     const SessionOptions session = sessionOptions(options, loaded.renderer, team);
-    runSession(loaded, *job.integrator, job.plan, outputs, session, result);
+    runSession(loaded, *job.integrator, job.facts, job.features, outputs, session, result);
     if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
         together(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
-    const auto black = speaks(team) && !options.passes ? blackImage(*loaded.scene, job.plan, result) : std::nullopt;
+    const auto black =
+        speaks(team) && !options.passes ? blackImage(*loaded.scene, job.facts, job.features, result) : std::nullopt;
     if (black) printWarnings({*black});
     if (!options.quiet && speaks(team)) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;

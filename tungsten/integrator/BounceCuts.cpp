@@ -56,8 +56,8 @@ Body bodyOf(const Scene& scene, int medium) {
 
 class Cuts {
   public:
-    Cuts(const Scene& scene, const EffectPlan& plan)
-        : scene_(scene), end_(lastTime(scene)), earliest_(earliestThroughMedia(scene, plan)) {}
+    Cuts(const Scene& scene, const SceneFacts& facts)
+        : scene_(scene), end_(lastTime(scene)), earliest_(earliestThroughMedia(scene, facts)) {}
 
     /// In the channel that scatters most: what arrives after this time is cut; Infinity where nothing is.
     [[nodiscard]] double cutAfter(int index, double limit) const {
@@ -99,10 +99,10 @@ class Cuts {
 
 } // namespace
 
-void planBounceCuts(const Scene& scene, EffectPlan& plan) {
-    if (!plan.timeResolved)
-        return plan.describe(LightCut, false, "steady state: it does not matter when light arrives");
-    const Cuts cuts(scene, plan);
+void describeBounceCuts(const Scene& scene, const SceneFacts& facts, Features& features) {
+    if (!facts.timeResolved)
+        return features.describe(feature::LightCut, false, "steady state: it does not matter when light arrives");
+    const Cuts cuts(scene, facts);
     const double most = double(scene.transport.maxBounces) - 1.0;
     Uses cut;
     for (const int index : reachableMedia(scene)) {
@@ -118,8 +118,8 @@ void planBounceCuts(const Scene& scene, EffectPlan& plan) {
                     brief(std::round(cuts.meanAtEnd(index))) + " times)",
                 all ? "integrator.max_bounces" : medium.path + ".max_bounces");
     }
-    plan.describe(LightCut, cut.any(),
-                  cut.any() ? cut.names() : "no light that arrives in time is scattered more often", cut.causes());
+    features.describe(feature::LightCut, cut.any(),
+                      cut.any() ? cut.names() : "no light that arrives in time is scattered more often", cut.causes());
 }
 
 } // namespace tungsten

@@ -99,46 +99,47 @@ std::string unwarpedHint(const Scene& scene, double end) {
            "it needs \"camera_unwarped\": true";
 }
 
-void planEmitters(const Scene& scene, const std::vector<double>& earliest, double end, EffectPlan& plan) {
+void excludeEmitters(const Scene& scene, const std::vector<double>& earliest, double end, SceneFacts& facts,
+                     Features& features) {
     const std::string until = "the sensor closes at " + brief(end);
     Uses late;
     for (size_t i = 0; i < earliest.size(); ++i)
         if (earliest[i] > end)
             late.add(nameOf(scene.emitters[i].name, i) + " not before " + brief(earliest[i]), scene.emitters[i].path);
-    plan.nothingArrives = late.count() == earliest.size() && !plan.everything;
+    facts.nothingArrives = late.count() == earliest.size() && !facts.everything;
     // Where all are late nothing is rendered, and integrators need no emitter to be left.
-    const bool leaves = late.any() && !plan.nothingArrives && !plan.everything;
+    const bool leaves = late.any() && !facts.nothingArrives && !facts.everything;
     if (leaves)
-        for (const double time : earliest) plan.late.push_back(time > end);
-    plan.describe("late emitters left out", leaves,
-                  !late.any()           ? "light of every emitter may arrive: " + until
-                  : plan.everything     ? "nothing shall be left out"
-                  : plan.nothingArrives ? "light of no emitter arrives: " + until
-                                        : until + ", light of " + late.names(),
-                  late.causes());
-    plan.describe("black image", plan.nothingArrives,
-                  plan.nothingArrives
-                      ? "no light can arrive: " + until + ", light of " + late.names() + unwarpedHint(scene, end)
-                      : "some light may arrive",
-                  late.causes());
+        for (const double time : earliest) facts.excludedEmitters.push_back(time > end);
+    features.describe(feature::LateEmitters, leaves,
+                      !late.any()            ? "light of every emitter may arrive: " + until
+                      : facts.everything     ? "nothing shall be left out"
+                      : facts.nothingArrives ? "light of no emitter arrives: " + until
+                                             : until + ", light of " + late.names(),
+                      late.causes());
+    features.describe(feature::BlackImage, facts.nothingArrives,
+                      facts.nothingArrives
+                          ? "no light can arrive: " + until + ", light of " + late.names() + unwarpedHint(scene, end)
+                          : "some light may arrive",
+                      late.causes());
 }
 
-void planFrames(const Scene& scene, double first, EffectPlan& plan) {
+void excludeFrames(const Scene& scene, double first, SceneFacts& facts, Features& features) {
     const TimeGate& gate = scene.transport.gate;
     int dark = 0;
     while (dark < gate.frames && gate.frameStart(dark + 1) < first) ++dark;
     const bool some = gate.frames > 1 && dark > 0;
-    plan.darkFrames = some && !plan.everything ? std::min(dark, gate.frames - 1) : 0;
-    plan.describe("frames before all light", some,
-                  some ? "the first " + std::to_string(dark) + " frames end before " + brief(first) +
-                             ", when light can arrive at the soonest"
-                  : gate.frames > 1 ? "light may arrive in the first frame"
-                                    : "a single image",
-                  {"integrator.start_time"});
+    facts.emptyFrames = some && !facts.everything ? std::min(dark, gate.frames - 1) : 0;
+    features.describe(feature::EmptyFrames, some,
+                      some ? "the first " + std::to_string(dark) + " frames end before " + brief(first) +
+                                 ", when light can arrive at the soonest"
+                      : gate.frames > 1 ? "light may arrive in the first frame"
+                                        : "a single image",
+                      {"integrator.start_time"});
 }
 
-void planMediaInTime(const Scene& scene, double end, EffectPlan& plan) {
-    const std::vector<double> earliest = earliestThroughMedia(scene, plan);
+void excludeMedia(const Scene& scene, double end, SceneFacts& facts, Features& features) {
+    const std::vector<double> earliest = earliestThroughMedia(scene, facts);
     const std::string until = "the sensor closes at " + brief(end);
     Uses scattering, late;
     for (const int index : reachableMedia(scene)) {
@@ -149,22 +150,22 @@ void planMediaInTime(const Scene& scene, double end, EffectPlan& plan) {
         scattering.add(name, medium.path);
         if (earliest[i] > end) late.add(name + " not before " + brief(earliest[i]), medium.path);
     }
-    const bool leaves = late.any() && !plan.everything;
+    const bool leaves = late.any() && !facts.everything;
     if (leaves)
-        for (const double time : earliest) plan.mediaOutOfTime.push_back(time > end);
+        for (const double time : earliest) facts.excludedMedia.push_back(time > end);
     const bool some = scattering.any() && (!leaves || late.count() < scattering.count());
-    plan.mediumScattering = some;
-    plan.describe("media in time", some,
-                  !scattering.any() ? "no reachable medium scatters"
-                  : !late.any()     ? "light may get into every scattering medium and arrive: " + until
-                  : !leaves         ? "nothing shall be left out"
-                                    : until + ", light by way of " + late.names(),
-                  scattering.causes());
+    facts.mediumScattering = some;
+    features.describe(feature::MediaInTime, some,
+                      !scattering.any() ? "no reachable medium scatters"
+                      : !late.any()     ? "light may get into every scattering medium and arrive: " + until
+                      : !leaves         ? "nothing shall be left out"
+                                        : until + ", light by way of " + late.names(),
+                      scattering.causes());
 }
 
 } // namespace
 
-std::vector<double> earliestThroughMedia(const Scene& scene, const EffectPlan& plan) {
+std::vector<double> earliestThroughMedia(const Scene& scene, const SceneFacts& facts) {
     const double first = firstPulse(scene);
     std::vector<double> earliest(scene.media.size(), Never);
     const auto lower = [&](int medium, double time) {
@@ -179,7 +180,7 @@ std::vector<double> earliestThroughMedia(const Scene& scene, const EffectPlan& p
         const double onward = gapToSensor(scene, box);
         for (const Emitter& emitter : scene.emitters) {
             const double start = startOf(emitter), gap = gapToEmitter(scene, emitter, box) + onward;
-            const double time = start + gap / double(plan.highestSpeed) - Slack * std::abs(start);
+            const double time = start + gap / double(facts.highestSpeed) - Slack * std::abs(start);
             lower(primitive.inside.medium, time);
             lower(primitive.outside.medium, time);
         }
@@ -187,24 +188,24 @@ std::vector<double> earliestThroughMedia(const Scene& scene, const EffectPlan& p
     return earliest;
 }
 
-std::vector<double> earliestArrivals(const Scene& scene, const EffectPlan& plan) {
+std::vector<double> earliestArrivals(const Scene& scene, const SceneFacts& facts) {
     std::vector<double> earliest;
     for (const Emitter& emitter : scene.emitters) {
         const BoundingSphere sphere = boundingSphere(emitter);
         const double gap =
             emitter.isInfinite() ? 0.0 : gapToSensor(scene, Imath::Box3f(sphere.centre), double(sphere.radius));
         const double start = startOf(emitter);
-        earliest.push_back(start + gap / double(plan.highestSpeed) - Slack * std::abs(start));
+        earliest.push_back(start + gap / double(facts.highestSpeed) - Slack * std::abs(start));
     }
     return earliest;
 }
 
-double earliestFromSurfaces(const Scene& scene, const EffectPlan& plan) {
+double earliestFromSurfaces(const Scene& scene, const SceneFacts& facts) {
     double gap = Never;
     for (const Primitive& primitive : scene.primitives)
         gap = std::min(gap, gapToSensor(scene, boundsOf(primitive.shape)));
     const double start = firstPulse(scene);
-    return start == Never || gap == Never ? Never : start + gap / double(plan.highestSpeed) - Slack * std::abs(start);
+    return start == Never || gap == Never ? Never : start + gap / double(facts.highestSpeed) - Slack * std::abs(start);
 }
 
 double lastTime(const Scene& scene) {
@@ -216,30 +217,31 @@ double lastTime(const Scene& scene) {
     return gate.delta ? gate.start : gate.end() - leastDelay(scene);
 }
 
-void leaveOutLate(const Scene& scene, double end, EffectPlan& plan) {
-    if (!plan.timeResolved) {
-        for (const char* name : {"late emitters left out", "black image", "frames before all light"})
-            plan.describe(name, false, "steady state");
-        plan.describe("surfaces in time", !scene.primitives.empty(),
-                      scene.primitives.empty() ? "there is no surface" : "steady state: all count", {"primitives"});
-        plan.describe("media in time", plan.mediumScattering,
-                      plan.mediumScattering ? "steady state: all count" : "no reachable medium scatters", {"media"});
+void excludeLate(const Scene& scene, double end, SceneFacts& facts, Features& features) {
+    if (!facts.timeResolved) {
+        for (const FeatureName& name : {feature::LateEmitters, feature::BlackImage, feature::EmptyFrames})
+            features.describe(name, false, "steady state");
+        features.describe(feature::SurfacesInTime, !scene.primitives.empty(),
+                          scene.primitives.empty() ? "there is no surface" : "steady state: all count", {"primitives"});
+        features.describe(feature::MediaInTime, facts.mediumScattering,
+                          facts.mediumScattering ? "steady state: all count" : "no reachable medium scatters",
+                          {"media"});
         return;
     }
-    const std::vector<double> earliest = earliestArrivals(scene, plan);
-    planEmitters(scene, earliest, end, plan);
+    const std::vector<double> earliest = earliestArrivals(scene, facts);
+    excludeEmitters(scene, earliest, end, facts, features);
     const double first = earliest.empty() ? Never : *std::min_element(earliest.begin(), earliest.end());
-    planFrames(scene, first + leastDelay(scene), plan);
-    const double surfaces = earliestFromSurfaces(scene, plan);
-    plan.surfacesOutOfTime = surfaces > end && !plan.everything;
-    const bool some = !scene.primitives.empty() && !plan.surfacesOutOfTime;
-    plan.describe("surfaces in time", some,
-                  scene.primitives.empty() ? "there is no surface"
-                  : some ? "what the nearest surface shows may arrive before the sensor closes at " + brief(end)
-                         : "what surfaces show does not arrive before " + brief(surfaces) + ", the sensor closes at " +
-                               brief(end),
-                  {"primitives"});
-    planMediaInTime(scene, end, plan);
+    excludeFrames(scene, first + leastDelay(scene), facts, features);
+    const double surfaces = earliestFromSurfaces(scene, facts);
+    facts.surfacesOutOfTime = surfaces > end && !facts.everything;
+    const bool some = !scene.primitives.empty() && !facts.surfacesOutOfTime;
+    features.describe(feature::SurfacesInTime, some,
+                      scene.primitives.empty() ? "there is no surface"
+                      : some ? "what the nearest surface shows may arrive before the sensor closes at " + brief(end)
+                             : "what surfaces show does not arrive before " + brief(surfaces) +
+                                   ", the sensor closes at " + brief(end),
+                      {"primitives"});
+    excludeMedia(scene, end, facts, features);
 }
 
 } // namespace tungsten

@@ -2,8 +2,8 @@
 // The open set: integrators, loaded from plugins, registered by type name.
 
 #include "tungsten/film/Film.h"
+#include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/ProgressToken.h"
-#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/integrator/Statistics.h"
 #include "tungsten/scene/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
@@ -41,15 +41,16 @@ struct PassInfo {
 class Integrator {
   public:
     virtual ~Integrator() = default;
-    /// Called once before the first pass, and for `--explain`: adds the effects the integrator decides on to the plan.
-    virtual void plan(EffectPlan& plan) const = 0;
-    /// Called once after plan(): builds what the plan names (tables, distributions). Where that may take a second,
+    /// Called once before the first pass, and for `--explain`: excludes what cannot arrive (excludeLate), and adds the
+    /// features that the integrator decides on.
+    virtual void plan(SceneFacts& facts, Features& features) const = 0;
+    /// Called once after plan(): builds what the facts ask for (tables, distributions). Where that may take a second,
     /// `watch` is polled as in a pass; once it has thrown PassBrokenOff nothing is rendered.
-    virtual void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) = 0;
+    virtual void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) = 0;
     /// Bytes that prepare() and a pass may take as settings and scene stand; asked after plan(), before prepare().
     [[nodiscard]] virtual double memoryBytes() const { return 0.0; }
-    /// Whether kernels blur the image; `plan` is complete.
-    [[nodiscard]] virtual bool leavesBias(const EffectPlan&) const { return false; }
+    /// Whether kernels blur the image; after plan().
+    [[nodiscard]] virtual bool leavesBias(const SceneFacts&) const { return false; }
     /// Width of a pass's kernels over that of the first pass's, whose square their bias follows; after prepare().
     [[nodiscard]] virtual double kernelWidth(uint32_t) const { return 1.0; }
     /// Whether a pass can trace fewer light paths than the scene's settings say (PassInfo::share), as one that has

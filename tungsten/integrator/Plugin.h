@@ -19,15 +19,16 @@
 namespace tungsten {
 
 /// Increases whenever a header that plugins include changes incompatibly; the compiler's ABI is part of it.
-inline constexpr const char* PluginAbi = "tungsten-plugin-5/" __VERSION__;
+inline constexpr const char* PluginAbi = "tungsten-plugin-6/" __VERSION__;
 
 /// Fingerprint of the sizes of what host and plugins share: catches a plugin that was not rebuilt after a header
 /// changed.
 constexpr uint64_t pluginLayout() {
     uint64_t hash = 0xCBF29CE484222325ull;
-    for (const size_t size : {sizeof(Scene), sizeof(Primitive), sizeof(Medium), sizeof(Emitter), sizeof(Bsdf),
-                              sizeof(Camera), sizeof(TransportSettings), sizeof(SurfaceHit), sizeof(Film),
-                              sizeof(Statistics), sizeof(EffectPlan), sizeof(PassInfo), sizeof(ObjectReader)})
+    for (const size_t size :
+         {sizeof(Scene), sizeof(Primitive), sizeof(Medium), sizeof(Emitter), sizeof(Bsdf), sizeof(Camera),
+          sizeof(TransportSettings), sizeof(SurfaceHit), sizeof(Film), sizeof(Statistics), sizeof(SceneFacts),
+          sizeof(Features), sizeof(PassInfo), sizeof(ObjectReader)})
         hash = (hash ^ size) * 0x100000001B3ull;
     return hash;
 }

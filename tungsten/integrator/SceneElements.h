@@ -1,5 +1,5 @@
 #pragma once
-// Which elements of a scene use something: by name for reasons, by path for causes.
+// Which elements of a scene use something: by name for reasons, and by path.
 
 #include "tungsten/scene/Scene.h"
 

@@ -150,13 +150,13 @@ Result render(const py::object& scene, const py::dict& set, const Limits& limits
     const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
     const global_control parallelism(global_control::max_allowed_parallelism, threads ? size_t(*threads) : all);
     auto session = std::make_unique<SessionResult>();
-    runSession(job.loaded, *job.integrator, job.plan, {}, options, *session);
+    runSession(job.loaded, *job.integrator, job.facts, job.features, {}, options, *session);
     if (session->film.passes() == 0 && session->reason == StopReason::TimedOut) {
         const py::gil_scoped_acquire gil;
         PyErr_SetString(PyExc_TimeoutError, whyNoPass(options, *session).c_str());
         throw py::error_already_set();
     }
-    if (const auto black = blackImage(*job.loaded.scene, job.plan, *session)) {
+    if (const auto black = blackImage(*job.loaded.scene, job.facts, job.features, *session)) {
         const py::gil_scoped_acquire gil;
         warn(*black);
     }
@@ -167,24 +167,24 @@ Result render(const py::object& scene, const py::dict& set, const Limits& limits
 py::dict planOf(const py::object& scene, const py::dict& set, const Folder& folder, bool allowOutside) {
     const Job job = jobOf(scene, set, folder, allowOutside);
     py::list effects;
-    for (const Effect& effect : job.plan.effects) {
+    for (const Feature& feature : job.features.all) {
         py::dict entry;
-        entry["name"] = effect.name;
-        entry["on"] = effect.on;
-        entry["reason"] = effect.reason;
-        entry["causes"] = effect.causes;
-        entry["counters"] = effect.counters;
+        entry["name"] = feature.name;
+        entry["on"] = feature.on;
+        entry["reason"] = feature.reason;
+        entry["causes"] = feature.elements;
+        entry["counters"] = feature.counters;
         effects.append(entry);
     }
     py::dict plan;
     plan["integrator"] = job.loaded.integratorType;
     py::dict sampling;
-    sampling["paths"] = job.plan.sampling.paths;
-    sampling["vertices"] = job.plan.sampling.vertices;
-    sampling["ends"] = job.plan.sampling.ends;
+    sampling["paths"] = job.features.sampling.paths;
+    sampling["vertices"] = job.features.sampling.vertices;
+    sampling["ends"] = job.features.sampling.ends;
     plan["sampling"] = sampling;
     plan["effects"] = effects;
-    plan["lacks"] = job.plan.lacks;
+    plan["lacks"] = job.features.limitations;
     py::list defaults;
     for (const DefaultTaken& taken : defaultsTaken(job, plugins().registry)) {
         py::dict entry;

@@ -161,11 +161,11 @@ class PilotPasses {
         : integrator_(integrator), options_(options), measuresBias_(measuresBias),
           sizes_(options.samplesPerPass, options.samplesPerPass, integrator.cutsLightPaths()) {}
 
-    void prepare(const EffectPlan& plan) {
+    void prepare(const SceneFacts& facts) {
         PassMonitor monitor([&] { return stops(end()); });
         Statistics statistics;
         try {
-            integrator_.prepare(plan, PassWatch(monitor), statistics);
+            integrator_.prepare(facts, PassWatch(monitor), statistics);
         } catch (const PassBrokenOff&) {
             brokenOff_ = monitor.progress();
             throw;
@@ -336,14 +336,14 @@ std::optional<double> PassCosts::passesFor(double wanted) const {
     return std::ceil(std::exp(high) - 1e-6);
 }
 
-std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
+std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const SceneFacts& facts,
                                        const PilotOptions& options) {
-    const bool measuresBias = integrator.leavesBias(plan);
+    const bool measuresBias = integrator.leavesBias(facts);
     PilotPasses passes(integrator, options, measuresBias);
     double prepareWall = 0.0, prepareCpu = 0.0;
     try {
         const double wall = wallNow(), cpu = processCpuSeconds();
-        passes.prepare(plan);
+        passes.prepare(facts);
         prepareWall = wallNow() - wall;
         prepareCpu = processCpuSeconds() - cpu;
         passes.render(scene);

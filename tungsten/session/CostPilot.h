@@ -47,7 +47,7 @@ struct PilotOptions {
 /// and what they bring is taken to whole ones. `plan` is complete (Integrator::plan was called); the integrator is
 /// prepared here. None where all is black. Throws PassBrokenOff when it is interrupted, InputError where even cut
 /// passes take too long: it says how long.
-std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const EffectPlan& plan,
+std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const SceneFacts& facts,
                                        const PilotOptions& options);
 
 } // namespace tungsten

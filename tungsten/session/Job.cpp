@@ -2,7 +2,6 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
-#include "tungsten/integrator/BounceCuts.h"
 #include "tungsten/integrator/Plugin.h"
 #include "tungsten/scene/FormatTypes.h"
 
@@ -55,15 +54,15 @@ void readIntegratorAlone(const ObjectReader& block, const std::string& type, con
     }
 }
 
-/// Of effects that take light away.
-void warnAboutEffects(const Job& job) {
+/// Of features that take light away.
+void warnAboutFeatures(const Job& job) {
     Diagnostics& diagnostics = *job.loaded.diagnostics;
-    for (const Effect& effect : job.plan.effects) {
-        if (effect.on && effect.name == "black image")
-            diagnostics.warnings.push_back({diagnostics.file, "integrator", "the image is black: " + effect.reason});
-        if (effect.on && effect.name == LightCut && !job.plan.nothingArrives)
+    for (const Feature& feature : job.features.all) {
+        if (feature.on && feature.name == tungsten::feature::BlackImage)
+            diagnostics.warnings.push_back({diagnostics.file, "integrator", "the image is black: " + feature.reason});
+        if (feature.on && feature.name == tungsten::feature::LightCut && !job.facts.nothingArrives)
             diagnostics.warnings.push_back(
-                {diagnostics.file, effect.causes.front(), effect.name + ": " + effect.reason});
+                {diagnostics.file, feature.elements.front(), feature.name + ": " + feature.reason});
     }
 }
 
@@ -133,13 +132,14 @@ Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const
                                 const TransportSettings& transport) {
         readIntegratorAlone(block, type, transport, plugins);
     };
-    Job job{loadScene(file, anyway), nullptr, {}};
+    Job job{loadScene(file, anyway), nullptr, {}, {}};
     options.watch.poll();
     job.integrator = makeIntegrator(job.loaded, plugins);
     options.watch.poll();
-    job.plan = analyseScene(*job.loaded.scene, everything);
-    job.integrator->plan(job.plan);
-    warnAboutEffects(job);
+    job.facts = analyseScene(*job.loaded.scene, everything);
+    job.features = describeScene(*job.loaded.scene, job.facts);
+    job.integrator->plan(job.facts, job.features);
+    warnAboutFeatures(job);
     return job;
 }
 

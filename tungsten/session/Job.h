@@ -25,15 +25,16 @@ struct Plugins {
     std::vector<Problem> problems = loadPlugins(directories, registry);
 };
 
-/// A scene with its integrator, whose plan is complete.
+/// A scene with its integrator, and what it will do.
 struct Job {
     LoadedScene loaded;
     std::unique_ptr<Integrator> integrator;
-    EffectPlan plan;
+    SceneFacts facts;
+    Features features;
 };
 
 /// Throws what loadScene throws, and InputError for an integrator that nobody registers or that refuses its settings.
-/// `everything`: EffectPlan::everything.
+/// `everything`: SceneFacts::everything.
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins,
             bool everything = false);
 

@@ -1,7 +1,6 @@
 
 #include "tungsten/session/Report.h"
 
-#include "tungsten/integrator/BounceCuts.h"
 #include "tungsten/io/Format.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/scene/Json.h"
@@ -21,13 +20,14 @@ namespace tungsten {
 
 namespace {
 
-/// Whether the effect is that of leaving something out, and does.
-bool leavesOut(const Effect& effect, const EffectPlan& plan) {
-    const bool surfaces = plan.surfaceScattering || plan.surfaceEmission || plan.specularSensorPaths;
-    if (effect.name == "surfaces in time") return surfaces && plan.surfacesOutOfTime;
-    if (effect.name == "media in time") return !plan.mediaOutOfTime.empty();
-    constexpr std::array LeftOut{"late emitters left out", "black image", "frames before all light", LightCut};
-    return effect.on && std::ranges::find(LeftOut, effect.name) != LeftOut.end();
+/// Whether the feature is that of excluding something, and does.
+bool excludes(const Feature& feature, const SceneFacts& facts) {
+    const bool surfaces = facts.surfaceScattering || facts.surfaceEmission || facts.specularSensorPaths;
+    if (feature.name == tungsten::feature::SurfacesInTime) return surfaces && facts.surfacesOutOfTime;
+    if (feature.name == tungsten::feature::MediaInTime) return !facts.excludedMedia.empty();
+    using namespace tungsten::feature;
+    return feature.on && std::ranges::any_of(std::array{LateEmitters, BlackImage, EmptyFrames, LightCut},
+                                             [&](const FeatureName& name) { return feature.name == name; });
 }
 
 using Descriptions = std::vector<std::shared_ptr<Description>>;
@@ -83,13 +83,12 @@ bool isCountOrLength(const Field& field) {
     return counted && field.fallback != "0" && field.accepted.find("number") != std::string::npos;
 }
 
-/// The reason of an effect whose cause is the field: what was made for the scene.
-std::string madeFor(const EffectPlan& plan, const std::string& field) {
-    const auto causes = [&](const Effect& effect) {
-        return std::find(effect.causes.begin(), effect.causes.end(), field) != effect.causes.end();
-    };
-    const auto effect = std::find_if(plan.effects.begin(), plan.effects.end(), causes);
-    return effect == plan.effects.end() ? "" : effect->reason;
+/// The reason of a feature whose element is the field: what was made for the scene.
+std::string madeFor(const Features& features, const std::string& field) {
+    const auto feature = std::ranges::find_if(features.all, [&](const Feature& described) {
+        return std::ranges::find(described.elements, field) != described.elements.end();
+    });
+    return feature == features.all.end() ? "" : feature->reason;
 }
 
 std::string subtitle(const LoadedScene& loaded, const SessionResult& result) {
@@ -107,32 +106,32 @@ std::string subtitle(const LoadedScene& loaded, const SessionResult& result) {
 
 } // namespace
 
-void printPlan(const EffectPlan& plan, std::ostream& out) {
-    out << "  paths     " << plan.sampling.paths << "\n  vertices  " << plan.sampling.vertices << "\n  ends      "
-        << plan.sampling.ends << '\n';
-    for (const std::string& lack : plan.lacks) out << "  lacks     " << lack << '\n';
-    for (const Effect& effect : plan.effects)
-        if (leavesOut(effect, plan)) out << "  left out  " << effect.name << ": " << effect.reason << '\n';
+void printPlan(const SceneFacts& facts, const Features& features, std::ostream& out) {
+    out << "  paths     " << features.sampling.paths << "\n  vertices  " << features.sampling.vertices
+        << "\n  ends      " << features.sampling.ends << '\n';
+    for (const std::string& limitation : features.limitations) out << "  lacks     " << limitation << '\n';
+    for (const Feature& feature : features.all)
+        if (excludes(feature, facts)) out << "  left out  " << feature.name << ": " << feature.reason << '\n';
 }
 
-void printEffects(const EffectPlan& plan, std::ostream& out) {
+void printFeatures(const Features& features, std::ostream& out) {
     size_t width = 0;
-    for (const Effect& effect : plan.effects) width = std::max(width, effect.name.size());
-    for (const Effect& effect : plan.effects)
-        out << "  " << (effect.on ? "on " : "off") << "  " << std::left << std::setw(int(width)) << effect.name << "  "
-            << effect.reason << '\n';
+    for (const Feature& feature : features.all) width = std::max(width, feature.name.size());
+    for (const Feature& feature : features.all)
+        out << "  " << (feature.on ? "on " : "off") << "  " << std::left << std::setw(int(width)) << feature.name
+            << "  " << feature.reason << '\n';
 }
 
-void writeEffects(const std::vector<Effect>& effects, const Statistics& statistics, JsonWriter& json) {
+void writeFeatures(const std::vector<Feature>& features, const Statistics& statistics, JsonWriter& json) {
     json.beginArray("effects");
-    for (const Effect& effect : effects) {
+    for (const Feature& feature : features) {
         json.beginObject();
-        json.field("name", effect.name);
-        json.field("on", effect.on);
-        json.field("reason", effect.reason);
-        json.field("causes", effect.causes);
+        json.field("name", feature.name);
+        json.field("on", feature.on);
+        json.field("reason", feature.reason);
+        json.field("causes", feature.elements);
         json.beginObject("counters");
-        for (const std::string& counter : effect.counters) json.field(counter, statistics.counter(counter));
+        for (const std::string& counter : feature.counters) json.field(counter, statistics.counter(counter));
         json.endObject();
         json.endObject();
     }
@@ -153,12 +152,12 @@ std::string planJson(const Job& job, const std::vector<DefaultTaken>& defaults) 
     json.field("scene", job.loaded.scene->file.string());
     json.field("integrator", job.loaded.integratorType);
     json.beginObject("sampling");
-    json.field("paths", job.plan.sampling.paths);
-    json.field("vertices", job.plan.sampling.vertices);
-    json.field("ends", job.plan.sampling.ends);
+    json.field("paths", job.features.sampling.paths);
+    json.field("vertices", job.features.sampling.vertices);
+    json.field("ends", job.features.sampling.ends);
     json.endObject();
-    writeEffects(job.plan.effects, {}, json);
-    json.field("lacks", job.plan.lacks);
+    writeFeatures(job.features.all, {}, json);
+    json.field("lacks", job.features.limitations);
     json.beginArray("defaults");
     for (const DefaultTaken& taken : defaults) {
         json.beginObject();
@@ -217,7 +216,7 @@ std::vector<DefaultTaken> defaultsTaken(const Job& job, const IntegratorRegistry
             for (const auto& description : kind.types)
                 for (const Field& field : description->fields) {
                     if (!isCountOrLength(field) || (given && given->has(field.name))) continue;
-                    const std::string path = block + "." + field.name, made = madeFor(job.plan, path);
+                    const std::string path = block + "." + field.name, made = madeFor(job.features, path);
                     taken.push_back({path, made.empty() ? field.fallback : made, field.meaning});
                 }
     }
@@ -246,12 +245,12 @@ std::string whyNoPass(const SessionOptions& options, const SessionResult& result
     };
     const double limit = options.timeoutSeconds;
     const auto stages = result.statistics.stages();
-    const auto prepare = stages.find("prepare");
+    const auto prepare = stages.find(stage::Prepare);
     const double preparing = prepare == stages.end() ? 0.0 : prepare->second.wallSeconds;
     std::string why = "not one pass ended within " + text("%.3g s", limit);
     if (preparing >= 0.9 * limit) {
         why += ", which went into preparing";
-        if (!stages.contains("passes") && !result.brokenOff.stage.empty())
+        if (!stages.contains(stage::Passes) && !result.brokenOff.stage.empty())
             why += " (" + result.brokenOff.stage + text(", %.0f %% done)", 100.0 * result.brokenOff.ofStage);
         return why + "; nothing was written. Give it more time: that is spent before the first photon or sample";
     }
@@ -288,12 +287,13 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
         json.field("relative bias bound", bias.bound);
         json.field("passes measured for bias", uint64_t(result.bias.passes()));
     }
-    json.field("non-finite samples", result.film.nonFiniteSamples() + result.statistics.counter("non-finite samples"));
+    json.field(counter::NonFiniteSamples,
+               result.film.nonFiniteSamples() + result.statistics.counter(counter::NonFiniteSamples));
     json.field("render wall seconds", result.renderSeconds);
     if (result.ranks > 1) json.field("ranks", uint64_t(result.ranks));
     json.field("process CPU seconds", processCpuSeconds() + result.othersCpuSeconds);
     json.field("peak memory bytes", std::max(peakMemoryBytes(), uint64_t(result.othersPeakMemory)));
-    writeEffects(result.effects, result.statistics, json);
+    writeFeatures(result.features, result.statistics, json);
     json.beginObject("counters");
     for (const auto& [name, value] : result.statistics.counters()) json.field(name, value);
     json.endObject();
@@ -309,18 +309,19 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
     return json.finish();
 }
 
-std::optional<Problem> blackImage(const Scene& scene, const EffectPlan& plan, const SessionResult& result) {
-    if (plan.nothingArrives || result.film.passes() == 0 || !(result.film.meanSquare() == 0.0)) return std::nullopt;
+std::optional<Problem> blackImage(const Scene& scene, const SceneFacts& facts, const Features& features,
+                                  const SessionResult& result) {
+    if (facts.nothingArrives || result.film.passes() == 0 || !(result.film.meanSquare() == 0.0)) return std::nullopt;
     const TransportSettings& transport = scene.transport;
     std::string text = "the image is black: no path found light";
-    for (const std::string& lack : plan.lacks) text += "; it lacks " + lack;
+    for (const std::string& limitation : features.limitations) text += "; it lacks " + limitation;
     if (transport.minBounces >= transport.maxBounces)
         text += "; min_bounces and max_bounces leave no number of interactions between them";
-    else if (!plan.timeResolved)
+    else if (!facts.timeResolved)
         text += "; look at where lights and camera stand, what lies between them, and at max_bounces";
     else
         text += "; look at the times of the gate (a film of many frames shows when light arrives)";
-    if (plan.timeResolved && !transport.cameraUnwarped)
+    if (facts.timeResolved && !transport.cameraUnwarped)
         text += "; they count the way to the camera, unless the scene says \"camera_unwarped\": true";
     return Problem{scene.file.string(), "integrator", text};
 }

@@ -1,8 +1,8 @@
 #pragma once
 // The plan for readers: text for `--explain`, JSON for `--explain=json` and `--stats`.
 
+#include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/Integrator.h"
-#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/integrator/Statistics.h"
 #include "tungsten/io/Page.h"
 #include "tungsten/scene/JsonWriter.h"
@@ -33,19 +33,20 @@ struct DefaultTaken {
 std::vector<DefaultTaken> defaultsTaken(const Job& job, const IntegratorRegistry& registry);
 
 /// What is sampled how, in three lines; then what the image lacks and what is left out, with reasons.
-void printPlan(const EffectPlan& plan, std::ostream& out);
-/// Every effect, on or off, with its reason.
-void printEffects(const EffectPlan& plan, std::ostream& out);
+void printPlan(const SceneFacts& facts, const Features& features, std::ostream& out);
+/// Every feature, on or off, with its reason.
+void printFeatures(const Features& features, std::ostream& out);
 /// What the scene leaves open, below a heading; nothing where it leaves nothing.
 void printDefaults(const std::vector<DefaultTaken>& defaults, std::ostream& out);
 /// An array `effects`: name, on, reason, causes and counters with what they have reached.
-void writeEffects(const std::vector<Effect>& effects, const Statistics& statistics, JsonWriter& json);
+void writeFeatures(const std::vector<Feature>& features, const Statistics& statistics, JsonWriter& json);
 /// Scene, integrator, `sampling`, `effects`, `lacks` and `defaults`; nothing has been counted.
 std::string planJson(const Job& job, const std::vector<DefaultTaken>& defaults);
 
-/// A warning if every pixel of the film is 0 after at least one pass, with what may be the cause; none if the plan has
-/// said before that nothing can arrive.
-std::optional<Problem> blackImage(const Scene& scene, const EffectPlan& plan, const SessionResult& result);
+/// A warning if every pixel of the film is 0 after at least one pass, with what may be the cause; none if the features
+/// have said before that nothing can arrive.
+std::optional<Problem> blackImage(const Scene& scene, const SceneFacts& facts, const Features& features,
+                                  const SessionResult& result);
 
 /// What a time-out has left without one pass, and what helps.
 std::string whyNoPass(const SessionOptions& options, const SessionResult& result);

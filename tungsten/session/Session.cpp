@@ -242,11 +242,11 @@ class Session {
           trace_(shared_.speaks() ? options.trace : std::filesystem::path(), *loaded.scene, options.seed),
           reporter_(options.quiet || !shared_.speaks()) {}
 
-    void run(const EffectPlan& plan) {
-        together(options_.team, [&] { begin(plan); });
+    void run(const SceneFacts& facts, const Features& features) {
+        together(options_.team, [&] { begin(facts, features); });
         shared_.shareResumed();
-        black_ = plan.nothingArrives;
-        const bool prepared = prepare(plan);
+        black_ = facts.nothingArrives;
+        const bool prepared = prepare(facts);
         if (agreed_.interrupted) return; // while loading or preparing: there is nothing to write
         if (options_.passes) return prepared ? renderPartially() : void();
         if (prepared) renderPasses();
@@ -260,7 +260,7 @@ class Session {
 
   private:
     /// Checks, films, and what earlier runs have left.
-    void begin(const EffectPlan& plan) {
+    void begin(const SceneFacts& facts, const Features& features) {
         const Scene& scene = *loaded_.scene;
         if (options_.passes)
             checkWritable(partialState(), outputs_.within);
@@ -268,13 +268,13 @@ class Session {
             checkOutputs(outputs_,
                          {scene.transport.gate.frames, options_.resumeEnabled, options_.checkpointSeconds > 0.0,
                           loaded_.inputs, Trace::filesIn(options_.trace), options_.trace});
-        const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(plan);
+        const bool bias = (options_.bias || options_.targetError > 0.0) && integrator_.leavesBias(facts);
         // Film, that of its bias, and one more copy of its images while they are written.
         requireMemory(loaded_, bias ? 3.0 : 2.0, integrator_.memoryBytes(), options_.memoryLimit);
         if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
         result_.film = filmOf(scene);
         if (shared_.speaks()) files_.resume();
-        result_.effects = plan.effects;
+        result_.features = features.all;
     }
     [[nodiscard]] std::filesystem::path partialState() const {
         return outputs_.partialState(options_.passes->first, options_.passes->end);
@@ -299,22 +299,23 @@ class Session {
     }
 
     /// With what pilots have decided meanwhile.
-    [[nodiscard]] std::vector<Effect> effectsNow(const EffectPlan& before) const {
-        EffectPlan now = analyseScene(*loaded_.scene, before.everything);
-        integrator_.plan(now);
-        return now.effects;
+    [[nodiscard]] std::vector<Feature> featuresNow(const SceneFacts& before) const {
+        SceneFacts facts = analyseScene(*loaded_.scene, before.everything);
+        Features now = describeScene(*loaded_.scene, facts);
+        integrator_.plan(facts, now);
+        return now.all;
     }
 
     /// False: it was broken off, in some rank, and there are no passes.
-    bool prepare(const EffectPlan& plan) {
+    bool prepare(const SceneFacts& facts) {
         bool whole = true;
         together(options_.team, [&] {
-            const StageTimer timer(result_.statistics, "prepare");
+            const StageTimer timer(result_.statistics, stage::Prepare);
             const auto build = [&](const PassInfo& pass, Statistics& statistics) {
-                if (!black_) integrator_.prepare(plan, pass.watch.part(0.0, 0.0), statistics);
+                if (!black_) integrator_.prepare(facts, pass.watch.part(0.0, 0.0), statistics);
             };
             whole = watched_.run({}, limit_.end(), build);
-            if (whole) result_.effects = effectsNow(plan);
+            if (whole) result_.features = featuresNow(facts);
         });
         watched_.rethrow();
         agree(whole, false);
@@ -324,7 +325,7 @@ class Session {
     }
 
     void renderPasses() {
-        const StageTimer timer(result_.statistics, "passes");
+        const StageTimer timer(result_.statistics, stage::Passes);
         start_ = Clock::now();
         if (shared_.speaks()) trace_.start();
         bool stop = result_.samples >= spp_;
@@ -488,10 +489,10 @@ class Session {
 
 } // namespace
 
-void runSession(const LoadedScene& loaded, Integrator& integrator, const EffectPlan& plan, const OutputFiles& outputs,
-                const SessionOptions& options, SessionResult& result) {
+void runSession(const LoadedScene& loaded, Integrator& integrator, const SceneFacts& facts, const Features& features,
+                const OutputFiles& outputs, const SessionOptions& options, SessionResult& result) {
     Session session(loaded, integrator, outputs, options, result);
-    session.run(plan);
+    session.run(facts, features);
     if (result.film.passes() == 0 || (options.team && options.team->rank() > 0)) return;
     std::vector<Problem> problems; // of one output: the others are written all the same
     const auto attempt = [&](const auto& write) {

@@ -3,8 +3,8 @@
 
 #include "tungsten/film/Film.h"
 #include "tungsten/film/KernelBias.h"
+#include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/ProgressToken.h"
-#include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/integrator/Statistics.h"
 #include "tungsten/session/PartialState.h"
 #include "tungsten/session/Trace.h"
@@ -61,7 +61,7 @@ struct SessionResult {
     PassProgress brokenOff;        ///< where the preparing, or the pass, was that was broken off last
     std::vector<TraceEntry> trace; ///< where one is written
     std::vector<std::filesystem::path> written;
-    std::vector<Effect> effects; ///< of the plan
+    std::vector<Feature> features;
 
     [[nodiscard]] bool estimatesBias() const { return bias.frames() > 0; }
     /// Of the film's mean; 0 where none is estimated.

@@ -4,6 +4,7 @@
 #include "tungsten/image/AtomicFile.h"
 #include "tungsten/integrator/Statistics.h"
 #include "tungsten/io/Outputs.h"
+#include "tungsten/io/Result.h"
 #include "tungsten/io/Writers.h"
 #include "tungsten/scene/JsonWriter.h"
 

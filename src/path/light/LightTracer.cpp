@@ -7,6 +7,7 @@
 #include "transport/SamplingSummary.h"
 
 #include "tungsten/integrator/EarliestArrival.h"
+#include "tungsten/integrator/Names.h"
 #include "tungsten/scene/LightChoice.h"
 
 #include <tbb/parallel_for.h>
@@ -61,13 +62,13 @@ void readRest(const ObjectReader& block, const Scene& scene) {
 
 void report(const LightCounters& counters, Statistics& statistics) {
     statistics.add("rays", counters.rays);
-    statistics.add("shadow rays", counters.shadowRays);
+    statistics.add(counter::ShadowRays, counters.shadowRays);
     transport::reportSteps(counters, statistics);
-    statistics.add("arrivals inside the gate", counters.timed);
-    statistics.add("arrivals in later frames", counters.laterFrames);
-    statistics.add("arrivals weighed by the response", counters.weighed);
+    statistics.add(counter::ArrivalsInGate, counters.timed);
+    statistics.add(counter::ArrivalsInLaterFrames, counters.laterFrames);
+    statistics.add(counter::ArrivalsByResponse, counters.weighed);
     statistics.add("connections", counters.connections);
-    statistics.add("non-finite samples", counters.nonFinite);
+    statistics.add(counter::NonFiniteSamples, counters.nonFinite);
 }
 
 } // namespace
@@ -80,43 +81,45 @@ LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader&
     readRest(settings, *scene_);
 }
 
-void LightTracer::plan(EffectPlan& plan) const {
-    leaveOutLate(*scene_, lastTime(*scene_), plan);
-    countArrivals(plan);
+void LightTracer::plan(SceneFacts& facts, Features& features) const {
+    excludeLate(*scene_, lastTime(*scene_), facts, features);
+    countArrivals(features);
     const bool detectors = scene_->camera.detectors() != nullptr;
-    const bool splits = detectors && plan.mediumScattering;
-    plan.sampling = {splits ? "plain light paths, split on their way to detectors by what diffusion would bring"
-                            : "plain light paths: there is no guidance for them",
-                     transport::PlainVertices + std::string(russianRoulette_ ? ", Russian roulette by throughput" : ""),
-                     detectors ? "connections to detectors, and directions that meet them"
-                               : "connections to the camera"};
-    plan.describe("light paths", emitters_.total() > 0.0,
-                  emitters_.total() > 0.0 ? "one for every sample of a pixel, connected to the camera at each vertex"
-                                          : "nothing shines",
-                  {"integrator.type"}, {"light paths"});
+    const bool splits = detectors && facts.mediumScattering;
+    features.sampling = {
+        splits ? "plain light paths, split on their way to detectors by what diffusion would bring"
+               : "plain light paths: there is no guidance for them",
+        transport::PlainVertices + std::string(russianRoulette_ ? ", Russian roulette by throughput" : ""),
+        detectors ? "connections to detectors, and directions that meet them" : "connections to the camera"};
+    features.describe("light paths", emitters_.total() > 0.0,
+                      emitters_.total() > 0.0
+                          ? "one for every sample of a pixel, connected to the camera at each vertex"
+                          : "nothing shines",
+                      {"integrator.type"}, {counter::LightPaths});
     if (detectors)
-        plan.describe("splits towards detectors", splits,
-                      splits ? "light paths go on in more copies the more diffusion brings to detectors from there"
-                             : "no medium scatters");
-    plan.describe("emission in view", plan.surfaceEmission,
-                  plan.surfaceEmission ? "points of the lights are connected to the camera" : "no light has a surface");
-    if (plan.environment && !detectors)
-        plan.lack("environment in view", "no light path starts on the way from the camera to infinity");
-    if (plan.specularSensorPaths && !detectors)
-        plan.lack("mirrors and refraction in view",
-                  "connections to the camera are straight: what is seen in mirrors or through refraction is "
-                  "missing; caustics are found");
-    plan.describe("Russian roulette", russianRoulette_,
-                  russianRoulette_ ? "enable_rr, or its default in steady state"
-                                   : "off by default in time-resolved renders");
+        features.describe("splits towards detectors", splits,
+                          splits ? "light paths go on in more copies the more diffusion brings to detectors from there"
+                                 : "no medium scatters");
+    features.describe("emission in view", facts.surfaceEmission,
+                      facts.surfaceEmission ? "points of the lights are connected to the camera"
+                                            : "no light has a surface");
+    if (facts.environment && !detectors)
+        features.limit("environment in view", "no light path starts on the way from the camera to infinity");
+    if (facts.specularSensorPaths && !detectors)
+        features.limit("mirrors and refraction in view",
+                       "connections to the camera are straight: what is seen in mirrors or through refraction is "
+                       "missing; caustics are found");
+    features.describe("Russian roulette", russianRoulette_,
+                      russianRoulette_ ? "enable_rr, or its default in steady state"
+                                       : "off by default in time-resolved renders");
 }
 
-void LightTracer::prepare(const EffectPlan& plan, const PassWatch&, Statistics&) {
-    forwardBoundaries_ = plan.forwardBoundaries || plan.everything;
+void LightTracer::prepare(const SceneFacts& facts, const PassWatch&, Statistics&) {
+    forwardBoundaries_ = facts.forwardBoundaries || facts.everything;
     emitters_ = emitterDistribution(
-        *scene_, [](const Emitter&) { return true; }, plan.late);
-    bounds_ = {scene_->transport.gate, plan};
-    splits_ = scene_->camera.detectors() && plan.mediumScattering;
+        *scene_, [](const Emitter&) { return true; }, facts.excludedEmitters);
+    bounds_ = {scene_->transport.gate, facts};
+    splits_ = scene_->camera.detectors() && facts.mediumScattering;
 }
 
 void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
@@ -146,7 +149,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
         });
         splats.add(batches, pass.watch);
     }
-    statistics.add("light paths", paths);
+    statistics.add(counter::LightPaths, paths);
 }
 
 } // namespace tungsten::path

@@ -11,8 +11,8 @@ namespace tungsten::path {
 class LightTracer : public Integrator {
   public:
     LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings);
-    void plan(EffectPlan& plan) const override;
-    void prepare(const EffectPlan& plan, const PassWatch& watch, Statistics& statistics) override;
+    void plan(SceneFacts& facts, Features& features) const override;
+    void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:

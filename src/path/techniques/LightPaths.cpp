@@ -2,6 +2,8 @@
 
 #include "path/Tuning.h"
 
+#include "tungsten/integrator/Names.h"
+
 namespace tungsten::path {
 
 namespace {
@@ -42,7 +44,7 @@ void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, const 
     for (size_t i = 0; i < reflected_.size(); ++i) {
         if (!(targets.probability(i) > 0.0f) || scene.emitters[i].isDelta()) continue;
         reflected_[i].prepare(scene, scene.emitters[i], flights_, watch);
-        statistics.add("light paths", tuning::PilotPaths);
+        statistics.add(counter::LightPaths, tuning::PilotPaths);
     }
 }
 
@@ -61,7 +63,7 @@ void LightPaths::trace(const Scene& scene, const TargetChoice& targets, size_t g
         reflected_[i].trace(scene, emitter, choice, share, pass, flights_);
         paths += share;
     }
-    statistics.add("light paths", paths);
+    statistics.add(counter::LightPaths, paths);
     statistics.add("rays", paths);
 }
 

@@ -5,6 +5,8 @@
 #include "photon/light/TracedPaths.h"
 #include "photon/store/StoreFilling.h"
 
+#include "tungsten/integrator/Names.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -84,9 +86,9 @@ uint64_t leastPathsFor(const SurfaceConnections& connections) {
 void report(const TracedPaths& traced, Statistics& statistics) {
     for (const PhotonCounters* counters : {&traced.plain, &traced.guided}) {
         transport::reportSteps(*counters, statistics);
-        statistics.add("control vertices", counters->controlVertices);
-        statistics.add("plain light paths beside guided ones", counters->plainPaths);
-        statistics.add("non-finite samples", counters->nonFinite);
+        statistics.add(counter::ControlVertices, counters->controlVertices);
+        statistics.add(counter::PlainBesideGuided, counters->plainPaths);
+        statistics.add(counter::NonFiniteSamples, counters->nonFinite);
         statistics.add("volume deposits", counters->volumeDeposits);
         statistics.add("volume deposits that may count", counters->countingDeposits);
     }
@@ -95,9 +97,9 @@ void report(const TracedPaths& traced, Statistics& statistics) {
 }
 
 void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Statistics& statistics) {
-    statistics.add("surface connections", maps.received.size());
+    statistics.add(counter::SurfaceConnections, maps.received.size());
     statistics.add("photons", maps.paths);
-    statistics.add("stored surface photons", maps.surface.records.size());
+    statistics.add(counter::StoredSurfacePhotons, maps.surface.records.size());
     forEachPrimitive(primitive, [&](const auto& p) {
         using Record = typename std::decay_t<decltype(p)>::Record;
         const auto* store = std::get_if<Store<Record>>(&maps.volume);

@@ -9,6 +9,8 @@
 #include "transport/SharePilot.h"
 #include "transport/Tuning.h"
 
+#include "tungsten/integrator/Names.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -231,7 +233,7 @@ void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connect
     }
     balance_ = pilot.costs.ofTime(asked ? double(*asked) : pilot.choose());
     connectionEffort_ = pilot.effort(balance_);
-    statistics.add("pilot paths", path);
+    statistics.add(counter::PilotPaths, path);
     const auto thousandths = [](double part) { return uint64_t(std::lround(1000.0 * part)); };
     statistics.add("plain light paths, in thousandths", thousandths(double(balance_.plain)));
     statistics.add("connections over the pilot's, in thousandths", thousandths(connectionEffort_));

@@ -3,6 +3,8 @@
 #include "photon/Tuning.h"
 #include "photon/raster/Registers.h"
 
+#include "tungsten/integrator/Names.h"
+
 #include <tbb/parallel_for.h>
 
 namespace tungsten::photon {
@@ -162,7 +164,7 @@ void shareLight(const Scene& scene, const transport::Sensor& sensor, const Senso
     const Sharing sharing(scene, record, received, kernel, scale / width, film);
     watch.stage("shared light", uint64_t(record.height));
     tbb::parallel_for(0, record.height, [&](int y) {
-        statistics.add("non-finite samples", sharing.row(y, watch));
+        statistics.add(counter::NonFiniteSamples, sharing.row(y, watch));
         watch.poll();
     });
 }

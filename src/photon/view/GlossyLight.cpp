@@ -35,8 +35,8 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
 
 } // namespace
 
-GlossyLight::GlossyLight(const Scene& scene, const EffectPlan& plan)
-    : scene_(scene), lights_(scene, plan), oversampled_(pixelsNearGlossy(scene)) {}
+GlossyLight::GlossyLight(const Scene& scene, const SceneFacts& facts)
+    : scene_(scene), lights_(scene, facts), oversampled_(pixelsNearGlossy(scene)) {}
 
 std::optional<ArrivedLight> GlossyLight::connect(const transport::Sensor& sensor, const SensorState& state,
                                                  const SurfaceInteraction& surface, Sampler& sampler,

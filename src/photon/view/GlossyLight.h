@@ -8,7 +8,7 @@ namespace tungsten::photon {
 
 class GlossyLight {
   public:
-    GlossyLight(const Scene& scene, const EffectPlan& plan);
+    GlossyLight(const Scene& scene, const SceneFacts& facts);
 
     /// By a point on a light, weighed against sensor paths that hit the light. `state` is the path up to the glossy
     /// surface. None when it arrives outside the sensor's gate. Adds the rays traced to `rays`.

@@ -4,9 +4,9 @@
 
 namespace tungsten::photon {
 
-LightConnector::LightConnector(const Scene& scene, const EffectPlan& plan)
-    : scene_(scene), lights_(scene, plan.late), connector_(scene, plan.forwardBoundaries || plan.everything),
-      bounds_(scene.transport.gate, plan) {}
+LightConnector::LightConnector(const Scene& scene, const SceneFacts& facts)
+    : scene_(scene), lights_(scene, facts.excludedEmitters),
+      connector_(scene, facts.forwardBoundaries || facts.everything), bounds_(scene.transport.gate, facts) {}
 
 std::optional<LightConnection> LightConnector::connect(const transport::Sensor& sensor, const SensorState& state,
                                                        const SurfaceInteraction& surface, Sampler& sampler,

@@ -25,7 +25,7 @@ struct LightConnection {
 
 class LightConnector {
   public:
-    LightConnector(const Scene& scene, const EffectPlan& plan);
+    LightConnector(const Scene& scene, const SceneFacts& facts);
 
     /// `state` is the path up to the surface. None when nothing arrives, or outside the sensor's gate. Adds the rays
     /// traced to `rays`.

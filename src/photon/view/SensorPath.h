@@ -4,6 +4,7 @@
 
 #include "transport/StraightSteps.h"
 
+#include "tungsten/integrator/Names.h"
 #include "tungsten/scene/Interaction.h"
 
 namespace tungsten::photon {
@@ -128,7 +129,7 @@ SensorSteps followSensorPath(const Scene& scene, const Ray& ray, const SensorPat
 
 inline void report(const SensorSteps& steps, Statistics& statistics) {
     statistics.add("rays", steps.rays);
-    statistics.add("glossy sensor reflections", steps.glossy);
+    statistics.add(counter::GlossySensorReflections, steps.glossy);
     transport::reportSteps(steps, statistics);
 }
 
