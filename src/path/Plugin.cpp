@@ -14,14 +14,18 @@ std::unique_ptr<tungsten::Integrator> make(std::shared_ptr<const tungsten::Scene
 }
 
 void registerIntegrators(tungsten::IntegratorRegistry& registry) {
+    using tungsten::DefaultGate;
+    constexpr auto Paths = tungsten::IntegratorFamily::PathTracers;
     using tungsten::path::LightTracer;
     using tungsten::path::PathTracer;
     registry.add("path_tracer", "unbiased path tracing with next-event estimation, steady state or time-resolved",
-                 make<PathTracer>);
-    registry.add("transient_path_tracer", "the same, always time-resolved", make<PathTracer>);
+                 make<PathTracer>, {DefaultGate::None, Paths});
+    registry.add("transient_path_tracer", "the same, always time-resolved", make<PathTracer>,
+                 {DefaultGate::Gated, Paths, true});
     registry.add("light_tracer", "plain paths from the lights, connected to the camera; steady state or time-resolved",
                  make<LightTracer>);
-    registry.add("transient_light_tracer", "the same, always time-resolved", make<LightTracer>);
+    registry.add("transient_light_tracer", "the same, always time-resolved", make<LightTracer>,
+                 {.defaultGate = DefaultGate::Gated});
 }
 
 } // namespace

@@ -7,19 +7,21 @@
 namespace {
 
 void add(tungsten::IntegratorRegistry& registry, const std::string& type, const std::string& description,
-         bool progressive) {
+         bool progressive, tungsten::DefaultGate gate) {
     registry.add(type, description,
                  [progressive](std::shared_ptr<const tungsten::Scene> scene, const tungsten::ObjectReader& settings) {
                      return std::make_unique<tungsten::photon::PhotonIntegrator>(std::move(scene), settings,
                                                                                  progressive);
-                 });
+                 },
+                 {gate, tungsten::IntegratorFamily::PhotonMaps, progressive && gate == tungsten::DefaultGate::Gated});
 }
 
 void registerIntegrators(tungsten::IntegratorRegistry& registry) {
-    add(registry, "photon_map", "photon map, steady state", false);
-    add(registry, "progressive_photon_map", "progressive photon map, steady state", true);
-    add(registry, "transient_photon_map", "time-resolved photon map", false);
-    add(registry, "progressive_transient_photon_map", "time-resolved progressive photon map", true);
+    using tungsten::DefaultGate;
+    add(registry, "photon_map", "photon map, steady state", false, DefaultGate::Never);
+    add(registry, "progressive_photon_map", "progressive photon map, steady state", true, DefaultGate::Never);
+    add(registry, "transient_photon_map", "time-resolved photon map", false, DefaultGate::Gated);
+    add(registry, "progressive_transient_photon_map", "time-resolved progressive photon map", true, DefaultGate::Gated);
 }
 
 } // namespace

@@ -23,7 +23,7 @@ struct Analysed {
 
 std::string textOf(const Analysed& of) {
     std::ostringstream out;
-    printFeatures(describeScene(*of.scene, of.facts), out);
+    printFeatures(featuresOf(*of.scene, of.facts), out);
     return out.str();
 }
 

@@ -92,7 +92,7 @@ TEST_P(MissedLightCases, AreSaid) {
                                    darts + "\"" + given.integrator + "}}");
         const LoadedScene loaded = loadScene(file.path());
         SceneFacts facts = analyseScene(*loaded.scene);
-        Features features = describeScene(*loaded.scene, facts);
+        Features features = featuresOf(*loaded.scene, facts);
         PathTracer(loaded.scene, loaded.integratorSettings).plan(facts, features);
         std::string text, limitations;
         for (const Problem& warning : loaded.diagnostics->warnings)

@@ -228,7 +228,7 @@ TEST(GuidedPaths, ThePlanSaysWhy) {
             test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 4, "darts": )" + darts));
         const LoadedScene loaded = loadScene(file.path(), {{}, {"integrator.type=path_tracer"}});
         SceneFacts facts = analyseScene(*loaded.scene);
-        Features features = describeScene(*loaded.scene, facts);
+        Features features = featuresOf(*loaded.scene, facts);
         PathTracer(loaded.scene, loaded.integratorSettings).plan(facts, features);
         for (const Feature& f : features.all)
             if (f.name == feature) return std::string(f.on ? "on: " : "off: ") + f.reason;
@@ -251,7 +251,7 @@ TEST(PathTracer, SaysThatLightOfASingleDirectionIsMissedInView) {
             "integrator": {"type": "path_tracer"}})");
         const LoadedScene loaded = loadScene(file.path());
         SceneFacts facts = analyseScene(*loaded.scene);
-        Features features = describeScene(*loaded.scene, facts);
+        Features features = featuresOf(*loaded.scene, facts);
         PathTracer(loaded.scene, loaded.integratorSettings).plan(facts, features);
         const bool planned = std::any_of(features.all.begin(), features.all.end(), [](const Feature& feature) {
             return feature.name == "light of a single direction in view";

@@ -41,7 +41,7 @@ class Render {
           bias_(filmOf(*loaded_.scene, PassWeight::Repeats)) {
         throwIfProblems(*loaded_.diagnostics);
         SceneFacts facts = analyseScene(*loaded_.scene);
-        Features features = describeScene(*loaded_.scene, facts);
+        Features features = featuresOf(*loaded_.scene, facts);
         integrator_->plan(facts, features);
         integrator_->prepare(facts, {}, statistics_);
     }

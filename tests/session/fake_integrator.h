@@ -66,7 +66,7 @@ class SessionFixture {
     const SessionResult& run() {
         SessionResult& result = results.emplace_back();
         SceneFacts facts = analyseScene(*loaded.scene);
-        Features features = describeScene(*loaded.scene, facts);
+        Features features = featuresOf(*loaded.scene, facts);
         integrator.plan(facts, features);
         runSession(loaded, integrator, facts, features, outputs, options, result);
         return result;

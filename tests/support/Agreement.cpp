@@ -125,7 +125,7 @@ class PassRenderer {
             if (warning.path.rfind("integrator", 0) == 0) loaded.diagnostics->problems.push_back(warning);
         throwIfProblems(*loaded.diagnostics);
         SceneFacts facts = analyseScene(*scene_);
-        Features features = describeScene(*scene_, facts);
+        Features features = featuresOf(*scene_, facts);
         integrator_->plan(facts, features);
         integrator_->prepare(facts, {}, statistics_);
         film_ = filmOf(*scene_);

@@ -26,7 +26,7 @@ std::unique_ptr<Rendered> render(const std::filesystem::path& file, const Render
     const std::unique_ptr<Integrator> integrator = make(loaded.scene, loaded.integratorSettings);
     throwIfProblems(*loaded.diagnostics);
     SceneFacts facts = analyseScene(*loaded.scene);
-    Features features = describeScene(*loaded.scene, facts);
+    Features features = featuresOf(*loaded.scene, facts);
     integrator->plan(facts, features);
     integrator->prepare(facts, {}, rendered->statistics);
     rendered->film = filmOf(*loaded.scene);

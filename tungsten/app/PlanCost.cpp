@@ -29,15 +29,16 @@ struct Method {
 };
 
 /// Points, beams, sliced primitives and paths, with the scene's own sampling, or the best where it says nothing.
-std::vector<Method> methodsFor(const LoadedScene& loaded) {
-    const bool photonMap = loaded.integratorType.ends_with("photon_map");
-    const std::string map =
-        "integrator.type=" + (photonMap ? loaded.integratorType : std::string("progressive_transient_photon_map"));
+std::vector<Method> methodsFor(const LoadedScene& loaded, const IntegratorRegistry& registry) {
+    const auto own = registry.entries().find(loaded.integratorType);
+    const bool photonMap = own != registry.entries().end() && own->second.traits.family == IntegratorFamily::PhotonMaps;
+    const std::string type = "integrator.type=";
+    const std::string map = type + (photonMap ? loaded.integratorType : registry.typeOf(IntegratorFamily::PhotonMaps));
     const std::string sliced = loaded.scene->transport.gate.steadyState ? "volumes" : "mis_volumes_balls";
     std::vector<Method> methods;
     for (const std::string& primitive : {std::string("points"), std::string("beams"), sliced})
         methods.push_back({primitive, {map, "integrator.volume_photon_type=" + primitive}});
-    methods.push_back({"paths", {"integrator.type=transient_path_tracer"}});
+    methods.push_back({"paths", {type + registry.typeOf(IntegratorFamily::PathTracers)}});
     if (!loaded.integratorSettings.has("darts"))
         for (Method& method : methods) method.settings.emplace_back("integrator.darts=best");
     return methods;
@@ -170,10 +171,12 @@ std::string costJson(const std::string& scene, const std::vector<Method>& method
 
 bool planCost(const std::filesystem::path& file, const Options& options, const Plugins& plugins,
               const std::atomic<bool>& interrupted) {
-    const LoadedScene loaded = loadScene(file, loadOptions(options, {}));
+    LoadOptions load = loadOptions(options, {});
+    load.defaultGate = [&](const std::string& type) { return plugins.registry.defaultGateOf(type); };
+    const LoadedScene loaded = loadScene(file, load);
     const std::filesystem::path report = options.outputs.placed(options.outputs.statistics.value_or(""));
     if (!report.empty()) checkWritable(report, std::nullopt);
-    std::vector<Method> methods = methodsFor(loaded);
+    std::vector<Method> methods = methodsFor(loaded, plugins.registry);
     try {
         const double seconds = options.timeoutSeconds.value_or(DefaultSeconds) / double(methods.size());
         for (Method& method : methods) measure(method, file, options, plugins, seconds, interrupted);

@@ -176,7 +176,7 @@ std::string whyNoScattering(const SceneFacts& facts) {
                                        : "what scattering media show arrives after the sensor has closed";
 }
 
-Features describeScene(const Scene& scene, const SceneFacts& facts) {
+Features featuresOf(const Scene& scene, const SceneFacts& facts) {
     Features features;
     describeTime(scene, facts, features);
     describeMedia(scene, features);

@@ -47,7 +47,7 @@ struct Features {
 };
 
 /// Those that a scene calls for, whatever the integrator.
-Features describeScene(const Scene& scene, const SceneFacts& facts);
+Features featuresOf(const Scene& scene, const SceneFacts& facts);
 
 /// Reason to decline what needs a medium's coefficients to be constant; empty if all reachable media are homogeneous.
 std::string heterogeneity(const Scene& scene, const SceneFacts& facts);

@@ -65,6 +65,16 @@ class Integrator {
 using IntegratorFactory =
     std::function<std::unique_ptr<Integrator>(std::shared_ptr<const Scene> scene, const ObjectReader& settings)>;
 
+/// Integrators that take the same settings, by which the host compares what they cost (`--plan-cost`).
+enum class IntegratorFamily { Other, PhotonMaps, PathTracers };
+
+/// What the host knows of an integrator before there is one.
+struct IntegratorTraits {
+    DefaultGate defaultGate = DefaultGate::None;
+    IntegratorFamily family = IntegratorFamily::Other;
+    bool represents = false; ///< the type that stands for its family where a scene has none of it
+};
+
 /// Integrator types and where each comes from.
 class IntegratorRegistry {
   public:
@@ -72,10 +82,16 @@ class IntegratorRegistry {
         IntegratorFactory factory;
         std::string description; ///< one line, for `--list`
         std::string origin;      ///< the plugin's file
+        IntegratorTraits traits{};
     };
     /// Registers a type; a second registration of a name is an InputError naming both origins.
-    void add(const std::string& type, const std::string& description, IntegratorFactory factory);
+    void add(const std::string& type, const std::string& description, IntegratorFactory factory,
+             const IntegratorTraits& traits = {});
     [[nodiscard]] const std::map<std::string, Entry>& entries() const { return entries_; }
+    /// Of a type that nobody registers: what scene files mean by it.
+    [[nodiscard]] DefaultGate defaultGateOf(const std::string& type) const;
+    /// The type that represents a family; empty if no plugin has one.
+    [[nodiscard]] std::string typeOf(IntegratorFamily family) const;
     /// Origin recorded for the types that follow.
     void setOrigin(std::string origin) { origin_ = std::move(origin); }
 

@@ -97,6 +97,6 @@ FilmContents readFilm(const ObjectReader& reader);
 /// Which integrator the block asks for.
 std::string readIntegratorType(const ObjectReader& integrator);
 /// The fields that every integrator's block shares (bounces, gate, speeds); `type` decides the defaults of the gate.
-TransportSettings readTransport(const ObjectReader& integrator, const std::string& type);
+TransportSettings readTransport(const ObjectReader& integrator, DefaultGate defaultGate);
 
 } // namespace tungsten

@@ -32,26 +32,18 @@ void readOutputBuffer(const ObjectReader& buffer, RendererSettings& renderer) {
     buffer.warnAboutUnknown();
 }
 
-/// Whether a block of this type without a gate of its own still has the transient integrators' default gate.
-bool isTransientType(const std::string& type) {
-    return type.find("transient_") != std::string::npos;
-}
-bool isSteadyPhotonMap(const std::string& type) {
-    return type == "photon_map" || type == "progressive_photon_map";
-}
-
 /// The sensor's gate, and whether it is a sequence of frames.
 struct GateRead {
     TimeGate gate;
     bool sequence = false;
 };
 
-GateRead readGate(const ObjectReader& reader, const std::string& type) {
-    if (isSteadyPhotonMap(type)) {
+GateRead readGate(const ObjectReader& reader, DefaultGate defaultGate) {
+    if (defaultGate == DefaultGate::Never) {
         reader.accept({"transient_time_width", "transient_time_center", "start_time", "frame_num", "delta_time_gate"});
         return {};
     }
-    const bool transient = isTransientType(type);
+    const bool transient = defaultGate == DefaultGate::Gated;
     const double width = reader.number("transient_time_width", transient ? 0.1 : 0.0,
                                        {"time",
                                         "width of the gate, or of each frame; for photons at a delta gate of their "
@@ -145,7 +137,12 @@ std::string readIntegratorType(const ObjectReader& integrator) {
     return integrator.text("type", "path_tracer", {"none", "which integrator (--list)"});
 }
 
-TransportSettings readTransport(const ObjectReader& reader, const std::string& type) {
+DefaultGate defaultGateOf(const std::string& type) {
+    if (type == "photon_map" || type == "progressive_photon_map") return DefaultGate::Never;
+    return type.find("transient_") != std::string::npos ? DefaultGate::Gated : DefaultGate::None;
+}
+
+TransportSettings readTransport(const ObjectReader& reader, DefaultGate defaultGate) {
     TransportSettings transport;
     transport.minBounces = int(reader.integer(
         "min_bounces", 0, {"none", "interactions, as max_bounces counts them, that light must have had"}, {0, 2e9}));
@@ -160,14 +157,14 @@ TransportSettings readTransport(const ObjectReader& reader, const std::string& t
     transport.consistencyChecks =
         reader.flag("enable_consistency_checks", false,
                     {"none", "no light where shading and geometric normal disagree on the side"});
-    const GateRead read = readGate(reader, type);
+    const GateRead read = readGate(reader, defaultGate);
     transport.gate = read.gate;
     transport.cameraUnwarped = reader.flag(
         "camera_unwarped", false, {"none", "time stops at the first thing seen: camera segments do not count"});
     transport.integrateOverGate =
         reader.choice("time_normalization", "average", {"average", "integral"},
                       {"none", "a pixel is the mean of radiance over its frame, or its integral"}) == "integral";
-    if (!isSteadyPhotonMap(type)) useResponse(reader, read.sequence, transport);
+    if (defaultGate != DefaultGate::Never) useResponse(reader, read.sequence, transport);
     transport.vacuumSpeed = readVacuumSpeed(reader);
     return transport;
 }

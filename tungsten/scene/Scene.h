@@ -61,6 +61,13 @@ struct TimeGate {
     }
 };
 
+/// What an integrator's block means that gives no time gate.
+enum class DefaultGate {
+    None,  ///< steady state
+    Gated, ///< a gate of width 0.1
+    Never  ///< steady state, whatever it gives: the integrator knows no time
+};
+
 /// What every integrator's block has in common.
 struct TransportSettings {
     int minBounces = 0; ///< rendered iff minBounces <= interactions < maxBounces

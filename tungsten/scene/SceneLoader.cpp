@@ -120,10 +120,10 @@ struct Blocks {
 };
 
 /// Reads all blocks in the order in which they need one another.
-Blocks readScene(LoadContext& context, const ObjectReader& root) {
+Blocks readScene(LoadContext& context, const ObjectReader& root, const LoadOptions& options = {}) {
     const ObjectReader integrator = blockOf(root, "integrator", {"none", "how light is simulated, and when"});
     const std::string type = readIntegratorType(integrator);
-    context.scene.transport = readTransport(integrator, type);
+    context.scene.transport = readTransport(integrator, options.defaultGate(type));
     context.scene.lengthUnit = readLengthUnit(root);
     readMedia(context, root);
     readBsdfs(context, root);
@@ -160,7 +160,7 @@ void readIntegratorAnyway(const LoadOptions& options, const ObjectReader& root, 
     own->file = diagnostics.file;
     const ObjectReader again = blockOf(root.withDiagnostics(own), "integrator", {"none", ""});
     (void)readIntegratorType(again);
-    (void)readTransport(again, type);
+    (void)readTransport(again, options.defaultGate(type));
     options.readIntegrator(again, type, transport);
     const auto append = [](std::vector<Problem>& all, const std::vector<Problem>& more) {
         for (const Problem& problem : more) {
@@ -193,7 +193,7 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     context.watch = options.watch.telling(
         [&read](const std::filesystem::path& resource, std::string_view bytes) { read.add(resource, bytes); });
     requirePrimitives(*document, root);
-    const Blocks blocks = readScene(context, root);
+    const Blocks blocks = readScene(context, root, options);
     checkReach(*scene, root);
     if (!diagnostics->problems.empty())
         readIntegratorAnyway(options, root, blocks.integratorType, scene->transport, *diagnostics);
@@ -295,9 +295,9 @@ std::vector<DescribedKind> describeScene() {
     return kinds;
 }
 
-void describeTransport(const ObjectReader& describing, const std::string& type) {
+void describeTransport(const ObjectReader& describing, DefaultGate gate) {
     (void)readIntegratorType(describing);
-    (void)readTransport(describing, type);
+    (void)readTransport(describing, gate);
 }
 
 } // namespace tungsten

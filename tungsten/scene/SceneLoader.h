@@ -43,6 +43,9 @@ struct RendererSettings {
     std::vector<OutputBuffer> transients; ///< per-frame file series
 };
 
+/// Of the types that Tungsten names, where the integrators that there are do not say it.
+DefaultGate defaultGateOf(const std::string& type);
+
 struct LoadOptions {
     std::filesystem::path inputDirectory; ///< base of resources; empty: the scene's directory
     std::vector<std::string> overrides;   ///< "path.to.field=value", applied to the JSON in order
@@ -53,6 +56,7 @@ struct LoadOptions {
     /// block, which its integrator reads once there is a scene, are then told along.
     std::function<void(const ObjectReader& block, const std::string& type, const TransportSettings& transport)>
         readIntegrator = {};
+    std::function<DefaultGate(const std::string& type)> defaultGate = defaultGateOf; ///< by type of integrator
 };
 
 struct LoadedScene {
@@ -85,8 +89,8 @@ struct DescribedKind {
 };
 /// The blocks "scene" and "renderer", then the kinds of sceneTypes(); blocks within others hang on those.
 std::vector<DescribedKind> describeScene();
-/// The fields that every integrator's block shares, with the defaults they have for its type.
-void describeTransport(const ObjectReader& describing, const std::string& type);
+/// The fields that every integrator's block shares, with its default gate.
+void describeTransport(const ObjectReader& describing, DefaultGate gate);
 /// A scene without surfaces, lit by the default light: enough for an integrator to say what it reads.
 std::shared_ptr<const Scene> emptyScene(const TransportSettings& transport = {});
 

@@ -132,12 +132,13 @@ Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const
                                 const TransportSettings& transport) {
         readIntegratorAlone(block, type, transport, plugins);
     };
+    anyway.defaultGate = [&](const std::string& type) { return plugins.registry.defaultGateOf(type); };
     Job job{loadScene(file, anyway), nullptr, {}, {}};
     options.watch.poll();
     job.integrator = makeIntegrator(job.loaded, plugins);
     options.watch.poll();
     job.facts = analyseScene(*job.loaded.scene, everything);
-    job.features = describeScene(*job.loaded.scene, job.facts);
+    job.features = featuresOf(*job.loaded.scene, job.facts);
     job.integrator->plan(job.facts, job.features);
     warnAboutFeatures(job);
     return job;

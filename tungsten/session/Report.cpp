@@ -56,7 +56,7 @@ std::shared_ptr<Description> describeIntegrator(const std::string& type, const I
     description->name = type;
     description->note = entry.description;
     const ObjectReader reader = ObjectReader::describing(description, type);
-    describeTransport(reader, type);
+    describeTransport(reader, entry.traits.defaultGate);
     nameTypes(description->fields, registry);
     try {
         (void)entry.factory(scene, reader);
