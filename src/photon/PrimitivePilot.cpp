@@ -5,6 +5,8 @@
 #include "transport/SharePilot.h"
 #include "transport/Tuning.h"
 
+#include "tungsten/film/FilmErrors.h"
+
 #include <cmath>
 
 namespace tungsten::photon {
@@ -71,9 +73,9 @@ class Pilot {
         if (film_.passes() == 0) renderPass(pass_.share * 1e-6, camera_);
         while (film_.passes() < passes) {
             renderPass(pass_.share, counted_);
-            const double before = double(film_.passes()) * film_.meanValue();
+            const double before = double(film_.passes()) * meanValue(film_);
             film_.endPass(1.0);
-            const double own = double(film_.passes()) * film_.meanValue() - before;
+            const double own = double(film_.passes()) * meanValue(film_) - before;
             squares_ += own * own;
         }
     }
@@ -82,15 +84,15 @@ class Pilot {
     [[nodiscard]] double cost() const { return costOf(counted_, primitive_, pixels(), 1.0); }
     /// Passes of one brightness that would vary as these do in their mean: few, where most light came with a few.
     [[nodiscard]] double effectivePasses() const {
-        const double sum = double(film_.passes()) * film_.meanValue();
+        const double sum = double(film_.passes()) * meanValue(film_);
         return squares_ > 0.0 ? sum * sum / squares_ : 0.0;
     }
-    [[nodiscard]] double mean() const { return film_.meanValue(); }
+    [[nodiscard]] double mean() const { return meanValue(film_); }
     /// Variance times cost of a whole pass in an image of so many times the pixels. `brightest`: the largest mean of
     /// the primitives; what this one has not seen of it in n passes comes at most once in n, with a variance of n times
     /// its square at least: dark images have little noise. Infinite where nothing has arrived.
     [[nodiscard]] double error(double pixelRatio, double brightest) const {
-        const double passes = double(film_.passes()), deviation = film_.relativeErrorBound() * mean();
+        const double passes = double(film_.passes()), deviation = relativeErrorBound(film_) * mean();
         if (!std::isfinite(deviation)) return Infinity;
         const double missed = brightest - mean(), variance = passes * std::max(deviation * deviation, missed * missed);
         // A pass without light paths costs what camera paths do.

@@ -6,6 +6,7 @@
 #include "darts/EdaTableFile.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Hash.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/scene/Duration.h"
 #include "tungsten/scene/Json.h"
 #include "tungsten/scene/SceneLoader.h"
@@ -130,7 +131,7 @@ void state(const std::string& bytes) {
         const fs::path file = fileOf("a.state", summed(bytes));
         if (!readCheckpoint(file, {start.sceneHash, start.seed, start.sppStep}, film, bias)) return;
         (void)film.meanOverFrames();
-        require(!(film.relativeErrorBound() < 0.0), "bounds are not negative");
+        require(!(relativeErrorBound(film) < 0.0), "bounds are not negative");
         film.beginPass();
         film.endPass(1.0);
     });

@@ -13,9 +13,9 @@ FAULTS = [
      [("photon_sliced_tests", "Gates/SharedPaths.AreNoNoisierThanTheBetterOfVolumesAndBalls/WarpedDelta")]),
     ("tungsten/integrator/SceneElements.cpp", "*speeds.begin(), *speeds.rbegin(),", "*speeds.begin(), *speeds.begin(),",
      [("path_tests", "PathTracer.DeltaGatesAreRefusedWhereNoControlVertexCanMeetThem")]),
-    ("tungsten/film/MeanUpdate.h", "+ (bits & Mask)) & ~Mask", "+ (bits & Mask) / 2) & ~Mask",
+    ("tungsten/film/StochasticRounding.h", "+ (bits & Mask)) & ~Mask", "+ (bits & Mask) / 2) & ~Mask",
      [("film_tests", "FilmSums.OfEqualValuesDoNotDrift")]),
-    ("tungsten/film/MeanUpdate.h", "return totalBefore * delta * share;", "return delta * share;",
+    ("tungsten/film/StochasticRounding.h", "return totalBefore * delta * share;", "return delta * share;",
      [("film_tests", "Film.MomentsMatchDirectFormulas")]),
     ("tungsten/film/Film.cpp", "1.0 / (double(passes_ - 1) * weight_)", "1.0 / (double(passes_) * weight_)",
      [("film_tests", "Film.MomentsMatchDirectFormulas")]),
@@ -569,20 +569,20 @@ FAULTS = [
      [("film_tests", "FilmContents.TheFilmsErrorIsTheRootOfThePixelsSquares")]),  # standard error of pixels does not fall with the samples
     ("tungsten/image/Image.h", "0.2126f * value.x + 0.7152f * value.y", "0.2126f * value.y + 0.7152f * value.x",
      [("tests/python/tools_test.py", "")]),  # film.channels luminance: red and green swapped
-    ("tungsten/film/FilmState.cpp", "loaded.moment2Sum_ = header.moment2Sum;", ";",
+    ("tungsten/film/FilmRows.cpp", "loaded.moment2Sum_ = header.moment2Sum;", ";",
      [("film_tests", "FilmContents.StatesAreOfTheirContents")]),  # a resumed render forgets its error: it stops too early
-    ("tungsten/film/FilmState.cpp", "loaded.nonFinite_ = header.nonFinite;", ";",
+    ("tungsten/film/FilmRows.cpp", "loaded.nonFinite_ = header.nonFinite;", ";",
      [("film_tests", "Film.StateRoundTripsBitForBitAndRefusesDamage")]),  # a resumed render forgets its non-finite samples
     ("tungsten/io/FilmCode.cpp", "before = code;", ";",
      [("io_tests", "FilmCode.ValuesColoursAndErrorsAreWithinHalfAStep")]),  # the HTML page shows noise
-    ("tungsten/film/PassBatches.cpp", "left) * (bottom - top);", "left) * side_;",
-     [("film_tests", "PassBatches.TheirMeanIsTheFilmsOverTheBlock")]),  # batch means of the last row of blocks too dark
-    ("tungsten/film/PassBatches.cpp", "weights_[pass % weights_.size()] += weight;", "weights_[0] += weight;",
-     [("film_tests", "PassBatches.TheirMeanIsTheFilmsOverTheBlock")]),  # batch weights: all passes in the first batch
-    ("tungsten/film/PassScatter.cpp", "1.0 + Deviations * std::sqrt(rare + std::min(", "1.0 + std::sqrt(rare + std::min(",
+    ("tungsten/film/BatchMeans.cpp", "left) * (bottom - top);", "left) * side_;",
+     [("film_tests", "BatchMeans.TheirMeanIsTheFilmsOverTheBlock")]),  # batch means of the last row of blocks too dark
+    ("tungsten/film/BatchMeans.cpp", "weights_[pass % weights_.size()] += weight;", "weights_[0] += weight;",
+     [("film_tests", "BatchMeans.TheirMeanIsTheFilmsOverTheBlock")]),  # batch weights: all passes in the first batch
+    ("tungsten/film/ErrorConfidence.cpp", "1.0 + Deviations * std::sqrt(rare + std::min(", "1.0 + std::sqrt(rare + std::min(",
      [("session_tests", "Bias.CountsForATargetError")]),  # error bound has half its confidence
-    ("tungsten/film/PassScatter.cpp", "groups_.push_back(sum_ / double(span_));", "groups_.push_back(sum_);",
-     [("film_tests", "PassScatter.ManyPassesTakeLittleMemory")]),  # error bound of very long renders weighs groups wrongly
+    ("tungsten/film/ErrorConfidence.cpp", "groups_.push_back(sum_ / double(span_));", "groups_.push_back(sum_);",
+     [("film_tests", "ErrorConfidence.ManyPassesTakeLittleMemory")]),  # error bound of very long renders weighs groups wrongly
     ("tungsten/io/Npy.cpp", "std::to_string(height) + \", \" + std::to_string(width) +", "std::to_string(width) + \", \" + std::to_string(height) +",
      [("film_tests", "ImageIo.NumpyReadsTheCube")]),  # arrays have rows and columns swapped
     ("tungsten/io/Hdf5.cpp", "const hsize_t start[] = {hsize_t(frame), 0, 0, 0};", "const hsize_t start[] = {hsize_t(0), 0, 0, 0};",
@@ -593,7 +593,7 @@ FAULTS = [
      [("film_tests", "ToneMap.Values")]),  # tone curve pbrt jumps
     ("tungsten/io/Pfm.cpp", "writeRow(out, image, y);", "writeRow(out, image, image.height - 1 - y);",
      [("film_tests", "ImageIo.PfmRoundTripsAndNamesDamage")]),  # PFM upside down
-    ("tungsten/film/KernelBias.cpp", "std::max(bias.meanSquare() - noise, 0.0)", "std::max(bias.meanSquare(), 0.0)",
+    ("tungsten/film/FilmErrors.cpp", "std::max(meanSquare(bias) - noise, 0.0)", "std::max(meanSquare(bias), 0.0)",
      [("film_tests", "KernelBias.NoiseIsTakenOff")]),  # noise is told as bias
     ("tungsten/io/Video.cpp", "return WIFEXITED(status) && WEXITSTATUS(status) == 0;", "return WIFEXITED(status);",
      [("io_tests", "Video.FailuresLeaveTheEarlierFile")]),  # a film that ffmpeg failed to write replaces the old one
@@ -734,7 +734,7 @@ FAULTS = [
     # tungsten/integrator, io, session
     ("tungsten/session/Checkpoint.cpp", "if (header.seed != identity.seed) throw", "if (false) throw",
      [("session_tests", "Session.AStateOfAnotherRenderIsRefusedAndKept")]),  # a state of another seed is resumed
-    ("tungsten/session/Checkpoint.cpp", "if (bias.frames() > 0) bias.write(summed);", ";",
+    ("tungsten/session/Checkpoint.cpp", "if (bias.frames() > 0) FilmRows::writeState(bias, summed);", ";",
      [("session_tests", "Bias.AResumedRenderKnowsWhatOneThatRanThroughDoes")]),  # states with a bias cannot be resumed
     ("tungsten/session/PartialState.cpp", "film.beginPass();", ";",
      [("session_tests", "PartialState.PassesOfOtherRowsAreFoldedApart")]),  # merge: dark rows show the light of the pass before

@@ -1,6 +1,6 @@
 // What kernels leave, as a render estimates it, against closed forms.
 
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 
 #include "support/PathsAndPhotons.h"
 #include "support/SeedShift.h"
@@ -36,7 +36,7 @@ struct Errors {
     double corrected; ///< bias that is left when the estimate is subtracted; its noise taken off
 
     Errors(const test::Rendered& rendered, const std::vector<Vec3d>& exact)
-        : noise(rendered.film.relativeStandardError()), claimed(RelativeBias::of(rendered.film, rendered.bias)) {
+        : noise(relativeStandardError(rendered.film)), claimed(RelativeBias::of(rendered.film, rendered.bias)) {
         const Image mean = rendered.film.mean(0), estimate = rendered.bias.mean(0);
         double squared = 0.0, left = 0.0, sum = 0.0;
         for (size_t i = 0; i < exact.size(); ++i)

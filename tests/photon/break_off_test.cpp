@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "path/PathTracer.h"
 #include "photon/PhotonIntegrator.h"
+#include "tungsten/film/FilmRows.h"
 #include "tungsten/integrator/SceneFacts.h"
 #include "tungsten/scene/SceneLoader.h"
 #include "tungsten/session/Memory.h"
@@ -29,7 +30,7 @@ constexpr size_t Threads = 2;
 
 std::string bitsOf(const Film& film) {
     std::ostringstream out;
-    film.write(out);
+    FilmRows::writeState(film, out);
     return out.str();
 }
 

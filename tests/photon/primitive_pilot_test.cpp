@@ -5,6 +5,7 @@
 
 #include "support/SceneFile.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include <gtest/gtest.h>
@@ -104,7 +105,7 @@ TEST(PrimitivePilot, RendersAsTheChosenPrimitive) {
         integrator.renderPass({.seed = 7}, film, statistics);
         film.endPass(1.0);
     }
-    ASSERT_GT(films[0].meanValue(), 0.0);
+    ASSERT_GT(meanValue(films[0]), 0.0);
     for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 16; ++x) EXPECT_EQ(films[0].mean(0).at(x, y), films[1].mean(0).at(x, y)) << x << ' ' << y;
 }

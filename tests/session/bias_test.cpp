@@ -4,6 +4,7 @@
 #include "session/fake_integrator.h"
 #include "support/Folders.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/image/ReadImage.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/session/Report.h"
@@ -32,7 +33,7 @@ TEST(Bias, IsInTheExrTheStatisticsAndTheTrace) {
         measured += pass.bias ? 1 : 0;
     }
     EXPECT_EQ(result.bias.passes(), measured);
-    EXPECT_NEAR(result.relativeBias().estimate, 0.2 / result.film.meanValue(), 0.01);
+    EXPECT_NEAR(result.relativeBias().estimate, 0.2 / meanValue(result.film), 0.01);
     for (int frame = 0; frame < 3; ++frame) {
         constexpr float Width = 0.5f; // integrals over frames
         const Image bias = readExr(session.outputs.hdr, frame, "bias."),

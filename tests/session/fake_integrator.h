@@ -4,6 +4,7 @@
 #include "support/SceneFile.h"
 
 #include "tungsten/core/Random.h"
+#include "tungsten/film/FilmRows.h"
 #include "tungsten/session/Session.h"
 
 #include <deque>
@@ -85,7 +86,7 @@ class SessionFixture {
 /// The film's exact state.
 inline std::string bitsOf(const Film& film) {
     std::ostringstream out;
-    film.write(out);
+    FilmRows::writeState(film, out);
     return out.str();
 }
 

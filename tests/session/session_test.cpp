@@ -2,6 +2,7 @@
 
 #include "session/fake_integrator.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/image/ReadImage.h"
 #include "tungsten/session/Checkpoint.h"
 #include "tungsten/session/Report.h"
@@ -81,8 +82,8 @@ TEST(Session, ATargetErrorIsLookedAtWheneverThePassesHaveDoubled) {
     session.options.targetError = 0.045;
     const SessionResult& result = session.run();
     EXPECT_EQ(result.reason, StopReason::TargetReached);
-    EXPECT_LE(result.film.relativeErrorBound(), 0.045);
-    EXPECT_LT(result.film.relativeStandardError(), result.film.relativeErrorBound());
+    EXPECT_LE(relativeErrorBound(result.film), 0.045);
+    EXPECT_LT(relativeStandardError(result.film), relativeErrorBound(result.film));
     // Uniform on (0, 1]: relative standard error sqrt(1/12) / (0.5 sqrt(n)), below the target from n = 165 on.
     EXPECT_EQ(result.film.passes(), 256u);
 }

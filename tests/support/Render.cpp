@@ -2,7 +2,7 @@
 
 #include "support/SeedShift.h"
 
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/integrator/Integrator.h"
 #include "tungsten/scene/SceneLoader.h"
 #include "tungsten/session/Memory.h"

@@ -3,6 +3,7 @@
 #include "tungsten/app/OptionValues.h"
 #include "tungsten/app/Options.h"
 #include "tungsten/core/Errors.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/image/AtomicFile.h"
 #include "tungsten/io/Outputs.h"
 #include "tungsten/io/Result.h"
@@ -94,7 +95,7 @@ int mergeCommand(int argc, const char* const* argv) {
     if (options.quiet) return 0;
     std::printf("%zu states, %u passes, %llu samples per pixel, %s\n", options.states.size(), merged.film.passes(),
                 static_cast<unsigned long long>(merged.samples),
-                errorText(merged.film.relativeStandardError(), merged.film.relativeErrorBound()).c_str());
+                errorText(relativeStandardError(merged.film), relativeErrorBound(merged.film)).c_str());
     for (const auto& file : written) std::printf("wrote %s\n", file.c_str());
     return 0;
 }

@@ -4,6 +4,7 @@
 #include "tungsten/app/PlanCost.h"
 #include "tungsten/app/Signals.h"
 #include "tungsten/core/Errors.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/session/Progress.h"
 #include "tungsten/session/Report.h"
 #include "tungsten/session/Session.h"
@@ -73,9 +74,9 @@ void printSummary(const SessionResult& result) {
     }
     std::printf("%u passes, %.10g samples per pixel in %.1f s (%s)", result.film.passes(), result.film.totalWeight(),
                 result.renderSeconds, toString(result.reason).c_str());
-    const double error = result.film.relativeStandardError();
+    const double error = relativeStandardError(result.film);
     if (!std::isnan(error))
-        std::printf(", %s", errorText(error, result.film.relativeErrorBound(), result.relativeBias()).c_str());
+        std::printf(", %s", errorText(error, relativeErrorBound(result.film), result.relativeBias()).c_str());
     std::printf("\n");
     constexpr size_t MostListed = 12;
     for (size_t i = 0; i < std::min(result.written.size(), MostListed); ++i)

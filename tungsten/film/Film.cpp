@@ -1,7 +1,7 @@
 #include "tungsten/film/Film.h"
 
 #include "tungsten/core/Errors.h"
-#include "tungsten/film/MeanUpdate.h"
+#include "tungsten/film/StochasticRounding.h"
 
 #include <tbb/parallel_for.h>
 
@@ -38,7 +38,7 @@ Film::Film(int width, int height, int frames, FilmContents contents, PassWeight 
     const size_t values = size_t(width) * size_t(height) * size_t(contents.channels);
     tilesInRow_ = (size_t(width) + TilePixels - 1) >> TileShift;
     tiles_ = LazyTiles(tilesInRow_ * size_t(height) * size_t(frames), tileValues() * size_t(contents.parts()));
-    if (contents.batches > 0) batches_ = PassBatches(width, height, frames, contents);
+    if (contents.batches > 0) batches_ = BatchMeans(width, height, frames, contents);
     const size_t ofBlock = blockPixelsOf(width, height, TilePixels);
     blocks_.assign((size_t(width) + ofBlock - 1) / ofBlock * size_t(height), 0.0f);
     lastBlocks_ = blocks_;
@@ -56,15 +56,7 @@ double Film::memoryFor(int width, int height, int frames, FilmContents contents)
     return double(height) * double(frames) * tiles * (floats * sizeof(float) + sizeof(uint32_t)) +
            2.0 * double(height) * double(width) *
                (1.0 / double(blockPixelsOf(width, height, TilePixels)) + double(contents.channels)) * sizeof(float) +
-           PassBatches::memoryFor(width, height, frames, contents);
-}
-
-template <typename Use>
-void Film::forTiles(const Use& use) const {
-    for (size_t tile = 0; tile < tilesInRow_; ++tile) {
-        const size_t first = (tile << TileShift) * size_t(contents_.channels);
-        use(tile, first, std::min(tileValues(), rowValues() - first));
-    }
+           BatchMeans::memoryFor(width, height, frames, contents);
 }
 
 void Film::readRow(size_t row, Part part, float* values) const {
@@ -100,33 +92,28 @@ void Film::add(int frame, int x, int y, const Rgb& value) {
     if (value == Rgb(0.0f)) return;
     float* pixel = passPixelToChange(frame, x, y);
     if (contents_.channels == 1)
-        addEvenly(*pixel, luminanceOf(value));
+        addStochastic(*pixel, luminanceOf(value));
     else
-        for (int c = 0; c < 3; ++c) addEvenly(pixel[c], value[c]);
+        for (int c = 0; c < 3; ++c) addStochastic(pixel[c], value[c]);
 }
 
-void Film::setPassRow(size_t row, const float* values) {
-    writeRow(row, Pass, values);
-    touched_[row] = 1;
-}
-
-void Film::foldTile(float* tile, size_t place, size_t first, size_t count, double weight, RowSums& sums) {
+void Film::accumulateTile(float* tile, size_t place, size_t first, size_t count, double weight, RowSums& sums) {
     float *means = tile + size_t(Mean) * tileValues(), *moments = tile + size_t(Moment) * tileValues();
     const size_t ofBlock = blockPixelsOf(width_, height_, TilePixels) * size_t(contents_.channels);
     for (size_t i = 0, block = first / ofBlock; i < count; ++block) {
         double deviation = 0.0;
         for (const size_t end = std::min(i + ofBlock, count); i < end; ++i) {
-            const uint64_t bits = evenBits(passes_, place + first + i);
+            const uint64_t bits = roundingBits(passes_, place + first + i);
             deviation += double(tile[i]) - double(means[i]);
-            sums.squares += contents_.moments ? foldInto(tile[i], weight, weight_, bits, means[i], moments[i])
-                                              : foldInto(tile[i], weight, weight_, bits, means[i]);
+            sums.squares += contents_.moments ? welford(tile[i], weight, weight_, bits, means[i], moments[i])
+                                              : welford(tile[i], weight, weight_, bits, means[i]);
             sums.values[first + i] += double(tile[i]);
         }
         sums.blocks[block] += deviation;
     }
 }
 
-void Film::foldRow(size_t row, double weight, RowSums& sums) {
+void Film::accumulateRow(size_t row, double weight, RowSums& sums) {
     if (touched_[row] != 0) lit_[row] = 1;
     if (lit_[row] == 0) return;
     forTiles([&](size_t tile, size_t first, size_t count) {
@@ -137,13 +124,13 @@ void Film::foldRow(size_t row, double weight, RowSums& sums) {
                 ++sums.nonFinite;
                 std::fill_n(found + x, contents_.channels, 0.0f);
             }
-        foldTile(found, row * rowValues(), first, count, weight, sums);
+        accumulateTile(found, row * rowValues(), first, count, weight, sums);
     });
 }
 
-PassDeviation Film::deviationOf(size_t y, double squares, const std::vector<double>& blocks, double scale) {
-    PassDeviation deviation{squares, 0.0, 0.0};
-    const bool endsGroup = PassScatter::groupEndingWith(passes_) > 0;
+PassSpread Film::deviationOf(size_t y, double squares, const std::vector<double>& blocks, double scale) {
+    PassSpread deviation{squares, 0.0, 0.0};
+    const bool endsGroup = ErrorConfidence::groupEndingWith(passes_) > 0;
     for (size_t i = 0; i < blocks.size(); ++i) {
         float &last = lastBlocks_[y * blocks.size() + i], &group = blocks_[y * blocks.size() + i];
         group += float(blocks[i] * scale);
@@ -156,34 +143,34 @@ PassDeviation Film::deviationOf(size_t y, double squares, const std::vector<doub
     return deviation;
 }
 
-FoldedPass Film::foldRows(double weight, int from, int end) {
+AccumulatedPass Film::accumulateRows(double weight, int from, int end) {
     const size_t values = rowValues();
-    FoldedPass folded{passes_, weight, weight_, squaredWeights_, std::vector<PassDeviation>(size_t(end - from))};
-    const double scale = std::sqrt(deviationScale(folded));
-    std::vector<uint64_t> rowNonFinite(folded.rows.size(), 0);
+    AccumulatedPass accumulated{passes_, weight, weight_, squaredWeights_, std::vector<PassSpread>(size_t(end - from))};
+    const double scale = std::sqrt(deviationScale(accumulated));
+    std::vector<uint64_t> rowNonFinite(accumulated.rows.size(), 0);
     tbb::parallel_for(size_t(from), size_t(end), [&](size_t y) {
         RowSums sums{std::vector<double>(values, 0.0), std::vector<double>(blocks_.size() / size_t(height_), 0.0)};
-        for (int frame = 0; frame < frames_; ++frame) foldRow(row(frame, int(y)), weight, sums);
-        folded.rows[y - size_t(from)] = deviationOf(y, sums.squares, sums.blocks, scale);
+        for (int frame = 0; frame < frames_; ++frame) accumulateRow(row(frame, int(y)), weight, sums);
+        accumulated.rows[y - size_t(from)] = deviationOf(y, sums.squares, sums.blocks, scale);
         rowNonFinite[y - size_t(from)] = sums.nonFinite;
         if (frames_ == 1) return;
         for (size_t i = 0; i < values; ++i)
-            foldInto(float(sums.values[i] / frames_), weight, weight_, evenBits(passes_, ~uint64_t(y * values + i)),
-                     totalMean_[y * values + i], totalMoment2_[y * values + i]);
+            welford(float(sums.values[i] / frames_), weight, weight_, roundingBits(passes_, ~uint64_t(y * values + i)),
+                    totalMean_[y * values + i], totalMoment2_[y * values + i]);
     });
     for (const uint64_t count : rowNonFinite) nonFinite_ += count;
-    const auto readPass = [&](size_t row, float* row_values) { readPassRow(row, row_values); };
-    batches_.fold(passes_, weight, readPass, lit_, from, end);
+    const auto readPass = [&](size_t row, float* row_values) { readRow(row, Pass, row_values); };
+    batches_.accumulate(passes_, weight, readPass, lit_, from, end);
     batches_.nextPass(passes_, weight);
     weight_ += weight;
     squaredWeights_ += weight * weight;
     ++passes_;
-    return folded;
+    return accumulated;
 }
 
-void Film::settle(const FoldedPass& pass) {
-    PassDeviation sum;
-    for (const PassDeviation& row : pass.rows) {
+void Film::finishPass(const AccumulatedPass& pass) {
+    PassSpread sum;
+    for (const PassSpread& row : pass.rows) {
         sum.squares += row.squares;
         sum.blocks += row.blocks;
         sum.product += row.product;
@@ -191,16 +178,16 @@ void Film::settle(const FoldedPass& pass) {
     moment2Sum_ += sum.squares;
     if (!(pass.weightBefore > 0.0)) return;
     sum.squares *= momentScale(pass);
-    scatter_.add(pass.pass, sum);
+    confidence_.add(pass.pass, sum);
 }
 
-double Film::momentScale(const FoldedPass& pass) const {
+double Film::momentScale(const AccumulatedPass& pass) const {
     // Second moments get the squared distance of the pass from the mean before it, times this.
     const double ofDistance = pass.weight * pass.weightBefore / (pass.weight + pass.weightBefore);
     return deviationScale(pass) / ofDistance;
 }
 
-double Film::deviationScale(const FoldedPass& pass) const {
+double Film::deviationScale(const AccumulatedPass& pass) const {
     // The squared distance from the mean before over what is expected of it with a variance of 1, or of 1 / weight.
     const double before = pass.weightBefore;
     if (!(before > 0.0)) return 0.0;
@@ -258,39 +245,14 @@ Image Film::standardErrorOverFrames() const {
     return frames_ > 1 ? errorImage(imageOf(totalMoment2_.data())) : standardError(0);
 }
 
-template <typename Function>
-double Film::meanOf(const Function& function) const {
-    double sum = 0.0;
-    for (size_t row = 0; row < lit_.size(); ++row)
-        forTiles([&](size_t tile, size_t, size_t count) {
-            const float* found = lit_[row] != 0 ? tiles_.find(row * tilesInRow_ + tile) : nullptr;
-            for (size_t i = 0; found && i < count; ++i) sum += function(double(found[size_t(Mean) * tileValues() + i]));
-        });
-    const double values = double(lit_.size()) * double(rowValues());
-    return values > 0.0 ? sum / values : 0.0;
-}
-
-double Film::meanValue() const {
-    return meanOf([](double value) { return value; });
-}
-
-double Film::meanSquare() const {
-    return meanOf([](double value) { return value * value; });
-}
-
 double Film::meanSquaredError() const {
     const double values = double(lit_.size()) * double(rowValues());
     return values > 0.0 ? errorScale() * moment2Sum_ / values : 0.0;
 }
 
-double Film::relativeStandardError() const {
-    const double mean = meanValue();
-    return mean > 0.0 ? std::sqrt(meanSquaredError()) / mean : Unknown;
-}
-
 size_t Film::memoryBytes() const {
     const size_t floats = 2 * blocks_.size() + totalMean_.size() + totalMoment2_.size() + batches_.means().size();
-    return tiles_.bytes() + floats * sizeof(float) + touched_.size() + lit_.size() + scatter_.memoryBytes();
+    return tiles_.bytes() + floats * sizeof(float) + touched_.size() + lit_.size() + confidence_.memoryBytes();
 }
 
 } // namespace tungsten

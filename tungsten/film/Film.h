@@ -1,20 +1,18 @@
 #pragma once
 // The accumulator: frames x pixels, with the mean and second moment of pass images, so every render knows its standard
-// error.
+// error. FilmErrors.h has figures of errors, FilmRows.h what takes a film apart by rows and keeps it in files.
 
 #include "tungsten/core/Types.h"
+#include "tungsten/film/BatchMeans.h"
+#include "tungsten/film/ErrorConfidence.h"
 #include "tungsten/film/FilmContents.h"
-#include "tungsten/film/LazyTiles.h"
-#include "tungsten/film/MeanUpdate.h"
-#include "tungsten/film/PassBatches.h"
-#include "tungsten/film/PassScatter.h"
+#include "tungsten/film/StochasticRounding.h"
+#include "tungsten/film/Tiles.h"
 #include "tungsten/image/Image.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <iosfwd>
-#include <string>
 #include <vector>
 
 namespace tungsten {
@@ -25,11 +23,11 @@ enum class PassWeight {
     Repeats, ///< the pass stands for so many like it; all have one variance
 };
 
-/// A pass that has been folded in, on its way to the film's figures.
-struct FoldedPass {
+/// A pass that mean and second moment have, on its way to the estimate of the error.
+struct AccumulatedPass {
     uint32_t pass = 0;                                            ///< its index
     double weight = 1.0, weightBefore = 0.0, squaresBefore = 0.0; ///< of the pass; sums over those before it
-    std::vector<PassDeviation> rows{}; ///< by image row; squares: what it adds to second moments
+    std::vector<PassSpread> rows{}; ///< by image row; squares: what it adds to second moments
 };
 
 /// Progressive estimate of every pixel of every frame. A pass adds one image per frame; passes may weigh differently
@@ -64,20 +62,10 @@ class Film {
         const float* tile = tiles_.find(tileOf(row(frame, y), x));
         return tile ? rgb(tile + inTile(x)) : Rgb(0.0f);
     }
-    /// Rows of frames, frame by frame: whether the pass in progress has light there, and its values by pixel.
-    [[nodiscard]] size_t passRows() const { return touched_.size(); }
-    [[nodiscard]] bool passRowIsLit(size_t row) const { return touched_[row] != 0; }
-    [[nodiscard]] size_t rowValues() const { return size_t(width_) * size_t(contents_.channels); }
-    void readPassRow(size_t row, float* values) const { readRow(row, Pass, values); }
-    /// Instead of what the pass in progress has there; such a row counts as lit.
-    void setPassRow(size_t row, const float* values);
-    /// Folds the pass image in with the given weight (> 0). Non-finite pixels are counted, and replaced by 0.
-    void endPass(double weight) { settle(foldRows(weight, 0, height_)); }
-    /// The same in two steps, for a film that is kept apart by image rows: rows from..end are folded; what all rows
-    /// deviate, pass by pass, goes into the film's figures (in which FoldedPass::rows are all rows).
-    [[nodiscard]] FoldedPass foldRows(double weight, int from, int end);
-    void settle(const FoldedPass& pass);
-    [[nodiscard]] const PassBatches& batches() const { return batches_; }
+    /// Adds the pass image to mean and second moment with the given weight (> 0). Non-finite pixels are counted, and
+    /// replaced by 0.
+    void endPass(double weight) { finishPass(accumulateRows(weight, 0, height_)); }
+    [[nodiscard]] const BatchMeans& batches() const { return batches_; }
     [[nodiscard]] uint64_t nonFiniteSamples() const { return nonFinite_; }
     void countNonFinite(uint64_t n) { nonFinite_ += n; }
 
@@ -87,29 +75,18 @@ class Film {
     /// Mean over the frames: the image of the whole gate.
     [[nodiscard]] Image meanOverFrames() const;
     [[nodiscard]] Image standardErrorOverFrames() const;
-    /// Over pixels, channels and frames: of the mean, of its square, of the squared standard error (NaN: unknown).
-    [[nodiscard]] double meanValue() const;
-    [[nodiscard]] double meanSquare() const;
+    /// The mean of a function of the values of the mean, over pixels, channels and frames; 0 of a film without values.
+    template <typename Function>
+    [[nodiscard]] double meanOf(const Function& function) const;
+    /// Mean over pixels, channels and frames of the squared standard error. NaN while it is unknown.
     [[nodiscard]] double meanSquaredError() const;
-    /// Factor >= 1 from the root of meanSquaredError() to what the error that was made does not exceed with a
-    /// confidence of 95 % (PassScatter). NaN with fewer than five passes.
-    [[nodiscard]] double boundFactor() const { return scatter_.boundFactor(); }
-    /// rms over pixels and frames of the standard error, relative to the mean pixel value. NaN while it is unknown:
-    /// with fewer than two passes, or black.
-    [[nodiscard]] double relativeStandardError() const;
-    /// What the error that was made, as relativeStandardError() counts it, does not exceed with a confidence of 95 %
-    /// (PassScatter). NaN while it is unknown: with fewer than five passes, or black.
-    [[nodiscard]] double relativeErrorBound() const { return relativeStandardError() * boundFactor(); }
+    /// How sure meanSquaredError() is (FilmErrors.h).
+    [[nodiscard]] const ErrorConfidence& confidence() const { return confidence_; }
     [[nodiscard]] size_t memoryBytes() const;
 
-    /// Exact binary state for checkpoints. read() throws InputError(file name, ...) on a mismatch or truncation.
-    void write(std::ostream& out) const;
-    void read(std::istream& in, const std::string& fileName);
-    /// The same of image rows from..end, with the number and weight of passes, but without the film's figures.
-    void writeRows(std::ostream& out, int from, int end) const;
-    void readRows(std::istream& in, int from, int end);
-
   private:
+    friend struct FilmRows; // takes a film apart and puts it together again
+
     static constexpr int TileShift = 4;
     static constexpr size_t TilePixels = size_t(1) << TileShift;
     /// What a tile holds, one after the other.
@@ -123,6 +100,7 @@ class Film {
     [[nodiscard]] size_t tileValues() const {
         return std::min(TilePixels, size_t(width_)) * size_t(contents_.channels);
     }
+    [[nodiscard]] size_t rowValues() const { return size_t(width_) * size_t(contents_.channels); }
     /// Values of a row: those of a part of its tiles, zeros where there are none.
     void readRow(size_t row, Part part, float* values) const;
     /// Makes tiles where values are not zero.
@@ -138,21 +116,22 @@ class Film {
     [[nodiscard]] Rgb rgb(const float* values) const {
         return contents_.channels == 1 ? Rgb(*values) : Rgb(values[0], values[1], values[2]);
     }
-    /// What the folding of an image row adds up over its frames.
+    /// endPass() in two steps: the first accumulates rows [from, end) and returns their spread, the second adds the
+    /// spread of all rows to the error estimate.
+    [[nodiscard]] AccumulatedPass accumulateRows(double weight, int from, int end);
+    void finishPass(const AccumulatedPass& pass);
+    /// What accumulating an image row adds up over its frames.
     struct RowSums {
         std::vector<double> values, blocks; ///< of the pass; of its deviations, by block
         double squares = 0.0;               ///< what the row adds to second moments
         uint64_t nonFinite = 0;
     };
     /// One row of a frame of the pass into the means.
-    void foldRow(size_t row, double weight, RowSums& sums);
+    void accumulateRow(size_t row, double weight, RowSums& sums);
     /// The same of a tile, whose first value has this place in the film and the row.
-    void foldTile(float* tile, size_t place, size_t first, size_t count, double weight, RowSums& sums);
+    void accumulateTile(float* tile, size_t place, size_t first, size_t count, double weight, RowSums& sums);
     /// Of an image row whose blocks deviate by `blocks` times `scale`, which go into its group of passes.
-    PassDeviation deviationOf(size_t y, double squares, const std::vector<double>& blocks, double scale);
-    /// Of a function of the values of all pixels of all frames.
-    template <typename Function>
-    [[nodiscard]] double meanOf(const Function& function) const;
+    PassSpread deviationOf(size_t y, double squares, const std::vector<double>& blocks, double scale);
     [[nodiscard]] Image imageOf(const float* values) const;
     [[nodiscard]] Image imageOf(int frame, Part part) const;
     /// The root of the second moments times errorScale().
@@ -160,8 +139,8 @@ class Film {
     /// From a second moment to the squared standard error; NaN while it is unknown.
     [[nodiscard]] double errorScale() const;
     /// From what a pass adds to second moments to an estimate of its variance; from its squared deviation to that.
-    [[nodiscard]] double momentScale(const FoldedPass& pass) const;
-    [[nodiscard]] double deviationScale(const FoldedPass& pass) const;
+    [[nodiscard]] double momentScale(const AccumulatedPass& pass) const;
+    [[nodiscard]] double deviationScale(const AccumulatedPass& pass) const;
 
     int width_ = 0, height_ = 0, frames_ = 0;
     FilmContents contents_;
@@ -170,15 +149,35 @@ class Film {
     double weight_ = 0.0, squaredWeights_ = 0.0; ///< sums over the passes
     double moment2Sum_ = 0.0;                    ///< of all pixels and channels
     uint64_t nonFinite_ = 0;
-    PassScatter scatter_;
+    ErrorConfidence confidence_;
     /// Deviations of the last group of passes and of the one under way, summed over frames and the pixels of a block,
     /// by image row.
     std::vector<float> lastBlocks_, blocks_;
-    PassBatches batches_;
+    BatchMeans batches_;
     size_t tilesInRow_ = 0;
     LazyTiles tiles_;
     std::vector<uint8_t> touched_, lit_;          ///< rows of frames to which this pass, any pass added
     std::vector<float> totalMean_, totalMoment2_; ///< of the mean over frames (frames > 1)
 };
+
+template <typename Use>
+void Film::forTiles(const Use& use) const {
+    for (size_t tile = 0; tile < tilesInRow_; ++tile) {
+        const size_t first = (tile << TileShift) * size_t(contents_.channels);
+        use(tile, first, std::min(tileValues(), rowValues() - first));
+    }
+}
+
+template <typename Function>
+double Film::meanOf(const Function& function) const {
+    double sum = 0.0;
+    for (size_t row = 0; row < lit_.size(); ++row)
+        forTiles([&](size_t tile, size_t, size_t count) {
+            const float* found = lit_[row] != 0 ? tiles_.find(row * tilesInRow_ + tile) : nullptr;
+            for (size_t i = 0; found && i < count; ++i) sum += function(double(found[size_t(Mean) * tileValues() + i]));
+        });
+    const double values = double(lit_.size()) * double(rowValues());
+    return values > 0.0 ? sum / values : 0.0;
+}
 
 } // namespace tungsten

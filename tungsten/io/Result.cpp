@@ -87,7 +87,7 @@ std::vector<double> frameEdgesInPicoseconds(const Scene& scene) {
 }
 
 ResultContent::Array batchMeans(const Film& film, const Scene& scene) {
-    const PassBatches& batches = film.batches();
+    const BatchMeans& batches = film.batches();
     ResultContent::Array array{"batch_means",
                                {size_t(batches.count()), size_t(film.frames()), size_t(batches.rows()),
                                 size_t(batches.columns()), size_t(film.contents().channels)},

@@ -2,6 +2,7 @@
 
 #include "tungsten/python/Result.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/session/Progress.h"
 #include "tungsten/session/Report.h"
 
@@ -118,7 +119,7 @@ py::dict stateOf(const SessionResult& session, const SessionOptions& options) {
     state["passes"] = session.film.passes();
     state["samples"] = samplesOf(session);
     state["total_samples"] = options.spp;
-    state["relative_error"] = session.film.relativeStandardError();
+    state["relative_error"] = relativeStandardError(session.film);
     return state;
 }
 

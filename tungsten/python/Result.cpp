@@ -1,5 +1,6 @@
 #include "tungsten/python/Result.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/session/Report.h"
 
@@ -89,7 +90,7 @@ py::array Result::standardError(const py::object& self) {
 
 py::object Result::batchMeans(const py::object& self) {
     const auto& result = self.cast<const Result&>();
-    const PassBatches& batches = result.session_->film.batches();
+    const BatchMeans& batches = result.session_->film.batches();
     if (batches.count() == 0) return py::none();
     const std::vector<py::ssize_t> shape{batches.count(), result.session_->film.frames(), batches.rows(),
                                          batches.columns(), result.session_->film.contents().channels};
@@ -130,10 +131,10 @@ void declareResult(py::module_& module) {
         .def_property_readonly(
             "reason", [](const Result& r) { return toString(r.session().reason); }, "why it ended")
         .def_property_readonly(
-            "relative_error", [](const Result& r) { return r.session().film.relativeStandardError(); },
+            "relative_error", [](const Result& r) { return relativeStandardError(r.session().film); },
             "rms standard error over mean; NaN while it is unknown")
         .def_property_readonly(
-            "error_bound", [](const Result& r) { return r.session().film.relativeErrorBound(); },
+            "error_bound", [](const Result& r) { return relativeErrorBound(r.session().film); },
             "what the relative error does not exceed with a confidence of 95 %")
         .def("write", &Result::write, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
              ("Writes " + formatsText(output_use::Linear | output_use::Shown) +

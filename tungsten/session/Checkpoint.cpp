@@ -2,6 +2,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
+#include "tungsten/film/FilmRows.h"
 #include "tungsten/image/AtomicFile.h"
 #include "tungsten/image/Checksum.h"
 
@@ -43,8 +44,8 @@ void writeCheckpoint(const std::filesystem::path& file, const RenderIdentity& id
         ChecksumBuffer buffer(*out.rdbuf());
         std::ostream summed(&buffer);
         summed.write(reinterpret_cast<const char*>(&header), sizeof header);
-        film.write(summed);
-        if (bias.frames() > 0) bias.write(summed);
+        FilmRows::writeState(film, summed);
+        if (bias.frames() > 0) FilmRows::writeState(bias, summed);
         const uint64_t checksum = buffer.checksum();
         out.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
         if (!summed) out.setstate(std::ios::badbit);
@@ -72,8 +73,8 @@ std::optional<ResumePoint> readCheckpoint(const std::filesystem::path& file, con
                                             (header.biasFrames > 0 ? "with" : "without") +
                                             " an estimate of its bias (--bias, --target-error); -r starts over");
     in.seekg(sizeof header);
-    film.read(in, file.string());
-    if (header.biasFrames > 0) bias.read(in, file.string());
+    FilmRows::readState(film, in, file.string());
+    if (header.biasFrames > 0) FilmRows::readState(bias, in, file.string());
     return ResumePoint{header.samples};
 }
 

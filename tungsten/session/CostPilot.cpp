@@ -1,6 +1,7 @@
 #include "tungsten/session/CostPilot.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/session/Memory.h"
 #include "tungsten/session/Passes.h"
 
@@ -66,7 +67,7 @@ double widthExponent(const Integrator& integrator) {
 /// squared factor of the sample that is known worst, or that of a single number where few passes tell nothing.
 double squaredBoundFactor(const std::array<Sample, Indices.size()>& samples) {
     double factor = 0.0;
-    for (const Sample& sample : samples) factor = std::fmax(factor, sample.bias.boundFactor());
+    for (const Sample& sample : samples) factor = std::fmax(factor, boundFactor(sample.bias));
     return factor > 0.0 ? factor * factor : 4.0;
 }
 
@@ -351,7 +352,7 @@ std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrato
         if (passes.interrupted()) throw;
         throw InputError(scene.file.string(), passes.whyTooFew());
     }
-    const double mean = meanOf(each(passes.samples(), [](const Sample& s) { return s.film.meanValue(); }));
+    const double mean = meanOf(each(passes.samples(), [](const Sample& s) { return meanValue(s.film); }));
     if (!(mean > 0.0)) return std::nullopt;
     PassCosts costs = costsOf(passes, integrator, measuresBias, mean);
     costs.prepareCpuSeconds = prepareCpu;

@@ -1,5 +1,8 @@
 #include "tungsten/session/DistributedFilm.h"
 
+#include "tungsten/film/FilmErrors.h"
+#include "tungsten/film/FilmRows.h"
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -59,14 +62,14 @@ int TeamFilm::firstRowOf(int rank) const {
 /// For each rank the rows of this rank's pass image that it owns: their places, each with its values.
 std::vector<Bytes> TeamFilm::rowsFor() const {
     std::vector<Bytes> parts(size_t(team_->size()));
-    std::vector<float> values(film_.rowValues());
+    std::vector<float> values(FilmRows::values(film_));
     for (int rank = 0; rank < team_->size(); ++rank)
         for (int frame = 0; frame < film_.frames(); ++frame)
             for (int y = firstRowOf(rank); y < firstRowOf(rank + 1); ++y) {
                 const uint64_t row = uint64_t(frame) * uint64_t(film_.height()) + uint64_t(y);
-                if (!film_.passRowIsLit(row)) continue;
+                if (!FilmRows::isLit(film_, row)) continue;
                 append(parts[size_t(rank)], &row, 1);
-                film_.readPassRow(row, values.data());
+                FilmRows::readPass(film_, row, values.data());
                 append(parts[size_t(rank)], values.data(), values.size());
             }
     return parts;
@@ -85,33 +88,33 @@ void TeamFilm::fold(size_t rank, double weight) {
     if (!team_) return film_.endPass(weight);
     film_.beginPass();
     Bytes& rows = received_[rank];
-    const size_t size = film_.rowValues() * sizeof(float);
-    std::vector<float> values(film_.rowValues());
+    const size_t size = FilmRows::values(film_) * sizeof(float);
+    std::vector<float> values(FilmRows::values(film_));
     for (size_t at = 0; at + sizeof(uint64_t) + size <= rows.size(); at += sizeof(uint64_t) + size) {
         uint64_t row = 0;
         std::memcpy(&row, rows.data() + at, sizeof row);
         std::memcpy(values.data(), rows.data() + at + sizeof row, size);
-        film_.setPassRow(row, values.data());
+        FilmRows::setPass(film_, row, values.data());
     }
     Bytes().swap(rows);
-    folded_.push_back(film_.foldRows(weight, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1)));
+    folded_.push_back(FilmRows::accumulate(film_, weight, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1)));
 }
 
 void TeamFilm::settle() {
     std::vector<Bytes> parts(size_t(team_->size()));
-    for (const FoldedPass& pass : folded_) append(parts[0], pass.rows.data(), pass.rows.size());
+    for (const AccumulatedPass& pass : folded_) append(parts[0], pass.rows.data(), pass.rows.size());
     const std::vector<Bytes> received = team_->exchange(parts);
     if (team_->rank() == 0)
         for (size_t pass = 0; pass < folded_.size(); ++pass) {
-            FoldedPass& folded = folded_[pass];
+            AccumulatedPass& folded = folded_[pass];
             folded.rows.assign(size_t(film_.height()), {});
             for (int rank = 0; rank < team_->size(); ++rank) {
                 const auto rows = size_t(firstRowOf(rank + 1) - firstRowOf(rank));
                 std::memcpy(folded.rows.data() + firstRowOf(rank),
-                            received[size_t(rank)].data() + pass * rows * sizeof(PassDeviation),
-                            rows * sizeof(PassDeviation));
+                            received[size_t(rank)].data() + pass * rows * sizeof(PassSpread),
+                            rows * sizeof(PassSpread));
             }
-            film_.settle(folded);
+            FilmRows::finish(film_, folded);
         }
     folded_.clear();
 }
@@ -124,7 +127,7 @@ void TeamFilm::gather() {
         std::ostringstream state;
         const uint64_t nonFinite = film_.nonFiniteSamples() - told_;
         state.write(reinterpret_cast<const char*>(&nonFinite), sizeof nonFinite);
-        film_.writeRows(state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
+        FilmRows::write(film_, state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
         parts[0] = bytesOf(state.str());
         told_ = film_.nonFiniteSamples();
     }
@@ -135,7 +138,7 @@ void TeamFilm::gather() {
         uint64_t nonFinite = 0;
         state.read(reinterpret_cast<char*>(&nonFinite), sizeof nonFinite);
         film_.countNonFinite(nonFinite);
-        film_.readRows(state, firstRowOf(rank), firstRowOf(rank + 1));
+        FilmRows::read(film_, state, firstRowOf(rank), firstRowOf(rank + 1));
     }
 }
 
@@ -144,13 +147,13 @@ void TeamFilm::scatter() {
     std::vector<Bytes> parts(size_t(team_->size()));
     for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
         std::ostringstream state;
-        film_.writeRows(state, firstRowOf(rank), firstRowOf(rank + 1));
+        FilmRows::write(film_, state, firstRowOf(rank), firstRowOf(rank + 1));
         parts[size_t(rank)] = bytesOf(state.str());
     }
     const std::vector<Bytes> received = team_->exchange(parts);
     if (team_->rank() == 0) return;
     std::istringstream state(std::string(received[0].begin(), received[0].end()));
-    film_.readRows(state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
+    FilmRows::read(film_, state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
 }
 
 SharedResult::SharedResult(Team* team, SessionResult& result)
@@ -212,7 +215,7 @@ bool SharedResult::mayShow() const {
 
 ShownErrors SharedResult::errors() {
     if (whole_)
-        shown_ = {result_.film.relativeStandardError(), result_.film.relativeErrorBound(), result_.relativeBias()};
+        shown_ = {relativeStandardError(result_.film), relativeErrorBound(result_.film), result_.relativeBias()};
     return shown_;
 }
 

@@ -37,8 +37,8 @@ class TeamFilm {
 
     Team* team_;
     Film& film_;
-    std::vector<Bytes> received_;    ///< rows of the round's passes, by rank
-    std::vector<FoldedPass> folded_; ///< since settle()
+    std::vector<Bytes> received_;         ///< rows of the round's passes, by rank
+    std::vector<AccumulatedPass> folded_; ///< since settle()
     uint64_t bytesSent_ = 0;
     uint64_t told_ = 0; ///< non-finite samples that rank 0 knows of
 };

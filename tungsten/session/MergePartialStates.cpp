@@ -1,6 +1,7 @@
 // Partial states put together.
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/scene/JsonWriter.h"
 #include "tungsten/session/Memory.h"
 #include "tungsten/session/PartialState.h"
@@ -58,8 +59,8 @@ std::string statisticsOf(const MergedRender& merged, const std::vector<std::uniq
     json.field("seed", merged.identity.seed);
     json.field("passes", uint64_t(merged.film.passes()));
     json.field("samples per pixel", merged.samples);
-    json.field("relative standard error", merged.film.relativeStandardError());
-    json.field("relative error bound", merged.film.relativeErrorBound());
+    json.field("relative standard error", relativeStandardError(merged.film));
+    json.field("relative error bound", relativeErrorBound(merged.film));
     json.field("process CPU seconds", cpuSeconds);
     json.beginArray("states");
     for (const auto& state : states) {

@@ -3,6 +3,7 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
 #include "tungsten/film/Film.h"
+#include "tungsten/film/FilmRows.h"
 #include "tungsten/image/Checksum.h"
 #include "tungsten/scene/JsonWriter.h"
 
@@ -27,13 +28,13 @@ std::vector<unsigned char> deflatePass(const Film& film) {
     z_stream stream{};
     if (deflateInit(&stream, Z_BEST_SPEED) != Z_OK) throw std::bad_alloc();
     std::vector<unsigned char> bytes;
-    std::vector<float> row(film.rowValues());
+    std::vector<float> row(FilmRows::values(film));
     unsigned char piece[Step];
-    for (size_t at = 0; at < film.passRows(); ++at) {
-        film.readPassRow(at, row.data());
+    for (size_t at = 0; at < FilmRows::count(film); ++at) {
+        FilmRows::readPass(film, at, row.data());
         stream.next_in = reinterpret_cast<Bytef*>(row.data());
         stream.avail_in = uInt(row.size() * sizeof(float));
-        const int flush = at + 1 == film.passRows() ? Z_FINISH : Z_NO_FLUSH;
+        const int flush = at + 1 == FilmRows::count(film) ? Z_FINISH : Z_NO_FLUSH;
         do {
             stream.next_out = piece;
             stream.avail_out = Step;
@@ -49,7 +50,7 @@ std::vector<unsigned char> deflatePass(const Film& film) {
 bool inflatePass(const std::vector<unsigned char>& bytes, Film& film) {
     z_stream stream{};
     if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
-    std::vector<float> row(film.rowValues());
+    std::vector<float> row(FilmRows::values(film));
     size_t taken = 0;
     const auto step = [&] {
         if (stream.avail_in == 0) {
@@ -60,15 +61,15 @@ bool inflatePass(const std::vector<unsigned char>& bytes, Film& film) {
         return inflate(&stream, Z_NO_FLUSH);
     };
     bool good = true;
-    for (size_t at = 0; good && at < film.passRows(); ++at) {
+    for (size_t at = 0; good && at < FilmRows::count(film); ++at) {
         stream.next_out = reinterpret_cast<Bytef*>(row.data());
         stream.avail_out = uInt(row.size() * sizeof(float));
         while (good && stream.avail_out > 0) {
             const int code = step();
-            good = code == Z_OK || (code == Z_STREAM_END && stream.avail_out == 0 && at + 1 == film.passRows());
+            good = code == Z_OK || (code == Z_STREAM_END && stream.avail_out == 0 && at + 1 == FilmRows::count(film));
         }
         if (good && !std::all_of(row.begin(), row.end(), [](float value) { return value == 0.0f; }))
-            film.setPassRow(at, row.data());
+            FilmRows::setPass(film, at, row.data());
     }
     unsigned char more = 0;
     stream.next_out = &more;

@@ -1,7 +1,7 @@
 #pragma once
 // What a person sees while a render runs: passes, time left, standard error.
 
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/integrator/ProgressToken.h"
 
 #include <chrono>

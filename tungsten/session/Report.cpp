@@ -1,6 +1,7 @@
 
 #include "tungsten/session/Report.h"
 
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/io/Format.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/scene/Json.h"
@@ -279,8 +280,8 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
         json.field("target error", options.targetError);
         json.field("target error reached", result.errorBound() <= options.targetError);
     }
-    json.field("relative standard error", result.film.relativeStandardError());
-    json.field("relative error bound", result.film.relativeErrorBound());
+    json.field("relative standard error", relativeStandardError(result.film));
+    json.field("relative error bound", relativeErrorBound(result.film));
     if (result.estimatesBias()) {
         const RelativeBias bias = result.relativeBias();
         json.field("relative bias", bias.estimate);
@@ -311,7 +312,7 @@ std::string statisticsJson(const LoadedScene& loaded, const SessionOptions& opti
 
 std::optional<Problem> blackImage(const Scene& scene, const SceneFacts& facts, const Features& features,
                                   const SessionResult& result) {
-    if (facts.nothingArrives || result.film.passes() == 0 || !(result.film.meanSquare() == 0.0)) return std::nullopt;
+    if (facts.nothingArrives || result.film.passes() == 0 || !(meanSquare(result.film) == 0.0)) return std::nullopt;
     const TransportSettings& transport = scene.transport;
     std::string text = "the image is black: no path found light";
     for (const std::string& limitation : features.limitations) text += "; it lacks " + limitation;
@@ -327,9 +328,9 @@ std::optional<Problem> blackImage(const Scene& scene, const SceneFacts& facts, c
 }
 
 PageContent pageOf(const LoadedScene& loaded, const SessionOptions& options, const SessionResult& result) {
-    const double error = result.film.relativeStandardError();
+    const double error = relativeStandardError(result.film);
     const std::string known =
-        std::isnan(error) ? "" : errorText(error, result.film.relativeErrorBound(), result.relativeBias());
+        std::isnan(error) ? "" : errorText(error, relativeErrorBound(result.film), result.relativeBias());
     PageContent content{
         result.film,
         *loaded.scene,

@@ -301,7 +301,7 @@ class Session {
     /// With what pilots have decided meanwhile.
     [[nodiscard]] std::vector<Feature> featuresNow(const SceneFacts& before) const {
         SceneFacts facts = analyseScene(*loaded_.scene, before.everything);
-        Features now = describeScene(*loaded_.scene, facts);
+        Features now = featuresOf(*loaded_.scene, facts);
         integrator_.plan(facts, now);
         return now.all;
     }

@@ -2,7 +2,7 @@
 // What a session is asked for, and what comes of it.
 
 #include "tungsten/film/Film.h"
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/integrator/Statistics.h"
@@ -69,7 +69,7 @@ struct SessionResult {
         return estimatesBias() ? RelativeBias::of(film, bias) : RelativeBias{0.0, 0.0};
     }
     /// Of noise and bias together, relative; what the error does not exceed with a confidence of 95 %. NaN: unknown.
-    [[nodiscard]] double errorBound() const { return std::hypot(film.relativeErrorBound(), relativeBias().bound); }
+    [[nodiscard]] double errorBound() const { return std::hypot(relativeErrorBound(film), relativeBias().bound); }
 };
 
 } // namespace tungsten

@@ -1,6 +1,7 @@
 #include "tungsten/session/Trace.h"
 
 #include "tungsten/core/Errors.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/image/AtomicFile.h"
 #include "tungsten/integrator/Statistics.h"
 #include "tungsten/io/Outputs.h"
@@ -71,7 +72,7 @@ void Trace::write(const Film& film, const Film& bias) {
     const double wallSeconds = wall_ - wallStart_, cpuSeconds = cpu_ - cpuStart_;
     const std::string number = std::to_string(film.passes());
     const std::string name = std::string(6 - std::min<size_t>(number.size(), 6), '0') + number + ".npy";
-    TraceEntry entry{film.passes(), film.totalWeight(), wallSeconds,      cpuSeconds, film.relativeStandardError(),
+    TraceEntry entry{film.passes(), film.totalWeight(), wallSeconds,      cpuSeconds, relativeStandardError(film),
                      {0.0, 0.0},    "mean-" + name,     "stderr-" + name, ""};
     std::vector<Image> means, errors, biases;
     for (int frame = 0; frame < film.frames(); ++frame) {

@@ -1,7 +1,7 @@
 #pragma once
 // The way a render takes to its image: what it would have shown had it been stopped earlier (`--trace`).
 
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 #include "tungsten/scene/Scene.h"
 
 #include <filesystem>

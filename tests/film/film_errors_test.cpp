@@ -1,7 +1,7 @@
 // The bias of kernels as a number: what noise brings to it is taken off, and its bound holds.
 
 #include "tungsten/core/Random.h"
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 
 #include <gtest/gtest.h>
 
@@ -139,7 +139,7 @@ TEST(KernelBias, BoundHoldsBesideAStep) {
                 exact += std::pow(boxBesideStep(x - stepOf(y), radius), 2) / (BoardSide * BoardSide);
             }
         film.endPass(1.0);
-        exact = std::sqrt(exact) / film.meanValue();
+        exact = std::sqrt(exact) / meanValue(film);
         for (uint32_t f = 0; f < Films; ++f) {
             Film biases(BoardSide, BoardSide, 1, {}, PassWeight::Repeats);
             for (uint32_t pass = 0; pass < Passes; ++pass) {

@@ -2,6 +2,8 @@
 
 #include "tungsten/core/Random.h"
 #include "tungsten/film/Film.h"
+#include "tungsten/film/FilmErrors.h"
+#include "tungsten/film/FilmRows.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +14,7 @@ namespace tungsten {
 namespace {
 
 constexpr int Side = 16, Seeds = 200;
-constexpr uint32_t Passes = 32;
+constexpr uint32_t PassCount = 32;
 
 /// A pixel's value with mean 1, of independent numbers u and v in [0, 1).
 using Noise = std::function<double(double u, double v)>;
@@ -31,7 +33,7 @@ Promise promiseOf(const Noise& noise, int alike) {
     Promise promise;
     for (uint32_t seed = 0; seed < Seeds; ++seed) {
         Film film(Side, Side, 1);
-        for (uint32_t pass = 0; pass < Passes; ++pass) {
+        for (uint32_t pass = 0; pass < PassCount; ++pass) {
             film.beginPass();
             for (int y = 0; y < Side; ++y)
                 for (int x = 0; x < Side; ++x) {
@@ -48,14 +50,14 @@ Promise promiseOf(const Noise& noise, int alike) {
             sum += double(pixel.x);
         }
         const double pixels = Side * Side, error = std::sqrt(squares / pixels) / (sum / pixels);
-        promise.beyondError += error > film.relativeStandardError() ? 1.0 / Seeds : 0.0;
-        promise.beyondBound += error > film.relativeErrorBound() ? 1.0 / Seeds : 0.0;
-        promise.factor += film.relativeErrorBound() / film.relativeStandardError() / Seeds;
+        promise.beyondError += error > relativeStandardError(film) ? 1.0 / Seeds : 0.0;
+        promise.beyondBound += error > relativeErrorBound(film) ? 1.0 / Seeds : 0.0;
+        promise.factor += relativeErrorBound(film) / relativeStandardError(film) / Seeds;
     }
     return promise;
 }
 
-TEST(PassScatter, TheErrorStaysBelowItsBound) {
+TEST(ErrorConfidence, TheErrorStaysBelowItsBound) {
     const double most = 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / Seeds);
     const Noise even = [](double u, double v) { return 1.0 + normal(u, v); };
     const Noise lognormal = [](double u, double v) { return std::exp(1.5 * normal(u, v) - 1.125); };
@@ -81,7 +83,7 @@ TEST(PassScatter, TheErrorStaysBelowItsBound) {
 }
 
 /// Each pass is uneven, the mean of many is not: what passes have in common is left.
-TEST(PassScatter, ManyUnevenPassesMakeAnEvenMean) {
+TEST(ErrorConfidence, ManyUnevenPassesMakeAnEvenMean) {
     const auto factorOf = [](int alike) {
         Film film(Side, Side, 1);
         for (uint32_t pass = 0; pass < 1024; ++pass) {
@@ -92,10 +94,10 @@ TEST(PassScatter, ManyUnevenPassesMakeAnEvenMean) {
             }
             film.endPass(1.0);
         }
-        return film.boundFactor();
+        return boundFactor(film);
     };
     const auto exact = [](double independent) {
-        return std::sqrt(1.0 + PassScatter::Deviations * std::sqrt(2.0 / independent));
+        return std::sqrt(1.0 + ErrorConfidence::Deviations * std::sqrt(2.0 / independent));
     };
     EXPECT_LT(factorOf(1), exact(Side * Side) * 1.1);
     EXPECT_GT(factorOf(1), exact(Side * Side));
@@ -107,8 +109,8 @@ TEST(PassScatter, ManyUnevenPassesMakeAnEvenMean) {
     }
 }
 
-TEST(PassScatter, IsUnknownAtFirstAndOneWherePassesAreAlike) {
-    PassScatter scatter;
+TEST(ErrorConfidence, IsUnknownAtFirstAndOneWherePassesAreAlike) {
+    ErrorConfidence scatter;
     for (int i = 0; i < 3; ++i) {
         EXPECT_TRUE(std::isnan(scatter.boundFactor())) << i;
         scatter.add(uint32_t(1 + i), {});
@@ -118,19 +120,19 @@ TEST(PassScatter, IsUnknownAtFirstAndOneWherePassesAreAlike) {
 }
 
 /// Many passes are kept as means of pairs: nearly the same bound, in bounded memory.
-TEST(PassScatter, ManyPassesTakeLittleMemory) {
-    PassScatter few, many;
-    for (uint64_t i = 0; i < 40 * PassScatter::MostGroups; ++i) {
+TEST(ErrorConfidence, ManyPassesTakeLittleMemory) {
+    ErrorConfidence few, many;
+    for (uint64_t i = 0; i < 40 * ErrorConfidence::MostGroups; ++i) {
         Sampler sampler(5, RandomStream::Test, 0, i);
         const double value = 1.0 + 0.2 * normal(double(sampler.next1D()), double(sampler.next1D()));
-        if (i + 1 < PassScatter::MostGroups) few.add(uint32_t(1 + i), {value, 0.0, 0.0});
+        if (i + 1 < ErrorConfidence::MostGroups) few.add(uint32_t(1 + i), {value, 0.0, 0.0});
         many.add(uint32_t(1 + i), {value, 0.0, 0.0});
     }
-    EXPECT_LE(many.memoryBytes(), 2 * PassScatter::MostGroups * sizeof(double));
+    EXPECT_LE(many.memoryBytes(), 2 * ErrorConfidence::MostGroups * sizeof(double));
     EXPECT_NEAR(many.boundFactor(), few.boundFactor(), 0.01);
 }
 
-TEST(PassScatter, ASavedFilmKeepsItsBound) {
+TEST(ErrorConfidence, ASavedFilmKeepsItsBound) {
     Film film(3, 2, 1), other(3, 2, 1);
     for (uint32_t pass = 0; pass < 9; ++pass) {
         film.beginPass();
@@ -138,10 +140,10 @@ TEST(PassScatter, ASavedFilmKeepsItsBound) {
         film.endPass(2.0);
     }
     std::stringstream state;
-    film.write(state);
-    other.read(state, "state");
-    EXPECT_GT(film.relativeErrorBound(), film.relativeStandardError());
-    EXPECT_EQ(other.relativeErrorBound(), film.relativeErrorBound());
+    FilmRows::writeState(film, state);
+    FilmRows::readState(other, state, "state");
+    EXPECT_GT(relativeErrorBound(film), relativeStandardError(film));
+    EXPECT_EQ(relativeErrorBound(other), relativeErrorBound(film));
 }
 
 } // namespace

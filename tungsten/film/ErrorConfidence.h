@@ -12,7 +12,7 @@ namespace tungsten {
 /// What a pass deviates from the mean of those before it, over all or some pixels: the sum of squares, scaled so that
 /// its expectation is a pass's variance. Where the pass ends a group of passes: of the group's deviations, summed over
 /// blocks of pixels, the sum of squares, and the product with those of the group before.
-struct PassDeviation {
+struct PassSpread {
     double squares = 0.0, blocks = 0.0, product = 0.0;
 };
 
@@ -28,7 +28,7 @@ struct PassDeviation {
 /// of two groups of passes however rare the passes are that deviate most. Sums over blocks stand for their values,
 /// which are no fewer independent numbers; where v is less, it is taken, and with few passes v by quartiles, which rare
 /// samples do not reach. Measured: benchmarks/results/promise/README.md.
-class PassScatter {
+class ErrorConfidence {
   public:
     /// Standard deviations of a one-sided confidence of 97.7 %, on the safe side of the 95 % that is told.
     static constexpr double Deviations = 2.0;
@@ -36,7 +36,7 @@ class PassScatter {
     static constexpr size_t MostGroups = 4096;
 
     /// Deviations of the passes from the second on (pass 1), in their order.
-    void add(uint32_t pass, const PassDeviation& deviation);
+    void add(uint32_t pass, const PassSpread& deviation);
     /// Passes of the group that ends with this one, between 32 and 64 groups in all; 0 where none ends.
     [[nodiscard]] static uint32_t groupEndingWith(uint32_t pass);
     /// Factor >= 1 from the expected error (not squared) to its bound; NaN with fewer than four values.
@@ -54,7 +54,7 @@ class PassScatter {
     std::vector<double> groups_; ///< means of `span_` passes' each
     size_t span_ = 1, inGroup_ = 0;
     double sum_ = 0.0;        ///< of the group that is not full
-    double lastBlocks_ = 0.0; ///< PassDeviation::blocks of the last group
+    double lastBlocks_ = 0.0; ///< PassSpread::blocks of the last group
     /// Of groups of w passes with q = (x . y / w)^2 and d = |x|^2 |y|^2 / w^2: sums of w, w^2, w q, w d, w^2 q^2, w^2 q
     /// d, w^2 d^2.
     std::array<double, 7> products_{};

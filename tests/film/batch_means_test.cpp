@@ -1,6 +1,7 @@
 // Batches of passes, and films that are folded apart by rows.
 
 #include "tungsten/film/Film.h"
+#include "tungsten/film/FilmRows.h"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ Film rendered(const FilmContents& contents, uint32_t passes) {
     return film;
 }
 
-float batchValue(const PassBatches& batches, int batch, int frame, int row, int column, int channel) {
+float batchValue(const BatchMeans& batches, int batch, int frame, int row, int column, int channel) {
     const size_t at = (((size_t(batch) * BatchedFrames + size_t(frame)) * size_t(batches.rows()) + size_t(row)) *
                            size_t(batches.columns()) +
                        size_t(column)) *
@@ -52,9 +53,9 @@ float batchValue(const PassBatches& batches, int batch, int frame, int row, int 
     return batches.means()[at];
 }
 
-TEST(PassBatches, TheirMeanIsTheFilmsOverTheBlock) {
+TEST(BatchMeans, TheirMeanIsTheFilmsOverTheBlock) {
     const Film film = rendered(Batched, 23);
-    const PassBatches& batches = film.batches();
+    const BatchMeans& batches = film.batches();
     ASSERT_EQ(batches.columns(), 2);
     ASSERT_EQ(batches.rows(), 2);
     for (int frame = 0; frame < BatchedFrames; ++frame) {
@@ -68,9 +69,9 @@ TEST(PassBatches, TheirMeanIsTheFilmsOverTheBlock) {
     }
 }
 
-TEST(PassBatches, TheirSpreadIsTheErrorOfWhatVariesAsOne) {
+TEST(BatchMeans, TheirSpreadIsTheErrorOfWhatVariesAsOne) {
     constexpr uint32_t Passes = 5000;
-    const PassBatches batches = rendered({3, true, 50, 4}, Passes).batches();
+    const BatchMeans batches = rendered({3, true, 50, 4}, Passes).batches();
     double sum = 0.0, squares = 0.0;
     for (int batch = 0; batch < 50; ++batch) {
         const double value = double(batchValue(batches, batch, 0, 0, 0, 0));
@@ -81,7 +82,7 @@ TEST(PassBatches, TheirSpreadIsTheErrorOfWhatVariesAsOne) {
     EXPECT_NEAR(error, expected, 4.0 * expected / std::sqrt(2.0 * 49.0)); // pixels as independent: a quarter of it
 }
 
-TEST(PassBatches, CostNothingWithoutThem) {
+TEST(BatchMeans, CostNothingWithoutThem) {
     const Film film = rendered({}, 3);
     EXPECT_EQ(film.batches().count(), 0);
     EXPECT_TRUE(film.batches().means().empty());
@@ -89,7 +90,7 @@ TEST(PassBatches, CostNothingWithoutThem) {
 
 std::string stateOf(const Film& film) {
     std::ostringstream out;
-    film.write(out);
+    FilmRows::writeState(film, out);
     return out.str();
 }
 
@@ -103,30 +104,30 @@ TEST(FilmRows, FoldedApartAndPutTogetherAreOneFilm) {
         for (uint32_t pass = 0; pass < Passes; ++pass) {
             Film whole(BatchedWidth, BatchedHeight, BatchedFrames, contents);
             addPass(whole, values[pass], pass);
-            FoldedPass folded;
+            AccumulatedPass folded;
             for (int part = 0; part < 2; ++part) {
                 parts[part].beginPass();
                 for (int frame = 0; frame < BatchedFrames; ++frame)
                     for (int y = bounds[part]; y < bounds[part + 1]; ++y) {
                         const auto row = size_t(frame * BatchedHeight + y);
-                        if (!whole.passRowIsLit(row)) continue;
-                        std::vector<float> rowOf(whole.rowValues());
-                        whole.readPassRow(row, rowOf.data());
-                        parts[part].setPassRow(row, rowOf.data());
+                        if (!FilmRows::isLit(whole, row)) continue;
+                        std::vector<float> rowOf(FilmRows::values(whole));
+                        FilmRows::readPass(whole, row, rowOf.data());
+                        FilmRows::setPass(parts[part], row, rowOf.data());
                     }
-                const FoldedPass some =
-                    parts[part].foldRows(pass + 1 == Passes ? 1.0 : 2.0, bounds[part], bounds[part + 1]);
+                const AccumulatedPass some =
+                    FilmRows::accumulate(parts[part], pass + 1 == Passes ? 1.0 : 2.0, bounds[part], bounds[part + 1]);
                 folded.pass = some.pass;
                 folded.weight = some.weight;
                 folded.weightBefore = some.weightBefore;
                 folded.squaresBefore = some.squaresBefore;
                 folded.rows.insert(folded.rows.end(), some.rows.begin(), some.rows.end());
             }
-            parts[0].settle(folded);
+            FilmRows::finish(parts[0], folded);
         }
         std::stringstream rows;
-        parts[1].writeRows(rows, 4, BatchedHeight);
-        parts[0].readRows(rows, 4, BatchedHeight);
+        FilmRows::write(parts[1], rows, 4, BatchedHeight);
+        FilmRows::read(parts[0], rows, 4, BatchedHeight);
         EXPECT_EQ(stateOf(parts[0]), stateOf(rendered(contents, Passes)));
     }
 }
@@ -136,10 +137,10 @@ TEST(FilmRows, StatesHoldBatches) {
     std::stringstream state(stateOf(film)), again(stateOf(film));
     Film loaded(BatchedWidth, BatchedHeight, BatchedFrames, Batched),
         other(BatchedWidth, BatchedHeight, BatchedFrames, {3, true, 5, 3});
-    loaded.read(state, "state");
+    FilmRows::readState(loaded, state, "state");
     EXPECT_EQ(loaded.batches().means(), film.batches().means());
     EXPECT_EQ(loaded.batches().weights(), film.batches().weights());
-    EXPECT_ANY_THROW(other.read(again, "state"));
+    EXPECT_ANY_THROW(FilmRows::readState(other, again, "state"));
 }
 
 } // namespace

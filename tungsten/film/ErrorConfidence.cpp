@@ -1,4 +1,4 @@
-#include "tungsten/film/PassScatter.h"
+#include "tungsten/film/ErrorConfidence.h"
 
 #include <algorithm>
 #include <bit>
@@ -22,13 +22,13 @@ double quantile(const std::vector<double>& sorted, double fraction) {
 
 } // namespace
 
-uint32_t PassScatter::groupEndingWith(uint32_t pass) {
+uint32_t ErrorConfidence::groupEndingWith(uint32_t pass) {
     constexpr uint32_t GroupsPerOctave = 32;
     const uint32_t passes = std::max(std::bit_floor(pass) / GroupsPerOctave, 1u);
     return (pass + 1) % passes == 0 ? passes : 0;
 }
 
-void PassScatter::add(uint32_t pass, const PassDeviation& deviation) {
+void ErrorConfidence::add(uint32_t pass, const PassSpread& deviation) {
     if (const double w = double(groupEndingWith(pass)); w > 0.0) {
         const double q = deviation.product * deviation.product / (w * w), d = deviation.blocks * lastBlocks_ / (w * w);
         const std::array<double, 7> terms{w, w * w, w * q, w * d, w * w * q * q, w * w * q * d, w * w * d * d};
@@ -46,7 +46,7 @@ void PassScatter::add(uint32_t pass, const PassDeviation& deviation) {
     span_ *= 2;
 }
 
-double PassScatter::boundFactor() const {
+double ErrorConfidence::boundFactor() const {
     constexpr double QuartileDistance = 1.349; // of a normal distribution, in standard deviations
     if (groups_.size() < 4) return std::numeric_limits<double>::quiet_NaN();
     double mean = 0.0, squares = 0.0;
@@ -64,7 +64,7 @@ double PassScatter::boundFactor() const {
     return std::sqrt(1.0 + Deviations * std::sqrt(rare + usual));
 }
 
-double PassScatter::sharedVariance() const {
+double ErrorConfidence::sharedVariance() const {
     constexpr double Fewest = 8.0;
     const auto& [w, w2, wq, wd, w2q2, w2qd, w2d2] = products_;
     if (!(wd > 0.0) || w * w < Fewest * w2) return std::numeric_limits<double>::infinity();
@@ -72,7 +72,7 @@ double PassScatter::sharedVariance() const {
     return 2.0 * (ratio + Deviations * std::sqrt(std::max(residual, 0.0)) / wd);
 }
 
-void PassScatter::write(std::ostream& out) const {
+void ErrorConfidence::write(std::ostream& out) const {
     const uint64_t counts[3] = {groups_.size(), span_, inGroup_};
     out.write(reinterpret_cast<const char*>(counts), sizeof counts);
     for (const double* sum : {&sum_, &lastBlocks_}) out.write(reinterpret_cast<const char*>(sum), sizeof *sum);
@@ -80,7 +80,7 @@ void PassScatter::write(std::ostream& out) const {
     out.write(reinterpret_cast<const char*>(groups_.data()), std::streamsize(groups_.size() * sizeof(double)));
 }
 
-void PassScatter::read(std::istream& in) {
+void ErrorConfidence::read(std::istream& in) {
     uint64_t counts[3] = {};
     in.read(reinterpret_cast<char*>(counts), sizeof counts);
     for (double* sum : {&sum_, &lastBlocks_}) in.read(reinterpret_cast<char*>(sum), sizeof *sum);

@@ -1,4 +1,4 @@
-#include "tungsten/film/KernelBias.h"
+#include "tungsten/film/FilmErrors.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,30 @@ namespace {
 /// alone, rms over the image, by kernel and pixels to a radius: 1.2 (one) to 1.6 (four), 1.9 at most.
 constexpr double AtEdges = 1.707;
 
+constexpr double UnknownError = std::numeric_limits<double>::quiet_NaN();
+
 } // namespace
+
+double meanValue(const Film& film) {
+    return film.meanOf([](double value) { return value; });
+}
+
+double meanSquare(const Film& film) {
+    return film.meanOf([](double value) { return value * value; });
+}
+
+double relativeStandardError(const Film& film) {
+    const double mean = meanValue(film);
+    return mean > 0.0 ? std::sqrt(film.meanSquaredError()) / mean : UnknownError;
+}
+
+double boundFactor(const Film& film) {
+    return film.confidence().boundFactor();
+}
+
+double relativeErrorBound(const Film& film) {
+    return relativeStandardError(film) * boundFactor(film);
+}
 
 uint32_t passesOfItsBias(uint32_t pass) {
     constexpr uint32_t MeasuredPerOctave = 8, Most = 4;
@@ -22,10 +45,9 @@ uint32_t passesOfItsBias(uint32_t pass) {
 }
 
 RelativeBias RelativeBias::of(const Film& film, const Film& bias) {
-    constexpr double Unknown = std::numeric_limits<double>::quiet_NaN();
-    const double mean = film.meanValue(), noise = bias.meanSquaredError(), factor = bias.boundFactor();
-    if (!(mean > 0.0) || std::isnan(noise)) return {Unknown, Unknown};
-    const double square = std::max(bias.meanSquare() - noise, 0.0);
+    const double mean = meanValue(film), noise = bias.meanSquaredError(), factor = boundFactor(bias);
+    if (!(mean > 0.0) || std::isnan(noise)) return {UnknownError, UnknownError};
+    const double square = std::max(meanSquare(bias) - noise, 0.0);
     // The noise is uncertain, and so is its product with the bias: over k independent pixels they scatter by noise
     // sqrt(2 / k) and 2 sqrt(square noise / k). The factor says what the first may be, with two standard deviations;
     // what one explains is no bias that is seen.

@@ -2,7 +2,7 @@
 // Means over groups of passes: what tells the error of a region, whose pixels correlate.
 
 #include "tungsten/film/FilmContents.h"
-#include "tungsten/film/LazyArray.h"
+#include "tungsten/film/Tiles.h"
 
 #include <cstdint>
 #include <functional>
@@ -14,10 +14,10 @@ namespace tungsten {
 /// Pass i belongs to batch i mod N. Each batch keeps the mean of its passes (weighed as the film weighs them) by
 /// blocks of pixels, in every frame. Batches are independent, whatever correlates within a pass: the standard error of
 /// any sum of blocks is the spread of that sum over the batches.
-class PassBatches {
+class BatchMeans {
   public:
-    PassBatches() = default;
-    PassBatches(int width, int height, int frames, const FilmContents& contents);
+    BatchMeans() = default;
+    BatchMeans(int width, int height, int frames, const FilmContents& contents);
     [[nodiscard]] static double memoryFor(int width, int height, int frames, const FilmContents& contents);
 
     [[nodiscard]] int count() const { return int(weights_.size()); }
@@ -30,9 +30,10 @@ class PassBatches {
 
     /// Reads the pass's values of a row of frames.
     using ReadRow = std::function<void(size_t row, float* values)>;
-    /// Folds image rows from..end of a pass, whole blocks' (or up to the last row); `lit` tells by row of frames where
+    /// Adds image rows from..end of a pass, whole blocks' (or up to the last row); `lit` tells by row of frames where
     /// any pass has had light. Once per pass: nextPass() goes after it.
-    void fold(uint32_t pass, double weight, const ReadRow& readRow, const std::vector<uint8_t>& lit, int from, int end);
+    void accumulate(uint32_t pass, double weight, const ReadRow& readRow, const std::vector<uint8_t>& lit, int from,
+                    int end);
     void nextPass(uint32_t pass, double weight);
 
     /// Exact binary state of image rows from..end. read() leaves a stream that failed to its caller.
@@ -40,7 +41,7 @@ class PassBatches {
     void read(std::istream& in, int from, int end);
 
   private:
-    void foldRow(uint32_t batch, int frame, int blockRow, double weight, const ReadRow& readRow);
+    void accumulateRow(uint32_t batch, int frame, int blockRow, double weight, const ReadRow& readRow);
     [[nodiscard]] size_t rowAt(size_t batch, int frame, int blockRow) const {
         return ((batch * size_t(frames_) + size_t(frame)) * size_t(rows_) + size_t(blockRow)) * size_t(columns_) *
                size_t(channels_);
