@@ -544,13 +544,13 @@ FAULTS = [
      [("photon_tests", "DefaultRadius.IsALengthWhateverTheSpeedOfLight")]),  # default radius takes a time for a length
     # tungsten/film
     ("tungsten/image/AtomicFile.cpp", "::flock(descriptor_, LOCK_EX | LOCK_NB);", ";",
-     [("film_tests", "AtomicFile.IsNotRemovedWhileItIsWritten")]),  # missing lock: another run removes a file that is still being written
+     [("image_tests", "AtomicFile.IsNotRemovedWhileItIsWritten")]),  # missing lock: another run removes a file that is still being written
     ("tungsten/image/AtomicFile.cpp", "::fsync(descriptor_) != 0 && errno", "false && errno",
-     [("film_tests", "AtomicFile.IsBroughtToTheDiskBeforeAndAfterItHasItsName")]),  # missing fsync: a crash leaves an empty file under the final name
+     [("image_tests", "AtomicFile.IsBroughtToTheDiskBeforeAndAfterItHasItsName")]),  # missing fsync: a crash leaves an empty file under the final name
     ("tungsten/image/AtomicFile.cpp", "::fsync(folder);", ";",
-     [("film_tests", "AtomicFile.IsBroughtToTheDiskBeforeAndAfterItHasItsName")]),  # missing fsync of the folder: a crash undoes the new name
+     [("image_tests", "AtomicFile.IsBroughtToTheDiskBeforeAndAfterItHasItsName")]),  # missing fsync of the folder: a crash undoes the new name
     ("tungsten/image/AtomicFile.cpp", "if (!renamed_) ::unlink(path_.c_str());", ";",
-     [("film_tests", "ImageIo.FailedWritesKeepTheOldFile")]),  # temporary files stay after a failed write
+     [("io_tests", "ImageIo.FailedWritesKeepTheOldFile")]),  # temporary files stay after a failed write
     ("tungsten/image/AtomicFile.cpp", "- status.st_mtime > YoungSeconds)", "- status.st_mtime < YoungSeconds)",
      [("ctest", "^app.Robustness.TemporaryFilesOfKilledRendersAreRemoved$")]),  # abandoned files stay, young ones of others are removed
     ("tungsten/image/Checksum.cpp", "return in && stored == hash.value();", "return bool(in);",
@@ -560,7 +560,7 @@ FAULTS = [
     ("tungsten/image/Exposure.cpp", "float(std::exp2(stops))", "float(std::exp(stops))",
      [("io_tests", "Exposure.IsReadAsStopsOrAuto")]),  # a stop is not a factor of 2
     ("tungsten/io/Exr.cpp", "Imf::DoubleAttribute(part.timeEnd)", "Imf::DoubleAttribute(part.timeStart)",
-     [("film_tests", "ImageIo.AnExrSaysWhenItsFrameStartsAndEnds")]),  # EXR: frames end when they start
+     [("io_tests", "ImageIo.AnExrSaysWhenItsFrameStartsAndEnds")]),  # EXR: frames end when they start
     ("tungsten/film/Film.cpp", "std::fill_n(found + x, contents_.channels, 0.0f);", ";",
      [("film_tests", "FilmContents.AddingNothingAndSettingAgain")]),  # one NaN sample spoils its pixel for good
     ("tungsten/film/Film.cpp", "squaredWeights_ += weight * weight;", "squaredWeights_ += weight;",
@@ -584,15 +584,15 @@ FAULTS = [
     ("tungsten/film/ErrorConfidence.cpp", "groups_.push_back(sum_ / double(span_));", "groups_.push_back(sum_);",
      [("film_tests", "ErrorConfidence.ManyPassesTakeLittleMemory")]),  # error bound of very long renders weighs groups wrongly
     ("tungsten/io/Npy.cpp", "std::to_string(height) + \", \" + std::to_string(width) +", "std::to_string(width) + \", \" + std::to_string(height) +",
-     [("film_tests", "ImageIo.NumpyReadsTheCube")]),  # arrays have rows and columns swapped
+     [("io_tests", "ImageIo.NumpyReadsTheCube")]),  # arrays have rows and columns swapped
     ("tungsten/io/Hdf5.cpp", "const hsize_t start[] = {hsize_t(frame), 0, 0, 0};", "const hsize_t start[] = {hsize_t(0), 0, 0, 0};",
      [("docs_tests", "Results.TheReaderOfThePageReadsWhatWasWritten")]),  # HDF5: all frames are written over the first
     ("tungsten/image/ToneMap.cpp", "std::clamp(std::floor(255.0f * v), 0.0f, 255.0f)", "std::floor(255.0f * v)",
-     [("film_tests", "ToneMap.Values")]),  # missing clamp: bright pixels wrap to dark
+     [("image_tests", "ToneMap.Values")]),  # missing clamp: bright pixels wrap to dark
     ("tungsten/image/ToneMap.cpp", "1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f", "1.055f * std::pow(c, 1.0f / 2.4f)",
-     [("film_tests", "ToneMap.Values")]),  # tone curve pbrt jumps
+     [("image_tests", "ToneMap.Values")]),  # tone curve pbrt jumps
     ("tungsten/io/Pfm.cpp", "writeRow(out, image, y);", "writeRow(out, image, image.height - 1 - y);",
-     [("film_tests", "ImageIo.PfmRoundTripsAndNamesDamage")]),  # PFM upside down
+     [("io_tests", "ImageIo.PfmRoundTripsAndNamesDamage")]),  # PFM upside down
     ("tungsten/film/FilmErrors.cpp", "std::max(meanSquare(bias) - noise, 0.0)", "std::max(meanSquare(bias), 0.0)",
      [("film_tests", "KernelBias.NoiseIsTakenOff")]),  # noise is told as bias
     ("tungsten/io/Video.cpp", "return WIFEXITED(status) && WEXITSTATUS(status) == 0;", "return WIFEXITED(status);",
