@@ -80,16 +80,16 @@ class MissedLightSearch {
                                               [](const Emitter& emitter) { return emitter.isPointLike(); }))
             return {};
         uint32_t polls = 0; // paths between mirrors may be endless
-        PassMonitor monitor([&] { return ++polls > SearchPaths; });
+        ProgressMonitor monitor([&] { return ++polls > SearchPaths; });
         try {
-            return search(PassWatch(monitor));
-        } catch (const PassBrokenOff&) {
+            return search(ProgressToken(monitor));
+        } catch (const PassCancelled&) {
             return {};
         }
     }
 
   private:
-    [[nodiscard]] std::optional<MissedLight> search(const PassWatch& watch) const {
+    [[nodiscard]] std::optional<MissedLight> search(const ProgressToken& watch) const {
         PathCounters counters;
         for (uint32_t i = 0; i < SearchPaths; ++i) {
             Sampler sampler(0, RandomStream::Pilot, i, 0);
@@ -116,7 +116,7 @@ class MissedLightSearch {
 
     /// Along specular and forward lobes to the next vertex that scatters.
     [[nodiscard]] std::optional<MissedLight> follow(const PathTarget& from, const Vec3f& direction,
-                                                    const Sampler& sampler, const PassWatch& watch,
+                                                    const Sampler& sampler, const ProgressToken& watch,
                                                     PathCounters& counters) const {
         const PathState start{.random = sampler,
                               .ray = from.vertex.leave(direction),

@@ -5,11 +5,11 @@
 namespace tungsten::path {
 
 PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const SceneFacts& facts,
-                          const PassWatch& watch) {
+                          const ProgressToken& watch) {
     PathGuides guides;
     watch.stage("guides of media", scene.media.size());
     for (size_t i = 0; i < scene.media.size(); ++i) {
-        watch.poll();
+        watch.advance();
         const Medium& medium = scene.media[i];
         darts::Settings settings =
             scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);

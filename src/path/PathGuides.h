@@ -17,7 +17,7 @@ namespace tungsten::path {
 struct PathGuides {
     /// `plan`: media that light is out of time in are not guided in.
     static PathGuides of(const Scene& scene, const darts::Scheme& scheme, const SceneFacts& facts,
-                         const PassWatch& watch);
+                         const ProgressToken& watch);
 
     std::vector<darts::Guide> media;  ///< for flights, and for leaving scatterers and surfaces into it
     std::vector<darts::Guide> glossy; ///< for leaving surfaces without diffuse lobes

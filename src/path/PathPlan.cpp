@@ -124,7 +124,8 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, features);
     add("light vertices", lightVertices, {"integrator.darts"}, {counter::LightVertexConnections, counter::LightPaths});
-    add("reflected light", reflectedLight, lobeUses(scene, lobe::GlossyReflection | lobe::SpecularReflection).causes(),
+    add("reflected light", reflectedLight,
+        elementsWithLobe(scene, lobe::GlossyReflection | lobe::SpecularReflection).elements(),
         {counter::ReflectedLightConnections});
 }
 

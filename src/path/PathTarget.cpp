@@ -29,7 +29,7 @@ TargetChoice::TargetChoice(const Scene& scene, Emitters emitters, const std::vec
     }
 }
 
-std::optional<PathTarget> TargetChoice::of(size_t index, Sampler& sampler, const PassWatch& watch,
+std::optional<PathTarget> TargetChoice::of(size_t index, Sampler& sampler, const ProgressToken& watch,
                                            PathCounters& counters) const {
     const Emitter& emitter = scene_.emitters[index];
     const Vec2f uPosition = sampler.next2D();
@@ -83,7 +83,7 @@ struct FirstScattering : transport::VisitorBase {
 } // namespace
 
 std::optional<PathTarget> TargetChoice::scatterLaser(PathTarget target, const EmissionSample& emission,
-                                                     const Sampler& sampler, const PassWatch& watch,
+                                                     const Sampler& sampler, const ProgressToken& watch,
                                                      PathCounters& counters) const {
     target.index = -1;
     const PathState start{.random = sampler,

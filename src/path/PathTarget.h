@@ -62,16 +62,16 @@ class TargetChoice {
     [[nodiscard]] size_t choose(float u) const { return distribution_.sample(u).index; }
     /// A point of this emitter, as its choice has it. None when light that starts in a single direction is absorbed or
     /// escapes.
-    [[nodiscard]] std::optional<PathTarget> of(size_t emitter, Sampler& sampler, const PassWatch& watch,
+    [[nodiscard]] std::optional<PathTarget> of(size_t emitter, Sampler& sampler, const ProgressToken& watch,
                                                PathCounters& counters) const;
-    [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const PassWatch& watch,
+    [[nodiscard]] std::optional<PathTarget> sample(float u, Sampler& sampler, const ProgressToken& watch,
                                                    PathCounters& counters) const {
         return any() ? of(choose(u), sampler, watch, counters) : std::nullopt;
     }
 
   private:
     std::optional<PathTarget> scatterLaser(PathTarget target, const EmissionSample& emission, const Sampler& sampler,
-                                           const PassWatch& watch, PathCounters& counters) const;
+                                           const ProgressToken& watch, PathCounters& counters) const;
 
     const Scene& scene_;
     Distribution1D distribution_;

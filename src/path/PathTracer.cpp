@@ -71,7 +71,7 @@ void PathTracer::plan(SceneFacts& facts, Features& features) const {
     PathPlan::of(*scene_, settings_, facts).describe(*scene_, settings_, facts, features);
 }
 
-void PathTracer::prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) {
+void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
     plan_ = PathPlan::of(*scene_, settings_, facts);
     bound_.emplace(*scene_, facts);
     lights_.emplace(*scene_, facts.excludedEmitters);
@@ -120,8 +120,8 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
                     : renderPlainly<false, false>(rest, film, statistics);
 }
 
-void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
-                                  Sampler sampler) const {
+void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const ProgressToken& watch,
+                                  PathCounters& counters, Sampler sampler) const {
     sink.begin(Strategy::Alone, {});
     const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
         ++counters.intoDetectors;
@@ -157,7 +157,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             const Ray ray = camera.generateRay({x, y}, uFilter, uLens);
             float u = targets_->several() ? radicalInverse(sample) + rotation : 0.0f;
             u -= u >= 1.0f ? 1.0f : 0.0f;
-            pass.watch.pollWithin(SamplesPerPoll, s + 1);
+            pass.watch.advanceWithin(SamplesPerPoll, s + 1);
             const double place = turn + GoldenRatio * double(pass.firstSample + s);
             trace(ray, sink, counters, sampler, u, float(place - std::floor(place)));
             if (detectorLight_)
@@ -170,7 +170,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
         StrategyCounters counters;
         for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y) {
             for (size_t x = tile.cols().begin(); x < tile.cols().end(); ++x) renderPixel(int(x), int(y), counters);
-            pass.watch.poll(tile.cols().size());
+            pass.watch.advance(tile.cols().size());
         }
         for (const PathCounters& of : {counters.plain, counters.densities, counters.guided}) report(of, statistics);
         statistics.add("counted nanoseconds of camera paths", uint64_t(costs(counters).sum()));
@@ -193,13 +193,13 @@ void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& sta
                 });
 }
 
-GuidedContext PathTracer::guidedContext(const PassWatch& watch) const {
+GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
     return {
         *scene_, settings_, sensor_, *windows_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
         watch,   balance_};
 }
 
-PathContext PathTracer::plainContext(const PassWatch& watch) const {
+PathContext PathTracer::plainContext(const ProgressToken& watch) const {
     return {*scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries, watch};
 }
 
@@ -245,7 +245,7 @@ PathCosts PathTracer::costs(const StrategyCounters& counters) const {
             cost(counters.guided, tuning::GuidedRates)};
 }
 
-void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
+void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
     if (asked && (*asked == 0.0f || *asked == 1.0f)) {
         balance_ = {*asked, 1.0f - *asked};
@@ -294,7 +294,7 @@ void PathTracer::chooseShare(const PassWatch& watch, Statistics& statistics) {
                 tracePlainBesideGuided(plain, {&trail}, sink, counters, sampler, ray);
             }
         }
-        watch.poll();
+        watch.advance();
         costs = this->costs(counted);
         if (group + 1 < tuning::LeastPilotPixels) continue;
         if (costs.sum() > transport::tuning::MostPilotCost) break;

@@ -24,17 +24,17 @@ class PathTracer : public Integrator {
   public:
     PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings);
     void plan(SceneFacts& facts, Features& features) const override;
-    void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) override;
+    void prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
     template <bool TimeResolved, bool Media>
     void renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const;
     void renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const;
-    [[nodiscard]] GuidedContext guidedContext(const PassWatch& watch) const;
-    [[nodiscard]] PathContext plainContext(const PassWatch& watch) const;
+    [[nodiscard]] GuidedContext guidedContext(const ProgressToken& watch) const;
+    [[nodiscard]] PathContext plainContext(const ProgressToken& watch) const;
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
-    void chooseShare(const PassWatch& watch, Statistics& statistics);
+    void chooseShare(const ProgressToken& watch, Statistics& statistics);
     /// Of what was counted, in nanoseconds.
     [[nodiscard]] double cost(const PathCounters& counters, const tuning::Rates& rates) const;
     [[nodiscard]] PathCosts costs(const StrategyCounters& counters) const;
@@ -45,7 +45,7 @@ class PathTracer : public Integrator {
 
     /// Of one sample of a pixel: what its detector gets from lights that rays do not meet, by light that nothing has
     /// scattered, or from where light of a single direction is scattered first.
-    void addDetectorLight(int column, float u, PixelSink& sink, const PassWatch& watch, PathCounters& counters,
+    void addDetectorLight(int column, float u, PixelSink& sink, const ProgressToken& watch, PathCounters& counters,
                           Sampler sampler) const;
 
     std::shared_ptr<const Scene> scene_;

@@ -22,7 +22,7 @@ struct PathContext {
     const ArrivalBound& bound;
     const RefractedLight* refracted; ///< of scenes whose bodies are all sealed, or null
     bool forwardBoundaries;          ///< connections must look through index-matched surfaces
-    const PassWatch& watch;
+    const ProgressToken& watch;
 };
 
 /// What weighs a plain path's contributions beside guided ones: nothing, where all paths are plain.

@@ -33,7 +33,7 @@ struct GuidedContext {
     const ArrivalBound& bound;
     const transport::WaysOut* waysOut; ///< null: media are taken for infinite
     bool forwardBoundaries;            ///< connections must look through index-matched surfaces
-    const PassWatch& watch;
+    const ProgressToken& watch;
     transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
 };
 

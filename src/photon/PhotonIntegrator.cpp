@@ -43,7 +43,7 @@ void PhotonIntegrator::plan(SceneFacts& facts, Features& features) const {
     PhotonPlan::of(*scene_, settings_, facts).describe(*scene_, settings_, facts, features);
 }
 
-void PhotonIntegrator::prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) {
+void PhotonIntegrator::prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
     if (settings_.alternatives.size() > 1) choosePrimitive(facts, watch, statistics);
     plan_ = PhotonPlan::of(*scene_, settings_, facts);
     forwardBoundaries_ = facts.forwardBoundaries || facts.everything;
@@ -57,7 +57,7 @@ void PhotonIntegrator::prepare(const SceneFacts& facts, const PassWatch& watch, 
     if (plan_.sideBySide.on) chooseShare(watch, statistics);
 }
 
-void PhotonIntegrator::choosePrimitive(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) {
+void PhotonIntegrator::choosePrimitive(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
     const StageTimer timer(statistics, "pilot of volume primitives");
     const MeasuredPrimitive measured = measurePrimitives(scene_, settings_, facts, watch);
     statistics.add("pilot passes of volume primitives", measured.passes);
@@ -66,7 +66,7 @@ void PhotonIntegrator::choosePrimitive(const SceneFacts& facts, const PassWatch&
     settings_.alternatives.clear();
 }
 
-void PhotonIntegrator::chooseShare(const PassWatch& watch, Statistics& statistics) {
+void PhotonIntegrator::chooseShare(const ProgressToken& watch, Statistics& statistics) {
     const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
     const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(0));
     photonPass_->setGate(sensor.gate);
@@ -188,7 +188,7 @@ void PhotonIntegrator::addDetectorLight(const transport::Sensor& sensor, const P
     const StageTimer timer(statistics, "lights at detectors");
     const double scale = 1.0 / (double(pass.samples) * (sensor.gate.steadyState ? 1.0 : sensor.gate.frameWidth));
     tbb::parallel_for(0, film.width(), [&](int column) {
-        pass.watch.poll(0);
+        pass.watch.advance(0);
         FrameSums sums(size_t(sensor.gate.frames), Vec3d(0.0));
         uint64_t rays = 0, arrivals = 0;
         const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
@@ -256,7 +256,7 @@ void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMa
     // The bias is as the square of the kernel's width.
     const float extrapolation = 1.0f / (1.0f - sqr(structures.kernel));
     tbb::parallel_for(0, film.height(), [&](int y) {
-        pass.watch.poll(0);
+        pass.watch.advance(0);
         for (int frame = 0; frame < film.frames(); ++frame)
             for (int x = 0; x < film.width(); ++x) {
                 const Rgb narrow = bias.passPixel(frame, x, y);

@@ -17,7 +17,7 @@ class PhotonIntegrator : public Integrator {
     PhotonIntegrator(std::shared_ptr<const Scene> scene, const ObjectReader& settings, bool progressive);
     PhotonIntegrator(std::shared_ptr<const Scene> scene, PhotonSettings settings);
     void plan(SceneFacts& facts, Features& features) const override;
-    void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) override;
+    void prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) override;
     [[nodiscard]] double memoryBytes() const override;
     [[nodiscard]] bool leavesBias(const SceneFacts& facts) const override;
     /// Of the volume's kernels, where there are any, else of surfaces'.
@@ -29,9 +29,9 @@ class PhotonIntegrator : public Integrator {
 
   private:
     /// Of `alternatives`, and with it the plan.
-    void choosePrimitive(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics);
+    void choosePrimitive(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics);
     /// Of plain and guided light paths.
-    void chooseShare(const PassWatch& watch, Statistics& statistics);
+    void chooseShare(const ProgressToken& watch, Statistics& statistics);
     /// Of the radii's schedule. Without progression radii stay as they are. New photons come all the same: passes that
     /// shared them would share their error, which no spread of passes tells.
     [[nodiscard]] uint32_t step(const PassInfo& pass) const;

@@ -61,7 +61,7 @@ double costOf(const Statistics& counted, const VolumePrimitive& primitive, doubl
 class Pilot {
   public:
     Pilot(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings, const SceneFacts& facts,
-          const PassWatch& watch)
+          const ProgressToken& watch)
         : primitive_(settings.primitive), progressive_(settings.progressive), integrator_(scene, settings),
           film_(scene->camera.resolution.x, scene->camera.resolution.y, scene->transport.gate.frames) {
         Statistics unreported;
@@ -194,7 +194,7 @@ std::string primitivesToMeasure(const std::vector<VolumePrimitive>& alternatives
 }
 
 MeasuredPrimitive measurePrimitives(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings,
-                                    const SceneFacts& facts, const PassWatch& watch) {
+                                    const SceneFacts& facts, const ProgressToken& watch) {
     const std::shared_ptr<const Scene> small = smallScene(*scene);
     PhotonSettings one = settings;
     one.alternatives.clear();

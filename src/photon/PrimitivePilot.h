@@ -21,7 +21,7 @@ struct MeasuredPrimitive {
 /// own and costs are counted, not timed: every part of a render, on every machine, chooses alike. `facts`: the plan of
 /// the render, complete. Polls `watch`.
 MeasuredPrimitive measurePrimitives(const std::shared_ptr<const Scene>& scene, const PhotonSettings& settings,
-                                    const SceneFacts& facts, const PassWatch& watch);
+                                    const SceneFacts& facts, const ProgressToken& watch);
 
 /// What `--explain` says before the pilot has run; `alternatives` has more than one.
 std::string primitivesToMeasure(const std::vector<VolumePrimitive>& alternatives);

@@ -58,7 +58,7 @@ class SensorPass {
             for (size_t y = tile.rows().begin(); y < tile.rows().end(); ++y) {
                 for (size_t x = tile.cols().begin(); x < tile.cols().end(); ++x)
                     renderPixel(int(x), int(y), workspace, counters);
-                pass_.watch.poll(tile.cols().size());
+                pass_.watch.advance(tile.cols().size());
             }
             report(counters, structures_.volume, statistics);
         });
@@ -70,7 +70,7 @@ class SensorPass {
     void renderPixel(int x, int y, Workspace& workspace, SensorCounters& counters) const {
         std::fill(workspace.sums.begin(), workspace.sums.end(), Vec3d(0.0));
         for (uint32_t s = 0; s < samples_; ++s) {
-            pass_.watch.pollWithin(1, s);
+            pass_.watch.advanceWithin(1, s);
             addSample({x, y}, first_ + s, workspace, counters);
         }
         for (int frame = 0; frame < gate().frames; ++frame) {

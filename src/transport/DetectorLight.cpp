@@ -58,7 +58,7 @@ DetectorLight::DetectorLight(const Scene& scene, const SceneFacts& facts, const 
     : scene_(scene), limits_(limits), connector_(scene, facts.forwardBoundaries || facts.everything),
       emitters_(pointLikeEmitters(scene, facts)), specular_(facts.specularSensorPaths) {}
 
-void DetectorLight::sample(size_t column, Sampler& sampler, const PassWatch& watch, uint64_t& rays,
+void DetectorLight::sample(size_t column, Sampler& sampler, const ProgressToken& watch, uint64_t& rays,
                            const Put& put) const {
     if (!limits_.orderCounts(0)) return;
     const auto chosen = emitters_.sample(sampler.next1D());

@@ -27,9 +27,9 @@ class DetectorLight {
 
     /// The scene has detectors, and such lights.
     [[nodiscard]] static bool mayReach(const Scene& scene, const SceneFacts& facts);
-    /// One sample of what the detector in `column` gets. Adds the rays traced to `rays`. Throws PassBrokenOff where the
+    /// One sample of what the detector in `column` gets. Adds the rays traced to `rays`. Throws PassCancelled where the
     /// watch does.
-    void sample(size_t column, Sampler& sampler, const PassWatch& watch, uint64_t& rays, const Put& put) const;
+    void sample(size_t column, Sampler& sampler, const ProgressToken& watch, uint64_t& rays, const Put& put) const;
     /// The same of the end of a path from a light, `time` after 0 and so many interactions.
     void connect(size_t column, const PathEnd& end, const Emitter& emitter, double time, int interactions,
                  Sampler& sampler, uint64_t& rays, const Put& put) const;

@@ -33,9 +33,9 @@ struct StepCounters {
         return *this;
     }
     /// A walk goes on: paths may have millions of vertices, and a pass must not wait for their ends to be broken off.
-    void step(const PassWatch& watch) {
+    void step(const ProgressToken& watch) {
         constexpr uint64_t StepsPerPoll = 64; // some microseconds each; guided ones tens of them
-        watch.pollWithin(StepsPerPoll, ++steps);
+        watch.advanceWithin(StepsPerPoll, ++steps);
     }
     void scatter(const Medium& medium) {
         ++mediumEvents;

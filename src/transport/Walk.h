@@ -16,7 +16,7 @@ namespace tungsten::transport {
 struct WalkContext {
     const Scene& scene;
     StepCounters& counters;
-    PassWatch watch;
+    ProgressToken watch;
 };
 
 /// What lies ahead of a ray.

@@ -21,7 +21,7 @@ class AmbientOcclusion : public Integrator {
     void plan(SceneFacts&, Features& features) const override {
         features.describe("ambient occlusion", true, "the hemisphere above the first surface is tested");
     }
-    void prepare(const SceneFacts&, const PassWatch&, Statistics&) override {}
+    void prepare(const SceneFacts&, const ProgressToken&, Statistics&) override {}
 
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override {
         const StageTimer timer(statistics, "occlusion");

@@ -751,13 +751,13 @@ FAULTS = [
     ("tungsten/session/MergePartialStates.cpp", "if (state->first() > end)", "if (state->first() > end + 1)",
      [("session_tests", "Partial.PassesThatOverlapOrMissAreNamed")]),  # a missing pass goes unnoticed
     ("tungsten/session/Passes.cpp", "cut ? double(step_) * share() : double(samples)", "double(samples)",
-     [("session_tests", "PassWatch.SamplesAreCutWhereLightPathsCanBe")]),  # cut passes weigh as whole ones: the render ends too early
+     [("session_tests", "ProgressToken.SamplesAreCutWhereLightPathsCanBe")]),  # cut passes weigh as whole ones: the render ends too early
     ("tungsten/session/Passes.cpp", "firstPass * sppStep + uint64_t(done);", "uint64_t(done);",
-     [("session_tests", "RoundPass.PartsOfARenderHaveItsSamples")]),  # --passes: every part renders the first part's samples
+     [("session_tests", "PlannedPass.PartsOfARenderHaveItsSamples")]),  # --passes: every part renders the first part's samples
     ("tungsten/session/Passes.cpp", "pass.index = firstPass + index;", "pass.index = index;",
-     [("session_tests", "PassWatch.PartialStatesHaveWholePassesOrNone")]),  # --passes: every part traces the first part's photons
+     [("session_tests", "ProgressToken.PartialStatesHaveWholePassesOrNone")]),  # --passes: every part traces the first part's photons
     ("tungsten/session/Passes.cpp", "std::min(spp, end * step) - first * step;", "end * step - first * step;",
-     [("session_tests", "RoundPass.PartsOfARenderHaveItsSamples")]),  # --passes: the last part has more samples than the render
+     [("session_tests", "PlannedPass.PartsOfARenderHaveItsSamples")]),  # --passes: the last part has more samples than the render
     ("tungsten/session/Session.cpp", "if (result_.samples >= spp_) return because", "if (result_.samples > spp_) return because",
      [("session_tests", "Session.TheLastPassTakesWhatIsLeft")]),  # one pass too many
     ("tungsten/session/Session.cpp", "if (!options_.resumeEnabled || options_.restart) return;", "if (!options_.resumeEnabled) return;",
@@ -789,7 +789,7 @@ FAULTS = [
     ("tungsten/core/AvailableMemory.cpp", "return kibibytes * 1024.0;", "return kibibytes;",
      [("session_tests", "Memory.AvailableIsWhatTheSystemSaysInBytes")]),  # renders are refused for lack of memory
     ("tungsten/session/DistributedFilm.cpp", "told_ = film_.nonFiniteSamples();", ";",
-     [("session_tests", "TeamFilm.NonFiniteSamplesAreToldOnce")]),  # MPI: non-finite samples are counted again at each gathering
+     [("session_tests", "DistributedFilm.NonFiniteSamplesAreToldOnce")]),  # MPI: non-finite samples are counted again at each gathering
     ("tungsten/session/CostPilot.cpp", "std::sqrt(variance.sum(n) / (n * n) + systematic", "std::sqrt(variance.sum(n) / n + systematic",
      [("session_tests", "PassCosts.PassesForAnErrorAreTheFirstThatReachIt")]),  # --plan-cost: noise does not fall with passes
     ("tungsten/io/Page.cpp", "json.replace(at, 1, \"\\\\u003c\");", ";",
@@ -830,7 +830,7 @@ FAULTS = [
     ("src/photon/primitives/sliced/SliceLanes.h", "rays.lag = foot - common;", "rays.lag = foot + common;",
      [("photon_sliced_tests", "Cases/FarSlices.BringWhatPathsBring/Balls")]),  # slices are seen at a wrong time from where the ray does not begin
     # long paths, contents of files, links
-    ("src/transport/StepCounters.h", "watch.pollWithin(StepsPerPoll, ++steps);", "watch.pollWithin(StepsPerPoll << 20, ++steps);",
+    ("src/transport/StepCounters.h", "watch.advanceWithin(StepsPerPoll, ++steps);", "watch.advanceWithin(StepsPerPoll << 20, ++steps);",
      [("photon_tests", "BreakOffLongPaths.*")]),  # time-outs wait for the ends of paths
     ("src/transport/Walk.h", "steps.context().counters.step(steps.context().watch);", ";",
      [("photon_tests", "BreakOffLongPaths.*")]),  # those of the light tracer do

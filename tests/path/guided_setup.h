@@ -31,7 +31,7 @@ struct GuidedSetup {
     const Scene& scene = *loaded.scene;
     PathSettings settings = readPathSettings(loaded.integratorSettings, scene);
     SceneFacts facts = analyseScene(scene);
-    PassWatch watch;
+    ProgressToken watch;
     transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
     transport::TimeWindows windows{sensor.arrivals};
     PathGuides guides = PathGuides::of(scene, settings.policy.sampling, facts, watch);

@@ -50,19 +50,19 @@ class Render {
     /// Renders a pass that stops at the poll of this number; false: it did. Counts polls and notes stages.
     bool pass(uint64_t stopAt = std::numeric_limits<uint64_t>::max()) {
         polls_ = 0;
-        std::optional<PassMonitor> monitor;
+        std::optional<ProgressMonitor> monitor;
         monitor.emplace([&] {
             const std::scoped_lock lock(mutex_);
             stages_.insert(monitor->progress().stage);
             return ++polls_ >= stopAt;
         });
         const uint32_t index = film_.passes();
-        PassInfo info{index, 2 * index, 2, 1, &bias_, 1.0, PassWatch(*monitor)};
+        PassInfo info{index, 2 * index, 2, 1, &bias_, 1.0, ProgressToken(*monitor)};
         film_.beginPass();
         bias_.beginPass();
         try {
             integrator_->renderPass(info, film_, statistics_);
-        } catch (const PassBrokenOff&) {
+        } catch (const PassCancelled&) {
             return false;
         }
         film_.endPass(2.0);

@@ -104,7 +104,7 @@ void replay(const std::string& json) {
     const PhotonSettings settings = readPhotonSettings(loaded.integratorSettings, scene, true);
     const PhotonPlan plan = PhotonPlan::of(scene, settings, analyseScene(scene));
     ASSERT_TRUE(plan.sideBySide.on) << plan.sideBySide.reason;
-    const PassWatch watch;
+    const ProgressToken watch;
     const PhotonGuidance guidance(scene, settings.policy, plan, watch);
     Replay::compared = 0;
     Replay::largest = 0.0f;

@@ -26,7 +26,7 @@ class KnownPasses : public Integrator {
     std::vector<uint32_t> indices;
 
     void plan(SceneFacts&, Features&) const override {}
-    void prepare(const SceneFacts&, const PassWatch&, Statistics&) override {}
+    void prepare(const SceneFacts&, const ProgressToken&, Statistics&) override {}
     [[nodiscard]] bool leavesBias(const SceneFacts&) const override { return kernels; }
     [[nodiscard]] double kernelWidth(uint32_t pass) const override {
         return std::pow(double(pass) + 1.0, widthExponent);
@@ -60,7 +60,7 @@ std::optional<PassCosts> costsOf(KnownPasses& integrator, uint32_t rounds = 40, 
 class EndlessPasses : public KnownPasses {
   public:
     void renderPass(const PassInfo& pass, Film&, Statistics&) override {
-        while (true) pass.watch.poll();
+        while (true) pass.watch.advance();
     }
 };
 
@@ -89,8 +89,8 @@ class LongPasses : public KnownPasses {
     void renderPass(const PassInfo& pass, Film& film, Statistics&) override {
         pass.watch.stage("samples", pass.samples);
         const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(pass.samples);
-        while (std::chrono::steady_clock::now() < end) pass.watch.poll(0);
-        pass.watch.poll(pass.samples);
+        while (std::chrono::steady_clock::now() < end) pass.watch.advance(0);
+        pass.watch.advance(pass.samples);
         most = std::max(most, pass.samples);
         Sampler sampler(pass.seed, RandomStream::Test, pass.index, 0);
         const double spread = std::sqrt(3.0 * variance.first / double(pass.samples));

@@ -17,14 +17,14 @@ class FakeIntegrator : public Integrator {
   public:
     std::vector<PassInfo> passes;
     std::function<void(const PassInfo&)> afterPass = [](const PassInfo&) {};
-    std::function<void(const PassWatch&)> preparing = [](const PassWatch&) {};
+    std::function<void(const ProgressToken&)> preparing = [](const ProgressToken&) {};
     float noise = 1.0f; ///< pixels are uniform in [1 - noise, 1]
     float bias = 0.0f;  ///< that it says it leaves, with a noise of its own; 0: it leaves none
     bool prepared = false;
     bool cutsPaths = false; ///< that it says it can
 
     void plan(SceneFacts&, Features& features) const override { features.describe("fake", true, "a test"); }
-    void prepare(const SceneFacts&, const PassWatch& watch, Statistics&) override {
+    void prepare(const SceneFacts&, const ProgressToken& watch, Statistics&) override {
         preparing(watch);
         prepared = true;
     }

@@ -288,7 +288,7 @@ TEST(PartialStateHeader, KeepsWhatImagesAndMetadataNeed) {
 }
 
 /// Passes 0 to 7 of a render of 15 samples in steps of 2.
-TEST(RoundPass, PartsOfARenderHaveItsSamples) {
+TEST(PlannedPass, PartsOfARenderHaveItsSamples) {
     SessionOptions options;
     options.spp = 15;
     options.sppStep = 2;
@@ -297,7 +297,7 @@ TEST(RoundPass, PartsOfARenderHaveItsSamples) {
     EXPECT_EQ(samplesOf(options), 6u);
     options.passes = PassRange{6, 8};
     EXPECT_EQ(samplesOf(options), 3u);
-    const RoundPass second{{2, 1.0, 2.0}, 1, 2.0}; // of a session that begins with the render's pass 6
+    const PlannedPass second{{2, 1.0, 2.0}, 1, 2.0}; // of a session that begins with the render's pass 6
     const PassInfo pass = second.info(6, 2, 9);
     EXPECT_EQ(pass.index, 7u);
     EXPECT_EQ(pass.firstSample, 14u);

@@ -21,13 +21,13 @@ void hangIn(SessionFixture& session, uint32_t index) {
     session.integrator.afterPass = [index](const PassInfo& pass) {
         pass.watch.stage("hanging", 1000);
         for (uint64_t i = 0; pass.index == index; ++i) {
-            pass.watch.poll();
+            pass.watch.advance();
             std::this_thread::sleep_for(std::chrono::microseconds(100));
         }
     };
 }
 
-TEST(PassWatch, AnInterruptLeavesTheFilmAsAfterWholePasses) {
+TEST(ProgressToken, AnInterruptLeavesTheFilmAsAfterWholePasses) {
     for (const char* const gate : {"", ThreeFrames}) {
         SessionFixture two(tinyScene(gate, R"("spp": 4, "spp_step": 2)"));
         const std::string expected = bitsOf(two.run().film);
@@ -38,7 +38,7 @@ TEST(PassWatch, AnInterruptLeavesTheFilmAsAfterWholePasses) {
         session.integrator.afterPass = [&](const PassInfo& pass) {
             for (; pass.index == 2; ++polls) {
                 interrupted = polls == 10;
-                pass.watch.poll();
+                pass.watch.advance();
             }
         };
         const SessionResult& result = session.run();
@@ -51,7 +51,7 @@ TEST(PassWatch, AnInterruptLeavesTheFilmAsAfterWholePasses) {
     }
 }
 
-TEST(PassWatch, ATimeOutBreaksThePassOff) {
+TEST(ProgressToken, ATimeOutBreaksThePassOff) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
     session.options.timeoutSeconds = 0.2;
     hangIn(session, 2);
@@ -64,7 +64,7 @@ TEST(PassWatch, ATimeOutBreaksThePassOff) {
     EXPECT_TRUE(session.has("TungstenRender.png"));
 }
 
-TEST(PassWatch, WithoutOnePassNothingIsWritten) {
+TEST(ProgressToken, WithoutOnePassNothingIsWritten) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 1)"));
     session.options.timeoutSeconds = 0.1;
     session.options.resumeEnabled = true;
@@ -78,15 +78,15 @@ TEST(PassWatch, WithoutOnePassNothingIsWritten) {
     EXPECT_FALSE(std::filesystem::exists(session.outputs.state));
 }
 
-TEST(PassWatch, PassesAreCutIfTheFirstIsTooLong) {
+TEST(ProgressToken, PassesAreCutIfTheFirstIsTooLong) {
     for (const bool lightPaths : {false, true}) {
         SessionFixture session(tinyScene("", R"("spp": 96, "spp_step": 48)"));
         session.options.timeoutSeconds = 1.0;
         session.integrator.cutsPaths = lightPaths;
         session.integrator.afterPass = [](const PassInfo& pass) {
             pass.watch.stage("endless", 4);
-            if (pass.samples > 3) pass.watch.poll(1);
-            while (pass.samples > 3) pass.watch.poll(0);
+            if (pass.samples > 3) pass.watch.advance(1);
+            while (pass.samples > 3) pass.watch.advance(0);
         };
         const SessionResult& result = session.run();
         EXPECT_EQ(result.reason, StopReason::Finished);
@@ -100,15 +100,15 @@ TEST(PassWatch, PassesAreCutIfTheFirstIsTooLong) {
 }
 
 /// So many parts of a sample as make a whole one have as many light paths, and see pixels in different places.
-TEST(PassWatch, SamplesAreCutWhereLightPathsCanBe) {
+TEST(ProgressToken, SamplesAreCutWhereLightPathsCanBe) {
     SessionFixture session(tinyScene("", R"("spp": 2, "spp_step": 1)"));
     session.options.timeoutSeconds = 1.0;
     session.options.trace = session.folder() / "trace";
     session.integrator.cutsPaths = true;
     session.integrator.afterPass = [](const PassInfo& pass) {
         pass.watch.stage("endless", 8);
-        if (pass.share == 1.0) pass.watch.poll(1);
-        while (pass.share == 1.0) pass.watch.poll(0);
+        if (pass.share == 1.0) pass.watch.advance(1);
+        while (pass.share == 1.0) pass.watch.advance(0);
     };
     const SessionResult& result = session.run();
     EXPECT_EQ(result.samples, 2u);
@@ -126,7 +126,7 @@ TEST(PassWatch, SamplesAreCutWhereLightPathsCanBe) {
     for (const TraceEntry& entry : result.trace) EXPECT_DOUBLE_EQ(entry.samples, double(entry.passes) / 32.0);
 }
 
-TEST(PassWatch, WhatIsThrownWithinAPassEndsTheRender) {
+TEST(ProgressToken, WhatIsThrownWithinAPassEndsTheRender) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
     int calls = 0;
     session.options.duringPass = [&] {
@@ -140,13 +140,13 @@ TEST(PassWatch, WhatIsThrownWithinAPassEndsTheRender) {
 
 /// Prepares without end.
 void hangInPreparing(SessionFixture& session) {
-    session.integrator.preparing = [](const PassWatch& watch) {
+    session.integrator.preparing = [](const ProgressToken& watch) {
         watch.stage("tables", 1000);
-        for (;; watch.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        for (;; watch.advance()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     };
 }
 
-TEST(PassWatch, PreparingIsBrokenOffAsPassesAre) {
+TEST(ProgressToken, PreparingIsBrokenOffAsPassesAre) {
     for (const bool partial : {false, true}) {
         SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
         if (partial) session.options.passes = PassRange{0, 2};
@@ -170,7 +170,7 @@ TEST(PassWatch, PreparingIsBrokenOffAsPassesAre) {
     }
 }
 
-TEST(PassWatch, ARenderThatIsResumedAndNotPreparedInTimeKeepsItsPasses) {
+TEST(ProgressToken, ARenderThatIsResumedAndNotPreparedInTimeKeepsItsPasses) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
     session.options.resumeEnabled = true;
     session.options.spp = 4;
@@ -184,11 +184,11 @@ TEST(PassWatch, ARenderThatIsResumedAndNotPreparedInTimeKeepsItsPasses) {
     EXPECT_EQ(result.film.passes(), 2u);
     EXPECT_TRUE(session.has("TungstenRender.png"));
     session.options.timeoutSeconds = 0.0;
-    session.integrator.preparing = [](const PassWatch&) {};
+    session.integrator.preparing = [](const ProgressToken&) {};
     EXPECT_EQ(session.run().film.passes(), 4u);
 }
 
-TEST(PassWatch, PartialStatesHaveWholePassesOrNone) {
+TEST(ProgressToken, PartialStatesHaveWholePassesOrNone) {
     SessionFixture session(tinyScene("", R"("spp": 8, "spp_step": 2)"));
     session.options.timeoutSeconds = 0.2;
     session.options.passes = PassRange{1, 3};
@@ -218,19 +218,19 @@ TEST(PassSizes, AreCutUntilNothingIsLeftToCut) {
     EXPECT_DOUBLE_EQ(photons.share(), 1.0 / 409600.0);
 }
 
-TEST(PassWatch, StagesLieInTheirPartOfThePass) {
-    PassMonitor monitor([] { return false; });
-    const PassWatch watch(monitor);
-    const PassWatch last = watch.part(0.5, 1.0).part(0.5, 1.0);
+TEST(ProgressToken, StagesLieInTheirPartOfThePass) {
+    ProgressMonitor monitor([] { return false; });
+    const ProgressToken watch(monitor);
+    const ProgressToken last = watch.part(0.5, 1.0).part(0.5, 1.0);
     last.stage("gather", 10);
-    last.poll(5);
-    last.pollWithin(1, 3);
+    last.advance(5);
+    last.advanceWithin(1, 3);
     EXPECT_EQ(monitor.progress().stage, "gather");
     EXPECT_DOUBLE_EQ(monitor.progress().ofStage, 0.5);
     EXPECT_DOUBLE_EQ(monitor.progress().ofPass, 0.875);
-    last.poll(100);
+    last.advance(100);
     EXPECT_DOUBLE_EQ(monitor.progress().ofPass, 1.0);
-    PassWatch().poll(); // nobody is asked
+    ProgressToken().advance(); // nobody is asked
 }
 
 } // namespace

@@ -75,7 +75,7 @@ TEST(Memory, AvailableIsWhatTheSystemSaysInBytes) {
 }
 
 /// The second of two ranks, whose messages are looked at and answered by nothing.
-class SecondRank : public Team {
+class SecondRank : public ProcessGroup {
   public:
     std::vector<Bytes> toFirst;
 
@@ -83,18 +83,18 @@ class SecondRank : public Team {
     [[nodiscard]] int size() const override { return 2; }
     [[nodiscard]] int onThisMachine() const override { return 2; }
     [[nodiscard]] std::string machine() const override { return "here"; }
-    [[nodiscard]] std::vector<double> largest(std::vector<double> values) override { return values; }
-    [[nodiscard]] std::vector<Bytes> exchange(const std::vector<Bytes>& parts) override {
+    [[nodiscard]] std::vector<double> allReduceMax(std::vector<double> values) override { return values; }
+    [[nodiscard]] std::vector<Bytes> allToAll(const std::vector<Bytes>& parts) override {
         toFirst.push_back(parts.at(0));
         return std::vector<Bytes>(2);
     }
     [[noreturn]] void abort(int exitCode) override { std::_Exit(exitCode); }
 };
 
-TEST(TeamFilm, NonFiniteSamplesAreToldOnce) {
+TEST(DistributedFilm, NonFiniteSamplesAreToldOnce) {
     SecondRank team;
     Film film(4, 4, 1);
-    TeamFilm shared(&team, film);
+    DistributedFilm shared(&team, film);
     const auto told = [&] {
         shared.gather();
         uint64_t count = 99;

@@ -63,7 +63,7 @@ TEST(Trace, EndsWithTheLastWholePass) {
     session.integrator.afterPass = [&](const PassInfo& pass) {
         if (pass.index == 0 || pass.index == 3) std::this_thread::sleep_for(Long);
         interrupted = pass.index == 3;
-        pass.watch.poll();
+        pass.watch.advance();
     };
     const SessionResult& result = session.run();
     ASSERT_EQ(result.film.passes(), 3u);

@@ -178,7 +178,7 @@ class Scripted : public testing::Test {
 
     std::shared_ptr<const Scene> scene_ = floorUnderFog();
     StepCounters counters_;
-    PassWatch watch_;
+    ProgressToken watch_;
     Log log_;
     std::vector<int> ended_;
     int last_ = 0, most_ = 1000, endsAt_ = -1;

@@ -180,7 +180,7 @@ bool planCost(const std::filesystem::path& file, const Options& options, const P
     try {
         const double seconds = options.timeoutSeconds.value_or(DefaultSeconds) / double(methods.size());
         for (Method& method : methods) measure(method, file, options, plugins, seconds, interrupted);
-    } catch (const PassBrokenOff&) {
+    } catch (const PassCancelled&) {
         return false;
     }
     const size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -18,7 +18,7 @@ namespace tungsten {
 
 namespace {
 
-SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer, Team* team) {
+SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer, ProcessGroup* team) {
     SessionOptions session;
     session.seed = options.seed;
     session.spp = options.spp.value_or(renderer.spp);
@@ -40,17 +40,17 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
 }
 
 /// Job and outputs of a scene that is rendered; only rank 0 warns.
-Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* team) {
     std::optional<Job> job;
     {
         const Loading loading;
-        together(team, [&] {
+        runOnAll(team, [&] {
             job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins,
                           options.everything);
         });
     }
     const Diagnostics& diagnostics = *job->loaded.diagnostics;
-    if (speaks(team)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
+    if (isRoot(team)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
     return std::move(*job);
 }
 
@@ -92,7 +92,7 @@ void printWarnings(const std::vector<Problem>& warnings, size_t more) {
     if (more > 0) std::cerr << "warning: and " << more << " more\n";
 }
 
-int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* team) {
     if (options.planCost) return planCost(file, options, plugins, interrupted) ? 0 : ExitInterrupted;
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
@@ -104,15 +104,15 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
         return 0;
     }
     OutputFiles outputs;
-    together(team, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
+    runOnAll(team, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
     const SessionOptions session = sessionOptions(options, loaded.renderer, team);
     runSession(loaded, *job.integrator, job.facts, job.features, outputs, session, result);
     if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
-        together(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
+        runOnAll(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
     const auto black =
-        speaks(team) && !options.passes ? blackImage(*loaded.scene, job.facts, job.features, result) : std::nullopt;
+        isRoot(team) && !options.passes ? blackImage(*loaded.scene, job.facts, job.features, result) : std::nullopt;
     if (black) printWarnings({*black});
-    if (!options.quiet && speaks(team)) printSummary(result);
+    if (!options.quiet && isRoot(team)) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }
 

@@ -33,7 +33,7 @@ void letTooLargeFilesFail() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void handleSignals(const Team* team) {
+void handleSignals(const ProcessGroup* team) {
     if (team) std::signal(SIGUSR1, onInterrupt);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(signal, onInterrupt) == SIG_IGN) std::signal(signal, SIG_IGN);

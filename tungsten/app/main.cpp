@@ -56,14 +56,14 @@ int tell(const std::exception_ptr& failure, const std::string& file, bool aloud 
 }
 
 /// Exit code of one scene; reports what went wrong. What fails in one rank alone, while others wait for it, ends all.
-int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, Team* team) {
+int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* team) {
     const auto tellAs = [&](const std::exception_ptr& failure) {
-        if (!speaks(team)) std::cerr << "rank " << team->rank() << " on " << team->machine() << ": ";
+        if (!isRoot(team)) std::cerr << "rank " << team->rank() << " on " << team->machine() << ": ";
         return tell(failure, file.string());
     };
     try {
         return renderScene(file, options, plugins, team);
-    } catch (const TeamFailure& failure) {
+    } catch (const GroupFailure& failure) {
         return failure.toTell() ? tellAs(failure.toTell()) : ExitBadInput;
     } catch (...) {
         const int code = tellAs(std::current_exception());
@@ -78,7 +78,7 @@ void printFields(const Options& options, const Plugins& plugins) {
 }
 
 /// Of a process: those that share a machine share its processors, unless the launcher has bound each to some.
-size_t threadsOf(const Options& options, const Team* team) {
+size_t threadsOf(const Options& options, const ProcessGroup* team) {
     using tbb::global_control;
     if (options.threads > 0) return size_t(options.threads);
     const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
@@ -87,16 +87,16 @@ size_t threadsOf(const Options& options, const Team* team) {
 }
 
 /// Options of a team's rank, which has a part of the machine; what renders nothing is rank 0's.
-Options shareOf(const Options& options, const Team& team) {
+Options shareOf(const Options& options, const ProcessGroup& team) {
     if (options.passes) throw UsageError("--passes: mpirun gives passes to its processes itself; goes without it");
     Options mine = options;
     if (mine.memoryLimit <= 0.0) mine.memoryLimit = availableMemoryBytes() / double(team.onThisMachine());
     return mine;
 }
 
-int run(const Options& options, Team* team) {
+int run(const Options& options, ProcessGroup* team) {
     const bool renders = !options.describe && !options.list && !options.explain && !options.planCost;
-    if (!renders && !speaks(team)) return 0;
+    if (!renders && !isRoot(team)) return 0;
     if (!renders) team = nullptr;
     const Plugins plugins;
     if (options.describe) {
@@ -109,7 +109,7 @@ int run(const Options& options, Team* team) {
         printWarnings(plugins.problems);
         return 0;
     }
-    if (speaks(team)) printWarnings(plugins.problems);
+    if (isRoot(team)) printWarnings(plugins.problems);
     using tbb::global_control;
     const global_control threads(global_control::max_allowed_parallelism, threadsOf(options, team));
     if (options.memoryLimit > 0.0) limitMemory(options.memoryLimit, std::thread::hardware_concurrency());
@@ -118,7 +118,7 @@ int run(const Options& options, Team* team) {
     int code = 0;
     const Options mine = team ? shareOf(options, *team) : options;
     for (const auto& scene : options.scenes) {
-        const bool ends = team ? team->largest({double(interrupted)})[0] > 0.0 : bool(interrupted);
+        const bool ends = team ? team->allReduceMax({double(interrupted)})[0] > 0.0 : bool(interrupted);
         if (ends) return ExitInterrupted; // not all were rendered
         code = std::max(code, tryScene(scene, mine, plugins, team));
     }
@@ -142,16 +142,16 @@ int main(int argc, char** argv) {
     using namespace tungsten;
     keepFreedMemory();
     letTooLargeFilesFail();
-    std::unique_ptr<Team> team;
+    std::unique_ptr<ProcessGroup> team;
     try {
-        team = joinTeam();
+        team = joinProcessGroup();
         std::optional<Silence> silence;
-        if (!speaks(team.get())) silence.emplace(); // --help, --version and what else the parser prints
+        if (!isRoot(team.get())) silence.emplace(); // --help, --version and what else the parser prints
         if (argc > 1 && std::strcmp(argv[1], "merge") == 0)
-            return withWholeOutput(speaks(team.get()) ? mergeCommand(argc - 1, argv + 1) : 0);
+            return withWholeOutput(isRoot(team.get()) ? mergeCommand(argc - 1, argv + 1) : 0);
         const auto options = parseOptions(argc, argv);
         return withWholeOutput(options ? run(*options, team.get()) : 0);
     } catch (...) { // before any rank waits for another: all meet it
-        return tell(std::current_exception(), "tungsten", speaks(team.get()));
+        return tell(std::current_exception(), "tungsten", isRoot(team.get()));
     }
 }

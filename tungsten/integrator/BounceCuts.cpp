@@ -104,7 +104,7 @@ void describeBounceCuts(const Scene& scene, const SceneFacts& facts, Features& f
         return features.describe(feature::LightCut, false, "steady state: it does not matter when light arrives");
     const Cuts cuts(scene, facts);
     const double most = double(scene.transport.maxBounces) - 1.0;
-    Uses cut;
+    SceneElements cut;
     for (const int index : reachableMedia(scene)) {
         const Medium& medium = scene.media[size_t(index)];
         if (!medium.isHomogeneous() || !medium.scatters()) continue;
@@ -119,7 +119,8 @@ void describeBounceCuts(const Scene& scene, const SceneFacts& facts, Features& f
                 all ? "integrator.max_bounces" : medium.path + ".max_bounces");
     }
     features.describe(feature::LightCut, cut.any(),
-                      cut.any() ? cut.names() : "no light that arrives in time is scattered more often", cut.causes());
+                      cut.any() ? cut.names() : "no light that arrives in time is scattered more often",
+                      cut.elements());
 }
 
 } // namespace tungsten

@@ -102,7 +102,7 @@ std::string unwarpedHint(const Scene& scene, double end) {
 void excludeEmitters(const Scene& scene, const std::vector<double>& earliest, double end, SceneFacts& facts,
                      Features& features) {
     const std::string until = "the sensor closes at " + brief(end);
-    Uses late;
+    SceneElements late;
     for (size_t i = 0; i < earliest.size(); ++i)
         if (earliest[i] > end)
             late.add(nameOf(scene.emitters[i].name, i) + " not before " + brief(earliest[i]), scene.emitters[i].path);
@@ -116,12 +116,12 @@ void excludeEmitters(const Scene& scene, const std::vector<double>& earliest, do
                       : facts.everything     ? "nothing shall be left out"
                       : facts.nothingArrives ? "light of no emitter arrives: " + until
                                              : until + ", light of " + late.names(),
-                      late.causes());
+                      late.elements());
     features.describe(feature::BlackImage, facts.nothingArrives,
                       facts.nothingArrives
                           ? "no light can arrive: " + until + ", light of " + late.names() + unwarpedHint(scene, end)
                           : "some light may arrive",
-                      late.causes());
+                      late.elements());
 }
 
 void excludeFrames(const Scene& scene, double first, SceneFacts& facts, Features& features) {
@@ -141,7 +141,7 @@ void excludeFrames(const Scene& scene, double first, SceneFacts& facts, Features
 void excludeMedia(const Scene& scene, double end, SceneFacts& facts, Features& features) {
     const std::vector<double> earliest = earliestThroughMedia(scene, facts);
     const std::string until = "the sensor closes at " + brief(end);
-    Uses scattering, late;
+    SceneElements scattering, late;
     for (const int index : reachableMedia(scene)) {
         const auto i = size_t(index);
         const Medium& medium = scene.media[i];
@@ -160,7 +160,7 @@ void excludeMedia(const Scene& scene, double end, SceneFacts& facts, Features& f
                       : !late.any()     ? "light may get into every scattering medium and arrive: " + until
                       : !leaves         ? "nothing shall be left out"
                                         : until + ", light by way of " + late.names(),
-                      scattering.causes());
+                      scattering.elements());
 }
 
 } // namespace

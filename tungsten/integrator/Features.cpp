@@ -23,7 +23,7 @@ std::string spanOf(const TimeProfile& profile) {
 
 /// When lights shine.
 void describePulses(const Scene& scene, const SceneFacts& facts, Features& features) {
-    Uses pulses;
+    SceneElements pulses;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
         if (!emitter.pulse.empty())
@@ -34,8 +34,8 @@ void describePulses(const Scene& scene, const SceneFacts& facts, Features& featu
                       last           ? pulses.names() + " after its emission_time"
                       : pulses.any() ? "in steady state all light counts at once"
                                      : "all light is emitted in flashes",
-                      pulses.causes());
-    Uses delayed;
+                      pulses.elements());
+    SceneElements delayed;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
         if (emitter.emissionTime != 0.0) delayed.add(nameOf(emitter.name, i), emitter.path + ".emission_time");
@@ -45,7 +45,7 @@ void describePulses(const Scene& scene, const SceneFacts& facts, Features& featu
                       counts          ? "pulses that do not start at 0: " + delayed.names()
                       : delayed.any() ? "steady state: it does not matter when pulses start"
                                       : "all pulses start at 0",
-                      delayed.causes());
+                      delayed.elements());
 }
 
 void describeTime(const Scene& scene, const SceneFacts& facts, Features& features) {
@@ -70,7 +70,7 @@ void describeTime(const Scene& scene, const SceneFacts& facts, Features& feature
 }
 
 void describeMedia(const Scene& scene, Features& features) {
-    Uses scattering, absorbing, coloured, anisotropic;
+    SceneElements scattering, absorbing, coloured, anisotropic;
     for (const int index : reachableMedia(scene)) {
         const Medium& medium = scene.media[size_t(index)];
         const std::string name = nameOf(medium.name, size_t(index));
@@ -81,23 +81,23 @@ void describeMedia(const Scene& scene, Features& features) {
     }
     features.describe(feature::MediumScattering, scattering.any(),
                       scattering.any() ? "scattering media: " + scattering.names() : "no reachable medium scatters",
-                      scattering.causes());
+                      scattering.elements());
     features.describe(feature::AbsorptionOnly, absorbing.any(),
                       absorbing.any() ? "absorbing media that scatter nothing: " + absorbing.names()
                                       : "no reachable medium absorbs without scattering",
-                      absorbing.causes());
+                      absorbing.elements());
     features.describe(feature::ColouredMedia, coloured.any(),
                       coloured.any() ? "coloured: " + coloured.names()
                                      : "every medium has the same coefficients in R, G and B",
-                      coloured.causes());
+                      coloured.elements());
     features.describe(feature::AnisotropicScattering, anisotropic.any(),
                       anisotropic.any() ? "phase functions with preferred directions: " + anisotropic.names()
                                         : "every phase function is isotropic",
-                      anisotropic.causes());
+                      anisotropic.elements());
 }
 
 void describeEmission(const Scene& scene, Features& features) {
-    Uses areas, skies;
+    SceneElements areas, skies;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
         if (const auto surface = emitter.primitive())
@@ -107,17 +107,17 @@ void describeEmission(const Scene& scene, Features& features) {
     }
     features.describe("emission from surfaces", areas.any(),
                       areas.any() ? "area emitters: " + areas.names() : "no area emitter: emission is never seen",
-                      areas.causes());
+                      areas.elements());
     features.describe("environment", skies.any(),
                       skies.any() ? "escaping rays see " + skies.names() : "no infinite emitter: escaping rays end",
-                      skies.causes());
+                      skies.elements());
 }
 
 void describeSurfaces(const Scene& scene, Features& features) {
     const auto describe = [&](const std::string& name, LobeMask mask, const std::string& what,
                               const std::string& otherwise) {
-        const Uses uses = lobeUses(scene, mask);
-        features.describe(name, uses.any(), uses.any() ? uses.counted("surface", what) : otherwise, uses.causes());
+        const SceneElements uses = elementsWithLobe(scene, mask);
+        features.describe(name, uses.any(), uses.any() ? uses.counted("surface", what) : otherwise, uses.elements());
     };
     describe(feature::SurfaceScattering, lobe::Smooth, "with diffuse or glossy lobes",
              "every surface is specular, forward or black");
@@ -135,19 +135,19 @@ void describeSpeeds(const Scene& scene, const SceneFacts& facts, Features& featu
                       several ? std::to_string(speeds.count) + " speeds, from " + brief(double(speeds.lowest)) +
                                     " to " + brief(double(speeds.highest))
                               : "one speed everywhere: " + brief(double(speeds.highest)),
-                      speeds.causes);
+                      speeds.elements);
 }
 
 void describeTextures(const Scene& scene, Features& features) {
-    const Uses varying = textureUses(scene), transparent = transparencyUses(scene);
+    const SceneElements varying = elementsWithTexture(scene), transparent = elementsWithTransparency(scene);
     features.describe("textures", varying.any(),
                       varying.any() ? varying.counted("surface", "with parameters that vary over it")
                                     : "every surface parameter is constant",
-                      varying.causes());
+                      varying.elements());
     features.describe("alpha", transparent.any(),
                       transparent.any() ? transparent.counted("surface", "of partial opacity")
                                         : "no surface has an opacity",
-                      transparent.causes());
+                      transparent.elements());
 }
 
 } // namespace
@@ -164,7 +164,7 @@ void Features::count(const FeatureName& feature, const std::vector<std::string>&
 
 std::string heterogeneity(const Scene& scene, const SceneFacts& facts) {
     if (facts.heterogeneousMedia.empty()) return "";
-    Uses varying;
+    SceneElements varying;
     for (const int index : facts.heterogeneousMedia)
         varying.add(nameOf(scene.media[size_t(index)].name, size_t(index)), scene.media[size_t(index)].path);
     return "coefficients vary from place to place in " + varying.names();

@@ -26,7 +26,7 @@ struct PassInfo {
     Film* bias = nullptr;
     /// Of the light paths that a pass traces, what this one is to trace: less than 1 only where cutsLightPaths().
     double share = 1.0;
-    PassWatch watch{}; ///< polled about every millisecond, so that a pass can be broken off
+    ProgressToken watch{}; ///< polled about every millisecond, so that a pass can be broken off
 
     /// The same for what is about the part from..to (0 to 1) of the pass's work.
     [[nodiscard]] PassInfo part(double from, double to) const {
@@ -45,8 +45,8 @@ class Integrator {
     /// features that the integrator decides on.
     virtual void plan(SceneFacts& facts, Features& features) const = 0;
     /// Called once after plan(): builds what the facts ask for (tables, distributions). Where that may take a second,
-    /// `watch` is polled as in a pass; once it has thrown PassBrokenOff nothing is rendered.
-    virtual void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) = 0;
+    /// `watch` is polled as in a pass; once it has thrown PassCancelled nothing is rendered.
+    virtual void prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) = 0;
     /// Bytes that prepare() and a pass may take as settings and scene stand; asked after plan(), before prepare().
     [[nodiscard]] virtual double memoryBytes() const { return 0.0; }
     /// Whether kernels blur the image; after plan().
@@ -57,7 +57,7 @@ class Integrator {
     /// fewer samples can trace fewer camera paths.
     [[nodiscard]] virtual bool cutsLightPaths() const { return false; }
     /// Adds the pass's image to every frame of the film (Film::add): each pixel's mean over the pass's samples,
-    /// averaged over the gate. Throws PassBrokenOff where the pass's watch does.
+    /// averaged over the gate. Throws PassCancelled where the pass's watch does.
     virtual void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) = 0;
 };
 

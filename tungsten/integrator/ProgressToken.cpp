@@ -4,7 +4,7 @@
 
 namespace tungsten {
 
-void PassMonitor::stage(const char* name, uint64_t units, double from, double to) {
+void ProgressMonitor::stage(const char* name, uint64_t units, double from, double to) {
     const std::scoped_lock lock(stageMutex_);
     stage_ = name;
     units_ = units;
@@ -13,7 +13,7 @@ void PassMonitor::stage(const char* name, uint64_t units, double from, double to
     done_.store(0, std::memory_order_relaxed);
 }
 
-PassProgress PassMonitor::progress() const {
+PassProgress ProgressMonitor::progress() const {
     const std::scoped_lock lock(stageMutex_);
     const double done = double(done_.load(std::memory_order_relaxed));
     const double part = units_ > 0 ? std::min(done / double(units_), 1.0) : 0.0;

@@ -47,19 +47,20 @@ bool isTransparent(const Bsdf& bsdf) {
 
 } // namespace
 
-void Uses::add(const std::string& name, const std::string& path) {
+void SceneElements::add(const std::string& name, const std::string& path) {
     if (++count_ > MostListed) return;
     names_.push_back(name);
-    if (!path.empty() && std::find(causes_.begin(), causes_.end(), path) == causes_.end()) causes_.push_back(path);
+    if (!path.empty() && std::find(elements_.begin(), elements_.end(), path) == elements_.end())
+        elements_.push_back(path);
 }
 
-std::string Uses::names() const {
+std::string SceneElements::names() const {
     std::string list;
     for (const std::string& name : names_) list += (list.empty() ? "" : ", ") + name;
     return count_ > names_.size() ? list + " and " + std::to_string(count_ - names_.size()) + " more" : list;
 }
 
-std::string Uses::counted(const std::string& element, const std::string& what) const {
+std::string SceneElements::counted(const std::string& element, const std::string& what) const {
     return std::to_string(count_) + " " + element + (count_ == 1 ? " " : "s ") + what + ", first " + names_.front();
 }
 
@@ -74,7 +75,7 @@ std::set<int> reachableMedia(const Scene& scene) {
 
 Speeds reachableSpeeds(const Scene& scene) {
     std::set<float> speeds;
-    Uses uses;
+    SceneElements uses;
     const auto add = [&](const Region& region, const std::string& path) {
         if (speeds.insert(region.speed).second)
             uses.add("", region.medium >= 0 ? scene.media[size_t(region.medium)].path + ".speed_of_light" : path);
@@ -84,26 +85,26 @@ Speeds reachableSpeeds(const Scene& scene) {
     for (const Primitive& primitive : scene.primitives)
         if (primitive.boundsRegion)
             for (const Region& side : {primitive.inside, primitive.outside}) add(side, primitive.path);
-    return {speeds.size(), *speeds.begin(), *speeds.rbegin(), uses.causes()};
+    return {speeds.size(), *speeds.begin(), *speeds.rbegin(), uses.elements()};
 }
 
 std::string pathOf(const Bsdf& bsdf, const Primitive& primitive) {
     return bsdf.name.empty() ? primitive.path + ".bsdf" : "bsdfs." + bsdf.name;
 }
 
-Uses lobeUses(const Scene& scene, LobeMask mask) {
-    return bsdfUses(scene, [mask](const Bsdf& bsdf) { return (bsdf.lobes() & mask) != 0; });
+SceneElements elementsWithLobe(const Scene& scene, LobeMask mask) {
+    return elementsWithBsdf(scene, [mask](const Bsdf& bsdf) { return (bsdf.lobes() & mask) != 0; });
 }
 
-Uses textureUses(const Scene& scene) {
-    Uses uses = bsdfUses(scene, [](const Bsdf& bsdf) { return varies(bsdf); });
+SceneElements elementsWithTexture(const Scene& scene) {
+    SceneElements uses = elementsWithBsdf(scene, [](const Bsdf& bsdf) { return varies(bsdf); });
     for (const Emitter& emitter : scene.emitters)
         if (varies(emitter)) uses.add("'" + emitter.name + "'", emitter.path);
     return uses;
 }
 
-Uses transparencyUses(const Scene& scene) {
-    return bsdfUses(scene, [](const Bsdf& bsdf) { return isTransparent(bsdf); });
+SceneElements elementsWithTransparency(const Scene& scene) {
+    return elementsWithBsdf(scene, [](const Bsdf& bsdf) { return isTransparent(bsdf); });
 }
 
 } // namespace tungsten

@@ -10,7 +10,7 @@
 namespace tungsten {
 
 /// Elements of a scene that have something in common.
-class Uses {
+class SceneElements {
   public:
     void add(const std::string& name, const std::string& path);
     [[nodiscard]] bool any() const { return count_ > 0; }
@@ -20,12 +20,12 @@ class Uses {
     /// "3 surfaces that refract, first 'pane'".
     [[nodiscard]] std::string counted(const std::string& element, const std::string& what) const;
     /// Paths of the first MostListed, as problems have them.
-    [[nodiscard]] const std::vector<std::string>& causes() const { return causes_; }
+    [[nodiscard]] const std::vector<std::string>& elements() const { return elements_; }
 
   private:
     static constexpr size_t MostListed = 16;
     size_t count_ = 0;
-    std::vector<std::string> names_, causes_;
+    std::vector<std::string> names_, elements_;
 };
 
 /// Media that some path can be in: the camera's, the lights', and those that surfaces bound.
@@ -35,23 +35,23 @@ std::set<int> reachableMedia(const Scene& scene);
 struct Speeds {
     size_t count = 0;
     float lowest = 1.0f, highest = 1.0f;
-    std::vector<std::string> causes;
+    std::vector<std::string> elements;
 };
 Speeds reachableSpeeds(const Scene& scene);
 
 /// Surfaces with a lobe of `mask`, with textures, with an opacity.
-Uses lobeUses(const Scene& scene, LobeMask mask);
-Uses textureUses(const Scene& scene);
-Uses transparencyUses(const Scene& scene);
+SceneElements elementsWithLobe(const Scene& scene, LobeMask mask);
+SceneElements elementsWithTexture(const Scene& scene);
+SceneElements elementsWithTransparency(const Scene& scene);
 /// Surfaces with a BSDF for which `has`.
 template <typename Has>
-Uses bsdfUses(const Scene& scene, const Has& has);
+SceneElements elementsWithBsdf(const Scene& scene, const Has& has);
 /// Path of a BSDF: by name, or where the primitive has it.
 std::string pathOf(const Bsdf& bsdf, const Primitive& primitive);
 
 template <typename Has>
-Uses bsdfUses(const Scene& scene, const Has& has) {
-    Uses uses;
+SceneElements elementsWithBsdf(const Scene& scene, const Has& has) {
+    SceneElements uses;
     for (size_t i = 0; i < scene.primitives.size(); ++i) {
         const Primitive& primitive = scene.primitives[i];
         for (const BsdfPtr& bsdf : primitive.bsdfs) {

@@ -16,10 +16,10 @@ void analyseMedia(const Scene& scene, SceneFacts& facts) {
 }
 
 void analyseSurfaces(const Scene& scene, SceneFacts& facts) {
-    facts.surfaceScattering = lobeUses(scene, lobe::Smooth).any();
-    facts.specularSensorPaths = lobeUses(scene, lobe::Specular).any();
-    facts.forwardBoundaries = lobeUses(scene, lobe::Forward).any();
-    facts.textures = textureUses(scene).any();
+    facts.surfaceScattering = elementsWithLobe(scene, lobe::Smooth).any();
+    facts.specularSensorPaths = elementsWithLobe(scene, lobe::Specular).any();
+    facts.forwardBoundaries = elementsWithLobe(scene, lobe::Forward).any();
+    facts.textures = elementsWithTexture(scene).any();
 }
 
 void analyseEmission(const Scene& scene, SceneFacts& facts) {

@@ -27,9 +27,9 @@ void wait(MPI_Request& request) {
     }
 }
 
-class MpiTeam : public Team {
+class MpiProcessGroup : public ProcessGroup {
   public:
-    MpiTeam() {
+    MpiProcessGroup() {
         int provided = 0;
         MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
         MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
@@ -40,7 +40,7 @@ class MpiTeam : public Team {
         MPI_Comm_free(&here);
     }
     /// A rank that leaves because of an error that others do not know of would wait for them here: see abort().
-    ~MpiTeam() override { MPI_Finalize(); }
+    ~MpiProcessGroup() override { MPI_Finalize(); }
 
     [[nodiscard]] int rank() const override { return rank_; }
     [[nodiscard]] int size() const override { return size_; }
@@ -52,7 +52,7 @@ class MpiTeam : public Team {
         return {name, size_t(length)};
     }
 
-    [[nodiscard]] std::vector<double> largest(std::vector<double> values) override {
+    [[nodiscard]] std::vector<double> allReduceMax(std::vector<double> values) override {
         std::vector<double> all(values.size());
         MPI_Request request = MPI_REQUEST_NULL;
         MPI_Iallreduce(values.data(), all.data(), int(values.size()), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD, &request);
@@ -60,7 +60,7 @@ class MpiTeam : public Team {
         return all;
     }
 
-    [[nodiscard]] std::vector<Bytes> exchange(const std::vector<Bytes>& parts) override {
+    [[nodiscard]] std::vector<Bytes> allToAll(const std::vector<Bytes>& parts) override {
         const std::vector<uint64_t> sent = sizesOf(parts);
         std::vector<uint64_t> incoming(parts.size());
         MPI_Request request = MPI_REQUEST_NULL;
@@ -108,15 +108,15 @@ class MpiTeam : public Team {
     int rank_ = 0, size_ = 1, here_ = 1;
 };
 
-std::unique_ptr<Team> join() {
-    return std::make_unique<MpiTeam>();
+std::unique_ptr<ProcessGroup> join() {
+    return std::make_unique<MpiProcessGroup>();
 }
 
 } // namespace
 
 } // namespace tungsten
 
-extern "C" const tungsten::TeamModule* tungstenTeam() {
-    static const tungsten::TeamModule module{tungsten::PluginAbi, tungsten::join};
+extern "C" const tungsten::ProcessGroupModule* tungstenProcessGroup() {
+    static const tungsten::ProcessGroupModule module{tungsten::PluginAbi, tungsten::join};
     return &module;
 }

@@ -163,24 +163,24 @@ class PilotPasses {
           sizes_(options.samplesPerPass, options.samplesPerPass, integrator.cutsLightPaths()) {}
 
     void prepare(const SceneFacts& facts) {
-        PassMonitor monitor([&] { return stops(end()); });
+        ProgressMonitor monitor([&] { return stops(end()); });
         Statistics statistics;
         try {
-            integrator_.prepare(facts, PassWatch(monitor), statistics);
-        } catch (const PassBrokenOff&) {
+            integrator_.prepare(facts, ProgressToken(monitor), statistics);
+        } catch (const PassCancelled&) {
             brokenOff_ = monitor.progress();
             throw;
         }
         prepared_ = wallNow();
     }
-    /// Rounds of one pass of each index, at least as many as asked for and for as long. Throws PassBrokenOff where that
+    /// Rounds of one pass of each index, at least as many as asked for and for as long. Throws PassCancelled where that
     /// cannot be.
     void render(const Scene& scene) {
         while (!firstRound(scene)) sizes_.cut(brokenOff_.ofPass);
         uint32_t round = 1;
         try {
             for (; round < options_.rounds || wallNow() - begin_ < options_.seconds; ++round) renderRound(round, end());
-        } catch (const PassBrokenOff&) {
+        } catch (const PassCancelled&) {
             if (round < options_.rounds || interrupted()) throw;
         }
     }
@@ -219,7 +219,7 @@ class PilotPasses {
         try {
             renderRound(0, sizes_.canCut() ? std::min(wallNow() + part, end()) : end());
             return true;
-        } catch (const PassBrokenOff&) {
+        } catch (const PassCancelled&) {
             if (stops(end()) || !sizes_.canCut()) throw;
             return false;
         }
@@ -233,13 +233,13 @@ class PilotPasses {
             PassInfo pass{index, uint64_t(index) * size.samples, size.samples, options_.seed + round};
             pass.bias = measuresBias_ ? &samples_[k].bias : nullptr;
             pass.share = size.share;
-            PassMonitor monitor([&] { return stops(end); });
-            pass.watch = PassWatch(monitor);
+            ProgressMonitor monitor([&] { return stops(end); });
+            pass.watch = ProgressToken(monitor);
             passBegan_ = wallNow();
             try {
-                pass.watch.poll(0);
+                pass.watch.advance(0);
                 renderPass(pass, samples_[k]);
-            } catch (const PassBrokenOff&) {
+            } catch (const PassCancelled&) {
                 brokenOff_ = monitor.progress();
                 estimate();
                 throw;
@@ -348,7 +348,7 @@ std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrato
         prepareWall = wallNow() - wall;
         prepareCpu = processCpuSeconds() - cpu;
         passes.render(scene);
-    } catch (const PassBrokenOff&) {
+    } catch (const PassCancelled&) {
         if (passes.interrupted()) throw;
         throw InputError(scene.file.string(), passes.whyTooFew());
     }

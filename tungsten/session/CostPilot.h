@@ -39,13 +39,13 @@ struct PilotOptions {
     double seconds = 3.0;                           ///< to prepare and to render passes for,
     double mostSeconds = 6.0;                       ///< and at most
     uint32_t rounds = 2;                            ///< so many of each index at least; 2 or more
-    const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: PassBrokenOff
+    const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: PassCancelled
 };
 
 /// Renders passes 0, 15 and 255, again and again with other random numbers: a pass depends on nothing but its index, so
 /// that what late passes bring need not be guessed. Passes that are too long are cut as renders cut them (PassSizes),
 /// and what they bring is taken to whole ones. `plan` is complete (Integrator::plan was called); the integrator is
-/// prepared here. None where all is black. Throws PassBrokenOff when it is interrupted, InputError where even cut
+/// prepared here. None where all is black. Throws PassCancelled when it is interrupted, InputError where even cut
 /// passes take too long: it says how long.
 std::optional<PassCosts> measurePasses(const Scene& scene, Integrator& integrator, const SceneFacts& facts,
                                        const PilotOptions& options);

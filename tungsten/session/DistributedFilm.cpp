@@ -51,16 +51,16 @@ void addText(const Bytes& bytes, SessionResult& result) {
 
 } // namespace
 
-TeamFilm::TeamFilm(Team* team, Film& film) : team_(team), film_(film) {}
+DistributedFilm::DistributedFilm(ProcessGroup* team, Film& film) : team_(team), film_(film) {}
 
-int TeamFilm::firstRowOf(int rank) const {
+int DistributedFilm::firstRowOf(int rank) const {
     const int together = film_.contents().rowsTogether();
     const int64_t groups = (film_.height() + together - 1) / together;
     return std::min(int(groups * rank / team_->size()) * together, film_.height());
 }
 
 /// For each rank the rows of this rank's pass image that it owns: their places, each with its values.
-std::vector<Bytes> TeamFilm::rowsFor() const {
+std::vector<Bytes> DistributedFilm::rowsFor() const {
     std::vector<Bytes> parts(size_t(team_->size()));
     std::vector<float> values(FilmRows::values(film_));
     for (int rank = 0; rank < team_->size(); ++rank)
@@ -75,16 +75,16 @@ std::vector<Bytes> TeamFilm::rowsFor() const {
     return parts;
 }
 
-void TeamFilm::collect(size_t passes) {
+void DistributedFilm::collect(size_t passes) {
     if (!team_) return;
     const bool mine = size_t(team_->rank()) < passes;
     const std::vector<Bytes> parts = mine ? rowsFor() : std::vector<Bytes>(size_t(team_->size()));
     for (size_t rank = 0; rank < parts.size(); ++rank)
         if (int(rank) != team_->rank()) bytesSent_ += parts[rank].size();
-    received_ = team_->exchange(parts);
+    received_ = team_->allToAll(parts);
 }
 
-void TeamFilm::fold(size_t rank, double weight) {
+void DistributedFilm::fold(size_t rank, double weight) {
     if (!team_) return film_.endPass(weight);
     film_.beginPass();
     Bytes& rows = received_[rank];
@@ -100,10 +100,10 @@ void TeamFilm::fold(size_t rank, double weight) {
     folded_.push_back(FilmRows::accumulate(film_, weight, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1)));
 }
 
-void TeamFilm::settle() {
+void DistributedFilm::settle() {
     std::vector<Bytes> parts(size_t(team_->size()));
     for (const AccumulatedPass& pass : folded_) append(parts[0], pass.rows.data(), pass.rows.size());
-    const std::vector<Bytes> received = team_->exchange(parts);
+    const std::vector<Bytes> received = team_->allToAll(parts);
     if (team_->rank() == 0)
         for (size_t pass = 0; pass < folded_.size(); ++pass) {
             AccumulatedPass& folded = folded_[pass];
@@ -119,7 +119,7 @@ void TeamFilm::settle() {
     folded_.clear();
 }
 
-void TeamFilm::gather() {
+void DistributedFilm::gather() {
     if (!team_) return;
     settle();
     std::vector<Bytes> parts(size_t(team_->size()));
@@ -131,7 +131,7 @@ void TeamFilm::gather() {
         parts[0] = bytesOf(state.str());
         told_ = film_.nonFiniteSamples();
     }
-    const std::vector<Bytes> received = team_->exchange(parts);
+    const std::vector<Bytes> received = team_->allToAll(parts);
     for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
         const Bytes& part = received[size_t(rank)];
         std::istringstream state(std::string(part.begin(), part.end()));
@@ -142,7 +142,7 @@ void TeamFilm::gather() {
     }
 }
 
-void TeamFilm::scatter() {
+void DistributedFilm::scatter() {
     if (!team_) return;
     std::vector<Bytes> parts(size_t(team_->size()));
     for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
@@ -150,39 +150,39 @@ void TeamFilm::scatter() {
         FilmRows::write(film_, state, firstRowOf(rank), firstRowOf(rank + 1));
         parts[size_t(rank)] = bytesOf(state.str());
     }
-    const std::vector<Bytes> received = team_->exchange(parts);
+    const std::vector<Bytes> received = team_->allToAll(parts);
     if (team_->rank() == 0) return;
     std::istringstream state(std::string(received[0].begin(), received[0].end()));
     FilmRows::read(film_, state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
 }
 
-SharedResult::SharedResult(Team* team, SessionResult& result)
+DistributedResult::DistributedResult(ProcessGroup* team, SessionResult& result)
     : team_(team), result_(result), film_(team, result.film),
       bias_(team, result.bias), shown_{Unknown, Unknown, {0.0, 0.0}} {
     if (team) result.ranks = team->size();
 }
 
-std::vector<double> SharedResult::largest(std::vector<double> values) {
+std::vector<double> DistributedResult::allReduceMax(std::vector<double> values) {
     if (!team_) return values;
     const StageTimer timer(result_.statistics, "wait for other ranks");
-    return team_->largest(std::move(values));
+    return team_->allReduceMax(std::move(values));
 }
 
-void SharedResult::shareResumed() {
-    if (!team_ || largest({double(result_.film.passes())})[0] == 0.0) return;
+void DistributedResult::shareResumed() {
+    if (!team_ || allReduceMax({double(result_.film.passes())})[0] == 0.0) return;
     film_.scatter();
     if (result_.estimatesBias()) bias_.scatter();
     result_.samples = uint64_t(result_.film.totalWeight());
 }
 
-void SharedResult::collect(size_t passes) {
+void DistributedResult::collect(size_t passes) {
     if (!team_) return;
     const StageTimer timer(result_.statistics, "exchange passes");
     film_.collect(passes);
     if (result_.estimatesBias()) bias_.collect(passes);
 }
 
-void SharedResult::fold(size_t rank, double weight) {
+void DistributedResult::fold(size_t rank, double weight) {
     const uint32_t standsFor = result_.estimatesBias() ? passesOfItsBias(result_.film.passes()) : 0;
     std::optional<StageTimer> timer;
     if (team_) timer.emplace(result_.statistics, "fold passes");
@@ -191,7 +191,7 @@ void SharedResult::fold(size_t rank, double weight) {
     whole_ = !team_;
 }
 
-void SharedResult::gather() {
+void DistributedResult::gather() {
     if (!team_ || whole_) return;
     const StageTimer timer(result_.statistics, "gather film");
     const auto start = Clock::now();
@@ -202,30 +202,30 @@ void SharedResult::gather() {
     gathering_ = gathered_ - start;
 }
 
-bool SharedResult::errorIsBelow(double target) {
+bool DistributedResult::errorIsBelow(double target) {
     gather();
-    return largest({double(speaks() && result_.errorBound() <= target)})[0] > 0.0;
+    return allReduceMax({double(isRoot() && result_.errorBound() <= target)})[0] > 0.0;
 }
 
-bool SharedResult::mayShow() const {
+bool DistributedResult::mayShow() const {
     constexpr int Part = 20;
     constexpr std::chrono::seconds Least(2);
     return team_ && Clock::now() - gathered_ > std::max<Clock::duration>(Part * gathering_, Least);
 }
 
-ShownErrors SharedResult::errors() {
+ShownErrors DistributedResult::errors() {
     if (whole_)
         shown_ = {relativeStandardError(result_.film), relativeErrorBound(result_.film), result_.relativeBias()};
     return shown_;
 }
 
-void SharedResult::gatherStatistics() {
+void DistributedResult::gatherStatistics() {
     if (!team_) return;
     result_.statistics.add("bytes of passes to other ranks", film_.bytesSent() + bias_.bytesSent());
     std::vector<Bytes> parts(size_t(team_->size()));
-    if (!speaks()) parts[0] = statisticsText(result_.statistics);
-    const std::vector<Bytes> received = team_->exchange(parts);
-    if (!speaks()) return;
+    if (!isRoot()) parts[0] = statisticsText(result_.statistics);
+    const std::vector<Bytes> received = team_->allToAll(parts);
+    if (!isRoot()) return;
     for (size_t rank = 1; rank < received.size(); ++rank) addText(received[rank], result_);
 }
 

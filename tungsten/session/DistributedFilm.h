@@ -9,14 +9,14 @@
 
 namespace tungsten {
 
-/// In every round each rank renders one pass; its rows go to the ranks that own them (Team::exchange), which fold the
-/// passes in their order: the film's bits are those of one process. So each rank sends and receives about one film per
-/// round, however many ranks there are, and rank 0 has the whole film only where somebody wants to see it. Without a
-/// team the one process owns all rows, and nothing is moved.
-class TeamFilm {
+/// In every round each rank renders one pass; its rows go to the ranks that own them (ProcessGroup::exchange), which
+/// fold the passes in their order: the film's bits are those of one process. So each rank sends and receives about one
+/// film per round, however many ranks there are, and rank 0 has the whole film only where somebody wants to see it.
+/// Without a team the one process owns all rows, and nothing is moved.
+class DistributedFilm {
   public:
     /// The film must outlive this.
-    TeamFilm(Team* team, Film& film);
+    DistributedFilm(ProcessGroup* team, Film& film);
 
     /// After a round: takes the pass images of the first `passes` ranks apart. Once, before they are folded.
     void collect(size_t passes);
@@ -35,7 +35,7 @@ class TeamFilm {
     /// Deviations of the passes since the last time, to rank 0.
     void settle();
 
-    Team* team_;
+    ProcessGroup* team_;
     Film& film_;
     std::vector<Bytes> received_;         ///< rows of the round's passes, by rank
     std::vector<AccumulatedPass> folded_; ///< since settle()
@@ -50,18 +50,18 @@ struct ShownErrors {
 };
 
 /// Film, bias and statistics of all ranks; without a team, those of the one process, at no cost.
-class SharedResult {
+class DistributedResult {
   public:
     /// The result must outlive this.
-    SharedResult(Team* team, SessionResult& result);
+    DistributedResult(ProcessGroup* team, SessionResult& result);
 
     [[nodiscard]] size_t rank() const { return team_ ? size_t(team_->rank()) : 0; }
     /// Whether this process tells and writes.
-    [[nodiscard]] bool speaks() const { return rank() == 0; }
-    [[nodiscard]] std::vector<double> largest(std::vector<double> values);
+    [[nodiscard]] bool isRoot() const { return rank() == 0; }
+    [[nodiscard]] std::vector<double> allReduceMax(std::vector<double> values);
     /// What rank 0 has resumed becomes that of all.
     void shareResumed();
-    /// TeamFilm::collect() and fold() of film and bias.
+    /// DistributedFilm::collect() and fold() of film and bias.
     void collect(size_t passes);
     void fold(size_t rank, double weight);
     /// Rank 0's films become whole.
@@ -79,9 +79,9 @@ class SharedResult {
   private:
     using Clock = std::chrono::steady_clock;
 
-    Team* team_;
+    ProcessGroup* team_;
     SessionResult& result_;
-    TeamFilm film_, bias_;
+    DistributedFilm film_, bias_;
     bool whole_ = true; ///< rank 0's films are
     ShownErrors shown_;
     Clock::time_point gathered_ = Clock::now();

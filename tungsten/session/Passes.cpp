@@ -57,7 +57,7 @@ uint32_t PassSizes::left(double done) const {
     return uint32_t(std::min(std::ceil(std::max(samples_ - done, 0.0) / each), 4e9));
 }
 
-PassInfo RoundPass::info(uint32_t firstPass, uint64_t sppStep, uint64_t seed) const {
+PassInfo PlannedPass::info(uint32_t firstPass, uint64_t sppStep, uint64_t seed) const {
     // Parts of one sample look at pixels in places of their own.
     const bool partial = size.weight < double(size.samples);
     const uint64_t firstSample = partial ? FirstPartialSample + index : firstPass * sppStep + uint64_t(done);
@@ -70,10 +70,10 @@ PassInfo RoundPass::info(uint32_t firstPass, uint64_t sppStep, uint64_t seed) co
     return pass;
 }
 
-std::vector<RoundPass> roundOf(const PassSizes& sizes, RoundPass first, size_t ranks, double samples) {
-    std::vector<RoundPass> round{first};
+std::vector<PlannedPass> roundOf(const PassSizes& sizes, PlannedPass first, size_t ranks, double samples) {
+    std::vector<PlannedPass> round{first};
     while (round.size() < ranks) {
-        const RoundPass& last = round.back();
+        const PlannedPass& last = round.back();
         const double done = last.done + last.size.weight;
         if (done >= samples) break;
         round.push_back({sizes.next(done), last.index + 1, done});
@@ -93,11 +93,11 @@ uint64_t samplesOf(const SessionOptions& options) {
     return std::min(spp, end * step) - first * step;
 }
 
-RoundAgreement RoundAgreement::among(SharedResult& shared, size_t ranks) const {
+RoundStatus RoundStatus::among(DistributedResult& shared, size_t ranks) const {
     const double firstBroken = whole ? double(ranks) : double(shared.rank());
-    const auto most = shared.largest(
+    const auto most = shared.allReduceMax(
         {double(interrupted), double(timedOut), double(wantsFilm), -firstBroken, whole ? -1.0 : -brokenAt});
-    RoundAgreement all;
+    RoundStatus all;
     all.interrupted = most[0] > 0.0;
     all.timedOut = most[1] > 0.0;
     all.wantsFilm = most[2] > 0.0;

@@ -47,7 +47,7 @@ class PassSizes {
 };
 
 /// A pass of a session.
-struct RoundPass {
+struct PlannedPass {
     PassSize size;
     uint32_t index = 0; ///< in the session, whose first pass may be a later one of the render
     double done = 0.0;  ///< weight of those before it
@@ -57,12 +57,12 @@ struct RoundPass {
 };
 
 /// From `first` on, one for each rank, as far as there are samples left.
-std::vector<RoundPass> roundOf(const PassSizes& sizes, RoundPass first, size_t ranks, double samples);
+std::vector<PlannedPass> roundOf(const PassSizes& sizes, PlannedPass first, size_t ranks, double samples);
 
 /// Samples per pixel of a session. Throws UsageError for passes that the render does not have.
 uint64_t samplesOf(const SessionOptions& options);
 
-struct RoundAgreement {
+struct RoundStatus {
     bool interrupted = false, timedOut = false;
     bool wantsFilm = false; ///< for a checkpoint, the trace or the progress bar
     bool whole = true;      ///< this rank's pass, or it had none
@@ -70,7 +70,7 @@ struct RoundAgreement {
     size_t wholePasses = 0; ///< of the round, before the first that was broken off: set by among()
 
     /// Asks all ranks, each of which has its own. Must be called by all of them. `ranks`: how many there are.
-    [[nodiscard]] RoundAgreement among(SharedResult& shared, size_t ranks) const;
+    [[nodiscard]] RoundStatus among(DistributedResult& shared, size_t ranks) const;
 };
 
 } // namespace tungsten

@@ -43,18 +43,18 @@ std::filesystem::path moduleFile(int processes) {
 
 } // namespace
 
-std::unique_ptr<Team> joinTeam() {
+std::unique_ptr<ProcessGroup> joinProcessGroup() {
     const int processes = processesStarted();
     if (processes <= 1) return nullptr;
     const std::filesystem::path file = moduleFile(processes);
     // Never closed. Its symbols are for all, as what Open MPI loads may look for them.
     void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
     if (!library) throw InputError(file.string(), std::string("cannot be loaded: ") + dlerror());
-    using EntryPoint = const TeamModule* (*)();
-    const auto entry = reinterpret_cast<EntryPoint>(dlsym(library, "tungstenTeam"));
+    using EntryPoint = const ProcessGroupModule* (*)();
+    const auto entry = reinterpret_cast<EntryPoint>(dlsym(library, "tungstenProcessGroup"));
     if (!entry || std::strcmp(entry()->abi, PluginAbi) != 0)
         throw InputError(file.string(), "built for another version of this program");
-    std::unique_ptr<Team> team = entry()->join();
+    std::unique_ptr<ProcessGroup> team = entry()->join();
     if (team->size() == processes) return team;
     throw UsageError("started as one of " + std::to_string(processes) + " processes, but " + file.string() + " sees " +
                      std::to_string(team->size()) + ": the launcher is of another MPI than it was built with");

@@ -13,12 +13,12 @@ namespace tungsten {
 using Bytes = std::vector<char>;
 
 /// Every rank calls these functions alike and in the same order, from one thread.
-class Team {
+class ProcessGroup {
   public:
-    Team() = default;
-    virtual ~Team() = default;
-    Team(const Team&) = delete;
-    Team& operator=(const Team&) = delete;
+    ProcessGroup() = default;
+    virtual ~ProcessGroup() = default;
+    ProcessGroup(const ProcessGroup&) = delete;
+    ProcessGroup& operator=(const ProcessGroup&) = delete;
 
     /// From 0; rank 0 is the one that speaks and writes.
     [[nodiscard]] virtual int rank() const = 0;
@@ -28,30 +28,30 @@ class Team {
     /// Of this machine, for messages.
     [[nodiscard]] virtual std::string machine() const = 0;
     /// By place, the largest of what the ranks give. No NaN.
-    [[nodiscard]] virtual std::vector<double> largest(std::vector<double> values) = 0;
+    [[nodiscard]] virtual std::vector<double> allReduceMax(std::vector<double> values) = 0;
     /// parts[r] goes to rank r; returns what each rank has for this one.
-    [[nodiscard]] virtual std::vector<Bytes> exchange(const std::vector<Bytes>& parts) = 0;
+    [[nodiscard]] virtual std::vector<Bytes> allToAll(const std::vector<Bytes>& parts) = 0;
     /// Ends all ranks at once, wherever they are; any rank may call it.
     [[noreturn]] virtual void abort(int exitCode) = 0;
 };
 
 /// A failure that all ranks know of.
-class TeamFailure : public std::exception {
+class GroupFailure : public std::exception {
   public:
     // NOLINTNEXTLINE(bugprone-throw-keyword-missing): a member is set, nothing is to be thrown
-    explicit TeamFailure(std::exception_ptr toTell) : toTell_(std::move(toTell)) {}
+    explicit GroupFailure(std::exception_ptr toTell) : toTell_(std::move(toTell)) {}
     /// What this rank is to report; none where another one reports.
     [[nodiscard]] const std::exception_ptr& toTell() const { return toTell_; }
-    [[nodiscard]] const char* what() const noexcept override { return "a rank has failed"; }
+    [[nodiscard]] const char* what() const noexcept override { return "another process has failed"; }
 
   private:
     std::exception_ptr toTell_;
 };
 
-/// Runs action() in every rank. Where it throws in any, all ranks throw a TeamFailure; the same failure in rank 0 and
+/// Runs action() in every rank. Where it throws in any, all ranks throw a GroupFailure; the same failure in rank 0 and
 /// others is told by rank 0. Without a team it is just run.
 template <typename Action>
-void together(Team* team, const Action& action) {
+void runOnAll(ProcessGroup* team, const Action& action) {
     if (!team) return action();
     std::exception_ptr failure;
     try {
@@ -60,19 +60,19 @@ void together(Team* team, const Action& action) {
         failure = std::current_exception();
     }
     const double failed = failure ? 1.0 : 0.0;
-    const std::vector<double> all = team->largest({failed, team->rank() == 0 ? failed : 0.0});
+    const std::vector<double> all = team->allReduceMax({failed, team->rank() == 0 ? failed : 0.0});
     if (all[0] == 0.0) return;
     const bool othersTell = team->rank() > 0 && all[1] > 0.0;
-    throw TeamFailure(othersTell ? nullptr : failure);
+    throw GroupFailure(othersTell ? nullptr : failure);
 }
 
 /// The team that this process was started in, by mpirun for example; none where it was started alone. Throws UsageError
 /// where the part of this program that a team needs is not there.
-std::unique_ptr<Team> joinTeam();
+std::unique_ptr<ProcessGroup> joinProcessGroup();
 
-struct TeamModule {
+struct ProcessGroupModule {
     const char* abi;
-    std::unique_ptr<Team> (*join)();
+    std::unique_ptr<ProcessGroup> (*join)();
 };
 
 } // namespace tungsten

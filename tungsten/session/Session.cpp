@@ -65,10 +65,10 @@ class TimeLimit {
 };
 
 /// Renders passes until they end, are interrupted, are out of time, or what is called meanwhile throws.
-class WatchedPass {
+class PassRunner {
   public:
     /// Keeps the references. `show` is called some twenty times a second within passes, by the thread that made this.
-    WatchedPass(const SessionOptions& options, SessionResult& result, std::function<void(const PassMonitor&)> show)
+    PassRunner(const SessionOptions& options, SessionResult& result, std::function<void(const ProgressMonitor&)> show)
         : options_(options), result_(result), show_(std::move(show)) {}
 
     /// `render` renders what it is given: the pass, with a watch. False: it was broken off, and its figures are left
@@ -89,23 +89,23 @@ class WatchedPass {
 
     const SessionOptions& options_;
     SessionResult& result_;
-    std::function<void(const PassMonitor&)> show_;
-    std::optional<PassMonitor> monitor_; ///< of the pass in progress
+    std::function<void(const ProgressMonitor&)> show_;
+    std::optional<ProgressMonitor> monitor_; ///< of the pass in progress
     std::thread::id thread_ = std::this_thread::get_id();
     Clock::time_point lastLook_ = Clock::now();
     std::atomic<bool> failed_{false};
     std::exception_ptr failure_; ///< if failed_
 };
 
-bool WatchedPass::run(PassInfo pass, Clock::time_point end,
-                      const std::function<void(const PassInfo&, Statistics&)>& render) {
+bool PassRunner::run(PassInfo pass, Clock::time_point end,
+                     const std::function<void(const PassInfo&, Statistics&)>& render) {
     monitor_.emplace([this, end] { return stops(end); });
-    pass.watch = PassWatch(*monitor_);
+    pass.watch = ProgressToken(*monitor_);
     Statistics statistics;
     StageTimer timer(result_.statistics, "passes broken off");
     try {
         render(pass, statistics);
-    } catch (const PassBrokenOff&) {
+    } catch (const PassCancelled&) {
         result_.brokenOff = monitor_->progress();
         return false;
     }
@@ -115,13 +115,13 @@ bool WatchedPass::run(PassInfo pass, Clock::time_point end,
 }
 
 /// Any thread of the pass.
-bool WatchedPass::stops(Clock::time_point end) {
+bool PassRunner::stops(Clock::time_point end) {
     const Clock::time_point now = Clock::now();
     if (std::this_thread::get_id() == thread_) look(now);
     return failed_.load(std::memory_order_relaxed) || interrupted() || now >= end;
 }
 
-void WatchedPass::look(Clock::time_point now) {
+void PassRunner::look(Clock::time_point now) {
     constexpr std::chrono::milliseconds Between(50);
     if (now - lastLook_ < Between || failed_) return;
     lastLook_ = now;
@@ -238,12 +238,12 @@ class Session {
           files_(loaded, outputs, options, result), shared_(options.team, result),
           firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
           sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()), limit_(options.timeoutSeconds),
-          watched_(options, result, [this](const PassMonitor& monitor) { showPass(monitor); }),
-          trace_(shared_.speaks() ? options.trace : std::filesystem::path(), *loaded.scene, options.seed),
-          reporter_(options.quiet || !shared_.speaks()) {}
+          watched_(options, result, [this](const ProgressMonitor& monitor) { showPass(monitor); }),
+          trace_(shared_.isRoot() ? options.trace : std::filesystem::path(), *loaded.scene, options.seed),
+          reporter_(options.quiet || !shared_.isRoot()) {}
 
     void run(const SceneFacts& facts, const Features& features) {
-        together(options_.team, [&] { begin(facts, features); });
+        runOnAll(options_.team, [&] { begin(facts, features); });
         shared_.shareResumed();
         black_ = facts.nothingArrives;
         const bool prepared = prepare(facts);
@@ -264,7 +264,7 @@ class Session {
         const Scene& scene = *loaded_.scene;
         if (options_.passes)
             checkWritable(partialState(), outputs_.within);
-        else if (shared_.speaks())
+        else if (shared_.isRoot())
             checkOutputs(outputs_,
                          {scene.transport.gate.frames, options_.resumeEnabled, options_.checkpointSeconds > 0.0,
                           loaded_.inputs, Trace::filesIn(options_.trace), options_.trace});
@@ -273,7 +273,7 @@ class Session {
         requireMemory(loaded_, bias ? 3.0 : 2.0, integrator_.memoryBytes(), options_.memoryLimit);
         if (bias) result_.bias = filmOf(scene, PassWeight::Repeats);
         result_.film = filmOf(scene);
-        if (shared_.speaks()) files_.resume();
+        if (shared_.isRoot()) files_.resume();
         result_.features = features.all;
     }
     [[nodiscard]] std::filesystem::path partialState() const {
@@ -290,11 +290,11 @@ class Session {
                 PartialStateWriter writer(out, file.string(), identity, firstPass_);
                 partial_ = &writer;
                 renderPasses();
-                if (result_.film.passes() == 0) throw PassBrokenOff();
+                if (result_.film.passes() == 0) throw PassCancelled();
                 writer.finish(statisticsJson(loaded_, options_, result_), processCpuSeconds());
             });
             result_.written = {file};
-        } catch (const PassBrokenOff&) { // the first: no file
+        } catch (const PassCancelled&) { // the first: no file
         }
     }
 
@@ -309,7 +309,7 @@ class Session {
     /// False: it was broken off, in some rank, and there are no passes.
     bool prepare(const SceneFacts& facts) {
         bool whole = true;
-        together(options_.team, [&] {
+        runOnAll(options_.team, [&] {
             const StageTimer timer(result_.statistics, stage::Prepare);
             const auto build = [&](const PassInfo& pass, Statistics& statistics) {
                 if (!black_) integrator_.prepare(facts, pass.watch.part(0.0, 0.0), statistics);
@@ -327,7 +327,7 @@ class Session {
     void renderPasses() {
         const StageTimer timer(result_.statistics, stage::Passes);
         start_ = Clock::now();
-        if (shared_.speaks()) trace_.start();
+        if (shared_.isRoot()) trace_.start();
         bool stop = result_.samples >= spp_;
         while (!stop) {
             if (!renderRound()) {
@@ -336,7 +336,7 @@ class Session {
             }
             if (options_.afterPass) options_.afterPass(result_);
             stop = shouldStop();
-            if (shared_.speaks()) show(stop);
+            if (shared_.isRoot()) show(stop);
         }
         result_.renderSeconds = secondsSince(start_);
         shared_.gather(); // what a broken round has left
@@ -350,7 +350,7 @@ class Session {
         if (!last && shared_.isWhole()) files_.checkpointIfDue(); // else in a round that gathers it
     }
 
-    [[nodiscard]] std::vector<RoundPass> nextRound() const {
+    [[nodiscard]] std::vector<PlannedPass> nextRound() const {
         const double done = result_.film.totalWeight();
         // A black image is there at once; partial states hold every pass all the same.
         if (black_ && !partial_) return {{sizes_.rest(done), result_.film.passes(), done}};
@@ -359,7 +359,7 @@ class Session {
 
     /// One pass of every rank. False: not even the first of them has ended.
     bool renderRound() {
-        const std::vector<RoundPass> round = nextRound();
+        const std::vector<PlannedPass> round = nextRound();
         const size_t mine = shared_.rank();
         const bool whole = mine >= round.size() || renderPass(round[mine]);
         watched_.rethrow();
@@ -379,7 +379,7 @@ class Session {
     }
 
     /// Into the film's pass image. False: it was broken off.
-    bool renderPass(const RoundPass& planned) {
+    bool renderPass(const PlannedPass& planned) {
         PassInfo pass = planned.info(firstPass_, uint64_t(options_.sppStep), options_.seed);
         result_.film.beginPass();
         if (result_.estimatesBias()) {
@@ -392,11 +392,11 @@ class Session {
                             });
     }
 
-    void showPass(const PassMonitor& monitor) {
+    void showPass(const ProgressMonitor& monitor) {
         if (!reporter_.due()) return;
         ProgressState progress = state();
         progress.pass = monitor.progress();
-        for (const RoundPass& pass : nextRound()) progress.samplesOfPass += pass.size.weight;
+        for (const PlannedPass& pass : nextRound()) progress.samplesOfPass += pass.size.weight;
         reporter_.show(progress, false);
     }
 
@@ -410,7 +410,7 @@ class Session {
             return true;
         }
         sizes_.cut(agreed_.brokenAt);
-        if (shared_.speaks())
+        if (shared_.isRoot())
             std::fprintf(stderr,
                          "warning: %s: the first pass did not end within %.3g s, a quarter of the time-out: %s\n",
                          loaded_.diagnostics->file.c_str(), limit_.firstPassSeconds(), sizes_.text().c_str());
@@ -419,7 +419,7 @@ class Session {
 
     /// Among all ranks.
     void agree(bool whole, bool wantsFilm) {
-        RoundAgreement own;
+        RoundStatus own;
         own.interrupted = watched_.interrupted();
         own.timedOut = limit_.isOver();
         own.wantsFilm = wantsFilm;
@@ -430,7 +430,7 @@ class Session {
 
     bool shouldStop() {
         const bool due = files_.checkpointDue() || trace_.due() || (!options_.quiet && shared_.mayShow());
-        agree(true, shared_.speaks() && due);
+        agree(true, shared_.isRoot() && due);
         const bool stop = stopsAfterRound();
         if (stop || agreed_.wantsFilm) shared_.gather();
         return stop;
@@ -471,15 +471,15 @@ class Session {
     const SessionOptions& options_;
     SessionResult& result_;
     SessionFiles files_;
-    mutable SharedResult shared_;
+    mutable DistributedResult shared_;
     uint32_t firstPass_;
     uint64_t spp_; ///< of this session
     PassSizes sizes_;
-    RoundAgreement agreed_;   ///< of all ranks
+    RoundStatus agreed_;      ///< of all ranks
     bool endedAPass_ = false; ///< in this run
     bool targetReached_ = false;
     TimeLimit limit_;
-    WatchedPass watched_;
+    PassRunner watched_;
     PartialStateWriter* partial_ = nullptr;
     bool black_ = false; ///< nothing arrives: no pass is rendered
     Trace trace_;

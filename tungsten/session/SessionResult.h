@@ -19,7 +19,7 @@
 
 namespace tungsten {
 
-class Team;
+class ProcessGroup;
 struct SessionResult;
 
 enum class StopReason { Finished, TimedOut, TargetReached, Interrupted };
@@ -39,7 +39,7 @@ struct SessionOptions {
     bool quiet = false;              ///< no progress bar
     std::filesystem::path trace;     ///< folder of the render's trace; empty: none
     std::string command;             ///< that started the render, for its page
-    Team* team = nullptr;            ///< of this process; rank 0 writes
+    ProcessGroup* team = nullptr;    ///< of this process; rank 0 writes
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: break the pass off, write, stop
     /// Called after every pass, before it is decided whether to go on. What it throws ends the render.
     std::function<void(const SessionResult&)> afterPass;

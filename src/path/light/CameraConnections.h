@@ -22,7 +22,7 @@ struct LightContext {
     transport::Connector connector;
     bool russianRoulette;
     bool splits; ///< paths on their way to detectors (StepsToDetectors)
-    const PassWatch& watch;
+    const ProgressToken& watch;
 };
 
 /// What happened, counted by one worker.

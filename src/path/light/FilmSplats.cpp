@@ -9,9 +9,9 @@ void FilmSplats::sortByRow(std::vector<Splat>& batch) {
                      [](const Splat& a, const Splat& b) { return std::floor(a.raster.y) < std::floor(b.raster.y); });
 }
 
-void FilmSplats::add(const std::vector<std::vector<Splat>>& batches, const PassWatch& watch) const {
+void FilmSplats::add(const std::vector<std::vector<Splat>>& batches, const ProgressToken& watch) const {
     tbb::parallel_for(0, film_.height(), [&](int y) {
-        watch.poll(0);
+        watch.advance(0);
         for (const auto& batch : batches) addToRow(y, batch);
     });
 }

@@ -24,7 +24,7 @@ class FilmSplats {
     /// Order within a batch in which add() takes it; batches can be prepared in parallel.
     static void sortByRow(std::vector<Splat>& batch);
     /// Batches in their order. Rows of the image are filled in parallel, each pixel by one thread.
-    void add(const std::vector<std::vector<Splat>>& batches, const PassWatch& watch) const;
+    void add(const std::vector<std::vector<Splat>>& batches, const ProgressToken& watch) const;
 
   private:
     void addToRow(int y, const std::vector<Splat>& batch) const;

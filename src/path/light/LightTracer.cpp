@@ -114,7 +114,7 @@ void LightTracer::plan(SceneFacts& facts, Features& features) const {
                                        : "off by default in time-resolved renders");
 }
 
-void LightTracer::prepare(const SceneFacts& facts, const PassWatch&, Statistics&) {
+void LightTracer::prepare(const SceneFacts& facts, const ProgressToken&, Statistics&) {
     forwardBoundaries_ = facts.forwardBoundaries || facts.everything;
     emitters_ = emitterDistribution(
         *scene_, [](const Emitter&) { return true; }, facts.excludedEmitters);
@@ -139,7 +139,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
             for (uint64_t path = first; path < last; ++path) {
                 // As many paths as pixels make a sample: but for rounding the image does not depend on
                 // how samples are cut into passes.
-                pass.watch.pollEvery(PathsPerPoll, path);
+                pass.watch.advanceEvery(PathsPerPoll, path);
                 const auto sample = uint32_t(pass.firstSample + path / pixels);
                 traceLightPath(context, Sampler(pass.seed, RandomStream::Photon, sample, path % pixels), batches[b],
                                counters);

@@ -12,7 +12,7 @@ class LightTracer : public Integrator {
   public:
     LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings);
     void plan(SceneFacts& facts, Features& features) const override;
-    void prepare(const SceneFacts& facts, const PassWatch& watch, Statistics& statistics) override;
+    void prepare(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) override;
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:

@@ -31,7 +31,7 @@ class ArrivalWindow {
 
     /// What `trace(index of the path, ends)` appends for each of so many light paths, in their order.
     template <typename Trace>
-    void fill(size_t paths, const char* stage, const PassWatch& watch, const Trace& trace);
+    void fill(size_t paths, const char* stage, const ProgressToken& watch, const Trace& trace);
     /// A candidate whose light, going on straight to `position`, arrives there after a length in [low, high), in
     /// proportion to `importance(end, unit direction from there, distance)`; none if all of these are 0. Of more than
     /// `most` that arrive so many, evenly spaced, stand for all.
@@ -65,12 +65,12 @@ class ArrivalWindow {
 
 template <typename End>
 template <typename Trace>
-void ArrivalWindow<End>::fill(size_t paths, const char* stage, const PassWatch& watch, const Trace& trace) {
+void ArrivalWindow<End>::fill(size_t paths, const char* stage, const ProgressToken& watch, const Trace& trace) {
     constexpr size_t Block = 1024;
     std::vector<std::vector<End>> found((paths + Block - 1) / Block);
     watch.stage(stage, found.size());
     tbb::parallel_for(size_t(0), found.size(), [&](size_t block) {
-        watch.poll();
+        watch.advance();
         for (size_t i = block * Block; i < std::min(paths, (block + 1) * Block); ++i) trace(i, found[block]);
     });
     paths_ = paths;

@@ -35,7 +35,7 @@ bool LightPaths::reflectedIn(const Scene& scene) {
     });
 }
 
-void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, const PassWatch& watch,
+void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, const ProgressToken& watch,
                          Statistics& statistics) {
     vertices_.resize(scene.emitters.size());
     reflected_.resize(scene.emitters.size());

@@ -13,7 +13,7 @@ class LightPaths {
     /// Light is followed beyond the first surface.
     [[nodiscard]] static bool reflectedIn(const Scene& scene);
 
-    void prepare(const Scene& scene, const TargetChoice& targets, const PassWatch& watch, Statistics& statistics);
+    void prepare(const Scene& scene, const TargetChoice& targets, const ProgressToken& watch, Statistics& statistics);
     /// A quarter as many light paths as guided paths of the pass, within limits of Tuning.h, and no more than those.
     void trace(const Scene& scene, const TargetChoice& targets, size_t guidedPaths, const PassInfo& pass,
                Statistics& statistics);

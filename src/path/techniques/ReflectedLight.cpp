@@ -54,7 +54,7 @@ bool reflectsSharply(LobeMask lobes) {
 }
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights,
-                                  const PassWatch& watch) {
+                                  const ProgressToken& watch) {
     trace(scene, emitter, {}, tuning::PilotPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
     candidates_ =
         vertices().empty() ? 0.0f : float(tuning::Candidates) * float(tuning::PilotPaths) / float(vertices().size());

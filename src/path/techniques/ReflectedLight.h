@@ -46,7 +46,7 @@ class ReflectedLightCache {
     using Choice = ArrivalWindow<ReflectedVertex>::Choice;
 
     /// Learns from light paths of its own how many of them reflect.
-    void prepare(const Scene& scene, const Emitter& emitter, const Flights& flights, const PassWatch& watch);
+    void prepare(const Scene& scene, const Emitter& emitter, const Flights& flights, const ProgressToken& watch);
     /// No glossy surface in the light, none seen, or an emitter of a single direction.
     [[nodiscard]] bool empty() const { return !(candidates_ > 0.0f); }
     /// How many light paths are a vertex's candidates, on the average.

@@ -25,7 +25,7 @@ class RefractedLight {
     static bool helpsWith(const Scene& scene);
 
     /// For a sealed scene. `leftOut`: emitters, by index; empty: none.
-    void prepare(const Scene& scene, const std::vector<bool>& leftOut, const PassWatch& watch);
+    void prepare(const Scene& scene, const std::vector<bool>& leftOut, const ProgressToken& watch);
     /// Points of emitters for a pass.
     void trace(const PassInfo& pass);
 

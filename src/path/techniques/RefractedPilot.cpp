@@ -65,7 +65,7 @@ auto RefractedLight::quantiles(std::vector<float>& delays, const Delay& all) -> 
     return result;
 }
 
-void RefractedLight::prepare(const Scene& scene, const std::vector<bool>& leftOut, const PassWatch& watch) {
+void RefractedLight::prepare(const Scene& scene, const std::vector<bool>& leftOut, const ProgressToken& watch) {
     scene_ = &scene;
     gate_ = transport::Delays::of(scene).arrivals(scene.transport.gate);
     bodies_ = transport::bodiesOf(scene);
@@ -84,7 +84,7 @@ void RefractedLight::prepare(const Scene& scene, const std::vector<bool>& leftOu
         if (!bodies_[medium].scatters()) continue;
         pairs_[medium].resize(lamps_.size());
         for (size_t lamp = 0; lamp < lamps_.size(); ++lamp) {
-            watch.poll();
+            watch.advance();
             Pair& pair = pairs_[medium][lamp];
             pair.index = indexTowards(int(medium), lamps_[lamp]);
             pair.delays.resize(faces(int(medium)), {Delay{}});

@@ -46,7 +46,7 @@ struct PhotonContext {
     bool glossySensorPaths = false;             ///< SensorPathRules::glossy
     const RecordCounts* recordCounts = nullptr; ///< of paths that draw their records' directions
     transport::StrategyBalance balance{};       ///< of plain and guided paths
-    PassWatch watch{};
+    ProgressToken watch{};
 };
 
 /// Plain light paths: flights and directions by the scene's own distributions, and whole rays for beams and slices.

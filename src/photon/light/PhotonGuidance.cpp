@@ -3,7 +3,7 @@
 namespace tungsten::photon {
 
 PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan,
-                               const PassWatch& watch)
+                               const ProgressToken& watch)
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
       camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
@@ -16,7 +16,7 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
     setGate(scene.transport.gate);
     watch.stage("guides of media", scene.media.size());
     for (size_t i = 0; i < scene.media.size(); ++i) {
-        watch.poll();
+        watch.advance();
         const Medium& medium = scene.media[i];
         guides_.emplace_back();
         if (!medium.scatters()) continue;

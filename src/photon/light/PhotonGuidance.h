@@ -19,7 +19,8 @@ namespace tungsten::photon {
 class PhotonGuidance {
   public:
     /// Where plan.guidance is on. Polls `watch` before each medium, whose table may take a fraction of a second.
-    PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan, const PassWatch& watch);
+    PhotonGuidance(const Scene& scene, const transport::Policy& policy, const PhotonPlan& plan,
+                   const ProgressToken& watch);
 
     /// Null in regions where nothing scatters.
     [[nodiscard]] const darts::Guide* guide(const Region& region) const {

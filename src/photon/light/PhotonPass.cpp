@@ -110,7 +110,7 @@ void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Stat
 } // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan,
-                       const PassWatch& watch)
+                       const ProgressToken& watch)
     : scene_(scene), settings_(settings), culling_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
       guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan, watch) : nullptr),
       emitters_(powerDistribution(scene, plan.lateEmitters)), storeVolume_(plan.volume.on),
@@ -159,12 +159,12 @@ void PhotonPass::tracePaths(uint64_t first, uint64_t last, const PhotonContext& 
                             const SurfaceConnections* connections, TracedPaths& traced) const {
     PhotonTrail trail;
     for (uint64_t path = first; path < last; ++path) {
-        pass.watch.pollWithin(1, path);
+        pass.watch.advanceWithin(1, path);
         const Sampler sampler(pass.seed, RandomStream::Photon, pass.index, path);
         tracePath(path, context, sampler, connections, trail, traced);
         traced.deposits.endPath();
     }
-    pass.watch.poll(last - first);
+    pass.watch.advance(last - first);
 }
 
 double PhotonPass::passOverhead() const {

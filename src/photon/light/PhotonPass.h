@@ -30,7 +30,8 @@ struct PhotonMaps {
 
 class PhotonPass {
   public:
-    PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan, const PassWatch& watch = {});
+    PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan,
+               const ProgressToken& watch = {});
 
     /// Traces up to photonCount paths, fewer once every store in use is full. Deterministic for a (seed, pass),
     /// whatever the threads.
@@ -40,7 +41,7 @@ class PhotonPass {
     /// How many light paths are plain and how many guided, from what a few of both bring: before the first pass, by
     /// numbers of its own, so that every part of a render chooses alike. `seen`: what the connections' points are of;
     /// both may be null. Only where plain and guided paths are side by side.
-    void chooseShare(const PassWatch& watch, SurfaceConnections* connections, const SensorRecord* seen,
+    void chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const SensorRecord* seen,
                      Statistics& statistics);
     [[nodiscard]] bool plainAlone() const { return balance_.guided == 0.0f; }
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.

@@ -31,7 +31,7 @@ Deposits PhotonPass::tracePilots(const PhotonContext& context, const PassInfo& p
     TracedPaths pilot(context.settings.primitive);
     PhotonTrail trail;
     for (uint64_t path = 0; path < paths; ++path) {
-        pass.watch.poll(0);
+        pass.watch.advance(0);
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         tracePath(path, context, sampler, nullptr, trail, pilot);
     }
@@ -47,7 +47,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
     const uint64_t frames = guidance_->choosesFrames() ? uint64_t(guidance_->frames().frames) : 1;
     std::vector<TracedPaths> pilots(paths, TracedPaths(settings_.primitive));
     tbb::parallel_for(uint64_t(0), paths, [&](uint64_t path) {
-        pass.watch.poll(0);
+        pass.watch.advance(0);
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         TracedPaths& pilot = pilots[path];
         const uint64_t aim = frames > paths ? path * frames / paths : path; // all over the sequence
@@ -170,7 +170,7 @@ void addRecords(PhotonPilot& pilot, const RecordImportance& importance, const De
 
 } // namespace
 
-void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connections, const SensorRecord* seen,
+void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const SensorRecord* seen,
                              Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
     if (asked && *asked == 1.0f) {
@@ -224,7 +224,7 @@ void PhotonPass::chooseShare(const PassWatch& watch, SurfaceConnections* connect
             (guides ? pilot.guidedRecords : pilot.plainRecords) += double(traced.deposits.volumeRecords());
             addRecords(pilot, importance, traced.deposits, seen, strategy, balance_);
         }
-        watch.poll();
+        watch.advance();
         if (path < tuning::LeastSharePaths) continue;
         count();
         if (pilot.costs.sum() + pilot.connections.sum() > transport::tuning::MostPilotCost) break;

@@ -9,7 +9,7 @@
 namespace tungsten {
 class Film;
 class ObjectReader;
-class PassWatch;
+class ProgressToken;
 } // namespace tungsten
 
 namespace tungsten::photon {

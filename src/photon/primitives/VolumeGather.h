@@ -58,7 +58,7 @@ class VolumeGather {
     /// On the records' power: 1 / number of paths.
     [[nodiscard]] float scale() const { return scale_; }
     /// Adds what straight rays of several samples see to the pass image; returns the records that it met.
-    uint64_t splat(const SensorRecords& samples, double scale, Film& film, const PassWatch& watch) {
+    uint64_t splat(const SensorRecords& samples, double scale, Film& film, const ProgressToken& watch) {
         const bool any = std::any_of(samples.begin(), samples.end(), [](const auto* s) { return !s->pieces.empty(); });
         return any ? Primitive::splat(scene_, sensor_, samples, straight(), scale, film, watch) : 0;
     }

@@ -81,12 +81,12 @@ class Sharing {
     }
 
     /// Returns how many values were not finite.
-    [[nodiscard]] uint64_t row(int y, const PassWatch& watch) const {
+    [[nodiscard]] uint64_t row(int y, const ProgressToken& watch) const {
         uint64_t nonFinite = 0;
         std::vector<Vec3d> sums(size_t(film_.frames()));
         std::vector<uint32_t> neighbours;
         for (int x = 0; x < record_.width; ++x) {
-            watch.pollWithin(1, uint64_t(x));
+            watch.advanceWithin(1, uint64_t(x));
             const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
             for (uint32_t p = firstPoint_[pixel]; p < firstPoint_[pixel + 1]; ++p) {
                 const size_t among = findNeighbours(p, x, y, neighbours);
@@ -158,14 +158,14 @@ SharingKernel SharingKernel::of(size_t points, size_t received, float gatherRadi
 
 void shareLight(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                 const std::vector<ReceivedLight>& received, const SharingKernel& kernel, double scale, Film& film,
-                Statistics& statistics, const PassWatch& watch) {
+                Statistics& statistics, const ProgressToken& watch) {
     if (received.empty()) return;
     const double width = sensor.gate.frameWidth * double(kernel.time);
     const Sharing sharing(scene, record, received, kernel, scale / width, film);
     watch.stage("shared light", uint64_t(record.height));
     tbb::parallel_for(0, record.height, [&](int y) {
         statistics.add(counter::NonFiniteSamples, sharing.row(y, watch));
-        watch.poll();
+        watch.advance();
     });
 }
 

@@ -26,6 +26,6 @@ struct SharingKernel {
 /// reflected by its own BSDF, times `scale`.
 void shareLight(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                 const std::vector<ReceivedLight>& received, const SharingKernel& kernel, double scale, Film& film,
-                Statistics& statistics, const PassWatch& watch = {});
+                Statistics& statistics, const ProgressToken& watch = {});
 
 } // namespace tungsten::photon

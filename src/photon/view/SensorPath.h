@@ -118,7 +118,7 @@ class SegmentVisitor : public transport::VisitorBase {
 /// Follows a path along `ray` from the camera, and shows its legs (visitSegment).
 template <typename Shown>
 SensorSteps followSensorPath(const Scene& scene, const Ray& ray, const SensorPathRules& rules, const Sampler& sampler,
-                             Shown&& shown, const PassWatch& watch = {}) {
+                             Shown&& shown, const ProgressToken& watch = {}) {
     SensorSteps counters;
     transport::Walk walk{transport::PathState{.random = sampler, .ray = ray, .region = scene.cameraRegion},
                          transport::StraightSteps<TransportMode::Radiance>({scene, counters, watch}),

@@ -83,7 +83,7 @@ void append(Recorder& row, size_t pixels, SensorRecord& record) {
 } // namespace
 
 SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
-                               const SensorWishes& wishes, Statistics& statistics, const PassWatch& watch) {
+                               const SensorWishes& wishes, Statistics& statistics, const ProgressToken& watch) {
     SensorRecord record;
     record.sample = sample;
     record.samples = wishes.samples;
@@ -98,7 +98,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
     tbb::parallel_for(size_t(0), rows.size(), [&](size_t y) {
         SensorSteps steps;
         for (int x = 0; x < record.width; ++x) {
-            watch.pollWithin(64, uint64_t(x));
+            watch.advanceWithin(64, uint64_t(x));
             const size_t pixel = y * size_t(record.width) + size_t(x);
             Sampler sampler(seed, RandomStream::Camera, sample, pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
@@ -120,7 +120,7 @@ SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules,
             }
         }
         report(steps, statistics);
-        watch.poll();
+        watch.advance();
     });
     size_t points = 0;
     for (const Recorder& row : rows) points += row.points.size();

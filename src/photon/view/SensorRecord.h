@@ -83,6 +83,6 @@ using SensorRecords = std::vector<const SensorRecord*>;
 
 /// Traces one camera path per pixel: the sample with this index.
 SensorRecord recordSensorPaths(const Scene& scene, const SensorPathRules& rules, uint64_t seed, uint32_t sample,
-                               const SensorWishes& wishes, Statistics& statistics, const PassWatch& watch = {});
+                               const SensorWishes& wishes, Statistics& statistics, const ProgressToken& watch = {});
 
 } // namespace tungsten::photon

@@ -237,12 +237,12 @@ class BeamSplatter {
 
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                     const std::vector<PhotonBeam>& beams, const Radii& radii, double scale, Film& film,
-                    const PassWatch& watch) {
+                    const ProgressToken& watch) {
     const BeamSplatter splatter(scene, sensor, scale, film);
     const size_t bands = ImageBand::count(scene.camera.resolution.y);
     std::vector<std::optional<Ribbon>> ribbons(beams.size());
     tbb::parallel_for(size_t(0), ribbons.size(), [&](size_t i) {
-        watch.pollWithin(1024, i);
+        watch.advanceWithin(1024, i);
         ribbons[i] = splatter.ribbon(beams[i], radii[i], radii.edges(i));
     });
     // Beams by band, in their own order: the sums do not depend on the threads.
@@ -260,7 +260,7 @@ uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const S
         for (const SensorRecord* record : records) {
             ImageBand band(*record, number);
             for (size_t i = 0; i < drawn.size(); ++i) {
-                watch.pollWithin(64, i);
+                watch.advanceWithin(64, i);
                 prefetch(*ribbons[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
                 gathered[number] += splatter.draw(*ribbons[drawn[i]], band);
                 band.countDrawn();
@@ -268,7 +268,7 @@ uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const S
             // With several frames nothing has been collected.
             band.addToFilm(0, film);
         }
-        watch.poll();
+        watch.advance();
     });
     uint64_t total = 0;
     for (const uint64_t count : gathered) total += count;

@@ -15,6 +15,6 @@ namespace tungsten::photon {
 /// the pass's gate.
 uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                     const std::vector<PhotonBeam>& beams, const Radii& radii, double scale, Film& film,
-                    const PassWatch& watch = {});
+                    const ProgressToken& watch = {});
 
 } // namespace tungsten::photon

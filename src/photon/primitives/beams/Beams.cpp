@@ -20,12 +20,12 @@ double Beams::kernelWidth(const KernelSettings& settings, bool deltaGate, uint32
 }
 
 Radii Beams::radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>&, uint32_t step,
-                   const PassWatch&) {
+                   const ProgressToken&) {
     return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
 void Beams::endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radii,
-                          const PassWatch& watch) {
+                          const ProgressToken& watch) {
     cutAtSurfaces(scene, random, beams, radii, watch);
 }
 
@@ -56,7 +56,7 @@ double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& rad
 }
 
 uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                      const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch) {
+                      const Selection<PhotonBeam>& beams, double scale, Film& film, const ProgressToken& watch) {
     return splatBeams(scene, sensor, records, beams.records, beams.radii, scale, film, watch);
 }
 

@@ -30,14 +30,14 @@ struct Beams {
     static void narrow(float /*factor*/) {}
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
-                       uint32_t step, const PassWatch& watch);
+                       uint32_t step, const ProgressToken& watch);
     static void endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radii,
-                              const PassWatch& watch);
+                              const ProgressToken& watch);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
     static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                          const Selection<PhotonBeam>& beams, double scale, Film& film, const PassWatch& watch);
+                          const Selection<PhotonBeam>& beams, double scale, Film& film, const ProgressToken& watch);
 };
 
 } // namespace tungsten::photon

@@ -79,13 +79,13 @@ class BeamCutter {
 } // namespace
 
 void cutAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radius,
-                   const PassWatch& watch) {
+                   const ProgressToken& watch) {
     const NearSurfaces surfaces(scene);
     std::vector<std::vector<BeamPart>> parts(beams.size());
     watch.stage("kernels at surfaces", beams.size());
     tbb::parallel_for(tbb::blocked_range<size_t>(0, beams.size(), 64), [&](const auto& range) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            watch.pollEvery(64, i);
+            watch.advanceEvery(64, i);
             parts[i] = BeamCutter(surfaces, beams[i], radius[0], random.branch(RandomStream::Record, i)).parts();
         }
     });

@@ -14,6 +14,6 @@ namespace tungsten::photon {
 /// the room between two surfaces. What curved surfaces and corners still cut off is made up for on average. `random`:
 /// of the pass.
 void cutAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radius,
-                   const PassWatch& watch);
+                   const ProgressToken& watch);
 
 } // namespace tungsten::photon

@@ -52,13 +52,13 @@ Photon imageOf(const Scene& scene, const Photon& photon, const KernelEdge& edge)
 } // namespace
 
 void foldAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                    const PassWatch& watch) {
+                    const ProgressToken& watch) {
     const NearSurfaces surfaces(scene);
     std::vector<Fold> folds(photons.size());
     watch.stage("kernels at surfaces", photons.size());
     tbb::parallel_for(tbb::blocked_range<size_t>(0, photons.size(), 256), [&](const auto& range) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            watch.pollEvery(256, i);
+            watch.advanceEvery(256, i);
             folds[i] = foldOf(surfaces, photons[i].position, radii[i], random.branch(RandomStream::Record, i));
         }
     });

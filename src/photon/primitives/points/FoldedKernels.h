@@ -14,6 +14,6 @@ namespace tungsten::photon {
 /// surface is as near on the other side, the radius ends there. What curved surfaces and corners still cut off is made
 /// up for on average over directions. Records that no surface is near to stay as they are. `random`: of the pass.
 void foldAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                    const PassWatch& watch);
+                    const ProgressToken& watch);
 
 } // namespace tungsten::photon

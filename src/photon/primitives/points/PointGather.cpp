@@ -89,7 +89,7 @@ uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) cons
     return query.gathered;
 }
 
-std::vector<float> adaptiveRadii(const std::vector<Photon>& photons, const PassWatch& watch) {
+std::vector<float> adaptiveRadii(const std::vector<Photon>& photons, const ProgressToken& watch) {
     constexpr size_t Neighbours = 30;
     const auto count = uint32_t(std::min(Neighbours, photons.size()));
     const NearestPhotons nearest(photons);
@@ -101,7 +101,7 @@ std::vector<float> adaptiveRadii(const std::vector<Photon>& photons, const PassW
         std::vector<NearestPhotons::Neighbour> found;
         float distance = guess;
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            watch.pollEvery(256, i);
+            watch.advanceEvery(256, i);
             // Wherever photons are dense, a wide search meets many that the nearest then replace.
             float search = std::max(1.5f * distance, 1e-12f), squared = 0.0f;
             do {

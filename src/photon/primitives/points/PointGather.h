@@ -43,6 +43,6 @@ class PointGather {
 
 /// Radii that follow the density: r^2 = d_m^2 0.05 sqrt(N) / m, d_m the distance to the m-th nearest photon, m =
 /// min(30, N) (docs/scene-format.md, section 10.4).
-std::vector<float> adaptiveRadii(const std::vector<Photon>& photons, const PassWatch& watch = {});
+std::vector<float> adaptiveRadii(const std::vector<Photon>& photons, const ProgressToken& watch = {});
 
 } // namespace tungsten::photon

@@ -225,11 +225,11 @@ std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, c
 
 uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
-                      const PassWatch& watch) {
+                      const ProgressToken& watch) {
     const PointSplatter splatter(scene, sensor, scale);
     std::vector<Disc> discs(photons.size());
     tbb::parallel_for(size_t(0), discs.size(), [&](size_t i) {
-        watch.pollWithin(1024, i);
+        watch.advanceWithin(1024, i);
         discs[i] = splatter.disc(photons[i], radii[i], radii.edges(i).nearest);
     });
     const auto byBand = discsByBand(discs, scene.camera.resolution);
@@ -242,7 +242,7 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
         for (const SensorRecord* record : records) {
             ImageBand band(*record, number);
             for (size_t i = 0; i < drawn.size(); ++i) {
-                watch.pollWithin(64, i);
+                watch.advanceWithin(64, i);
                 prefetch(discs[drawn[std::min(i + DrawnAhead, drawn.size() - 1)]]);
                 const int frame = discs[drawn[i]].frame;
                 gathered += splatter.draw(discs[drawn[i]], band);
@@ -251,7 +251,7 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
             }
         }
         total += gathered;
-        watch.poll();
+        watch.advance();
     });
     return total;
 }

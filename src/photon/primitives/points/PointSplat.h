@@ -16,6 +16,6 @@ namespace tungsten::photon {
 /// `sensor` has the pass's gate.
 uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
-                      const PassWatch& watch = {});
+                      const ProgressToken& watch = {});
 
 } // namespace tungsten::photon

@@ -22,7 +22,7 @@ double Points::kernelWidth(const KernelSettings& settings, bool, uint32_t step) 
 }
 
 Radii Points::radii(const KernelSettings& settings, bool, const std::vector<Photon>& photons, uint32_t step,
-                    const PassWatch& watch) {
+                    const ProgressToken& watch) {
     const float factor = pointRadiusFactor(step, settings.volumeAlpha);
     if (settings.fixedVolumeRadius) return settings.volumeRadius * factor;
     std::vector<float> radii = adaptiveRadii(photons, watch);
@@ -32,7 +32,7 @@ Radii Points::radii(const KernelSettings& settings, bool, const std::vector<Phot
 }
 
 void Points::endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                           const PassWatch& watch) {
+                           const ProgressToken& watch) {
     foldAtSurfaces(scene, random, photons, radii, watch);
 }
 
@@ -58,7 +58,7 @@ double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radi
 }
 
 uint64_t Points::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                       const Selection<Photon>& photons, double scale, Film& film, const PassWatch& watch) {
+                       const Selection<Photon>& photons, double scale, Film& film, const ProgressToken& watch) {
     return splatPhotons(scene, sensor, records, photons.records, photons.radii, scale, film, watch);
 }
 

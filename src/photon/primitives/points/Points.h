@@ -38,17 +38,17 @@ struct Points {
     /// Of a pass, where that of the first is 1.
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
-                       uint32_t step, const PassWatch& watch);
+                       uint32_t step, const ProgressToken& watch);
     /// Ends kernels at surfaces: records and radii become those of the ended kernels.
     static void endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                              const PassWatch& watch);
+                              const ProgressToken& watch);
     /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<Photon>& photons, const Radii& radii);
     /// The part that folded rays need where straight ones have theirs splatted (FoldedMeeting).
     static double foldedShare(const std::vector<Photon>& photons, const Radii& radii);
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                          const Selection<Photon>& photons, double scale, Film& film, const PassWatch& watch);
+                          const Selection<Photon>& photons, double scale, Film& film, const ProgressToken& watch);
 };
 
 } // namespace tungsten::photon

@@ -15,12 +15,12 @@ constexpr float Never = -Infinity, Dark = std::numeric_limits<float>::lowest();
 } // namespace
 
 FrameShares::FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records,
-                         const PassWatch& watch)
+                         const ProgressToken& watch)
     : frames_(size_t(gate.frames)) {
     if (frames_ == 1) return;
     factors_.resize(records.size() * frames_);
     tbb::parallel_for(size_t(0), records.size(), [&](size_t i) {
-        watch.pollWithin(64, i);
+        watch.advanceWithin(64, i);
         for (size_t f = 0; f < frames_; ++f) {
             const double end = gate.frameStart(int(f) + 1);
             float& log = factors_[i * frames_ + f];

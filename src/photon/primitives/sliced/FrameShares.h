@@ -17,7 +17,7 @@ namespace tungsten::photon {
 class FrameShares {
   public:
     FrameShares(const Scene& scene, const TimeGate& gate, const std::vector<CollapsedFlights>& records,
-                const PassWatch& watch = {});
+                const ProgressToken& watch = {});
 
     /// By frame, what a record's power is multiplied by: 0 where it is not drawn. Empty: all are drawn.
     [[nodiscard]] std::span<const float> of(size_t record) const {

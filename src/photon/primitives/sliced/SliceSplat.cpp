@@ -218,10 +218,10 @@ using SliceList = std::vector<std::optional<ImageSlice>>;
 
 /// As the image shows them; none where it does not, and of beams.
 SliceList prepared(const SliceFootprints& footprints, const std::vector<CollapsedFlights>& records,
-                   const FrameShares& shares, const PassWatch& watch) {
+                   const FrameShares& shares, const ProgressToken& watch) {
     SliceList slices(records.size());
     tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
-        watch.pollWithin(256, i);
+        watch.advanceWithin(256, i);
         if (records[i].shape != FlightShape::Beam) slices[i] = footprints.prepare(records[i], shares.of(i));
     });
     return slices;
@@ -242,7 +242,7 @@ std::vector<std::vector<uint32_t>> byBand(const SliceList& slices, size_t bands)
 
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                      const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
-                     const PassWatch& watch) {
+                     const ProgressToken& watch) {
     const SliceSplatter splatter(scene, sensor, record, scale, film);
     const FrameShares shares(scene, sensor.gate, records, watch);
     const SliceList slices = prepared(SliceFootprints(scene, sensor, scale), records, shares, watch);
@@ -260,12 +260,12 @@ uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const 
         BandRays rays = splatter.originsOf(band);
         splatter.findDoses(slices, drawn, band, rays);
         for (size_t i = 0; i < drawn.size(); ++i) {
-            watch.pollWithin(16, i);
+            watch.advanceWithin(16, i);
             gathered[number] += splatter.draw(*slices[drawn[i]], band, rays);
         }
         for (int frame = 0; frame < sensor.gate.frames; ++frame) band.addToFilm(frame, film);
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
-        watch.poll();
+        watch.advance();
     });
     uint64_t total = drawBeams ? splatBeams(scene, sensor, {&record}, beams, radius[0], scale, film, watch) : 0;
     for (const uint64_t count : gathered) total += count;

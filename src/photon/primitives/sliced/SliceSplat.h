@@ -12,6 +12,6 @@ namespace tungsten::photon {
 /// something. `radius`: of the beams among them.
 uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
                      const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
-                     const PassWatch& watch = {});
+                     const ProgressToken& watch = {});
 
 } // namespace tungsten::photon

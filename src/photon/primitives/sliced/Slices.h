@@ -44,10 +44,10 @@ struct Slices {
     }
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
-                       uint32_t step, const PassWatch& watch);
+                       uint32_t step, const ProgressToken& watch);
     /// Slices have no kernels.
     static void endAtSurfaces(const Scene&, const Sampler&, const std::vector<CollapsedFlights>&, const Radii&,
-                              const PassWatch&) {}
+                              const ProgressToken&) {}
     /// All.
     static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,
                                                                const std::vector<CollapsedFlights>&, const Radii&) {
@@ -55,7 +55,8 @@ struct Slices {
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                          const Selection<CollapsedFlights>& slices, double scale, Film& film, const PassWatch& watch);
+                          const Selection<CollapsedFlights>& slices, double scale, Film& film,
+                          const ProgressToken& watch);
 };
 
 /// Light that is seen scattering once after a surface or a light of a single direction: slices leave it to beams.
