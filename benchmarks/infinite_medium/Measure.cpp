@@ -54,7 +54,7 @@ Measurement measurePath(const Case& c, const Variant& variant, const Budget& bud
     const darts::Medium medium = c.medium();
     const darts::Guide guide(variant.settings(c), medium, ownTable(variant, medium));
     const Route route{{0, 0, 0}, {0, 0, 1}, {c.gateStart, c.gateEnd()}};
-    const Walk<> walk(guide, route);
+    const Walk<> walk(guide, route, variant.parts);
     const auto sine = float(std::sqrt(1 - ReceiverCosine * ReceiverCosine));
     const darts::Vec3 direction{sine, 0, float(ReceiverCosine)};
     uint64_t index = 0;
@@ -167,7 +167,7 @@ std::array<Measurement, 2> measurePhoton(const Case& c, const Variant& variant, 
     const darts::Guide guide(variant.settings(c), medium, ownTable(variant, medium));
     const darts::Vec3 emitter{0, float(std::sin(EmitterAngle)), float(std::cos(EmitterAngle))};
     const Route route{emitter, {0, 0, 0}, {c.gateStart, c.gateEnd()}};
-    const Walk<> walk(guide, route);
+    const Walk<> walk(guide, route, variant.parts);
     const auto radius = float(c.kernelRadius);
     const Image cone(View::Cone, radius, medium.sigmaT().x, medium.g),
         sphere(View::Sphere, radius, medium.sigmaT().x, medium.g);

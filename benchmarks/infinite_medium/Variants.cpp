@@ -17,9 +17,10 @@ using Change = void (*)(Settings&);
 struct List {
     std::vector<Variant> variants;
     Settings base;
+    Parts parts;
 
     void add(const char* name, const Settings& settings, std::vector<double> study = {}, bool reference = false) {
-        variants.push_back({name, [settings](const Case&) { return settings; }, std::move(study), reference});
+        variants.push_back({name, [settings](const Case&) { return settings; }, std::move(study), reference, parts});
     }
     void change(const char* name, Change apply, std::vector<double> study = {}, bool reference = false) {
         Settings settings = base;
@@ -29,12 +30,11 @@ struct List {
 };
 
 /// Free flights, the phase function's directions.
-Settings unguided(Mode mode, bool elliptical) {
+Settings unguided(Mode mode) {
     Settings s = darts::published(mode);
     s.direction = Direction::Phase;
     s.greens = Greens::None;
     s.candidates = 1;
-    s.elliptical = elliptical;
     return s;
 }
 
@@ -43,7 +43,6 @@ Settings boundedOnly(Mode mode) {
     Settings s = darts::published(mode);
     s.bounded = true;
     s.lengthFirst = true;
-    s.guideEmission = true;
     s.roulette = 0.1f;
     return s;
 }
@@ -57,7 +56,6 @@ void addDistanceAblations(List& list) {
     list.change("  no RIS", [](Settings& s) {
         s.candidates = 1;
         s.greens = Greens::None;
-        s.overlap = false;
         s.proposals = Proposals::Exponential;
     });
     list.change("  no Green's function", [](Settings& s) { s.greens = Greens::None; });
@@ -67,7 +65,6 @@ void addDistanceAblations(List& list) {
     list.change("  mixed uniform", [](Settings& s) { s.proposals = Proposals::MixedUniform; });
     list.change("  mixed quarter", [](Settings& s) { s.proposals = Proposals::MixedQuarter; });
     list.change("  equiangular", [](Settings& s) { s.proposals = Proposals::Equiangular; });
-    list.change("  uniform S", [](Settings& s) { s.uniformLength = true; });
     list.change("  no roulette", [](Settings& s) { s.roulette = 0.0f; });
     list.change("  roulette .01", [](Settings& s) { s.roulette = 0.01f; });
     list.change("  roulette .03", [](Settings& s) { s.roulette = 0.03f; });
@@ -118,16 +115,17 @@ Variant coarseTable(Mode mode) {
     coarse.log2ExcessPerOctave = 0;
     coarse.log2DepthPerOctave = 0;
     const Settings settings = darts::published(mode);
-    return {"published, coarse table", [settings](const Case&) { return settings; }, {}, false, coarse};
+    return {"published, coarse table", [settings](const Case&) { return settings; }, {}, false, {true, false}, coarse};
 }
 
 } // namespace
 
 std::vector<Variant> pathVariants() {
     List list;
-    list.add("A plain", unguided(Mode::Path, false), {.13, .04, .13, .12, .2, .23, .05, .73, .25, 2.3, .47});
-    list.add("B elliptical only", unguided(Mode::Path, true),
-             {.43, .69, .72, .76, .99, .78, 1, 1, .42, 1.1, .85, .56, .25});
+    list.parts = {.controlVertices = false, .guidedEmission = false};
+    list.add("A plain", unguided(Mode::Path), {.13, .04, .13, .12, .2, .23, .05, .73, .25, 2.3, .47});
+    list.parts.controlVertices = true;
+    list.add("B elliptical only", unguided(Mode::Path), {.43, .69, .72, .76, .99, .78, 1, 1, .42, 1.1, .85, .56, .25});
     list.base = darts::published(Mode::Path);
     list.change("C phase directions", [](Settings& s) { s.direction = Direction::Phase; },
                 {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
@@ -159,7 +157,6 @@ std::vector<Variant> pathVariants() {
     list.base.alpha = 0.1f;
     list.base.greens = Greens::Causal;
     list.base.proposals = Proposals::MixedUniform;
-    list.base.overlap = true;
     list.change("R1", [](Settings&) {}, {1880, 126, 374, 136, 1950, 401, 296, .9, .23, 354, 3.6, 164, 33, 15, 4});
     list.change("  a.02", [](Settings& s) { s.alpha = 0.02f; });
     list.change("  a.05", [](Settings& s) { s.alpha = 0.05f; });
@@ -170,7 +167,6 @@ std::vector<Variant> pathVariants() {
         "  a1", [](Settings& s) { s.alpha = 1.0f; }, {}, true);
     list.change("  photon lobe", [](Settings& s) { s.lobe = Lobe::Photon; });
     list.change("  diffusion", [](Settings& s) { s.greens = Greens::Diffusion; });
-    list.change("  no overlap", [](Settings& s) { s.overlap = false; });
     addDistanceAblations(list);
 
     addResampledDirections(list);
@@ -180,8 +176,10 @@ std::vector<Variant> pathVariants() {
 
 std::vector<Variant> photonVariants() {
     List list;
-    list.add("P0 plain", unguided(Mode::Photon, false), {.11, .02, .05, .08, .15, .05, .03, .02, .04});
-    list.add("P0 elliptical only", unguided(Mode::Photon, true));
+    list.parts = {.controlVertices = false, .guidedEmission = false};
+    list.add("P0 plain", unguided(Mode::Photon), {.11, .02, .05, .08, .15, .05, .03, .02, .04});
+    list.parts.controlVertices = true;
+    list.add("P0 elliptical only", unguided(Mode::Photon));
     list.base = darts::published(Mode::Photon);
     list.change("P1 phase directions", [](Settings& s) { s.direction = Direction::Phase; },
                 {1, 1, 1, 1, 1, 1, 1, 1, 1});
@@ -189,6 +187,7 @@ std::vector<Variant> photonVariants() {
     list.variants.push_back(coarseTable(Mode::Photon));
 
     list.base = boundedOnly(Mode::Photon);
+    list.parts.guidedEmission = true;
     list.change("P2 bounded", [](Settings& s) { s.direction = Direction::Phase; },
                 {.67, .88, .43, .13, .72, 1.2, .69, 1.1, .87});
     list.change(
@@ -203,22 +202,15 @@ std::vector<Variant> photonVariants() {
     list.change(
         "P4 a1", [](Settings& s) { s.alpha = 1.0f; }, {6.8, 1.0, 3.0, 4.3, 1.3, 4.1, 9.7, 0, 2.5}, true);
     list.change("  path lobe", [](Settings& s) { s.lobe = Lobe::Path; }, {6.8, .88, 2.1, 3.7, 1.4, 5.1, 20, 0, 2.3});
-    list.change("  unguided emission", [](Settings& s) { s.guideEmission = false; });
+    list.parts.guidedEmission = false;
+    list.change("  unguided emission", [](Settings&) {});
+    list.parts.guidedEmission = true;
     list.change("  causal", [](Settings& s) { s.greens = Greens::Causal; });
-    list.change("  overlap", [](Settings& s) { s.overlap = true; });
-    list.change("  causal overlap mixed",
-                [](Settings& s) {
-                    s.greens = Greens::Causal;
-                    s.overlap = true;
-                    s.proposals = Proposals::MixedUniform;
-                },
-                {7.1, .78, 2.3, 4.2, 3.2, 4.6, 38, 0, 2.2});
     addDistanceAblations(list);
 
     list.base.direction = Direction::Ris;
     list.base.directionCandidates = 4;
     list.base.greens = Greens::Causal;
-    list.base.overlap = true;
     list.base.proposals = Proposals::MixedUniform;
     list.change(
         "RIS M=4", [](Settings&) {}, {5.3, .61, 1.8, 7.0, 4.9, 3.1, 26, 0, 1.6}, true);

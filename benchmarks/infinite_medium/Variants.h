@@ -2,6 +2,7 @@
 // The samplers compared: the study's variants, as far as the library's switches express them.
 
 #include "Cases.h"
+#include "Walk.h"
 
 #include "darts/EdaTable.h"
 
@@ -19,6 +20,7 @@ struct Variant {
     std::vector<double> study{};
     /// Its mean serves as the reference of the others: finite variance in every case.
     bool reference = false;
+    Parts parts{};
     /// Of the EDA table, when not the library's own.
     std::optional<darts::EdaResolution> table{};
 };

@@ -15,8 +15,18 @@ struct Route {
     int mostScatterings = std::numeric_limits<int>::max();
 };
 
+/// What the walk leaves to plain sampling, or does not do.
+struct Parts {
+    bool controlVertices = true;
+    bool guidedEmission = true;
+};
+
 /// The method's reading of two formulas that were published with errors; tests put those in its place.
 struct DerivedForm {
+    [[nodiscard]] static darts::ConnectionSample connection(const darts::Guide& guide, const darts::Residual& residual,
+                                                            float u) {
+        return guide.sampleConnection(residual, u);
+    }
     /// What bounds and shapes distances: the latest arrival.
     [[nodiscard]] static const darts::Residual& distanceRange(const darts::Residual& residual,
                                                               const darts::ConnectionSample&) {
@@ -40,15 +50,16 @@ struct LastScattering {
 template <typename Form = DerivedForm>
 class Walk {
   public:
-    Walk(const darts::Guide& guide, const Route& route)
-        : guide_(guide), route_(route), sigmaS_(guide.medium().sigmaS.x), sigmaT_(guide.medium().sigmaT().x) {}
+    Walk(const darts::Guide& guide, const Route& route, const Parts& parts = {})
+        : guide_(guide), route_(route), parts_(parts), sigmaS_(guide.medium().sigmaS.x),
+          sigmaT_(guide.medium().sigmaT().x) {}
 
     /// Along a given ray, as a receiver's: use(LastScattering) for every connection. Returns the number of rays.
     template <typename Random, typename Use>
     int fromRay(const darts::Vec3& direction, Random&& random, Use&& use) const {
         State state = first(1.0f);
         if (!state.residual.alive()) return 0;
-        const auto connection = guide_.sampleConnection(state.residual, random());
+        const auto connection = Form::connection(guide_, state.residual, random());
         state.direction = direction;
         const float h = oneMinusCosine(direction, state.residual.axis);
         return run(state, connection, h, random, use);
@@ -59,9 +70,9 @@ class Walk {
         const darts::HenyeyGreenstein isotropic{{0, 0, 1}, 0.0f};
         State state = first(4.0f * darts::Pi);
         if (!state.residual.alive()) return 0;
-        const auto connection = guide_.sampleConnection(state.residual, random());
+        const auto connection = Form::connection(guide_, state.residual, random());
         darts::DirectionSample sample;
-        if (guide_.settings().guideEmission) {
+        if (parts_.guidedEmission) {
             sample = guide_.sampleDirection(state.residual, connection, isotropic, random);
         } else {
             const float u = random(), v = random();
@@ -99,8 +110,8 @@ class Walk {
     int run(State state, darts::ConnectionSample connection, float h, Random&& random, Use&& use) const {
         constexpr float Surface = std::numeric_limits<float>::infinity();
         for (int order = 1;; ++order) {
-            if (guide_.settings().elliptical) connect(state, connection, h, order, use);
-            if (order == route_.mostScatterings && guide_.settings().elliptical) return order;
+            if (parts_.controlVertices) connect(state, connection, h, order, use);
+            if (order == route_.mostScatterings && parts_.controlVertices) return order;
             const float throughput = state.throughput;
             const auto step =
                 guide_.sampleDistance(Form::distanceRange(state.residual, connection), {state.direction, h}, Surface,
@@ -111,13 +122,13 @@ class Walk {
             state.elapsed += double(step.distance);
             state.residual = residualAt(state);
             if (!state.residual.alive()) return order;
-            if (!guide_.settings().elliptical) connectByChance(state, order, use);
+            if (!parts_.controlVertices) connectByChance(state, order, use);
             if (order == route_.mostScatterings) return order;
             const float survival = guide_.survival(
                 state.residual.way, guide_.logUsefulness(state.residual, state.throughput), state.usefulnessAtStart);
             if (survival < 1 && !(random() < survival)) return order;
             const darts::HenyeyGreenstein scatterer{state.direction, guide_.medium().g};
-            connection = guide_.sampleConnection(state.residual, random());
+            connection = Form::connection(guide_, state.residual, random());
             const auto sample = guide_.sampleDirection(state.residual, connection, scatterer, random);
             if (!(sample.inversePdf > 0)) return order;
             state.throughput *= scatterer.pdf(sample.direction) * sample.inversePdf / survival;
@@ -149,6 +160,7 @@ class Walk {
 
     const darts::Guide& guide_;
     Route route_;
+    Parts parts_;
     float sigmaS_, sigmaT_;
 };
 

@@ -175,7 +175,7 @@ class DirectionSampler {
         const auto about = [&](const auto& lobe) { return use(AboutTarget{lobe, residual.axis}); };
         if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
         // All lengths at once, of which `excess` is the median.
-        if (settings_.knownDensities && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
+        if (settings_.preset == Preset::Best && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
             excess > residual.low)
             return about(GateLobe<float>(C, residual.low, 2.0f * (excess - residual.low)));
         return about(connectionLobe(C, delta));

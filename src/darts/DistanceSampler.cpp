@@ -93,7 +93,7 @@ CandidateDraw DistanceSampler::drawOf(const Residual& residual, const Heading& r
     draw.bound = bound;
     draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
     draw.proposals = settings_.proposals;
-    draw.overlap = settings_.overlap;
+    draw.overlap = settings_.preset == Preset::Best && settings_.greens != Greens::None;
     draw.throughput = throughput;
     draw.medium = &medium_;
     draw.exit = &residual.exit;
@@ -126,7 +126,7 @@ DistanceSample DistanceSampler::sample(const DistanceDensity& density, float sur
 DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
                                        const Vec3& throughput, const DistanceRandom& random) const {
     DistanceSample sample;
-    if (settings_.knownDensities && settings_.bounded)
+    if (settings_.preset == Preset::Best && settings_.bounded)
         return this->sample(density(residual, ray, surface, throughput), surface, random.event, random.choice);
     const Ellipse<float> latest = residual.latest(ray.h);
     const float firstLeg = latest.firstLeg();

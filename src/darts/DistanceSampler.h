@@ -65,7 +65,7 @@ class DistanceSampler {
     /// `surface` is the distance to the first surface, possibly infinite; `throughput` the walk's, for coloured media.
     [[nodiscard]] DistanceSample sample(const Residual& residual, const Heading& ray, float surface,
                                         const Vec3& throughput, const DistanceRandom& random) const;
-    /// The density of sample(), where Settings::knownDensities is on.
+    /// The density of sample(), of Preset::Best.
     [[nodiscard]] DistanceDensity density(const Residual& residual, const Heading& ray, float surface,
                                           const Vec3& throughput) const;
     /// A draw by it; `event` and `choice` are uniform in [0, 1).

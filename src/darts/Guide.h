@@ -54,12 +54,11 @@ class Guide {
     /// `edaTable`: for Direction::Eda, instead of the one that is built (about 0.2 s) and shared by guides in media of
     /// one albedo and g.
     Guide(const Settings& settings, const Medium& medium, std::shared_ptr<const EdaTable> edaTable = nullptr)
-        : settings_(settings), medium_(medium),
-          connectionSigmaT_(settings.uniformLength ? 0.0f : smallest(medium.sigmaT())),
+        : settings_(settings), medium_(medium), connectionSigmaT_(smallest(medium.sigmaT())),
           meanSigmaA_(mean(medium.sigmaA)), meanSigmaS_(mean(medium.sigmaS)), distance_(settings, medium),
           direction_(settings, medium, std::move(edaTable)) {
         // Two turns within the peak, whose width is 1 - cos = (1 - g)^2 / 2 g, cost about this length a mean free path.
-        if (settings.knownDensities && medium.g >= LeastPeak)
+        if (settings.preset == Preset::Best && medium.g >= LeastPeak)
             needle_ = (1.0f - medium.g) * (1.0f - medium.g) / (2.0f * medium.g * mean(medium.sigmaT()));
     }
 
@@ -141,7 +140,7 @@ class Guide {
     }
 
     /// The next direction; see DirectionSampler. Without lengthFirst the lobe is that of the median length, or of the
-    /// latest arrival (Settings::knownDensities).
+    /// latest arrival (Preset::Published).
     template <typename Scatterer, typename Random>
     [[nodiscard]] DirectionSample sampleDirection(const Residual& residual, const ConnectionSample& connection,
                                                   const Scatterer& scatterer, Random&& random) const {
@@ -209,7 +208,7 @@ class Guide {
     }
     /// Camera paths whose directions are drawn first, for all lengths: these suit the direction afterwards.
     [[nodiscard]] bool suitsDirection(const Residual& residual) const {
-        return settings_.knownDensities && settings_.lobe == Lobe::Path && !settings_.lengthFirst &&
+        return settings_.preset == Preset::Best && settings_.lobe == Lobe::Path && !settings_.lengthFirst &&
                residual.way == Way::Through && residual.width > 0 && !(needle_ > 0);
     }
     [[nodiscard]] LengthAlong<float> lengthsAlong(const Residual& residual, float h) const {
@@ -237,7 +236,7 @@ class Guide {
     }
     [[nodiscard]] float directionExcess(const Residual& residual, const ConnectionSample& connection) const {
         if (settings_.lengthFirst) return connection.excess;
-        if (!settings_.knownDensities || !(residual.width > 0)) return residual.excess;
+        if (settings_.preset == Preset::Published || !(residual.width > 0)) return residual.excess;
         return residual.low + lengths(residual).median();
     }
     /// Density per length of sampleResponse().

@@ -19,7 +19,7 @@ struct Scheme {
     std::optional<Proposals> proposals;
     std::optional<int> candidates;
     std::optional<float> alpha, roulette;
-    std::optional<bool> bounded, lengthFirst, overlap, guideEmission;
+    std::optional<bool> bounded, lengthFirst;
 
     /// Settings for a medium of mean cosine g; `asksDistance` and `asksDirection` are the medium's own wishes (type
     /// guided_homo; phase function ida).
@@ -30,7 +30,6 @@ struct Scheme {
             s = plainFlights(s);
             s.bounded = false;
         }
-        s.elliptical = elliptical;
         const auto set = [](auto& field, const auto& value) {
             if (value) field = *value;
         };
@@ -43,8 +42,6 @@ struct Scheme {
         set(s.rouletteOut, roulette);
         set(s.bounded, bounded);
         set(s.lengthFirst, lengthFirst);
-        set(s.overlap, overlap);
-        set(s.guideEmission, guideEmission);
         return s;
     }
 };
@@ -79,8 +76,6 @@ void readDistances(const Block& block, Scheme& scheme) {
                                                    {"equiangular", Proposals::Equiangular}});
     scheme.candidates = candidateCount(block);
     scheme.bounded = switches::flag(block, "bounded", "distances end where no path can be in time any more");
-    scheme.overlap =
-        switches::flag(block, "overlap", "distances are shaped by the part of the gate still in reach, too");
 }
 
 template <typename Block>
@@ -96,7 +91,6 @@ void readDirections(const Block& block, Scheme& scheme) {
     scheme.alpha = switches::fraction(block, "alpha", "weight of the phase function against the guide", 1e6);
     scheme.lengthFirst = switches::flag(block, "length_first",
                                         "published: a connection's length is drawn before the direction, shaping it");
-    scheme.guideEmission = switches::flag(block, "guide_emission", "directions of emission are guided too");
 }
 
 /// What shapes resampling has no effect where densities are known.

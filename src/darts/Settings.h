@@ -22,6 +22,17 @@ struct Medium {
     }
 };
 
+/// Whose sampler it is.
+enum class Preset {
+    /// He et al. 2024: distances are resampled from candidates by the light still to arrive, directions suit the
+    /// longest length, what an emitter sends is not guided.
+    Published,
+    /// Every draw has a density that is known: distances are log-linear (LogLinearDistance), by the light still to
+    /// arrive times the part of the gate that is still reachable; directions suit the median length, and half of the
+    /// lengths forward peaks (g >= 0.5). What an emitter sends is guided as well.
+    Best,
+};
+
 /// What the walk's target is: the emitter, connected to at once (path tracing), or the camera, for which control
 /// vertices are stored as photons.
 enum class Mode { Path, Photon };
@@ -50,29 +61,23 @@ enum class Proposals {
 enum class Lobe { Path, Photon };
 
 struct Settings {
+    Preset preset = Preset::Best;
     Mode mode = Mode::Path;
 
     Direction direction = Direction::Connection;
     Lobe lobe = Lobe::Path;
     float alpha = 0.1f;          ///< share of the phase function: gamma = (C/S) / (C/S + alpha) is the guide's
     int directionCandidates = 4; ///< of Direction::Ris: half phase function, half lobe; even, at most 8
-    bool lengthFirst = true;     ///< the connection's length is drawn before the direction, and shapes it
-    bool guideEmission = true;   ///< the emitted direction is guided as well
+    bool lengthFirst = false;    ///< the connection's length is drawn before the direction, and shapes it
 
     bool bounded = true; ///< distances end where no path can be in time any more
-    /// Draws have densities that are known: distances are log-linear (LogLinearDistance) instead of resampled,
-    /// directions suit the median length instead of the longest one, and half of the lengths forward peaks (g >= 0.5).
-    bool knownDensities = false;
     Greens greens = Greens::Causal;
     Proposals proposals = Proposals::MixedUniform;
-    int candidates = 8;  ///< 1, 4, 8 or 16
-    bool overlap = true; ///< usefulness includes the part of the gate that is still reachable
+    int candidates = 8; ///< of Preset::Published: 1, 4, 8 or 16
 
-    bool elliptical = true;     ///< control vertices at all
-    bool uniformLength = false; ///< connection lengths uniform instead of by transmittance (Jarabo et al. 2014)
-    /// Every draw has a density that is known: what finds a path can be weighed against what else does.
+    /// What finds a path can be weighed against what else does: switches leave every density known.
     [[nodiscard]] bool hasDensities() const {
-        return knownDensities && bounded && !lengthFirst && direction != Direction::Ris;
+        return preset == Preset::Best && bounded && !lengthFirst && direction != Direction::Ris;
     }
 
     float roulette = 0.1f;    ///< walks end at random below this part of their first usefulness; 0: never
@@ -83,16 +88,14 @@ struct Settings {
 /// with the phase function, control vertices drawn after the direction.
 inline Settings published(Mode mode) {
     Settings s;
+    s.preset = Preset::Published;
     s.mode = mode;
     s.direction = Direction::Eda;
     s.lobe = mode == Mode::Path ? Lobe::Path : Lobe::Photon;
     s.alpha = 0.5f;
-    s.lengthFirst = false;
-    s.guideEmission = false;
     s.bounded = false;
     s.greens = Greens::Diffusion;
     s.proposals = Proposals::Exponential;
-    s.overlap = false;
     s.roulette = s.rouletteOut = 0.0f;
     return s;
 }
@@ -105,16 +108,13 @@ inline Settings best(Mode mode, float g) {
     const bool peaked = std::abs(g) >= 0.5f;
     Settings s;
     s.mode = mode;
-    s.knownDensities = true;
     s.direction = peaked ? Direction::Product : Direction::Connection;
-    s.lengthFirst = false;
     if (mode == Mode::Photon) {
         s.lobe = Lobe::Photon;
         s.alpha = 0.2f;
         s.roulette = s.rouletteOut = peaked ? 0.1f : 0.3f;
         s.greens = peaked ? Greens::Causal : Greens::Diffusion;
     } else {
-        s.candidates = 16;
         s.roulette = 0.03f;
         s.rouletteOut = 0.3f;
         s.greens = peaked ? Greens::Diffusion : Greens::Causal;
@@ -127,16 +127,6 @@ inline Settings plainFlights(Settings s) {
     s.greens = Greens::None;
     s.proposals = Proposals::Exponential;
     s.candidates = 1;
-    s.overlap = false;
-    return s;
-}
-
-/// The same with nothing but bounds in time: plain flights, the scatterer's own directions, no control vertices.
-inline Settings timeBoundAlone(const Settings& settings) {
-    Settings s = plainFlights(settings);
-    s.direction = Direction::Phase;
-    s.elliptical = false;
-    s.roulette = s.rouletteOut = 0.0f;
     return s;
 }
 

@@ -14,11 +14,10 @@ PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const
         darts::Settings settings =
             scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
         // Directions are guided for the sake of control vertices.
-        if (!medium.scatters() || facts.isExcluded(i) || (!settings.elliptical && !scheme.direction))
+        if (!medium.scatters() || facts.isExcluded(i) || (!scheme.elliptical && !scheme.direction))
             settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
-        guides.plain.emplace_back(darts::timeBoundAlone(settings), coefficients);
         darts::Settings glossy = settings;
         if (!scheme.published) glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
         guides.glossy.emplace_back(glossy, coefficients);

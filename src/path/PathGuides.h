@@ -21,7 +21,6 @@ struct PathGuides {
 
     std::vector<darts::Guide> media;  ///< for flights, and for leaving scatterers and surfaces into it
     std::vector<darts::Guide> glossy; ///< for leaving surfaces without diffuse lobes
-    std::vector<darts::Guide> plain;  ///< bounds in time alone, where refraction hides where light goes
 
     /// Of directions, in use: one for every medium that has one.
     [[nodiscard]] size_t tables() const {

@@ -122,7 +122,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     add("plain paths beside them", balance, {"integrator.darts"}, {counter::PilotPaths});
     add("light through walls", refracted, {"integrator.darts"}, {counter::WaysThroughWalls});
     add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
-    if (guidance.on) transport::WaysOut::plan(scene, settings.policy, true, features);
+    if (guidance.on) transport::WaysOut::plan(scene, settings.policy, features);
     add("light vertices", lightVertices, {"integrator.darts"}, {counter::LightVertexConnections, counter::LightPaths});
     add("reflected light", reflectedLight,
         elementsWithLobe(scene, lobe::GlossyReflection | lobe::SpecularReflection).elements(),

@@ -241,7 +241,7 @@ float StepsToEmitter::surfaceProbability() const {
 
 float StepsToEmitter::controlVertexDensity(float distance) const {
     const darts::Guide& guide = guideOf(start_.region);
-    if (!guide.settings().elliptical || guided_->sensor.gate.delta) return 0.0f;
+    if (!drawsControlVertices() || guided_->sensor.gate.delta) return 0.0f;
     const Vec3f place = start_.ray.at(distance);
     float density = 0.0f;
     if (passage_ == Passage::Untimed) {
@@ -324,12 +324,12 @@ bool StepsToEmitter::survives(PathState& path) {
 
 template <typename Scatterer>
 darts::DirectionSample StepsToEmitter::draw(PathState& path, const darts::Guide& guide, const Scatterer& scatterer) {
-    const bool lengthFirst = guide.settings().lengthFirst, elliptical = guide.settings().elliptical;
+    const bool lengthFirst = guide.settings().lengthFirst;
     path.random.at(path.interactions, Draw::Connection);
     if (lengthFirst) connect(drawConnection(path, guide, residual()));
     path.random.at(path.interactions, Draw::GuidedDirection);
     const darts::DirectionSample sample = sampleDirection(guide, scatterer, [&] { return path.random.next1D(); });
-    if (lengthFirst && elliptical)
+    if (lengthFirst && drawsControlVertices())
         place({guide, sample.h, path.time, sharesConnections()});
     else
         startWay();

@@ -81,9 +81,10 @@ class StepsToEmitter : public transport::GuidedSteps {
     [[nodiscard]] const PathTarget& target() const { return target_; }
     [[nodiscard]] const transport::TimeWindow& window() const { return guided_->windows[window_]; }
     [[nodiscard]] const darts::Guide& guideOf(const Region& region) const {
-        const bool connects = residual().exit.connects;
-        return (connects ? guided_->guides.media : guided_->guides.plain)[size_t(region.medium)];
+        return guided_->guides.media[size_t(region.medium)];
     }
+    /// Whether flights have control vertices.
+    [[nodiscard]] bool drawsControlVertices() const { return guided_->settings.policy.sampling.elliptical; }
     /// The guide of the medium before a surface all of whose lobes are smooth and reflect; none elsewhere. `back` is
     /// the way there, turned round, through `region`.
     [[nodiscard]] const darts::Guide* guideFor(const transport::Vertex& vertex, const Vec3f& back,

@@ -89,7 +89,7 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
     if (!guidance.on) return;
     features.describe("plain light paths beside guided ones", sideBySide.on, sideBySide.reason, darts,
                       {counter::PlainBesideGuided});
-    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, false, features);
+    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, features);
     const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
     features.describe("light towards bodies", bodies > 0,
                       bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +

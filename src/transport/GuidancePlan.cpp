@@ -13,7 +13,7 @@ std::string guidanceObstacle(const Scene& scene, const Policy& policy, const Sce
 darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mode mode, bool aims) {
     darts::Settings settings = policy.sampling.settings(mode, medium.phase.g(), medium.guided, medium.guidedPhase);
     // Directions of camera paths are guided for the sake of control vertices.
-    const bool connects = mode == darts::Mode::Photon || settings.elliptical || policy.sampling.direction;
+    const bool connects = mode == darts::Mode::Photon || policy.sampling.elliptical || policy.sampling.direction;
     if (!aims || !connects) settings.direction = darts::Direction::Phase;
     if (!aims) settings.greens = darts::Greens::None;
     return settings;

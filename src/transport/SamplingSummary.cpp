@@ -18,7 +18,7 @@ std::string distancesOf(const darts::Settings& settings) {
     if (settings.greens == darts::Greens::None)
         return settings.bounded ? "by transmittance up to the bound in time" : "by transmittance";
     const std::string light = "by the light still to arrive in time";
-    return (settings.knownDensities ? light : "resampled " + light) +
+    return (settings.preset == darts::Preset::Best ? light : "resampled " + light) +
            (settings.greens == darts::Greens::Diffusion ? " (diffusion)" : " (causal)");
 }
 

@@ -43,7 +43,7 @@ std::unique_ptr<const WaysOut> WaysOut::make(const Scene& scene, const Policy& p
     return waysOut->any() ? std::move(waysOut) : nullptr;
 }
 
-void WaysOut::plan(const Scene& scene, const Policy& policy, bool straightOnly, Features& features) {
+void WaysOut::plan(const Scene& scene, const Policy& policy, Features& features) {
     const auto waysOut = make(scene, policy);
     for (size_t i = 0; i < scene.media.size(); ++i) {
         const Medium& medium = scene.media[i];
@@ -51,7 +51,7 @@ void WaysOut::plan(const Scene& scene, const Policy& policy, bool straightOnly, 
         const std::string name =
             "model of " + (medium.name.empty() ? "#" + std::to_string(i) : "'" + medium.name + "'");
         features.describe(name, true,
-                          waysOut                  ? waysOut->describe(int(i), straightOnly)
+                          waysOut                  ? waysOut->describe(int(i))
                           : policy.followsBodies() ? "infinite medium: light passes no boundary of a scattering medium"
                                                    : "infinite medium: the preset or bodies leaves boundaries alone");
     }
@@ -62,15 +62,14 @@ bool WaysOut::any() const {
 }
 
 bool WaysOut::isThin(const Body& body) {
-    return body.box.size().length() * body.reducedSigmaT < tuning::ThinBody;
+    return body.box.size().length() * body.reducedSigmaT < tuning::ThinDepth;
 }
 
 void WaysOut::look(const Start& start, const Region& region, const Aim& aim, darts::Residual& residual,
                    uint64_t& rays) const {
     if (region.medium < 0 || residual.C == 0.0f) return;
     const Body& body = bodies_[size_t(region.medium)];
-    if (!body.ends() || (aim.medium == region.medium && body.insides == 1)) return;
-    if ((residual.C + residual.excess) * body.reducedSigmaT < tuning::ShortRest || isThin(body)) return;
+    if (!body.ends() || isThin(body) || (aim.medium == region.medium && body.insides == 1)) return;
     if (body.primitive) {
         const Body::Exit exit = body.leave(start.position, darts::to<Vec3f>(residual.axis));
         const Bsdf& bsdf = *body.primitive->bsdfs[0];
@@ -78,10 +77,8 @@ void WaysOut::look(const Start& start, const Region& region, const Aim& aim, dar
         return leave({exit, relativeIndex(bsdf), passesStraight(bsdf), body.primitive->outside, margin}, start.position,
                      region, aim, residual, rays);
     }
-    const bool entering = start.clear > 0.0f;
-    const Vec3f position =
-        entering ? start.position + start.ahead * std::max(tuning::EntryDepth / body.reducedSigmaT, start.clear)
-                 : start.position;
+    // From the boundary itself the way out of a body that the walk enters would miss it.
+    const Vec3f position = start.position + start.ahead * start.clear;
     const Vec3f toAim = aim.position - position;
     const float distance = toAim.length();
     const Vec3f direction = toAim / distance;
@@ -176,7 +173,7 @@ void WaysOut::lookBeyond(const Boundary& boundary, const Ray& way, const Region&
     residual.exit.outerSpeed = slow / std::max(residual.C - way.tMin, 1e-20f);
 }
 
-std::string WaysOut::describe(int medium, bool straightOnly) const {
+std::string WaysOut::describe(int medium) const {
     const Body& body = bodies_[size_t(medium)];
     const auto nameOf = [&](int primitive) {
         const std::string& name = scene_.primitives[size_t(primitive)].name;
@@ -186,9 +183,7 @@ std::string WaysOut::describe(int medium, bool straightOnly) const {
     if (isThin(body)) return "infinite medium: its bodies are too thin for light to diffuse in";
     std::string text = "infinite medium inside";
     if (body.straight >= 0) text += ", half-space where light must get out through " + nameOf(body.straight);
-    if (body.refracting >= 0)
-        text += (straightOnly ? ", bounds in time alone behind " : ", half-space with internal reflection behind ") +
-                nameOf(body.refracting);
+    if (body.refracting >= 0) text += ", half-space with internal reflection behind " + nameOf(body.refracting);
     return text;
 }
 

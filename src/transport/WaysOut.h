@@ -40,8 +40,8 @@ class WaysOut {
     /// Null where all media may be taken for infinite: not asked for, or no scattering medium ends at a boundary that
     /// light passes.
     static std::unique_ptr<const WaysOut> make(const Scene& scene, const Policy& policy);
-    /// Says in the plan which models the media get; `straightOnly`: behind refracting walls there is none.
-    static void plan(const Scene& scene, const Policy& policy, bool straightOnly, Features& features);
+    /// Says in the plan which models the media get.
+    static void plan(const Scene& scene, const Policy& policy, Features& features);
 
     /// Chooses the model for what lies between the start of a flight through `region` and the aim: residual.way, and
     /// residual.exit but for its surplus. Adds the rays traced to `rays`.
@@ -53,7 +53,7 @@ class WaysOut {
     /// Light hardly scatters twice on its way across.
     [[nodiscard]] static bool isThin(const Body& body);
     /// The models that vertices in a medium get, in words.
-    [[nodiscard]] std::string describe(int medium, bool straightOnly) const;
+    [[nodiscard]] std::string describe(int medium) const;
     /// Where the straight way leaves, and what is beyond.
     struct Boundary {
         Body::Exit exit;

@@ -112,7 +112,7 @@ void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar
 /// The preset, but for distances resampled from candidates.
 Settings resampling(Mode mode) {
     Settings settings = best(mode, 0.0f);
-    settings.knownDensities = false;
+    settings.preset = Preset::Published;
     return settings;
 }
 
@@ -137,12 +137,7 @@ TEST(DistanceSampler, ThePublishedSamplerAndItsSwitchesAreUnbiased) {
     uint64_t seed = 900;
     for (const DistanceCase& c : DistanceCases) {
         if (c.S < 1.1 * c.C || c.medium.sigmaS.x < 1e-3f) continue; // nearly all its candidates are too late there
-        for (const bool overlap : {false, true})
-            for (const bool scalar : {false, true}) {
-                Settings settings = published(Mode::Path);
-                settings.overlap = overlap;
-                expectUnbiased(c, settings, scalar, ++seed);
-            }
+        for (const bool scalar : {false, true}) expectUnbiased(c, published(Mode::Path), scalar, ++seed);
     }
 }
 
@@ -150,14 +145,12 @@ TEST(DistanceSampler, MeansMatchQuadratureByDensitiesThatAreKnown) {
     uint64_t seed = 2000;
     for (const DistanceCase& c : DistanceCases)
         for (const Greens greens : {Greens::None, Greens::Diffusion, Greens::Causal})
-            for (const bool overlap : {false, true})
-                for (const bool scalar : {false, true}) {
-                    Settings settings = best(Mode::Path, 0.0f);
-                    settings.greens = greens;
-                    settings.overlap = overlap;
-                    SCOPED_TRACE(testing::Message() << "greens " << int(greens) << " overlap " << overlap);
-                    expectUnbiased(c, settings, scalar, ++seed);
-                }
+            for (const bool scalar : {false, true}) {
+                Settings settings = best(Mode::Path, 0.0f);
+                settings.greens = greens;
+                SCOPED_TRACE(testing::Message() << "greens " << int(greens));
+                expectUnbiased(c, settings, scalar, ++seed);
+            }
 }
 
 /// What a draw says of itself is what anyone else would say of it.
@@ -237,7 +230,7 @@ TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
         Settings settings = best(Mode::Path, float(g));
         settings.greens = s.next1D() < 0.5f ? Greens::Causal : Greens::Diffusion;
         if (s.next1D() < 0.2f) settings = published(Mode::Path);
-        if (s.next1D() < 0.4f) settings.knownDensities = false;
+        if (s.next1D() < 0.4f) settings.preset = Preset::Published;
         const DistanceSampler sampler(settings, medium);
         const Residual residual = Residual::of({0, 0, float(C)}, {S * (1.0 - 1e-7), S});
         const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(s, 1e-12, 2.0));

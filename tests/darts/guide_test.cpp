@@ -66,7 +66,6 @@ TEST(Guide, OnceScatteredLightMatchesItsClosedForm) {
                     Settings settings = best(mode, 0.0f);
                     settings.direction = direction;
                     settings.lengthFirst = lengthFirst;
-                    settings.uniformLength = mode == Mode::Photon && lengthFirst;
                     expectOnceScattered(settings, geometry, ++seed);
                 }
 }

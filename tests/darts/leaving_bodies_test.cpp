@@ -170,7 +170,7 @@ TEST(DistancesOut, NothingIsRareBehindRefraction) {
 TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
     const auto spread = [](bool logLinear) {
         Settings settings = best(Mode::Path, 0.0f);
-        settings.knownDensities = logLinear;
+        settings.preset = logLinear ? Preset::Best : Preset::Published;
         const DistanceSampler sampler(settings, thickMedium(0.0f));
         const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
         double squares = 0.0;

@@ -131,7 +131,7 @@ TEST(LogLinearDistance, ByTimeAloneIsTheTruncatedExponential) {
 /// Plain flights with bounds in time: every draw has the same weight.
 TEST(LogLinearDistance, OfPlainFlightsHasNoNoise) {
     const Medium medium{{0.2f, 0.2f, 0.2f}, {1.8f, 1.8f, 1.8f}, 0.0f};
-    const DistanceSampler sampler(timeBoundAlone(best(Mode::Path, 0.0f)), medium);
+    const DistanceSampler sampler(plainFlights(best(Mode::Path, 0.0f)), medium);
     const Residual residual = Residual::of({0, 0, 1}, {1.4, 1.5});
     const float end = residual.latest(0.4f).firstLeg();
     for (int i = 0; i < 100; ++i) {

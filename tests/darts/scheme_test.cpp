@@ -88,7 +88,7 @@ TEST(Scheme, PresetsAndFlags) {
     EXPECT_EQ(published.scheme.settings(Mode::Path, 0.0f, true, false).direction, Direction::Phase);
     const Settings peaked = Reading(Fields{{"darts", "best"}}).scheme.settings(Mode::Photon, 0.7f, true, true);
     EXPECT_EQ(peaked.direction, Direction::Product);
-    EXPECT_TRUE(peaked.knownDensities && !peaked.lengthFirst);
+    EXPECT_TRUE(peaked.preset == Preset::Best && !peaked.lengthFirst);
 }
 
 TEST(Scheme, EverySwitchWorksAlone) {
@@ -106,8 +106,6 @@ TEST(Scheme, EverySwitchWorksAlone) {
     EXPECT_EQ(settings({{"roulette", 0.25}}).roulette, 0.25f);
     EXPECT_FALSE(settings({{"bounded", false}}).bounded);
     EXPECT_FALSE(settings({{"length_first", false}}).lengthFirst);
-    EXPECT_FALSE(settings({{"overlap", false}}).overlap);
-    EXPECT_FALSE(settings({{"guide_emission", false}}).guideEmission);
     const Settings plain = settings({{"distance", "plain"}});
     EXPECT_EQ(plain.greens, Greens::None);
     EXPECT_EQ(plain.candidates, 1);
@@ -123,7 +121,7 @@ TEST(Scheme, SwitchesOfResamplingWorkWithThePublishedPreset) {
     EXPECT_EQ(settings({{"direction", "ris"}}).direction, Direction::Ris);
     EXPECT_EQ(settings({{"proposals", "equiangular"}}).proposals, Proposals::Equiangular);
     EXPECT_EQ(settings({{"candidates", 16.0}}).candidates, 16);
-    EXPECT_EQ(settings({{"candidates", 16.0}}).knownDensities, false);
+    EXPECT_EQ(settings({{"candidates", 16.0}}).preset, Preset::Published);
     EXPECT_TRUE(settings({{"length_first", true}}).lengthFirst);
 }
 
@@ -143,7 +141,7 @@ TEST(Scheme, SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout) {
             EXPECT_EQ(settings.proposals, preset.proposals);
             EXPECT_EQ(settings.direction, preset.direction);
             EXPECT_EQ(settings.lengthFirst, preset.lengthFirst);
-            EXPECT_TRUE(settings.knownDensities);
+            EXPECT_EQ(settings.preset, Preset::Best);
         }
     };
     expectIgnored("candidates", 16.0, "has no effect with the preset best, whose distances");

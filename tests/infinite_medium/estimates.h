@@ -42,7 +42,7 @@ std::array<Estimate, Orders> radianceByOrder(const darts::Settings& settings, co
                                              const Route& route, const darts::Vec3& direction, uint64_t paths,
                                              uint64_t seed) {
     const darts::Guide guide(settings, medium);
-    const Walk<Form> walk(guide, route);
+    const Walk<Form> walk(guide, route, {.guidedEmission = settings.preset == darts::Preset::Best});
     return orderMeans(paths, seed, [&](auto&& random, auto&& add) {
         walk.fromRay(direction, random,
                      [&](const LastScattering& last) { add(last.order, radiance(last, medium, route.gate)); });
@@ -55,7 +55,7 @@ template <typename Form = DerivedForm>
 std::array<Estimate, Orders> gatheredByOrder(const darts::Settings& settings, const darts::Medium& medium,
                                              const Route& route, float kernelRadius, uint64_t paths, uint64_t seed) {
     const darts::Guide guide(settings, medium);
-    const Walk<Form> walk(guide, route);
+    const Walk<Form> walk(guide, route, {.guidedEmission = settings.preset == darts::Preset::Best});
     const double width = route.gate.end - route.gate.begin;
     return orderMeans(paths, seed, [&](auto&& random, auto&& add) {
         walk.fromEmitter(random, [&](const LastScattering& last) {

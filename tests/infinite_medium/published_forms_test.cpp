@@ -9,8 +9,12 @@
 namespace infinite_medium::test {
 namespace {
 
-/// The target length is drawn anew at every vertex, and what is not in time for it gets no weight.
+/// The target length is drawn anew at every vertex, evenly, and what is not in time for it gets no weight.
 struct FreshTarget : DerivedForm {
+    [[nodiscard]] static darts::ConnectionSample connection(const darts::Guide&, const darts::Residual& residual,
+                                                            float u) {
+        return {residual.low + residual.width * u, residual.width};
+    }
     [[nodiscard]] static darts::Residual distanceRange(const darts::Residual& residual,
                                                        const darts::ConnectionSample& connection) {
         darts::Residual aimed = residual;
@@ -56,11 +60,9 @@ TEST(PublishedForms, HaveTheBiasThatWasFoundAndTheDerivedFormsHaveNone) {
         independent.proposals = darts::Proposals::MixedQuarter;
         independent.greens = darts::Greens::Diffusion;
         const darts::Settings settings = darts::best(darts::Mode::Path, 0.0f);
-        darts::Settings uniform = settings; // as the published code draws its targets
-        uniform.uniformLength = true;
         const Estimate truth = mean<DerivedForm>(finding.medium, independent, finding.paths, 31);
         const Estimate derived = bias(mean<DerivedForm>(finding.medium, settings, finding.paths, 32), truth);
-        const Estimate fresh = bias(mean<FreshTarget>(finding.medium, uniform, finding.paths, 33), truth);
+        const Estimate fresh = bias(mean<FreshTarget>(finding.medium, settings, finding.paths, 33), truth);
         const Estimate inverted = bias(mean<InvertedRatio>(finding.medium, settings, finding.paths, 34), truth);
         EXPECT_NEAR(derived.mean, 0, 4.5 * derived.error);
         EXPECT_NEAR(fresh.mean, finding.freshTarget, finding.tolerance + 4.5 * fresh.error);

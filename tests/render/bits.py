@@ -159,8 +159,7 @@ def lights():
     there = facing(WHERE, (0, 0, 0), 0.6)
     yield lit("lamps-of-all-shapes", "volumes", lamp("quad", there, 0, "fog", power={**CHECKER, "on_color": [60, 20, 5]}),
               lamp("disk", facing((-1, 1, 1), (0, 0, 0), 0.4), 1.0, "fog", power=[40, 30, 20], cone_angle=40),
-              lamp("cube", at(1.1, -1, 1, 0.4, 30), 20.0, "fog"), lamp("mesh", at(-1, -1, 1, 0.3), [5, 20, 20], "fog", file="ball.obj"),
-              darts={"guide_emission": True})
+              lamp("cube", at(1.1, -1, 1, 0.4, 30), 20.0, "fog"), lamp("mesh", at(-1, -1, 1, 0.3), [5, 20, 20], "fog", file="ball.obj"))
     yield lit("point-and-spot", "balls", lamp("point", at(-1, -1, 1), 0, "fog", power=[5, 20, 40]),
               lamp("spot", looking((1.6, 0.6, 0), (0, 0, 0)), 8.0, "fog", cone_angle=35, edge_angle=10), darts={"greens_function": "causal"})
     yield lit("lasers", "hypervolumes", lamp("collimated", looking((1.5, 0.3, 0), (0, 0.3, 0)), 60.0, "fog", radius=0.1),
@@ -181,7 +180,7 @@ def sensors():
     things = [ball(-0.3, 0, 0, 0.3, lambert([0.7, 0.3, 0.2])), body("cube", at(0.4, -0.2, -0.4, 0.5, 30), bsdf=lambert(0.5)),
               bulb(outside="haze")]
     yield Scene("thin-lens", "balls", [haze], things, view(inside="haze", type="thinlens", aperture_size=0.25, focus_distance=4.0,
-                reconstruction_filter="lanczos"), gate(6.0, 7.8), {"length_first": False, "overlap": False})
+                reconstruction_filter="lanczos"), gate(6.0, 7.8), {"length_first": False})
     yield Scene("orthographic", "volumes_balls", [medium("cloud", 4.0)], [body("sphere", at(0, 0, 0, 0.7), "cloud"), bulb()],
                 view(type="orthographic", orthographic_size=0.8), gate(6.0, 7.8), blocks={"film": {"moments": False}})
     discs = [{"position": [x, 0.3, 2.0], "direction": [0.1 * x, 0, -1], "radius": 0.1, "numerical_aperture": aperture}

@@ -64,8 +64,8 @@ TEST(Describe, BlocksWithinOthersStandOnce) {
     for (const char* block : {"scene", "renderer", "output_buffers", "temporal_response", "darts", "transform"})
         EXPECT_EQ(blocks.count(block), 1u) << block;
     for (const char* field : {"preset", "distance", "direction", "greens_function", "candidates", "proposals", "alpha",
-                              "roulette", "bounded", "length_first", "overlap", "guide_emission", "direct_view",
-                              "surface_connections", "single_frames", "bodies", "glossy_sensor_paths"})
+                              "roulette", "bounded", "length_first", "direct_view", "surface_connections",
+                              "single_frames", "bodies", "glossy_sensor_paths"})
         EXPECT_EQ(fieldsOf(all, "darts").count(field), 1u) << field;
 }
 

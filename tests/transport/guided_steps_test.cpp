@@ -14,7 +14,7 @@ const darts::Medium Fog{{0.1f, 0.1f, 0.1f}, {1.0f, 1.0f, 1.0f}, 0.0f};
 
 darts::Guide guideWith(float roulette, darts::Greens greens = darts::Greens::Diffusion) {
     darts::Settings settings;
-    settings.elliptical = settings.lengthFirst = true;
+    settings.lengthFirst = true;
     settings.roulette = roulette;
     settings.greens = greens;
     settings.direction = darts::Direction::Phase;

@@ -20,12 +20,10 @@ PAPER = {
 PARTS = {
     "guided distances": {"distance": "plain"},
     "guided directions": {"direction": "phase"},
-    "guided emission": {"guide_emission": False},
     "length before direction": {"length_first": False},
     "Green's function": {"greens_function": "none"},
     "candidates (1)": {"candidates": 1},
     "flat candidates": {"proposals": "exponential"},
-    "overlap with the gate": {"overlap": False},
     "bounds by time": {"bounded": False},
     "roulette": {"roulette": 0},
     "surface connections": {"surface_connections": False},

@@ -38,8 +38,8 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
 } // namespace
 
 void ControlVertices::sample(const GuidedPath& path, const transport::Ahead& ahead) {
+    if (!path.steps.drawsControlVertices()) return;
     const darts::Guide& guide = path.steps.guideOf(path.state.region);
-    if (!guide.settings().elliptical) return;
     const float h = path.steps.heading().h;
     const auto draw = [&](const darts::Residual& residual) {
         path.state.random.at(path.state.interactions + 1, Draw::FlightConnection);
@@ -54,7 +54,7 @@ void ControlVertices::sample(const GuidedPath& path, const transport::Ahead& ahe
 
 void ControlVertices::sampleUntimed(const GuidedPath& path, const transport::Ahead& ahead) {
     const PathState& state = path.state;
-    if (!path.steps.guideOf(state.region).settings().elliptical) return;
+    if (!path.steps.drawsControlVertices()) return;
     const PathTarget& target = path.target();
     const double speed = double(state.region.speed), low = speed * (path.steps.window().begin - target.start);
     const ShellChord chord = path.steps.controlChord(state.ray, state.region, ahead.reach());
@@ -75,7 +75,7 @@ void ControlVertices::sampleUntimed(const GuidedPath& path, const transport::Ahe
 
 StepsToEmitter::InMedium ControlVertices::ending(const GuidedPath& path, const Medium& medium, float distance) {
     if (path.steps.hasDensities()) return path.steps.inMedium(distance);
-    if (!path.steps.guideOf(path.state.region).settings().elliptical) return {1.0f, 0.0f};
+    if (!path.steps.drawsControlVertices()) return {1.0f, 0.0f};
     const auto control = path.steps.controlVertexPdf(distance);
     return control ? StepsToEmitter::InMedium{ConnectionsFromMedia::density(medium, distance), *control}
                    : StepsToEmitter::InMedium{0.0f, 1.0f};

@@ -218,7 +218,7 @@ void DepositVisitor::connectToSurfaces(const PathState& path, const darts::TimeG
 
 void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ahead, PointList& points) {
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
-        if (!steps.guide().settings().elliptical || !orderCounts(path, 1)) return;
+        if (!steps.guidance().drawsControlVertices() || !orderCounts(path, 1)) return;
         const bool shares = steps.guidance().storesPhotons();
         const auto met = steps.controlVertex(path, ahead, shares && !weighs());
         if (!met) return;
@@ -246,7 +246,7 @@ void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& f
                                    PointList& points) {
     if (!orderCounts(path)) return;
     if constexpr (Guided<std::decay_t<decltype(steps)>>)
-        if (steps.guide().settings().elliptical && !steps.guidance().storesPhotons()) return;
+        if (steps.guidance().drawsControlVertices() && !steps.guidance().storesPhotons()) return;
     const auto weight = [&]() -> Weighed {
         if constexpr (Guided<std::decay_t<decltype(steps)>>) {
             if (weighs()) {
@@ -254,7 +254,7 @@ void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& f
                 return {(1.0f - ending.shareOfControl()) * weigh(ending.logRatio).weight, ending.logRatio};
             }
             // Ordinary photons share with control vertices where sensor paths can fold.
-            if (!steps.guide().settings().elliptical) return {};
+            if (!steps.guidance().drawsControlVertices()) return {};
             return {1.0f - transport::balance(steps.controlVertexPdf(flight.distance).value_or(0.0f),
                                               pdfPhoton(medium, flight.distance))};
         } else {

@@ -7,7 +7,8 @@ PhotonGuidance::PhotonGuidance(const Scene& scene, const transport::Policy& poli
     : view_(scene.camera), sides_(view_.sides()), cameraMedium_(scene.cameraRegion.medium),
       camera_(scene.camera.position()), speed_(double(plan.highestSpeed)),
       slack_(scene.transport.cameraUnwarped ? 0.0 : double(scene.camera.aperture()) / speed_),
-      unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView), storesPhotons_(plan.ordinaryPhotons.on),
+      unwarped_(scene.transport.cameraUnwarped), directView_(plan.directView),
+      drawsControlVertices_(policy.sampling.elliptical), storesPhotons_(plan.ordinaryPhotons.on),
       choosesFrames_(plan.framesOneByOne.on), drawsByResponse_(plan.drawsByResponse),
       meetsDeltaGate_(plan.meetsDeltaGate), darkFrames_(plan.framesOneByOne.on ? plan.darkFrames : 0),
       sensor_(transport::Sensor::of(scene, scene.transport.gate)) {

@@ -36,6 +36,8 @@ class PhotonGuidance {
 
     /// Every sensor path is one straight chain at one speed: control vertices alone are complete.
     [[nodiscard]] bool directView() const { return directView_; }
+    /// Flights have control vertices.
+    [[nodiscard]] bool drawsControlVertices() const { return drawsControlVertices_; }
     /// Ordinary photons share the work with control vertices, by the balance heuristic.
     [[nodiscard]] bool storesPhotons() const { return storesPhotons_; }
     /// Each light path aims at one frame; otherwise at all of them as one gate.
@@ -81,7 +83,8 @@ class PhotonGuidance {
     Vec3f camera_;
     double speed_;
     double slack_; ///< of arrival times, from the aperture
-    bool unwarped_, directView_, storesPhotons_, choosesFrames_, drawsByResponse_, meetsDeltaGate_;
+    bool unwarped_, directView_, drawsControlVertices_, storesPhotons_, choosesFrames_, drawsByResponse_,
+        meetsDeltaGate_;
     int darkFrames_;
     transport::Sensor sensor_;
     darts::FrameSequence frames_;

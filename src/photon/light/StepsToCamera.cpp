@@ -98,7 +98,7 @@ auto StepsToCamera::inMedium(float distance) const -> InMedium {
     if (!guide_) return {};
     InMedium ending{distances_->pdf(distance)};
     const darts::Residual before = darts::Guide::beforeSurface(residual(), heading_.h, reach_);
-    if (rules_.storesVertices && guide_->settings().elliptical && before.alive())
+    if (rules_.storesVertices && guidance_->drawsControlVertices() && before.alive())
         ending.control = guide_->pdfControlVertex(before, heading_.h, distance, guidance_->response(start_.time));
     ending.logRatio = start_.logRatio + logOfQuotient(ending.own + ending.control, plain().pdf(distance));
     return ending;
@@ -156,7 +156,7 @@ std::optional<darts::DirectionSample> StepsToCamera::draw(PathState& path, const
 
 const darts::Guide* StepsToCamera::guideOfEmission(const Region& region) const {
     const darts::Guide* guide = guidance_->guide(region);
-    return guide && guide->settings().guideEmission ? guide : nullptr;
+    return guide && guide->settings().preset == darts::Preset::Best ? guide : nullptr;
 }
 
 std::optional<Way> StepsToCamera::emit(PathState& path, const Emitter& emitter, const SurfaceSample& start) {
