@@ -52,6 +52,10 @@ void PhotonIntegrator::prepare(const SceneFacts& facts, const ProgressToken& wat
     if (plan_.edaTable.on) statistics.add(counter::DirectionTables, photonPass_->guidance()->tables());
     if (plan_.framesOneByOne.on)
         statistics.add(counter::FramesAimedAt, uint64_t(photonPass_->guidance()->frames().frames));
+    if (settings_.boundaryKernels && plan_.volume.on)
+        nearSurfaces_ = std::visit(
+            [&](const auto& p) { return std::unique_ptr<NearSurfaces>(new auto(p.nearSurfaces(settings_, *scene_))); },
+            settings_.primitive);
     rules_ = {settings_.includeSurfaces, plan_.glossyPaths.on};
     if (rules_.glossy) glossy_ = std::make_unique<GlossyLight>(*scene_, facts);
     if (plan_.sideBySide.on) chooseShare(watch, statistics);
@@ -136,8 +140,11 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
         if (store.records.empty()) return;
         Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass), pass.watch);
         const auto endKernels = [this, random = Sampler(pass.seed, RandomStream::Folded, pass.index, 2),
-                                 watch = pass.watch](Selection<typename Primitive::Record>& seen) {
-            if (settings_.boundaryKernels) Primitive::endAtSurfaces(*scene_, random, seen.records, seen.radii, watch);
+                                 watch = pass.watch](Selection<typename Primitive::Record>& seen, bool splatted) {
+            if (!nearSurfaces_) return;
+            KernelEnds ends{*scene_, *nearSurfaces_, random, std::nullopt, watch};
+            if (splatted) ends.view.emplace(scene_->camera);
+            Primitive::endAtSurfaces(ends, seen.records, seen.radii);
         };
         structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->culling(),
                                                                     std::move(store), std::move(radii), endKernels,

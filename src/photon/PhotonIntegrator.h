@@ -66,6 +66,7 @@ class PhotonIntegrator : public Integrator {
     PhotonPlan plan_;
     bool forwardBoundaries_ = true; ///< connections must look through index-matched surfaces
     std::unique_ptr<PhotonPass> photonPass_;
+    std::unique_ptr<NearSurfaces> nearSurfaces_; ///< with settings_.boundaryKernels
     SensorPathRules rules_;
     std::unique_ptr<GlossyLight> glossy_;                   ///< with rules_.glossy
     std::optional<transport::DetectorLight> detectorLight_; ///< where plan_.detectorLight is on

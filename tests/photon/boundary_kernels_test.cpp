@@ -1,5 +1,6 @@
 // Kernels that end at surfaces: what a record brings to all rays of a direction together, in bodies of many shapes.
 
+#include "photon/Tuning.h"
 #include "photon/primitives/beams/BeamGather.h"
 #include "photon/primitives/beams/CutBeams.h"
 #include "photon/primitives/points/FoldedKernels.h"
@@ -137,11 +138,12 @@ class BoundaryKernels : public testing::TestWithParam<BoundaryCase> {
     }
     [[nodiscard]] const Scene& scene() const { return *loaded_.scene; }
     [[nodiscard]] transport::Sensor sensor() const { return transport::Sensor::of(scene(), scene().transport.gate); }
-    const Sampler random_{1, RandomStream::Test, 1, 0};
+    [[nodiscard]] KernelEnds ends() const { return {scene(), surfaces_, Sampler(1, RandomStream::Test, 1, 0)}; }
 
   private:
     test::SceneFile file_{sceneOf(GetParam().body)};
     LoadedScene loaded_ = loadScene(file_.path(), {});
+    NearSurfaces surfaces_{*loaded_.scene, GetParam().radius, 1.0f + 0.5f * tuning::NearPartInRadii};
 };
 
 constexpr double Sphere = 4.0 * double(Pi);
@@ -150,7 +152,7 @@ TEST_P(BoundaryKernels, PointsLoseNoLight) {
     const auto plain = photons();
     auto ended = plain;
     Radii radii = GetParam().radius;
-    foldAtSurfaces(scene(), random_, ended, radii, {});
+    foldAtSurfaces(ends(), ended, radii);
     expectNoLoss(PointGather(scene(), sensor(), ended, radii), PointGather(scene(), sensor(), plain, GetParam().radius),
                  double(plain.size()) / Sphere);
 }
@@ -161,7 +163,7 @@ TEST_P(BoundaryKernels, BeamsLoseNoLight) {
     for (const PhotonBeam& beam : plain) length += double(beam.tEnd);
     auto ended = plain;
     Radii radii = GetParam().radius;
-    cutAtSurfaces(scene(), random_, ended, radii, {});
+    cutAtSurfaces(ends(), ended, radii);
     expectNoLoss(BeamGather(scene(), sensor(), ended, radii), BeamGather(scene(), sensor(), plain, GetParam().radius),
                  SigmaS * length / Sphere);
 }
@@ -217,7 +219,7 @@ TEST_P(KernelsInACube, ErrorsFallAsTheSquareOfTheRadius) {
             exact += std::exp(-2.0 * Fall * depth(photons[i].position)) / Sphere;
         }
         Radii radii = radius;
-        if (ends) foldAtSurfaces(scene(), random_, photons, radii, {});
+        if (ends) foldAtSurfaces(this->ends(), photons, radii);
         const PointGather gather(scene(), sensor(), photons, radii);
         return Rays(scene(), Vec3f(0, 1, 0))
                        .energy(gather, [&](const Vec3f& p) { return std::exp(-Fall * depth(p)); }) /
@@ -242,8 +244,8 @@ TEST_P(KernelsInACube, StayAsTheyAreWhereNoSurfaceIsNear) {
     const auto samePhotons = photons;
     const auto sameBeams = beams;
     Radii ofPhotons = GetParam().radius, ofBeams = GetParam().radius;
-    foldAtSurfaces(scene(), random_, photons, ofPhotons, {});
-    cutAtSurfaces(scene(), random_, beams, ofBeams, {});
+    foldAtSurfaces(ends(), photons, ofPhotons);
+    cutAtSurfaces(ends(), beams, ofBeams);
     for (const Radii* radii : {&ofPhotons, &ofBeams}) {
         EXPECT_TRUE(radii->single());
         EXPECT_TRUE(radii->edges().empty());
@@ -252,6 +254,80 @@ TEST_P(KernelsInACube, StayAsTheyAreWhereNoSurfaceIsNear) {
     ASSERT_EQ(beams.size(), sameBeams.size());
     EXPECT_EQ(std::memcmp(photons.data(), samePhotons.data(), photons.size() * sizeof(Photon)), 0);
     EXPECT_EQ(std::memcmp(beams.data(), sameBeams.data(), beams.size() * sizeof(PhotonBeam)), 0);
+}
+
+/// Many faces, few, flat and curved ones.
+const std::string Crowd =
+    shape("sphere", R"("scale": 0.5, "position": [0.3, 0.2, 0.1])") + ", " +
+    shape("cube", R"("scale": [1.9, 0.05, 1.9], "position": [0, -0.6, 0], "rotation": [0, 20, 5])") + ", " +
+    shape("cube", R"("scale": 0.3, "position": [-0.5, 0.4, 0.2], "rotation": [30, 20, 0])");
+
+struct SurfaceCellsTest : testing::Test {
+    [[nodiscard]] const SceneGeometry& geometry() const { return *loaded.scene->geometry; }
+    /// Calls check(position, radius) for points all over the scene and beyond, some of them about small cells.
+    void everywhere(const std::function<void(const Vec3f&, float)>& check) const {
+        Sampler sampler(1, RandomStream::Test, 2, 0);
+        for (int i = 0; i < 20000; ++i) {
+            const float x = sampler.next1D(), y = sampler.next1D(), z = sampler.next1D();
+            check(Vec3f(3.0f * x - 1.5f, 3.0f * y - 1.5f, 3.0f * z - 1.5f), 0.1f * sampler.next1D());
+        }
+    }
+    test::SceneFile file{sceneOf({"", Crowd, {}})};
+    LoadedScene loaded = loadScene(file.path(), {});
+    NearSurfaces surfaces{*loaded.scene, 0.1f, 1.0f};
+};
+
+TEST_F(SurfaceCellsTest, AnswerAsTheWholeSceneDoesToTheLastBit) {
+    size_t near = 0, alone = 0;
+    everywhere([&](const Vec3f& position, float radius) {
+        const auto [edge, isAlone, faced] = surfaces.nearest(position, radius);
+        const auto direct = geometry().toNearest(position, radius);
+        ASSERT_EQ(edge.exists(), direct.has_value());
+        if (!direct) return;
+        ++near;
+        alone += isAlone ? 1 : 0;
+        ASSERT_EQ(edge.reach, float(direct->length()));
+        ASSERT_EQ(edge.normal, Vec3f(*direct / direct->length()));
+        if (isAlone) {
+            ASSERT_TRUE(surfaces.sees(position, edge.normal * (0.999f * edge.reach), radius));
+        }
+        if (!faced) {
+            ASSERT_FALSE(surfaces.opposite(position, edge, radius).exists());
+        }
+    });
+    EXPECT_GT(near, 500u);
+    EXPECT_GT(alone, 200u);
+    EXPECT_LT(alone, near);
+}
+
+TEST_F(SurfaceCellsTest, NoSurfaceIsNearerThanTheClearance) {
+    everywhere([&](const Vec3f& position, float) {
+        const auto direct = geometry().toNearest(position, Infinity);
+        ASSERT_TRUE(direct);
+        ASSERT_LE(double(surfaces.clearance(position)), direct->length());
+    });
+}
+
+TEST_F(SurfaceCellsTest, ImagesAreTheSameByAnyNumberOfThreads) {
+    const std::string scene =
+        R"({"media": [{"name": "fog", "type": "homogeneous", "sigma_s": 2, "sigma_a": 0.5}], "primitives": [)" + Crowd +
+        R"(, {"type": "point", "emission": 10, "transform": {"position": [0.8, 0.4, 0.4]}}],
+        "camera": {"type": "pinhole", "resolution": 16, "fov": 20, "reconstruction_filter": "box",
+                   "transform": {"position": [0, 0, 5], "look_at": [0, 0, 0]}},
+        "integrator": {"type": "transient_photon_map", "max_bounces": 64, "photon_count": 4000,
+                       "volume_photon_count": 4000, "fixed_volume_radius": true, "volume_gather_radius": 0.06,
+                       "transient_time_center": 8, "transient_time_width": 16}, "renderer": {}})";
+    for (const std::string type : {"points", "beams"}) {
+        const auto render = [&](size_t threads) {
+            test::RenderOptions options{{"integrator.darts=off", "integrator.volume_photon_type=" + type}, 2, 2, 1};
+            options.threads = threads;
+            return test::renderPhotons(scene, options);
+        };
+        const auto one = render(1), two = render(2);
+        EXPECT_GT(one->mean(), 0.0);
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x) ASSERT_EQ(one->film.mean(0).at(x, y), two->film.mean(0).at(x, y)) << type;
+    }
 }
 
 /// Of a render's image, over several seeds.

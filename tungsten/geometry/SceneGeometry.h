@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace tungsten {
@@ -64,6 +65,21 @@ class SceneGeometry {
     [[nodiscard]] bool occluded(const Ray& ray) const;
     /// From `position` to the nearest point of any surface, if one is nearer than `radius`.
     [[nodiscard]] std::optional<Vec3d> toNearest(const Vec3f& position, float radius) const;
+    /// The same, of these faces alone, and the face: of those as near as each other the first.
+    struct NearestPoint {
+        Vec3d offset;
+        FaceIndex face;
+    };
+    [[nodiscard]] std::optional<NearestPoint> toNearest(const Vec3f& position, float radius,
+                                                        std::span<const FaceIndex> faces) const;
+    /// All faces with a point nearer than `radius`, in any order; none where there are more than `most`.
+    [[nodiscard]] std::optional<std::vector<FaceIndex>> facesWithin(const Vec3f& position, float radius,
+                                                                    size_t most) const;
+    /// The plane of a face that is flat: a point and the unit normal.
+    struct Plane {
+        Vec3d point, normal;
+    };
+    [[nodiscard]] std::optional<Plane> planeOf(const FaceIndex& face) const;
     /// At a point that a ray has met; any two across the normal where the surface has no coordinates.
     [[nodiscard]] Tangents tangents(const SurfaceHit& hit) const;
 

@@ -2,6 +2,7 @@
 // What the operations of every primitive speak of.
 
 #include "photon/primitives/KernelSettings.h"
+#include "photon/primitives/NearSurfaces.h"
 #include "photon/primitives/Radii.h"
 
 #include <string>

@@ -27,8 +27,8 @@ class VolumeGather {
   public:
     using Record = typename Primitive::Record;
     static constexpr const char* GatheredCounter = Primitive::Gathered;
-    /// Ends the kernels of records that surfaces are near to.
-    using EndKernels = std::function<void(Selection<Record>&)>;
+    /// Ends the kernels of records that surfaces are near to; `splatted`: straight rays of the image alone see them.
+    using EndKernels = std::function<void(Selection<Record>&, bool splatted)>;
 
     /// `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box. `endKernels` is asked for what
     /// rays are going to see, no more. `narrows`: narrow() will be called, which needs records whose kernels go on.
@@ -82,7 +82,7 @@ class VolumeGather {
         if (!selectsStraight()) return all_;
         if (!straight_) {
             straight_ = Primitive::straight(scene_, culling_, all_.records, all_.radii);
-            if (straight_ && !allEnd_) endKernels_(*straight_);
+            if (straight_ && !allEnd_) endKernels_(*straight_, splatted_);
         }
         return straight_ ? *straight_ : all_;
     }
@@ -102,11 +102,12 @@ class VolumeGather {
     /// Ends kernels and makes structures.
     void build(const SensorRays& rays) {
         if (rays.splatted && rays.folded) {
-            endKernels_(folded_);
+            endKernels_(folded_, false);
             deal(rays.parts);
         }
+        splatted_ = rays.splatted;
         allEnd_ = !rays.splatted || !selectsStraight();
-        if (allEnd_) endKernels_(all_);
+        if (allEnd_) endKernels_(all_, splatted_);
         buildGathers(rays);
     }
     void buildGathers(const SensorRays& rays) {
@@ -126,6 +127,7 @@ class VolumeGather {
     EndKernels endKernels_;
     float scale_;
     Selection<Record> all_;
+    bool splatted_ = false;                     ///< straight rays have records brought to them
     bool allEnd_ = false;                       ///< kernels of all have been ended
     std::optional<Selection<Record>> straight_; ///< none: all, or not chosen yet
     Selection<Record> folded_;

@@ -1,6 +1,7 @@
 #include "photon/primitives/beams/Beams.h"
 
 #include "photon/PhotonSettings.h"
+#include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
 #include "photon/primitives/beams/BeamSplat.h"
 #include "photon/primitives/beams/CutBeams.h"
@@ -24,9 +25,12 @@ Radii Beams::radii(const KernelSettings& settings, bool deltaGate, const std::ve
     return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
-void Beams::endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radii,
-                          const ProgressToken& watch) {
-    cutAtSurfaces(scene, random, beams, radii, watch);
+NearSurfaces Beams::nearSurfaces(const KernelSettings& settings, const Scene& scene) {
+    return {scene, reach(settings), 1.0f + 0.5f * tuning::NearPartInRadii};
+}
+
+void Beams::endAtSurfaces(const KernelEnds& ends, std::vector<PhotonBeam>& beams, Radii& radii) {
+    cutAtSurfaces(ends, beams, radii);
 }
 
 Selection<PhotonBeam> Beams::straight(const Scene& scene, const ArrivalCulling& culling,

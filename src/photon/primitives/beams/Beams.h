@@ -31,8 +31,8 @@ struct Beams {
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,
                        uint32_t step, const ProgressToken& watch);
-    static void endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<PhotonBeam>& beams, Radii& radii,
-                              const ProgressToken& watch);
+    static NearSurfaces nearSurfaces(const KernelSettings& settings, const Scene& scene);
+    static void endAtSurfaces(const KernelEnds& ends, std::vector<PhotonBeam>& beams, Radii& radii);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
     static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);

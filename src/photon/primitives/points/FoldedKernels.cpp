@@ -24,10 +24,11 @@ Vec3f pointOfKernel(float radius, Sampler& random) {
 }
 
 Fold foldOf(const NearSurfaces& surfaces, const Vec3f& position, float radius, Sampler random) {
-    Fold fold{surfaces.nearest(position, radius), radius};
+    const NearSurfaces::Nearest nearest = surfaces.nearest(position, radius);
+    Fold fold{nearest.edge, radius};
     const KernelEdge& edge = fold.edge;
-    if (!edge.exists()) return fold;
-    const KernelEdge opposite = surfaces.opposite(position, edge, radius);
+    if (!edge.exists() || nearest.alone) return fold;
+    const KernelEdge opposite = nearest.faced ? surfaces.opposite(position, edge, radius) : KernelEdge{};
     if (opposite.exists()) fold.radius = std::max(std::min(opposite.reach, radius), edge.reach);
     fold.weight = float(triesUntilSeen([&] {
         Vec3f offset = pointOfKernel(fold.radius, random);
@@ -51,20 +52,24 @@ Photon imageOf(const Scene& scene, const Photon& photon, const KernelEdge& edge)
 
 } // namespace
 
-void foldAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                    const ProgressToken& watch) {
-    const NearSurfaces surfaces(scene);
+void foldAtSurfaces(const KernelEnds& ends, std::vector<Photon>& photons, Radii& radii) {
     std::vector<Fold> folds(photons.size());
-    watch.stage("kernels at surfaces", photons.size());
+    ends.watch.stage("kernels at surfaces", photons.size());
     tbb::parallel_for(tbb::blocked_range<size_t>(0, photons.size(), 256), [&](const auto& range) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
-            watch.advanceEvery(256, i);
-            folds[i] = foldOf(surfaces, photons[i].position, radii[i], random.branch(RandomStream::Record, i));
+            ends.watch.advanceEvery(256, i);
+            // What an image adds before the plane lies within the radius of the record itself.
+            const Vec3f& position = photons[i].position;
+            folds[i] = ends.view && !ends.view->around(position, radii[i])
+                           ? Fold{{}, radii[i]}
+                           : foldOf(ends.surfaces, position, radii[i], ends.random.branch(RandomStream::Record, i));
         }
     });
     if (std::none_of(folds.begin(), folds.end(), [](const Fold& fold) { return fold.edge.exists(); })) return;
     std::vector<float> own;
     std::vector<KernelEdges> edges;
+    own.reserve(folds.size());
+    edges.reserve(folds.size());
     for (size_t i = 0; i < folds.size(); ++i) {
         own.push_back(folds[i].radius);
         edges.push_back({folds[i].edge, {}});
@@ -73,7 +78,7 @@ void foldAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photo
     for (size_t i = 0; i < folds.size(); ++i) {
         const KernelEdge& edge = folds[i].edge;
         if (!(edge.reach < folds[i].radius)) continue;
-        photons.push_back(imageOf(scene, photons[i], edge));
+        photons.push_back(imageOf(ends.scene, photons[i], edge));
         own.push_back(folds[i].radius);
         edges.push_back({{edge.normal, -edge.reach}, {}});
     }

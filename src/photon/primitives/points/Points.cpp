@@ -31,9 +31,12 @@ Radii Points::radii(const KernelSettings& settings, bool, const std::vector<Phot
     return radii;
 }
 
-void Points::endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                           const ProgressToken& watch) {
-    foldAtSurfaces(scene, random, photons, radii, watch);
+NearSurfaces Points::nearSurfaces(const KernelSettings& settings, const Scene& scene) {
+    return {scene, reach(settings), 1.0f};
+}
+
+void Points::endAtSurfaces(const KernelEnds& ends, std::vector<Photon>& photons, Radii& radii) {
+    foldAtSurfaces(ends, photons, radii);
 }
 
 Selection<Photon> Points::straight(const Scene&, const ArrivalCulling& culling, const std::vector<Photon>& photons,

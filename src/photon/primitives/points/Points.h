@@ -40,8 +40,8 @@ struct Points {
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
                        uint32_t step, const ProgressToken& watch);
     /// Ends kernels at surfaces: records and radii become those of the ended kernels.
-    static void endAtSurfaces(const Scene& scene, const Sampler& random, std::vector<Photon>& photons, Radii& radii,
-                              const ProgressToken& watch);
+    static NearSurfaces nearSurfaces(const KernelSettings& settings, const Scene& scene);
+    static void endAtSurfaces(const KernelEnds& ends, std::vector<Photon>& photons, Radii& radii);
     /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<Photon>& photons, const Radii& radii);

@@ -46,8 +46,8 @@ struct Slices {
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
                        uint32_t step, const ProgressToken& watch);
     /// Slices have no kernels.
-    static void endAtSurfaces(const Scene&, const Sampler&, const std::vector<CollapsedFlights>&, const Radii&,
-                              const ProgressToken&) {}
+    static NearSurfaces nearSurfaces(const KernelSettings&, const Scene& scene) { return {scene, Infinity, 1.0f}; }
+    static void endAtSurfaces(const KernelEnds&, const std::vector<CollapsedFlights>&, const Radii&) {}
     /// All.
     static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,
                                                                const std::vector<CollapsedFlights>&, const Radii&) {
@@ -55,8 +55,7 @@ struct Slices {
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                          const Selection<CollapsedFlights>& slices, double scale, Film& film,
-                          const ProgressToken& watch);
+                          const Selection<CollapsedFlights>& slices, double scale, Film& film, const ProgressToken& watch);
 };
 
 /// Light that is seen scattering once after a surface or a light of a single direction: slices leave it to beams.
