@@ -88,7 +88,11 @@ void PhotonIntegrator::chooseShare(const ProgressToken& watch, Statistics& stati
 }
 
 double PhotonIntegrator::memoryBytes() const {
-    const auto ofRecord = []<typename Primitive>(const Primitive&) { return sizeof(typename Primitive::Record); };
+    const auto ofRecord = [&]<typename Primitive>(const Primitive&) {
+        constexpr size_t Record = sizeof(typename Primitive::Record), Kernel = sizeof(float) + sizeof(KernelEdges);
+        const bool ends = settings_.boundaryKernels && scene_->geometry->boundsMin() != scene_->geometry->boundsMax();
+        return ends && Primitive::PartsAtSurfaces > 0 ? Primitive::PartsAtSurfaces * (Record + Kernel) : Record;
+    };
     const double surface = settings_.includeSurfaces ? double(settings_.photonCount) * double(sizeof(Photon)) : 0.0;
     size_t record = std::visit(ofRecord, settings_.primitive);
     for (const VolumePrimitive& one : settings_.alternatives) record = std::max(record, std::visit(ofRecord, one));

@@ -13,6 +13,7 @@ struct Beams {
     using Record = PhotonBeam;
     using Gather = BeamGather;
     static constexpr const char* Type = "beams";
+    static constexpr size_t PartsAtSurfaces = 3; ///< that kernels near them become: what is clear, and either end
     static constexpr bool AtVertices = false;
     static constexpr bool ManyFrames = false;
     static constexpr bool NeedsPlace = true;

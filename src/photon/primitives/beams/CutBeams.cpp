@@ -58,12 +58,6 @@ class BeamCutter {
         const auto [nearest, alone, faced] = surfaces_.nearest(position, half + radius_);
         if (!nearest.exists()) return addClear(start, end);
         if (alone) return addBesidePlane(start, end, middle, nearest);
-        if (const float clear = nearest.reach - radius_; clear > 0.0f && half > radius_) {
-            const float low = middle - clear, high = middle + clear;
-            addNear(start, low, 0.5f * (start + low));
-            addClear(low, high);
-            return addNear(high, end, 0.5f * (high + end));
-        }
         addPart(start, end, middle, nearest,
                 faced ? surfaces_.opposite(position, nearest, radius_ + half) : KernelEdge{});
         BeamPart& part = parts_->back();

@@ -13,6 +13,7 @@ struct Points {
     using Record = Photon;
     using Gather = PointGather;
     static constexpr const char* Type = "points"; ///< volume_photon_type
+    static constexpr size_t PartsAtSurfaces = 2;  ///< that kernels near them become: a record and its image
     static constexpr bool AtVertices = true;      ///< records are vertices, so that control vertices can be
     static constexpr bool ManyFrames = false;     ///< a record shows in one frame, or a few
     static constexpr bool NeedsPlace = true;      ///< to aim guided paths at, also where the camera's time is left out

@@ -15,6 +15,7 @@ class SliceGather;
 struct Slices {
     using Record = CollapsedFlights;
     using Gather = SliceGather;
+    static constexpr size_t PartsAtSurfaces = 0; ///< that kernels near them become: slices have no kernels
     static constexpr bool AtVertices = false;
     static constexpr bool ManyFrames = true;
     static constexpr bool NeedsPlace = false;
@@ -55,7 +56,8 @@ struct Slices {
     }
     static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
     static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                          const Selection<CollapsedFlights>& slices, double scale, Film& film, const ProgressToken& watch);
+                          const Selection<CollapsedFlights>& slices, double scale, Film& film,
+                          const ProgressToken& watch);
 };
 
 /// Light that is seen scattering once after a surface or a light of a single direction: slices leave it to beams.
