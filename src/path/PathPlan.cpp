@@ -125,7 +125,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, features);
     add("light vertices", lightVertices, {"integrator.darts"}, {counter::LightVertexConnections, counter::LightPaths});
     add("reflected light", reflectedLight,
-        elementsWithLobe(scene, lobe::GlossyReflection | lobe::SpecularReflection).elements(),
+        elementsWithLobe(scene, lobe::GlossyReflection | lobe::SpecularReflection).paths(),
         {counter::ReflectedLightConnections});
 }
 

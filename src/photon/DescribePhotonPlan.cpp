@@ -84,7 +84,7 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
                                      : connections.reason,
                       darts, {counter::SurfaceConnections});
     features.describe("glossy sensor paths", glossyPaths.on, glossyPaths.reason,
-                      elementsWithBsdf(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).elements(),
+                      elementsWithBsdf(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).paths(),
                       {counter::GlossySensorReflections});
     if (!guidance.on) return;
     features.describe("plain light paths beside guided ones", sideBySide.on, sideBySide.reason, darts,
@@ -132,7 +132,7 @@ void PhotonPlan::describe(const Scene& scene, const PhotonSettings& settings, co
     describeKernels(scene, settings, features);
     features.describe("temporal kernel", temporalKernel.on, temporalKernel.reason, {"integrator.delta_time_gate"});
     features.describe("surface photons", surfacePhotons.on, surfacePhotons.reason,
-                      elementsWithLobe(scene, lobe::Smooth).elements(),
+                      elementsWithLobe(scene, lobe::Smooth).paths(),
                       {counter::StoredSurfacePhotons, counter::GatheredOnSurfaces});
     if (scene.camera.detectors())
         features.describe("lights at detectors", detectorLight.on, detectorLight.reason, {"camera"},

@@ -92,13 +92,13 @@ class SecondRank : public ProcessGroup {
 };
 
 TEST(DistributedFilm, NonFiniteSamplesAreToldOnce) {
-    SecondRank team;
+    SecondRank group;
     Film film(4, 4, 1);
-    DistributedFilm shared(&team, film);
+    DistributedFilm shared(&group, film);
     const auto told = [&] {
         shared.gather();
         uint64_t count = 99;
-        if (team.toFirst.back().size() >= sizeof count) std::memcpy(&count, team.toFirst.back().data(), sizeof count);
+        if (group.toFirst.back().size() >= sizeof count) std::memcpy(&count, group.toFirst.back().data(), sizeof count);
         return count;
     };
     film.countNonFinite(5);

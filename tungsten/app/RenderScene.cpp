@@ -18,7 +18,7 @@ namespace tungsten {
 
 namespace {
 
-SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer, ProcessGroup* team) {
+SessionOptions sessionOptions(const Options& options, const RendererSettings& renderer, ProcessGroup* group) {
     SessionOptions session;
     session.seed = options.seed;
     session.spp = options.spp.value_or(renderer.spp);
@@ -32,7 +32,7 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
     session.bias = options.bias;
     session.memoryLimit = options.memoryLimit;
     session.quiet = options.quiet;
-    session.team = team;
+    session.group = group;
     session.trace = options.outputs.placed(options.trace);
     session.command = options.command;
     session.interrupted = &interrupted;
@@ -40,17 +40,17 @@ SessionOptions sessionOptions(const Options& options, const RendererSettings& re
 }
 
 /// Job and outputs of a scene that is rendered; only rank 0 warns.
-Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* team) {
+Job loadJob(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* group) {
     std::optional<Job> job;
     {
         const Loading loading;
-        runOnAll(team, [&] {
+        runOnAll(group, [&] {
             job = makeJob(file, {options.inputDirectory, options.overrides, options.outputs.allowOutside, {}}, plugins,
                           options.everything);
         });
     }
     const Diagnostics& diagnostics = *job->loaded.diagnostics;
-    if (isRoot(team)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
+    if (isRoot(group)) printWarnings(diagnostics.warnings, diagnostics.moreWarnings);
     return std::move(*job);
 }
 
@@ -92,11 +92,12 @@ void printWarnings(const std::vector<Problem>& warnings, size_t more) {
     if (more > 0) std::cerr << "warning: and " << more << " more\n";
 }
 
-int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* team) {
+int renderScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins,
+                ProcessGroup* group) {
     if (options.planCost) return planCost(file, options, plugins, interrupted) ? 0 : ExitInterrupted;
     SessionResult result;
     std::optional<StageTimer> loading(std::in_place, result.statistics, "load");
-    const Job job = loadJob(file, options, plugins, team);
+    const Job job = loadJob(file, options, plugins, group);
     const LoadedScene& loaded = job.loaded;
     loading.reset();
     if (options.explain) {
@@ -104,15 +105,15 @@ int renderScene(const std::filesystem::path& file, const Options& options, const
         return 0;
     }
     OutputFiles outputs;
-    runOnAll(team, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
-    const SessionOptions session = sessionOptions(options, loaded.renderer, team);
+    runOnAll(group, [&] { outputs = resolveOutputs(loaded.renderer, file, options.outputs); });
+    const SessionOptions session = sessionOptions(options, loaded.renderer, group);
     runSession(loaded, *job.integrator, job.facts, job.features, outputs, session, result);
     if (result.film.passes() == 0 && result.reason == StopReason::TimedOut)
-        runOnAll(team, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
+        runOnAll(group, [&] { throw InputError(file.string(), "time-out: " + whyNoPass(session, result)); });
     const auto black =
-        isRoot(team) && !options.passes ? blackImage(*loaded.scene, job.facts, job.features, result) : std::nullopt;
+        isRoot(group) && !options.passes ? blackImage(*loaded.scene, job.facts, job.features, result) : std::nullopt;
     if (black) printWarnings({*black});
-    if (!options.quiet && isRoot(team)) printSummary(result);
+    if (!options.quiet && isRoot(group)) printSummary(result);
     return result.film.passes() == 0 ? ExitInterrupted : 0;
 }
 

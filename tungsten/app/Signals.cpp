@@ -33,8 +33,8 @@ void letTooLargeFilesFail() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void handleSignals(const ProcessGroup* team) {
-    if (team) std::signal(SIGUSR1, onInterrupt);
+void handleSignals(const ProcessGroup* group) {
+    if (group) std::signal(SIGUSR1, onInterrupt);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (std::signal(signal, onInterrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);

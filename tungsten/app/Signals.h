@@ -24,6 +24,6 @@ void letTooLargeFilesFail();
 
 /// Signals that ask for an end are handled, but those that whoever started the command has set aside (nohup). A reader
 /// of our messages that goes away is no reason to lose a render. SIGUSR1 is what mpirun hands on without killing.
-void handleSignals(const ProcessGroup* team);
+void handleSignals(const ProcessGroup* group);
 
 } // namespace tungsten

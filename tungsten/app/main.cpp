@@ -56,18 +56,18 @@ int tell(const std::exception_ptr& failure, const std::string& file, bool aloud 
 }
 
 /// Exit code of one scene; reports what went wrong. What fails in one rank alone, while others wait for it, ends all.
-int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* team) {
+int tryScene(const std::filesystem::path& file, const Options& options, const Plugins& plugins, ProcessGroup* group) {
     const auto tellAs = [&](const std::exception_ptr& failure) {
-        if (!isRoot(team)) std::cerr << "rank " << team->rank() << " on " << team->machine() << ": ";
+        if (!isRoot(group)) std::cerr << "rank " << group->rank() << " on " << group->machine() << ": ";
         return tell(failure, file.string());
     };
     try {
-        return renderScene(file, options, plugins, team);
+        return renderScene(file, options, plugins, group);
     } catch (const GroupFailure& failure) {
         return failure.toTell() ? tellAs(failure.toTell()) : ExitBadInput;
     } catch (...) {
         const int code = tellAs(std::current_exception());
-        if (team) team->abort(code);
+        if (group) group->abort(code);
         return code;
     }
 }
@@ -78,26 +78,26 @@ void printFields(const Options& options, const Plugins& plugins) {
 }
 
 /// Of a process: those that share a machine share its processors, unless the launcher has bound each to some.
-size_t threadsOf(const Options& options, const ProcessGroup* team) {
+size_t threadsOf(const Options& options, const ProcessGroup* group) {
     using tbb::global_control;
     if (options.threads > 0) return size_t(options.threads);
     const size_t all = global_control::active_value(global_control::max_allowed_parallelism);
-    if (!team || all < std::thread::hardware_concurrency()) return all;
-    return std::max<size_t>(all / size_t(team->onThisMachine()), 1);
+    if (!group || all < std::thread::hardware_concurrency()) return all;
+    return std::max<size_t>(all / size_t(group->onThisMachine()), 1);
 }
 
-/// Options of a team's rank, which has a part of the machine; what renders nothing is rank 0's.
-Options shareOf(const Options& options, const ProcessGroup& team) {
+/// Options of a group's rank, which has a part of the machine; what renders nothing is rank 0's.
+Options shareOf(const Options& options, const ProcessGroup& group) {
     if (options.passes) throw UsageError("--passes: mpirun gives passes to its processes itself; goes without it");
     Options mine = options;
-    if (mine.memoryLimit <= 0.0) mine.memoryLimit = availableMemoryBytes() / double(team.onThisMachine());
+    if (mine.memoryLimit <= 0.0) mine.memoryLimit = availableMemoryBytes() / double(group.onThisMachine());
     return mine;
 }
 
-int run(const Options& options, ProcessGroup* team) {
+int run(const Options& options, ProcessGroup* group) {
     const bool renders = !options.describe && !options.list && !options.explain && !options.planCost;
-    if (!renders && !isRoot(team)) return 0;
-    if (!renders) team = nullptr;
+    if (!renders && !isRoot(group)) return 0;
+    if (!renders) group = nullptr;
     const Plugins plugins;
     if (options.describe) {
         printFields(options, plugins);
@@ -109,18 +109,18 @@ int run(const Options& options, ProcessGroup* team) {
         printWarnings(plugins.problems);
         return 0;
     }
-    if (isRoot(team)) printWarnings(plugins.problems);
+    if (isRoot(group)) printWarnings(plugins.problems);
     using tbb::global_control;
-    const global_control threads(global_control::max_allowed_parallelism, threadsOf(options, team));
+    const global_control threads(global_control::max_allowed_parallelism, threadsOf(options, group));
     if (options.memoryLimit > 0.0) limitMemory(options.memoryLimit, std::thread::hardware_concurrency());
-    handleSignals(team);
+    handleSignals(group);
     if (!options.explain && !options.planCost) requireOutputsOfTheirOwn(options);
     int code = 0;
-    const Options mine = team ? shareOf(options, *team) : options;
+    const Options mine = group ? shareOf(options, *group) : options;
     for (const auto& scene : options.scenes) {
-        const bool ends = team ? team->allReduceMax({double(interrupted)})[0] > 0.0 : bool(interrupted);
+        const bool ends = group ? group->allReduceMax({double(interrupted)})[0] > 0.0 : bool(interrupted);
         if (ends) return ExitInterrupted; // not all were rendered
-        code = std::max(code, tryScene(scene, mine, plugins, team));
+        code = std::max(code, tryScene(scene, mine, plugins, group));
     }
     return code;
 }
@@ -142,16 +142,16 @@ int main(int argc, char** argv) {
     using namespace tungsten;
     keepFreedMemory();
     letTooLargeFilesFail();
-    std::unique_ptr<ProcessGroup> team;
+    std::unique_ptr<ProcessGroup> group;
     try {
-        team = joinProcessGroup();
+        group = joinProcessGroup();
         std::optional<Silence> silence;
-        if (!isRoot(team.get())) silence.emplace(); // --help, --version and what else the parser prints
+        if (!isRoot(group.get())) silence.emplace(); // --help, --version and what else the parser prints
         if (argc > 1 && std::strcmp(argv[1], "merge") == 0)
-            return withWholeOutput(isRoot(team.get()) ? mergeCommand(argc - 1, argv + 1) : 0);
+            return withWholeOutput(isRoot(group.get()) ? mergeCommand(argc - 1, argv + 1) : 0);
         const auto options = parseOptions(argc, argv);
-        return withWholeOutput(options ? run(*options, team.get()) : 0);
+        return withWholeOutput(options ? run(*options, group.get()) : 0);
     } catch (...) { // before any rank waits for another: all meet it
-        return tell(std::current_exception(), "tungsten", isRoot(team.get()));
+        return tell(std::current_exception(), "tungsten", isRoot(group.get()));
     }
 }

@@ -119,8 +119,7 @@ void describeBounceCuts(const Scene& scene, const SceneFacts& facts, Features& f
                 all ? "integrator.max_bounces" : medium.path + ".max_bounces");
     }
     features.describe(feature::LightCut, cut.any(),
-                      cut.any() ? cut.names() : "no light that arrives in time is scattered more often",
-                      cut.elements());
+                      cut.any() ? cut.names() : "no light that arrives in time is scattered more often", cut.paths());
 }
 
 } // namespace tungsten

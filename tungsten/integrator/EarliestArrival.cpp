@@ -116,12 +116,12 @@ void excludeEmitters(const Scene& scene, const std::vector<double>& earliest, do
                       : facts.everything     ? "nothing shall be left out"
                       : facts.nothingArrives ? "light of no emitter arrives: " + until
                                              : until + ", light of " + late.names(),
-                      late.elements());
+                      late.paths());
     features.describe(feature::BlackImage, facts.nothingArrives,
                       facts.nothingArrives
                           ? "no light can arrive: " + until + ", light of " + late.names() + unwarpedHint(scene, end)
                           : "some light may arrive",
-                      late.elements());
+                      late.paths());
 }
 
 void excludeFrames(const Scene& scene, double first, SceneFacts& facts, Features& features) {
@@ -160,7 +160,7 @@ void excludeMedia(const Scene& scene, double end, SceneFacts& facts, Features& f
                       : !late.any()     ? "light may get into every scattering medium and arrive: " + until
                       : !leaves         ? "nothing shall be left out"
                                         : until + ", light by way of " + late.names(),
-                      scattering.elements());
+                      scattering.paths());
 }
 
 } // namespace

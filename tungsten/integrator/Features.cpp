@@ -34,7 +34,7 @@ void describePulses(const Scene& scene, const SceneFacts& facts, Features& featu
                       last           ? pulses.names() + " after its emission_time"
                       : pulses.any() ? "in steady state all light counts at once"
                                      : "all light is emitted in flashes",
-                      pulses.elements());
+                      pulses.paths());
     SceneElements delayed;
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];
@@ -45,7 +45,7 @@ void describePulses(const Scene& scene, const SceneFacts& facts, Features& featu
                       counts          ? "pulses that do not start at 0: " + delayed.names()
                       : delayed.any() ? "steady state: it does not matter when pulses start"
                                       : "all pulses start at 0",
-                      delayed.elements());
+                      delayed.paths());
 }
 
 void describeTime(const Scene& scene, const SceneFacts& facts, Features& features) {
@@ -81,19 +81,19 @@ void describeMedia(const Scene& scene, Features& features) {
     }
     features.describe(feature::MediumScattering, scattering.any(),
                       scattering.any() ? "scattering media: " + scattering.names() : "no reachable medium scatters",
-                      scattering.elements());
+                      scattering.paths());
     features.describe(feature::AbsorptionOnly, absorbing.any(),
                       absorbing.any() ? "absorbing media that scatter nothing: " + absorbing.names()
                                       : "no reachable medium absorbs without scattering",
-                      absorbing.elements());
+                      absorbing.paths());
     features.describe(feature::ColouredMedia, coloured.any(),
                       coloured.any() ? "coloured: " + coloured.names()
                                      : "every medium has the same coefficients in R, G and B",
-                      coloured.elements());
+                      coloured.paths());
     features.describe(feature::AnisotropicScattering, anisotropic.any(),
                       anisotropic.any() ? "phase functions with preferred directions: " + anisotropic.names()
                                         : "every phase function is isotropic",
-                      anisotropic.elements());
+                      anisotropic.paths());
 }
 
 void describeEmission(const Scene& scene, Features& features) {
@@ -107,17 +107,17 @@ void describeEmission(const Scene& scene, Features& features) {
     }
     features.describe("emission from surfaces", areas.any(),
                       areas.any() ? "area emitters: " + areas.names() : "no area emitter: emission is never seen",
-                      areas.elements());
+                      areas.paths());
     features.describe("environment", skies.any(),
                       skies.any() ? "escaping rays see " + skies.names() : "no infinite emitter: escaping rays end",
-                      skies.elements());
+                      skies.paths());
 }
 
 void describeSurfaces(const Scene& scene, Features& features) {
     const auto describe = [&](const std::string& name, LobeMask mask, const std::string& what,
                               const std::string& otherwise) {
         const SceneElements uses = elementsWithLobe(scene, mask);
-        features.describe(name, uses.any(), uses.any() ? uses.counted("surface", what) : otherwise, uses.elements());
+        features.describe(name, uses.any(), uses.any() ? uses.counted("surface", what) : otherwise, uses.paths());
     };
     describe(feature::SurfaceScattering, lobe::Smooth, "with diffuse or glossy lobes",
              "every surface is specular, forward or black");
@@ -143,11 +143,11 @@ void describeTextures(const Scene& scene, Features& features) {
     features.describe("textures", varying.any(),
                       varying.any() ? varying.counted("surface", "with parameters that vary over it")
                                     : "every surface parameter is constant",
-                      varying.elements());
+                      varying.paths());
     features.describe("alpha", transparent.any(),
                       transparent.any() ? transparent.counted("surface", "of partial opacity")
                                         : "no surface has an opacity",
-                      transparent.elements());
+                      transparent.paths());
 }
 
 } // namespace

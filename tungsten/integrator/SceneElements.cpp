@@ -50,8 +50,7 @@ bool isTransparent(const Bsdf& bsdf) {
 void SceneElements::add(const std::string& name, const std::string& path) {
     if (++count_ > MostListed) return;
     names_.push_back(name);
-    if (!path.empty() && std::find(elements_.begin(), elements_.end(), path) == elements_.end())
-        elements_.push_back(path);
+    if (!path.empty() && std::find(paths_.begin(), paths_.end(), path) == paths_.end()) paths_.push_back(path);
 }
 
 std::string SceneElements::names() const {
@@ -85,7 +84,7 @@ Speeds reachableSpeeds(const Scene& scene) {
     for (const Primitive& primitive : scene.primitives)
         if (primitive.boundsRegion)
             for (const Region& side : {primitive.inside, primitive.outside}) add(side, primitive.path);
-    return {speeds.size(), *speeds.begin(), *speeds.rbegin(), uses.elements()};
+    return {speeds.size(), *speeds.begin(), *speeds.rbegin(), uses.paths()};
 }
 
 std::string pathOf(const Bsdf& bsdf, const Primitive& primitive) {

@@ -20,12 +20,12 @@ class SceneElements {
     /// "3 surfaces that refract, first 'pane'".
     [[nodiscard]] std::string counted(const std::string& element, const std::string& what) const;
     /// Paths of the first MostListed, as problems have them.
-    [[nodiscard]] const std::vector<std::string>& elements() const { return elements_; }
+    [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
 
   private:
     static constexpr size_t MostListed = 16;
     size_t count_ = 0;
-    std::vector<std::string> names_, elements_;
+    std::vector<std::string> names_, paths_;
 };
 
 /// Media that some path can be in: the camera's, the lights', and those that surfaces bound.

@@ -1,4 +1,4 @@
-// A team of MPI processes: tungsten-mpi.so, the one part of the program that needs MPI.
+// A group of MPI processes: tungsten-mpi.so, the one part of the program that needs MPI.
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/session/ProcessGroup.h"

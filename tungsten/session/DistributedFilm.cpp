@@ -51,19 +51,19 @@ void addText(const Bytes& bytes, SessionResult& result) {
 
 } // namespace
 
-DistributedFilm::DistributedFilm(ProcessGroup* team, Film& film) : team_(team), film_(film) {}
+DistributedFilm::DistributedFilm(ProcessGroup* group, Film& film) : group_(group), film_(film) {}
 
 int DistributedFilm::firstRowOf(int rank) const {
     const int together = film_.contents().rowsTogether();
     const int64_t groups = (film_.height() + together - 1) / together;
-    return std::min(int(groups * rank / team_->size()) * together, film_.height());
+    return std::min(int(groups * rank / group_->size()) * together, film_.height());
 }
 
 /// For each rank the rows of this rank's pass image that it owns: their places, each with its values.
 std::vector<Bytes> DistributedFilm::rowsFor() const {
-    std::vector<Bytes> parts(size_t(team_->size()));
+    std::vector<Bytes> parts(size_t(group_->size()));
     std::vector<float> values(FilmRows::values(film_));
-    for (int rank = 0; rank < team_->size(); ++rank)
+    for (int rank = 0; rank < group_->size(); ++rank)
         for (int frame = 0; frame < film_.frames(); ++frame)
             for (int y = firstRowOf(rank); y < firstRowOf(rank + 1); ++y) {
                 const uint64_t row = uint64_t(frame) * uint64_t(film_.height()) + uint64_t(y);
@@ -76,16 +76,16 @@ std::vector<Bytes> DistributedFilm::rowsFor() const {
 }
 
 void DistributedFilm::collect(size_t passes) {
-    if (!team_) return;
-    const bool mine = size_t(team_->rank()) < passes;
-    const std::vector<Bytes> parts = mine ? rowsFor() : std::vector<Bytes>(size_t(team_->size()));
+    if (!group_) return;
+    const bool mine = size_t(group_->rank()) < passes;
+    const std::vector<Bytes> parts = mine ? rowsFor() : std::vector<Bytes>(size_t(group_->size()));
     for (size_t rank = 0; rank < parts.size(); ++rank)
-        if (int(rank) != team_->rank()) bytesSent_ += parts[rank].size();
-    received_ = team_->allToAll(parts);
+        if (int(rank) != group_->rank()) bytesSent_ += parts[rank].size();
+    received_ = group_->allToAll(parts);
 }
 
 void DistributedFilm::fold(size_t rank, double weight) {
-    if (!team_) return film_.endPass(weight);
+    if (!group_) return film_.endPass(weight);
     film_.beginPass();
     Bytes& rows = received_[rank];
     const size_t size = FilmRows::values(film_) * sizeof(float);
@@ -97,18 +97,18 @@ void DistributedFilm::fold(size_t rank, double weight) {
         FilmRows::setPass(film_, row, values.data());
     }
     Bytes().swap(rows);
-    folded_.push_back(FilmRows::accumulate(film_, weight, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1)));
+    folded_.push_back(FilmRows::accumulate(film_, weight, firstRowOf(group_->rank()), firstRowOf(group_->rank() + 1)));
 }
 
 void DistributedFilm::settle() {
-    std::vector<Bytes> parts(size_t(team_->size()));
+    std::vector<Bytes> parts(size_t(group_->size()));
     for (const AccumulatedPass& pass : folded_) append(parts[0], pass.rows.data(), pass.rows.size());
-    const std::vector<Bytes> received = team_->allToAll(parts);
-    if (team_->rank() == 0)
+    const std::vector<Bytes> received = group_->allToAll(parts);
+    if (group_->rank() == 0)
         for (size_t pass = 0; pass < folded_.size(); ++pass) {
             AccumulatedPass& folded = folded_[pass];
             folded.rows.assign(size_t(film_.height()), {});
-            for (int rank = 0; rank < team_->size(); ++rank) {
+            for (int rank = 0; rank < group_->size(); ++rank) {
                 const auto rows = size_t(firstRowOf(rank + 1) - firstRowOf(rank));
                 std::memcpy(folded.rows.data() + firstRowOf(rank),
                             received[size_t(rank)].data() + pass * rows * sizeof(PassSpread),
@@ -120,19 +120,19 @@ void DistributedFilm::settle() {
 }
 
 void DistributedFilm::gather() {
-    if (!team_) return;
+    if (!group_) return;
     settle();
-    std::vector<Bytes> parts(size_t(team_->size()));
-    if (team_->rank() > 0) {
+    std::vector<Bytes> parts(size_t(group_->size()));
+    if (group_->rank() > 0) {
         std::ostringstream state;
         const uint64_t nonFinite = film_.nonFiniteSamples() - told_;
         state.write(reinterpret_cast<const char*>(&nonFinite), sizeof nonFinite);
-        FilmRows::write(film_, state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
+        FilmRows::write(film_, state, firstRowOf(group_->rank()), firstRowOf(group_->rank() + 1));
         parts[0] = bytesOf(state.str());
         told_ = film_.nonFiniteSamples();
     }
-    const std::vector<Bytes> received = team_->allToAll(parts);
-    for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
+    const std::vector<Bytes> received = group_->allToAll(parts);
+    for (int rank = 1; group_->rank() == 0 && rank < group_->size(); ++rank) {
         const Bytes& part = received[size_t(rank)];
         std::istringstream state(std::string(part.begin(), part.end()));
         uint64_t nonFinite = 0;
@@ -143,40 +143,40 @@ void DistributedFilm::gather() {
 }
 
 void DistributedFilm::scatter() {
-    if (!team_) return;
-    std::vector<Bytes> parts(size_t(team_->size()));
-    for (int rank = 1; team_->rank() == 0 && rank < team_->size(); ++rank) {
+    if (!group_) return;
+    std::vector<Bytes> parts(size_t(group_->size()));
+    for (int rank = 1; group_->rank() == 0 && rank < group_->size(); ++rank) {
         std::ostringstream state;
         FilmRows::write(film_, state, firstRowOf(rank), firstRowOf(rank + 1));
         parts[size_t(rank)] = bytesOf(state.str());
     }
-    const std::vector<Bytes> received = team_->allToAll(parts);
-    if (team_->rank() == 0) return;
+    const std::vector<Bytes> received = group_->allToAll(parts);
+    if (group_->rank() == 0) return;
     std::istringstream state(std::string(received[0].begin(), received[0].end()));
-    FilmRows::read(film_, state, firstRowOf(team_->rank()), firstRowOf(team_->rank() + 1));
+    FilmRows::read(film_, state, firstRowOf(group_->rank()), firstRowOf(group_->rank() + 1));
 }
 
-DistributedResult::DistributedResult(ProcessGroup* team, SessionResult& result)
-    : team_(team), result_(result), film_(team, result.film),
-      bias_(team, result.bias), shown_{Unknown, Unknown, {0.0, 0.0}} {
-    if (team) result.ranks = team->size();
+DistributedResult::DistributedResult(ProcessGroup* group, SessionResult& result)
+    : group_(group), result_(result), film_(group, result.film),
+      bias_(group, result.bias), shown_{Unknown, Unknown, {0.0, 0.0}} {
+    if (group) result.ranks = group->size();
 }
 
 std::vector<double> DistributedResult::allReduceMax(std::vector<double> values) {
-    if (!team_) return values;
+    if (!group_) return values;
     const StageTimer timer(result_.statistics, "wait for other ranks");
-    return team_->allReduceMax(std::move(values));
+    return group_->allReduceMax(std::move(values));
 }
 
 void DistributedResult::shareResumed() {
-    if (!team_ || allReduceMax({double(result_.film.passes())})[0] == 0.0) return;
+    if (!group_ || allReduceMax({double(result_.film.passes())})[0] == 0.0) return;
     film_.scatter();
     if (result_.estimatesBias()) bias_.scatter();
     result_.samples = uint64_t(result_.film.totalWeight());
 }
 
 void DistributedResult::collect(size_t passes) {
-    if (!team_) return;
+    if (!group_) return;
     const StageTimer timer(result_.statistics, "exchange passes");
     film_.collect(passes);
     if (result_.estimatesBias()) bias_.collect(passes);
@@ -185,14 +185,14 @@ void DistributedResult::collect(size_t passes) {
 void DistributedResult::fold(size_t rank, double weight) {
     const uint32_t standsFor = result_.estimatesBias() ? passesOfItsBias(result_.film.passes()) : 0;
     std::optional<StageTimer> timer;
-    if (team_) timer.emplace(result_.statistics, "fold passes");
+    if (group_) timer.emplace(result_.statistics, "fold passes");
     film_.fold(rank, weight);
     if (standsFor > 0) bias_.fold(rank, double(standsFor));
-    whole_ = !team_;
+    whole_ = !group_;
 }
 
 void DistributedResult::gather() {
-    if (!team_ || whole_) return;
+    if (!group_ || whole_) return;
     const StageTimer timer(result_.statistics, "gather film");
     const auto start = Clock::now();
     film_.gather();
@@ -210,7 +210,7 @@ bool DistributedResult::errorIsBelow(double target) {
 bool DistributedResult::mayShow() const {
     constexpr int Part = 20;
     constexpr std::chrono::seconds Least(2);
-    return team_ && Clock::now() - gathered_ > std::max<Clock::duration>(Part * gathering_, Least);
+    return group_ && Clock::now() - gathered_ > std::max<Clock::duration>(Part * gathering_, Least);
 }
 
 ShownErrors DistributedResult::errors() {
@@ -220,11 +220,11 @@ ShownErrors DistributedResult::errors() {
 }
 
 void DistributedResult::gatherStatistics() {
-    if (!team_) return;
+    if (!group_) return;
     result_.statistics.add("bytes of passes to other ranks", film_.bytesSent() + bias_.bytesSent());
-    std::vector<Bytes> parts(size_t(team_->size()));
+    std::vector<Bytes> parts(size_t(group_->size()));
     if (!isRoot()) parts[0] = statisticsText(result_.statistics);
-    const std::vector<Bytes> received = team_->allToAll(parts);
+    const std::vector<Bytes> received = group_->allToAll(parts);
     if (!isRoot()) return;
     for (size_t rank = 1; rank < received.size(); ++rank) addText(received[rank], result_);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A film that the ranks of a team fold together, each some image rows of every pass.
+// A film that the ranks of a group fold together, each some image rows of every pass.
 
 #include "tungsten/film/Film.h"
 #include "tungsten/session/ProcessGroup.h"
@@ -9,14 +9,14 @@
 
 namespace tungsten {
 
-/// In every round each rank renders one pass; its rows go to the ranks that own them (ProcessGroup::exchange), which
+/// In every round each rank renders one pass; its rows go to the ranks that own them (ProcessGroup::allToAll), which
 /// fold the passes in their order: the film's bits are those of one process. So each rank sends and receives about one
 /// film per round, however many ranks there are, and rank 0 has the whole film only where somebody wants to see it.
-/// Without a team the one process owns all rows, and nothing is moved.
+/// Without a group the one process owns all rows, and nothing is moved.
 class DistributedFilm {
   public:
     /// The film must outlive this.
-    DistributedFilm(ProcessGroup* team, Film& film);
+    DistributedFilm(ProcessGroup* group, Film& film);
 
     /// After a round: takes the pass images of the first `passes` ranks apart. Once, before they are folded.
     void collect(size_t passes);
@@ -35,7 +35,7 @@ class DistributedFilm {
     /// Deviations of the passes since the last time, to rank 0.
     void settle();
 
-    ProcessGroup* team_;
+    ProcessGroup* group_;
     Film& film_;
     std::vector<Bytes> received_;         ///< rows of the round's passes, by rank
     std::vector<AccumulatedPass> folded_; ///< since settle()
@@ -49,13 +49,13 @@ struct ShownErrors {
     RelativeBias bias;
 };
 
-/// Film, bias and statistics of all ranks; without a team, those of the one process, at no cost.
+/// Film, bias and statistics of all ranks; without a group, those of the one process, at no cost.
 class DistributedResult {
   public:
     /// The result must outlive this.
-    DistributedResult(ProcessGroup* team, SessionResult& result);
+    DistributedResult(ProcessGroup* group, SessionResult& result);
 
-    [[nodiscard]] size_t rank() const { return team_ ? size_t(team_->rank()) : 0; }
+    [[nodiscard]] size_t rank() const { return group_ ? size_t(group_->rank()) : 0; }
     /// Whether this process tells and writes.
     [[nodiscard]] bool isRoot() const { return rank() == 0; }
     [[nodiscard]] std::vector<double> allReduceMax(std::vector<double> values);
@@ -79,7 +79,7 @@ class DistributedResult {
   private:
     using Clock = std::chrono::steady_clock;
 
-    ProcessGroup* team_;
+    ProcessGroup* group_;
     SessionResult& result_;
     DistributedFilm film_, bias_;
     bool whole_ = true; ///< rank 0's films are

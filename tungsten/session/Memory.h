@@ -1,5 +1,5 @@
 #pragma once
-// Memory: what there is, and refusing what does not fit before it is asked for.
+// Memory: what there is, the film that a scene asks for, and refusing what does not fit before it is asked for.
 
 #include "tungsten/core/AvailableMemory.h"
 #include "tungsten/film/Film.h"

@@ -1,5 +1,5 @@
 #pragma once
-// How much of a render one pass takes.
+// Passes: how much of a render each takes, which of them processes render at once, and what they have met by then.
 
 #include "tungsten/integrator/Integrator.h"
 #include "tungsten/session/DistributedFilm.h"

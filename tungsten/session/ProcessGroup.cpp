@@ -54,10 +54,10 @@ std::unique_ptr<ProcessGroup> joinProcessGroup() {
     const auto entry = reinterpret_cast<EntryPoint>(dlsym(library, "tungstenProcessGroup"));
     if (!entry || std::strcmp(entry()->abi, PluginAbi) != 0)
         throw InputError(file.string(), "built for another version of this program");
-    std::unique_ptr<ProcessGroup> team = entry()->join();
-    if (team->size() == processes) return team;
+    std::unique_ptr<ProcessGroup> group = entry()->join();
+    if (group->size() == processes) return group;
     throw UsageError("started as one of " + std::to_string(processes) + " processes, but " + file.string() + " sees " +
-                     std::to_string(team->size()) + ": the launcher is of another MPI than it was built with");
+                     std::to_string(group->size()) + ": the launcher is of another MPI than it was built with");
 }
 
 } // namespace tungsten

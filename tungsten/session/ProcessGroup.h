@@ -49,10 +49,10 @@ class GroupFailure : public std::exception {
 };
 
 /// Runs action() in every rank. Where it throws in any, all ranks throw a GroupFailure; the same failure in rank 0 and
-/// others is told by rank 0. Without a team it is just run.
+/// others is told by rank 0. Without a group it is just run.
 template <typename Action>
-void runOnAll(ProcessGroup* team, const Action& action) {
-    if (!team) return action();
+void runOnAll(ProcessGroup* group, const Action& action) {
+    if (!group) return action();
     std::exception_ptr failure;
     try {
         action();
@@ -60,14 +60,14 @@ void runOnAll(ProcessGroup* team, const Action& action) {
         failure = std::current_exception();
     }
     const double failed = failure ? 1.0 : 0.0;
-    const std::vector<double> all = team->allReduceMax({failed, team->rank() == 0 ? failed : 0.0});
+    const std::vector<double> all = group->allReduceMax({failed, group->rank() == 0 ? failed : 0.0});
     if (all[0] == 0.0) return;
-    const bool othersTell = team->rank() > 0 && all[1] > 0.0;
+    const bool othersTell = group->rank() > 0 && all[1] > 0.0;
     throw GroupFailure(othersTell ? nullptr : failure);
 }
 
-/// The team that this process was started in, by mpirun for example; none where it was started alone. Throws UsageError
-/// where the part of this program that a team needs is not there.
+/// The group that this process was started in, by mpirun for example; none where it was started alone. Throws
+/// UsageError where the part of this program that a group needs is not there.
 std::unique_ptr<ProcessGroup> joinProcessGroup();
 
 struct ProcessGroupModule {

@@ -1,5 +1,5 @@
 #pragma once
-// The plan for readers: text for `--explain`, JSON for `--explain=json` and `--stats`.
+// What a job and its result are told as: `--describe`, `--explain`, `--stats`, warnings, and the content of the page.
 
 #include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/Integrator.h"

@@ -235,7 +235,7 @@ class Session {
     Session(const LoadedScene& loaded, Integrator& integrator, const OutputFiles& outputs,
             const SessionOptions& options, SessionResult& result)
         : loaded_(loaded), integrator_(integrator), outputs_(outputs), options_(options), result_(result),
-          files_(loaded, outputs, options, result), shared_(options.team, result),
+          files_(loaded, outputs, options, result), shared_(options.group, result),
           firstPass_(options.passes ? options.passes->first : 0), spp_(samplesOf(options)),
           sizes_(spp_, uint64_t(options.sppStep), integrator.cutsLightPaths()), limit_(options.timeoutSeconds),
           watched_(options, result, [this](const ProgressMonitor& monitor) { showPass(monitor); }),
@@ -243,7 +243,7 @@ class Session {
           reporter_(options.quiet || !shared_.isRoot()) {}
 
     void run(const SceneFacts& facts, const Features& features) {
-        runOnAll(options_.team, [&] { begin(facts, features); });
+        runOnAll(options_.group, [&] { begin(facts, features); });
         shared_.shareResumed();
         black_ = facts.nothingArrives;
         const bool prepared = prepare(facts);
@@ -309,7 +309,7 @@ class Session {
     /// False: it was broken off, in some rank, and there are no passes.
     bool prepare(const SceneFacts& facts) {
         bool whole = true;
-        runOnAll(options_.team, [&] {
+        runOnAll(options_.group, [&] {
             const StageTimer timer(result_.statistics, stage::Prepare);
             const auto build = [&](const PassInfo& pass, Statistics& statistics) {
                 if (!black_) integrator_.prepare(facts, pass.watch.part(0.0, 0.0), statistics);
@@ -493,7 +493,7 @@ void runSession(const LoadedScene& loaded, Integrator& integrator, const SceneFa
                 const OutputFiles& outputs, const SessionOptions& options, SessionResult& result) {
     Session session(loaded, integrator, outputs, options, result);
     session.run(facts, features);
-    if (result.film.passes() == 0 || (options.team && options.team->rank() > 0)) return;
+    if (result.film.passes() == 0 || (options.group && options.group->rank() > 0)) return;
     std::vector<Problem> problems; // of one output: the others are written all the same
     const auto attempt = [&](const auto& write) {
         try {

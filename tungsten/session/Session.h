@@ -13,7 +13,7 @@ inline constexpr uint32_t LeastPassesForTargetError = 16;
 
 /// Renders and writes every output. A pass that a time-out or an interrupt finds in progress is broken off: the film
 /// holds whole passes alone. Where not one has ended, nothing is written. Facts and features are complete
-/// (Integrator::plan was called). Throws InputError before the first pass when an output cannot be written. In a team
+/// (Integrator::plan was called). Throws InputError before the first pass when an output cannot be written. In a group
 /// every rank calls this alike; the film is whole in rank 0, which alone writes, and what keeps any rank from starting
 /// is a GroupFailure.
 void runSession(const LoadedScene& loaded, Integrator& integrator, const SceneFacts& facts, const Features& features,

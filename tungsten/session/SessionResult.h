@@ -39,7 +39,7 @@ struct SessionOptions {
     bool quiet = false;              ///< no progress bar
     std::filesystem::path trace;     ///< folder of the render's trace; empty: none
     std::string command;             ///< that started the render, for its page
-    ProcessGroup* team = nullptr;    ///< of this process; rank 0 writes
+    ProcessGroup* group = nullptr;   ///< of this process; rank 0 writes
     const std::atomic<bool>* interrupted = nullptr; ///< set by Ctrl-C: break the pass off, write, stop
     /// Called after every pass, before it is decided whether to go on. What it throws ends the render.
     std::function<void(const SessionResult&)> afterPass;
@@ -55,7 +55,7 @@ struct SessionResult {
     double renderSeconds = 0.0;    ///< passes of this run, not counting loading and writing
     uint64_t samples = 0;          ///< whole ones per pixel, resumed ones included
     uint64_t resumedSamples = 0;   ///< of them, taken by earlier runs
-    int ranks = 1;                 ///< of the team that rendered
+    int ranks = 1;                 ///< of the group that rendered
     double othersCpuSeconds = 0.0; ///< of ranks but the first
     double othersPeakMemory = 0.0; ///< bytes: the largest of them
     PassProgress brokenOff;        ///< where the preparing, or the pass, was that was broken off last
