@@ -227,22 +227,23 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
     renderTiles(pass, film, statistics, trace);
 }
 
-double PathTracer::cost(const PathCounters& counters, const tuning::Rates& rates) const {
+double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk& each) const {
     // Whole numbers all: sums do not depend on how samples are cut into tiles and passes.
-    const double ray =
-        std::round(rates.ray + tuning::RayCostByLog * std::log2(1.0 + double(scene_->geometry->triangleCount())));
-    return rates.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
-           ray * double(counters.rays + counters.shadowRays) + rates.connection * double(counters.connections) +
-           rates.controlVertex * double(counters.controlVertices);
+    const double ray = std::round(each.ray + tuning::Nanoseconds.rayByLog *
+                                                 std::log2(1.0 + double(scene_->geometry->triangleCount())));
+    return each.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
+           ray * double(counters.rays + counters.shadowRays) + each.connection * double(counters.connections) +
+           each.controlVertex * double(counters.controlVertices);
 }
 
 PathCosts PathTracer::costs(const StrategyCounters& counters) const {
     const PathCounters& plain = counters.plain;
-    const double kept = balance_.both() ? tuning::TrailCost * double(plain.mediumEvents + plain.surfaceEvents) : 0.0;
-    return {cost(plain, tuning::PlainRates),
-            kept + tuning::DensityCost * double(counters.densities.densities) +
-                cost(counters.densities, {0.0, tuning::PlainRates.ray, 0.0, 0.0}),
-            cost(counters.guided, tuning::GuidedRates)};
+    const double kept =
+        balance_.both() ? tuning::Nanoseconds.trail * double(plain.mediumEvents + plain.surfaceEvents) : 0.0;
+    return {cost(plain, tuning::Nanoseconds.plain),
+            kept + tuning::Nanoseconds.density * double(counters.densities.densities) +
+                cost(counters.densities, {0.0, tuning::Nanoseconds.plain.ray, 0.0, 0.0}),
+            cost(counters.guided, tuning::Nanoseconds.guided)};
 }
 
 void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics) {
@@ -252,12 +253,13 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
         return;
     }
     const StageTimer timer(statistics, "pilot of plain and guided paths");
-    watch.stage("pilot of plain and guided paths", tuning::MostPilotPixels);
+    constexpr size_t MostPixels = transport::tuning::MostPilotPaths / SharePilot::PathsOfPixel;
+    watch.stage("pilot of plain and guided paths", MostPixels);
     constexpr uint64_t Key = transport::PilotKey;
     balance_ = {0.5f, 0.5f};
     if (plan_.lightVertices.on) {
         Statistics ignored;
-        constexpr size_t GuidedPaths = tuning::MostPilotPixels * SharePilot::PathsOfPixel / 2;
+        constexpr size_t GuidedPaths = transport::tuning::MostPilotPaths / 2;
         lightPaths_.trace(*scene_, *targets_, GuidedPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
     }
     GuidedContext guided = guidedContext(watch);
@@ -272,7 +274,7 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
     Sampler places(Key, RandomStream::Pilot, 0, 0);
     uint64_t traced = 0;
     PathCosts costs;
-    for (size_t group = 0; group < tuning::MostPilotPixels; ++group) {
+    for (size_t group = 0; group < MostPixels; ++group) {
         const uint64_t pixel = std::min(uint64_t(places.nextDouble() * double(pixels)), pixels - 1);
         for (int i = 0; i < SharePilot::PathsOfPixel; ++i, ++traced) {
             const bool guides = i % 2 == 1;
@@ -296,8 +298,8 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
         }
         watch.advance();
         costs = this->costs(counted);
-        if (group + 1 < tuning::LeastPilotPixels) continue;
-        if (costs.sum() > transport::tuning::MostPilotCost) break;
+        if (traced < transport::tuning::LeastPilotPaths) continue;
+        if (costs.sum() > double(transport::tuning::MostPilotCost)) break;
         if ((group & (group + 1)) == 0 &&
             pilot.effective(Strategy::Plain) >= 10.0 * transport::tuning::LeastEffective &&
             pilot.effective(Strategy::Guided) >= 10.0 * transport::tuning::LeastEffective)

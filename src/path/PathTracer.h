@@ -36,7 +36,7 @@ class PathTracer : public Integrator {
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
     void chooseShare(const ProgressToken& watch, Statistics& statistics);
     /// Of what was counted, in nanoseconds.
-    [[nodiscard]] double cost(const PathCounters& counters, const tuning::Rates& rates) const;
+    [[nodiscard]] double cost(const PathCounters& counters, const tuning::Costs::Walk& each) const;
     [[nodiscard]] PathCosts costs(const StrategyCounters& counters) const;
     /// `trace(ray, sink, counters, sampler, u, strategy)` for every sample of every pixel; u chooses among targets, and
     /// strategy, uniform too, among strategies.

@@ -231,8 +231,7 @@ void PhotonIntegrator::see(GatherStructures& structures, const PhotonMaps& maps,
     if (plan_.connections.on) {
         const StageTimer timer(statistics, "share light");
         const float factor = surfaceRadiusFactor(step(pass), settings_.alpha) * structures.kernel;
-        auto kernel = SharingKernel::of(first->points.size() / first->samples, maps.received.size(),
-                                        settings_.gatherRadius, factor);
+        auto kernel = SharingKernel::of(settings_.gatherRadius, factor);
         if (scene_->transport.gate.delta) kernel.time = structures.kernel;
         const auto asTraced = transport::Sensor::of(*scene_, gate(step(pass)));
         shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,

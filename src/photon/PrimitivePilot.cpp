@@ -6,6 +6,7 @@
 #include "transport/Tuning.h"
 
 #include "tungsten/film/FilmErrors.h"
+#include "tungsten/integrator/Names.h"
 
 #include <cmath>
 
@@ -42,19 +43,23 @@ double pixelsOf(const Scene& scene) {
 
 /// Nanoseconds of what passes of an image of so many pixels have counted, had it `ratio` times as many.
 double costOf(const Statistics& counted, const VolumePrimitive& primitive, double pixels, double ratio) {
-    const auto count = [&](const char* counter) { return double(counted.counter(counter)); };
-    double cost = 0.0;
-    for (const tuning::CountedCost& one : tuning::WalkCosts) cost += one.nanoseconds * count(one.counter);
+    const auto& costs = tuning::PassNanoseconds;
+    const auto count = [&](const std::string& counter) { return double(counted.counter(counter)); };
+    const double walks = costs.path * count("photons") + costs.ray * count("rays") +
+                         costs.mediumEvent * count("medium events") + costs.surfaceEvent * count("surface events") +
+                         costs.controlVertex * count(counter::ControlVertices) +
+                         costs.connection * count(counter::SurfaceConnections) +
+                         costs.density * count("flights with densities of guided paths");
     const auto ofRecords = [&]<typename Primitive>(const Primitive& p) {
-        const tuning::RecordCosts& costs = Primitive::AtVertices      ? tuning::PointCosts
-                                           : Primitive::CountsRecords ? tuning::SliceCosts
-                                                                      : tuning::BeamCosts;
-        const double stored = count(p.Stored), splatted = count("splatted records");
-        return costs.stored * stored +
-               ratio * ((splatted > 0.0 ? costs.perPixel * pixels * stored : 0.0) + costs.splatted * splatted +
-                        costs.gathered * (count(p.Gathered) - splatted));
+        const tuning::PassCosts::Record& record = Primitive::AtVertices      ? costs.point
+                                                  : Primitive::CountsRecords ? costs.slice
+                                                                             : costs.beam;
+        const double stored = count(p.Stored), splatted = count(counter::SplattedRecords);
+        return record.stored * stored +
+               ratio * ((splatted > 0.0 ? record.perPixel * pixels * stored : 0.0) + record.splatted * splatted +
+                        record.gathered * (count(p.Gathered) - splatted));
     };
-    return cost + std::visit(ofRecords, primitive);
+    return walks + std::visit(ofRecords, primitive);
 }
 
 /// One primitive's passes.

@@ -66,13 +66,11 @@ inline constexpr float ShortBeamsInRadii = 4.0f;
 /// Bench: study liu-primitives
 inline constexpr float MostPerBase = 8.0f, LeastPerBase = 0.03f;
 
-/// Slices that bring less than this part of their shape's mean to a frame of a sequence are drawn there at random.
-/// Variance / mean^2 x CPU seconds, mean over 50 frames, without, at 0.3 and at 1: fogged-box 0.69, 0.59, 0.60, warped
-/// volumes 0.66, 0.55, 0.54, simple-volumetric 0.070, 0.050, 0.053; but the warped film's darkest tenth 0.08, 0.31,
-/// 0.36. Bench: benchmarks/study/studies/liu-stages.py
-inline constexpr float DimInFrame = 0.3f;
-/// Part of that choice which is even over all records that can arrive, so that none weighs more than the inverse; costs
-/// 2 % of the time of such films of fogged-box.
+/// Slices that bring less than their shape's mean to a frame of a sequence are drawn there at random. Variance / mean^2
+/// x CPU seconds, mean over 50 frames, without and with: fogged-box 0.69, 0.60, warped volumes 0.66, 0.54,
+/// simple-volumetric 0.070, 0.053; but the warped film's darkest tenth 0.08, 0.36. This part of the choice is even over
+/// all records that can arrive, so that none weighs more than the inverse; costs 2 % of the time of such films of
+/// fogged-box. Bench: benchmarks/study/studies/liu-stages.py
 inline constexpr float EvenInFrames = 0.1f;
 
 /// Shadow rays for what a ray gathers of slices behind occluders: each stands for a dose of light, so many to a ray.
@@ -82,41 +80,53 @@ inline constexpr float DosesPerRay = 64.0f;
 
 // --- Plain and guided light paths side by side -----------------------------------------------------------------------
 
-/// Paths of a pilot, at least and at most.
-inline constexpr uint64_t LeastSharePaths = 256, MostSharePaths = 1 << 16;
-/// What light paths cost, in nanoseconds, of plain and guided ones.
-struct Rates {
-    double path, vertex, ray, controlVertex;
+/// What light paths cost, in nanoseconds.
+struct Costs {
+    struct Walk {
+        double path, vertex, ray, controlVertex;
+    };
+    Walk plain, guided;
+    double connection;         ///< a ray to a surface point
+    double point, beam, slice; ///< a record, with what is built and splatted of it
+    double trail;              ///< to keep a vertex of a plain path
+    double density;            ///< of guided paths, for a flight of a plain one
+    double pixel;              ///< a path of a pixel in a pass
 };
-inline constexpr Rates PlainRates{115.0, 120.0, 100.0, 0.0}, GuidedRates{50.0, 200.0, 200.0, 500.0};
-/// What passes cost in nanoseconds, as the pilot of volume primitives counts them: walks by their counters, and the
-/// records of a primitive. All fitted to CPU seconds and counters of 350 renders of 43 scenes, 24 to 200 pixels wide.
-struct CountedCost {
-    const char* counter;
-    double nanoseconds;
+/// Fitted to CPU seconds and counters of 37 scenes: benchmarks/costs.py points (beams, mis_volumes_balls).
+inline constexpr Costs Nanoseconds{.plain = {115.0, 120.0, 100.0, 0.0},
+                                   .guided = {50.0, 200.0, 200.0, 500.0},
+                                   .connection = 200.0,
+                                   .point = 400.0,
+                                   .beam = 1300.0,
+                                   .slice = 3000.0,
+                                   .trail = 60.0,
+                                   .density = 650.0,
+                                   .pixel = 400.0};
+
+/// What whole passes cost in nanoseconds, as the pilot of volume primitives counts them: by path, ray and so on.
+struct PassCosts {
+    struct Record {
+        double stored, perPixel, splatted, gathered; ///< perPixel: of each in an image that it is splatted to all of
+    };
+    double path, ray, mediumEvent, surfaceEvent, controlVertex, connection, density;
+    Record point, beam, slice;
 };
-inline constexpr CountedCost WalkCosts[] = {{"photons", 210.0},
-                                            {"rays", 180.0},
-                                            {"medium events", 60.0},
-                                            {"surface events", 300.0},
-                                            {"control vertices", 220.0},
-                                            {"surface connections", 220.0},
-                                            {"flights with densities of guided paths", 3600.0}};
-struct RecordCosts {
-    double stored, perPixel, splatted, gathered; ///< perPixel: of each in an image that it is splatted to all of
-};
-inline constexpr RecordCosts PointCosts{400.0, 0.0, 3.0, 100.0}, BeamCosts{750.0, 0.0, 20.0, 240.0},
-    SliceCosts{1300.0, 0.9, 0.0, 400.0};
-/// And a ray to a surface point; a record, with what is built and splatted of it; to keep a vertex of a plain path, and
-/// the densities of a flight; a path of a pixel in a pass. All fitted to CPU seconds and counters of 37 scenes
-/// (statistics of renders at a plain_share of 0, 0.5 and 1).
-inline constexpr double ConnectionCost = 200.0, PointCost = 400.0, BeamCost = 1300.0, SliceCost = 3000.0;
+/// Fitted to CPU seconds and counters of 350 renders of 43 scenes, 24 to 200 pixels wide: benchmarks/costs.py passes.
+inline constexpr PassCosts PassNanoseconds{.path = 210.0,
+                                           .ray = 180.0,
+                                           .mediumEvent = 60.0,
+                                           .surfaceEvent = 300.0,
+                                           .controlVertex = 220.0,
+                                           .connection = 220.0,
+                                           .density = 3600.0,
+                                           .point = {400.0, 0.0, 3.0, 100.0},
+                                           .beam = {750.0, 0.0, 20.0, 240.0},
+                                           .slice = {1300.0, 0.9, 0.0, 400.0}};
 /// How many times as often as the pilot's paths those of a render may connect to surfaces: as their part of the
 /// variance and of the cost asks for. Neighbours share light the more the fewer connections there are, so that the
 /// model of one over their number is a rough one. Variance x CPU of cbox at 128 x 128, points and beams, at most 1 and
 /// 4: 0.092 and 0.136, 0.108 and 0.064. Bench: study cbox-128
 inline constexpr double LeastEffort = 1.0 / 16.0, MostEffort = 2.0;
-inline constexpr double TrailCost = 60.0, DensityCost = 650.0, PixelCost = 400.0;
 
 // --- Connections to surfaces -----------------------------------------------------------------------------------------
 
@@ -131,10 +141,10 @@ inline constexpr uint64_t ConnectionsPerPoint = 2, MostLeast = 1 << 14;
 /// 0.25, 0.076 at 0.5 and at 1. Bench: study cbox-128
 inline constexpr float SpreadPixels = 0.5f;
 
-/// Connections whose light neighbouring pixels share, and the radius of sharing in pixels. cbox at 128 x 128 without a
-/// bound on the distance, MSE x CPU: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08 with 2.5; then time grows. But
-/// without the bound a small image's blocks are off by 4 % (cornell-fog, 64 x 64). Bench: study cbox-128
-inline constexpr float SharedConnections = 100.0f, LeastShared = 2.5f, MostShared = 4.0f;
+/// Radius in pixels within which neighbours share what connections bring. cbox at 128 x 128 without a bound on the
+/// distance, MSE x CPU: 0.33 before sharing, 0.09 with 1.5 pixels, 0.08 with 2.5; then time grows. But without the
+/// bound a small image's blocks are off by 4 % (cornell-fog, 64 x 64). Bench: study cbox-128
+inline constexpr float SharedPixels = 2.5f;
 
 // --- Kernels at surfaces ---------------------------------------------------------------------------------------------
 

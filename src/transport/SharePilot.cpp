@@ -97,8 +97,7 @@ double SharePilot::choose(const PathCosts& costs, const std::function<double(con
     if (effective(Strategy::Alone) < tuning::LeastEffective) return Half;
     const bool plainIsJudged = effective(Strategy::Plain) >= tuning::LeastEffective;
     const auto score = [&](double time) { return scoreOf(costs.ofTime(time)); };
-    const double half = score(Half);
-    double best = Half, least = tuning::BetterThanHalf * half;
+    double best = Half, least = score(Half);
     for (const double time : Times) {
         if (time == Half || (time < tuning::LeastUnjudged && !plainIsJudged)) continue;
         if (const double other = score(time); other < least) {

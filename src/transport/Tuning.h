@@ -5,6 +5,8 @@
 //   infinite_medium   build/bin/infinite_medium
 //   micro             build/bin/micro
 
+#include <cstdint>
+
 namespace tungsten::transport::tuning {
 
 // --- Roulette of plain walks -----------------------------------------------------------------------------------------
@@ -35,10 +37,10 @@ inline constexpr double WindowGrowth = 1.5;
 // --- Plain and guided paths side by side -----------------------------------------------------------------------------
 
 /// Contributions of a pilot of plain and guided paths, as many of one size as are worth them, by which a pilot may
-/// choose; another share than one half must be so much better; below this one only where plain paths have found as many
-/// themselves. (Without the second a pilot of 10 ms loses up to 11 times, with it 2.7.)
-inline constexpr double LeastEffective = 20.0, BetterThanHalf = 1.0 / 1.1, LeastUnjudged = 0.2;
-/// Its counted cost at most, in nanoseconds.
-inline constexpr double MostPilotCost = 1e8;
+/// choose; less than this share only where plain paths have found as many themselves. (Without the second a pilot of
+/// 10 ms loses up to 11 times, with it 2.7.)
+inline constexpr double LeastEffective = 20.0, LeastUnjudged = 0.2;
+/// Paths of a pilot, which ends where LeastEffective has been found ten times, and its counted cost in nanoseconds.
+inline constexpr uint64_t LeastPilotPaths = 256, MostPilotPaths = 1 << 15, MostPilotCost = 100'000'000;
 
 } // namespace tungsten::transport::tuning

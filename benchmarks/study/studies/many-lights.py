@@ -1,4 +1,4 @@
-"""Light vertices of paths where there are many lights: when are there too many for them? Shows path::tuning::MostEmitters."""
+"""Light vertices of paths where there are many lights: when are there too many for them? Shows LightPaths::helpWith."""
 
 import json
 
@@ -82,7 +82,7 @@ def run(bench: Bench):
     bench.plot(figure, bench.name)
     bench.write(TITLE, f"A box of fog, {side} x {side} pixels, under lights of 0.1 x 0.1 that share one power; gates about {CENTRE:g}. Best "
                 f"paths of {seconds} CPU seconds, {seeds} seeds, each by its own account of its noise; `surface_connections` on or off. "
-                "The renderer was built with path::tuning::MostEmitters = 64; with more lights than that both are the same.",
+                "With more than 64 lights both are the same.",
                 f"![variance times CPU seconds]({bench.name}.svg)",
                 "Light vertices pay while variance × CPU s with them over that without is below 1. All figures: "
                 + bench.keep(bench.name, ["gate", "lights", "best paths", "passes", "variance × CPU s", "least of seeds", "most of seeds", "mean / reference",

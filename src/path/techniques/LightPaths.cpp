@@ -24,7 +24,8 @@ Flights flightsIn(const Scene& scene) {
 
 bool LightPaths::helpWith(const Scene& scene) {
     const auto helps = [](const Emitter& emitter) { return !emitter.isDelta() && !emitter.isInfinite(); };
-    return scene.emitters.size() <= tuning::MostEmitters &&
+    // The candidates that each has at least are then no more than the fewest paths of a pass.
+    return scene.emitters.size() <= tuning::FewestPaths / tuning::Candidates &&
            std::any_of(scene.emitters.begin(), scene.emitters.end(), helps);
 }
 
@@ -44,7 +45,7 @@ void LightPaths::prepare(const Scene& scene, const TargetChoice& targets, const 
     for (size_t i = 0; i < reflected_.size(); ++i) {
         if (!(targets.probability(i) > 0.0f) || scene.emitters[i].isDelta()) continue;
         reflected_[i].prepare(scene, scene.emitters[i], flights_, watch);
-        statistics.add(counter::LightPaths, tuning::PilotPaths);
+        statistics.add(counter::LightPaths, tuning::MostPaths);
     }
 }
 

@@ -55,9 +55,9 @@ bool reflectsSharply(LobeMask lobes) {
 
 void ReflectedLightCache::prepare(const Scene& scene, const Emitter& emitter, const Flights& flights,
                                   const ProgressToken& watch) {
-    trace(scene, emitter, {}, tuning::PilotPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
+    trace(scene, emitter, {}, tuning::MostPaths, PassInfo{.index = PilotPass, .watch = watch}, flights);
     candidates_ =
-        vertices().empty() ? 0.0f : float(tuning::Candidates) * float(tuning::PilotPaths) / float(vertices().size());
+        vertices().empty() ? 0.0f : float(tuning::Candidates) * float(tuning::MostPaths) / float(vertices().size());
 }
 
 void ReflectedLightCache::trace(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, size_t paths,

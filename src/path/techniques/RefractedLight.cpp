@@ -60,14 +60,10 @@ Body::Face RefractedLight::face(const Vec3f& position, const Region& region, siz
     if (!body.sphere) return body.faces[index];
     // The plane that touches the sphere about where the way to the light's middle leaves it.
     const RefractedLamp& to = lamps_[lamp];
-    Body::Face touching = body.leave(position, (to.bounds.centre - position).normalized()).face;
-    for (int i = 0; i < tuning::SphereSteps; ++i) {
-        const RefractedView seen(position, touching, pair(region.medium, lamp).index, region.speed, to);
-        const auto direction = seen.directionTo(to.bounds.centre);
-        if (!direction) break;
-        touching = body.leave(position, *direction).face;
-    }
-    return touching;
+    const Body::Face touching = body.leave(position, (to.bounds.centre - position).normalized()).face;
+    const RefractedView seen(position, touching, pair(region.medium, lamp).index, region.speed, to);
+    const auto direction = seen.directionTo(to.bounds.centre);
+    return direction ? body.leave(position, *direction).face : touching;
 }
 
 size_t RefractedLight::faceOf(int medium, const Vec3f& normal) const {
@@ -94,12 +90,12 @@ auto RefractedLight::oddsOf(const Vec3f& position, const Region& region, size_t 
             body.sphere ? body.leave(position, (bounds.centre - position).normalized()).face : body.faces[i];
         const float depth = (at.point - position).dot(at.normal);
         const bool lit = (bounds.centre - at.point).dot(at.normal) + bounds.radius > 0.0f;
-        if (!lit || !(depth > 0.0f) || depth * sigmaT > tuning::DeepestRefracted) continue;
+        if (!lit || !(depth > 0.0f)) continue;
         odds.faces[i] = std::exp(-sigmaT * depth);
         odds.sum += odds.faces[i];
     }
     if (!(odds.sum > 0.0f)) return odds;
-    const float all = std::min(tuning::RefractedOdds * odds.sum, 1.0f);
+    const float all = std::min(odds.sum, 1.0f);
     for (float& each : odds.faces) each *= all / odds.sum;
     odds.sum = all;
     return odds;

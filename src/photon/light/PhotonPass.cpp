@@ -169,7 +169,7 @@ void PhotonPass::tracePaths(uint64_t first, uint64_t last, const PhotonContext& 
 
 double PhotonPass::passOverhead() const {
     const Vec2i& resolution = scene_.camera.resolution;
-    return tuning::PixelCost * double(cameraPaths_) * double(resolution.x) * double(resolution.y);
+    return tuning::Nanoseconds.pixel * double(cameraPaths_) * double(resolution.x) * double(resolution.y);
 }
 
 PhotonMaps PhotonPass::emptyMaps() const {

@@ -88,17 +88,19 @@ std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, con
 namespace {
 
 /// Whatever costs time in proportion to paths, but for records and connections, in nanoseconds.
-double cost(const PhotonCounters& counters, const tuning::Rates& rates) {
-    return rates.path * double(counters.paths) + rates.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
-           rates.ray * double(counters.rays - counters.connectionRays) +
-           rates.controlVertex * double(counters.controlVertices);
+double cost(const PhotonCounters& counters, const tuning::Costs::Walk& each) {
+    return each.path * double(counters.paths) + each.vertex * double(counters.mediumEvents + counters.surfaceEvents) +
+           each.ray * double(counters.rays - counters.connectionRays) +
+           each.controlVertex * double(counters.controlVertices);
 }
 
 /// Of a record of the primitive in use.
 double recordCost(const VolumePrimitive& primitive) {
     return std::visit(
         [](const auto& p) {
-            return p.AtVertices ? tuning::PointCost : p.CountsRecords ? tuning::SliceCost : tuning::BeamCost;
+            return p.AtVertices      ? tuning::Nanoseconds.point
+                   : p.CountsRecords ? tuning::Nanoseconds.slice
+                                     : tuning::Nanoseconds.beam;
         },
         primitive);
 }
@@ -178,7 +180,7 @@ void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* con
         return;
     }
     const StageTimer timer(statistics, "pilot of plain and guided light paths");
-    watch.stage("pilot of plain and guided light paths", tuning::MostSharePaths);
+    watch.stage("pilot of plain and guided light paths", transport::tuning::MostPilotPaths);
     balance_ = {0.5f, 0.5f};
     const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
     Statistics ignored;
@@ -198,17 +200,17 @@ void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* con
     const auto count = [&] {
         const double overhead = passOverhead();
         const double record = recordCost(settings_.primitive) + overhead / double(settings_.volumePhotonCount);
-        pilot.costs = {cost(traced.plain, tuning::PlainRates) + record * pilot.plainRecords,
-                       tuning::TrailCost * double(traced.plain.mediumEvents + traced.plain.surfaceEvents) +
-                           tuning::DensityCost * double(traced.densities.densities) +
-                           tuning::PlainRates.ray * double(traced.densities.rays),
-                       cost(traced.guided, tuning::GuidedRates) + record * pilot.guidedRecords,
+        pilot.costs = {cost(traced.plain, tuning::Nanoseconds.plain) + record * pilot.plainRecords,
+                       tuning::Nanoseconds.trail * double(traced.plain.mediumEvents + traced.plain.surfaceEvents) +
+                           tuning::Nanoseconds.density * double(traced.densities.densities) +
+                           tuning::Nanoseconds.plain.ray * double(traced.densities.rays),
+                       cost(traced.guided, tuning::Nanoseconds.guided) + record * pilot.guidedRecords,
                        overhead / double(settings_.photonCount) * double(traced.plain.paths)};
-        pilot.connections = {tuning::ConnectionCost * double(traced.plain.connectionRays), 0.0,
-                             tuning::ConnectionCost * double(traced.guided.connectionRays)};
+        pilot.connections = {tuning::Nanoseconds.connection * double(traced.plain.connectionRays), 0.0,
+                             tuning::Nanoseconds.connection * double(traced.guided.connectionRays)};
     };
     uint64_t path = 0;
-    while (path < tuning::MostSharePaths) {
+    while (path < transport::tuning::MostPilotPaths) {
         for (int i = 0; i < SharePilot::PathsOfPixel; ++i, ++path) {
             const bool guides = i % 2 == 1;
             const auto strategy = guides ? transport::Strategy::Guided : transport::Strategy::Plain;
@@ -225,9 +227,9 @@ void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* con
             addRecords(pilot, importance, traced.deposits, seen, strategy, balance_);
         }
         watch.advance();
-        if (path < tuning::LeastSharePaths) continue;
+        if (path < transport::tuning::LeastPilotPaths) continue;
         count();
-        if (pilot.costs.sum() + pilot.connections.sum() > transport::tuning::MostPilotCost) break;
+        if (pilot.costs.sum() + pilot.connections.sum() > double(transport::tuning::MostPilotCost)) break;
         constexpr double Enough = 10.0 * transport::tuning::LeastEffective;
         if ((path & (path - 1)) == 0 && pilot.hasFound(Enough)) break;
     }

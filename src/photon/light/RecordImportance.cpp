@@ -110,7 +110,7 @@ Contribution RecordImportance::onSurface(const Photon& photon) const {
 
 Contribution RecordImportance::ofConnection(const ReceivedLight& light, const SensorPoint& point) const {
     // Neighbours share what arrives.
-    constexpr float Sharing = Pi * tuning::LeastShared * tuning::LeastShared;
+    constexpr float Sharing = Pi * tuning::SharedPixels * tuning::SharedPixels;
     return {meanComponent(light.light * point.throughput) / std::sqrt(Sharing),
             light.frame * 65536 + int(point.pixel % 65536u)};
 }

@@ -149,11 +149,8 @@ class Sharing {
 
 } // namespace
 
-SharingKernel SharingKernel::of(size_t points, size_t received, float gatherRadius, float factor) {
-    const float each = float(received) / float(std::max<size_t>(points, 1));
-    const float pixels = std::clamp(std::sqrt(tuning::SharedConnections * InvPi / std::max(each, 1e-3f)),
-                                    tuning::LeastShared, tuning::MostShared);
-    return {pixels * factor, gatherRadius * factor};
+SharingKernel SharingKernel::of(float gatherRadius, float factor) {
+    return {tuning::SharedPixels * factor, gatherRadius * factor};
 }
 
 void shareLight(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,

@@ -17,9 +17,9 @@ struct SharingKernel {
     float pixels, distance;
     float time = 1.0f; ///< part of a frame's width, about its middle, that is shared
 
-    /// Wide in the image where few connections arrive, as wide in the scene as surface photons are gathered; shrinking
-    /// from pass to pass as `factor` (of gather radii) does.
-    static SharingKernel of(size_t points, size_t received, float gatherRadius, float factor);
+    /// As wide in the scene as surface photons are gathered; shrinking from pass to pass as `factor` (of gather radii)
+    /// does.
+    static SharingKernel of(float gatherRadius, float factor);
 };
 
 /// Adds to the pass image, for every sensor point, the mean over the points in its kernel of what arrived there,

@@ -72,7 +72,7 @@ void FrameShares::chooseAmong(FlightShape shape, const std::vector<CollapsedFlig
 double FrameShares::shareOf(double light, double mean) {
     if (!(mean > 0.0)) return 1.0;
     constexpr auto Even = double(tuning::EvenInFrames);
-    return Even + (1.0 - Even) * std::min(light / (mean * double(tuning::DimInFrame)), 1.0);
+    return Even + (1.0 - Even) * std::min(light / mean, 1.0);
 }
 
 } // namespace tungsten::photon

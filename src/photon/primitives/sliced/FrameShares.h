@@ -10,7 +10,7 @@
 
 namespace tungsten::photon {
 
-/// A record is seen in all frames from some time on, but fades: where it is much darker than what others of its shape
+/// A record is seen in all frames from some time on, but fades: where it is darker than what others of its shape
 /// bring to a frame on average, it is drawn at random, as often as it is bright, and weighs more. A film then costs
 /// what its light calls for. How bright it is is a guess (logSliceLight): a part of the choice is even over all that
 /// can arrive, so that nothing is left out for good and no weight is above 1 / tuning::EvenInFrames.
