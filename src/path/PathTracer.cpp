@@ -308,6 +308,7 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
     const double time = asked ? double(*asked) : pilot.choose(costs);
     balance_ = costs.ofTime(time);
     statistics.add(counter::PilotPaths, traced);
+    statistics.add("plain camera paths, in thousandths", uint64_t(std::lround(1000.0 * double(balance_.plain))));
 }
 
 } // namespace tungsten::path

@@ -281,6 +281,16 @@ class Plan(unittest.TestCase):
             for part in parts:
                 self.assertIn(part, " ".join(lines[1:4]))
 
+    def test_pilots_tell_what_they_choose_where_they_are_quick(self):
+        """And a render chooses the same."""
+        for integrator, paths in (PATHS, "camera paths"), (PHOTONS, "light paths"):
+            scene = foggy(best(integrator))
+            said = re.search(f"  pilot     ([0-9.]+) of the {paths} are plain\n", self.run_on(scene, "--explain").stdout)
+            file = Path(self.folder.name) / "stats.json"
+            self.run_on(scene, "-d", self.folder.name, "--stats", str(file))
+            self.assertEqual(round(1000 * float(said.group(1))), json.loads(file.read_text())["counters"][f"plain {paths}, in thousandths"])
+        self.assertNotIn("  pilot  ", self.run_on(foggy(PATHS), "--explain").stdout)
+
     def test_what_is_left_out_is_told_with_them(self):
         late = foggy({**best(PATHS), "transient_time_center": 0.01, "transient_time_width": 0.01})
         self.assertIn("  left out  black image: no light can arrive", self.run_on(late, "--explain").stdout)

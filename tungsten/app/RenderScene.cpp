@@ -5,11 +5,13 @@
 #include "tungsten/app/Signals.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/FilmErrors.h"
+#include "tungsten/scene/Field.h"
 #include "tungsten/session/Progress.h"
 #include "tungsten/session/Report.h"
 #include "tungsten/session/Session.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -54,6 +56,30 @@ Job loadJob(const std::filesystem::path& file, const Options& options, const Plu
     return std::move(*job);
 }
 
+/// Prepares a render, with the choices of its pilots, if all of it takes no longer than a second.
+bool prepareQuickly(const Job& job, Statistics& statistics) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point end = Clock::now() + std::chrono::seconds(1);
+    ProgressMonitor monitor([&] { return interrupted || Clock::now() > end; });
+    try {
+        job.integrator->prepare(job.facts, ProgressToken(monitor), statistics);
+    } catch (const PassCancelled&) {
+        return false;
+    }
+    return true;
+}
+
+/// Of plain paths, as pilots choose them here and in a render.
+void printShares(const Statistics& prepared) {
+    if (prepared.counter(counter::PilotPaths) == 0) return;
+    for (const std::string paths : {"camera paths", "light paths"}) {
+        const auto counters = prepared.counters();
+        const auto plain = counters.find("plain " + paths + ", in thousandths");
+        if (plain == counters.end()) continue;
+        std::cout << "  pilot     " << brief(0.001 * double(plain->second)) << " of the " << paths << " are plain\n";
+    }
+}
+
 /// What a scene calls for, and what it leaves to defaults; renders nothing.
 void explain(const std::filesystem::path& file, const Job& job, const std::vector<DefaultTaken>& defaults,
              Explanation how) {
@@ -62,8 +88,16 @@ void explain(const std::filesystem::path& file, const Job& job, const std::vecto
         return;
     }
     std::cout << file.string() << " (" << job.loaded.integratorType << ")\n";
-    how == Explanation::Effects ? printFeatures(job.features, std::cout)
-                                : printPlan(job.facts, job.features, std::cout);
+    if (how == Explanation::Effects) {
+        printFeatures(job.features, std::cout);
+    } else {
+        Statistics statistics;
+        const bool prepared = prepareQuickly(job, statistics);
+        SceneFacts facts = job.facts;
+        const Scene& scene = *job.loaded.scene;
+        printPlan(facts, prepared ? plannedFeatures(scene, *job.integrator, facts) : job.features, std::cout);
+        if (prepared) printShares(statistics);
+    }
     printDefaults(defaults, std::cout);
 }
 

@@ -126,6 +126,13 @@ std::filesystem::path hostLibrary() {
 
 } // namespace
 
+Features plannedFeatures(const Scene& scene, const Integrator& integrator, SceneFacts& facts) {
+    facts = analyseScene(scene, facts.everything);
+    Features features = featuresOf(scene, facts);
+    integrator.plan(facts, features);
+    return features;
+}
+
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins, bool everything) {
     LoadOptions anyway = options;
     anyway.readIntegrator = [&](const ObjectReader& block, const std::string& type,
@@ -137,9 +144,8 @@ Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const
     options.watch.poll();
     job.integrator = makeIntegrator(job.loaded, plugins);
     options.watch.poll();
-    job.facts = analyseScene(*job.loaded.scene, everything);
-    job.features = featuresOf(*job.loaded.scene, job.facts);
-    job.integrator->plan(job.facts, job.features);
+    job.facts.everything = everything;
+    job.features = plannedFeatures(*job.loaded.scene, *job.integrator, job.facts);
     warnAboutFeatures(job);
     return job;
 }

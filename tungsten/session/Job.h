@@ -33,6 +33,10 @@ struct Job {
     Features features;
 };
 
+/// What an integrator does for a scene, and why, with what its pilots have chosen if it is prepared. Of `facts` only
+/// `everything` is read; they become what the integrator leaves of them.
+Features plannedFeatures(const Scene& scene, const Integrator& integrator, SceneFacts& facts);
+
 /// Throws what loadScene throws, and InputError for an integrator that nobody registers or that refuses its settings.
 /// `everything`: SceneFacts::everything.
 Job makeJob(const std::filesystem::path& file, const LoadOptions& options, const Plugins& plugins,

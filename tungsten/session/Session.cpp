@@ -4,6 +4,7 @@
 #include "tungsten/io/Page.h"
 #include "tungsten/io/Result.h"
 #include "tungsten/session/Checkpoint.h"
+#include "tungsten/session/Job.h"
 #include "tungsten/session/Memory.h"
 #include "tungsten/session/Passes.h"
 #include "tungsten/session/Progress.h"
@@ -298,14 +299,6 @@ class Session {
         }
     }
 
-    /// With what pilots have decided meanwhile.
-    [[nodiscard]] std::vector<Feature> featuresNow(const SceneFacts& before) const {
-        SceneFacts facts = analyseScene(*loaded_.scene, before.everything);
-        Features now = featuresOf(*loaded_.scene, facts);
-        integrator_.plan(facts, now);
-        return now.all;
-    }
-
     /// False: it was broken off, in some rank, and there are no passes.
     bool prepare(const SceneFacts& facts) {
         bool whole = true;
@@ -315,7 +308,9 @@ class Session {
                 if (!black_) integrator_.prepare(facts, pass.watch.part(0.0, 0.0), statistics);
             };
             whole = watched_.run({}, limit_.end(), build);
-            if (whole) result_.features = featuresNow(facts);
+            if (!whole) return;
+            SceneFacts now = facts;
+            result_.features = plannedFeatures(*loaded_.scene, integrator_, now).all; // as pilots have chosen
         });
         watched_.rethrow();
         agree(whole, false);
