@@ -148,17 +148,6 @@ inline constexpr float SharedPixels = 2.5f;
 
 // --- Kernels at surfaces ---------------------------------------------------------------------------------------------
 
-/// Cells that keep what surfaces are about them: their size, in radii of kernels; at least so many across a scene; the
-/// most faces that one keeps, beyond which those near it are searched for each record. CPU time over that without
-/// ended kernels, 3 s, at 3, 4 and 6 radii: mirror box, beams 1.34, 1.47 and 1.42, points 1.16, 1.16 and 1.17; room of
-/// thin fog, beams 1.71, 1.79 and 1.81. Bench: benchmarks/kernels/cost.py
-inline constexpr float CellInRadii = 3.0f, LeastCellsAcross = 32.0f;
-inline constexpr size_t MostFacesOfCell = 16;
-
-/// Beams near a surface are cut into parts of so many radii, at most. Room of thin fog, CPU time and variance over
-/// those without ended kernels at 4, 8 and 16: 1.65, 1.006; 1.70, 1.010; 1.68, 1.020. Bench: benchmarks/kernels/cost.py
-inline constexpr float NearPartInRadii = 8.0f;
-
 /// Width of beams' kernels at surfaces, of their radius. Plain beams in six bodies of fog with a radius of 0.06, two
 /// seconds, error^2 at 1 and at 0.5: ball of 12 a unit 0.296, 0.129 (off by 16 and 10 %), of a late lamp 0.045, 0.013
 /// (3 and 2 %), small balls 0.090, 0.096, cylinder 0.036, 0.052, fast body 0.0038, 0.0026, touching cubes 0.0061,

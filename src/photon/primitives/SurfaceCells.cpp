@@ -1,12 +1,12 @@
 #include "photon/primitives/SurfaceCells.h"
 
-#include "photon/Tuning.h"
-
 namespace tungsten::photon {
 
 namespace {
 
 constexpr size_t SlotBits = 17, Slots = size_t(1) << SlotBits;
+/// Size of coarse cells, of that of fine ones.
+constexpr float Coarse = 4.0f;
 /// Slots that a key may be in.
 constexpr size_t MostProbes = 8;
 
@@ -20,7 +20,12 @@ SurfaceCells::~SurfaceCells() {
 }
 
 SurfaceCells::Distance SurfaceCells::distance(const Vec3f& position) const {
-    const Place place = placeOf(position);
+    // Far from surfaces coarse cells tell enough: fine ones would be too many to be kept.
+    const Distance far = distanceBy(placeOf(position, Coarse), position);
+    return far.least >= Coarse * size_ ? far : distanceBy(placeOf(position), position);
+}
+
+SurfaceCells::Distance SurfaceCells::distanceBy(const Place& place, const Vec3f& position) const {
     Slot* slot = place.key ? slotOf(place.key) : nullptr;
     float distance = slot ? slot->distance.load(std::memory_order_relaxed) : 0.0f;
     if (!(distance > 0.0f)) {
@@ -32,19 +37,19 @@ SurfaceCells::Distance SurfaceCells::distance(const Vec3f& position) const {
     return {distance * (1.0f - Rounding) - aside, distance * (1.0f + Rounding) + aside};
 }
 
-SurfaceCells::Place SurfaceCells::placeOf(const Vec3f& position) const {
-    constexpr int AxisBits = 21;
+SurfaceCells::Place SurfaceCells::placeOf(const Vec3f& position, float scale) const {
+    constexpr int AxisBits = 20;
     constexpr float Half = float(1 << (AxisBits - 1));
-    uint64_t key = 0;
+    uint64_t key = scale > 1.0f ? 3 : 2;
     Vec3f centre;
     bool numbered = true;
     for (int axis = 0; axis < 3; ++axis) {
-        const float at = std::floor(position[axis] * inverse_);
+        const float at = std::floor(position[axis] * (inverse_ / scale));
         numbered = numbered && std::abs(at) < Half;
-        centre[axis] = (at + 0.5f) * size_;
+        centre[axis] = (at + 0.5f) * (size_ * scale);
         key = key << AxisBits | (numbered ? uint64_t(int64_t(at) + int64_t(Half)) : 0);
     }
-    return {numbered ? key + 1 : 0, centre};
+    return {numbered ? key : 0, centre};
 }
 
 SurfaceCells::Slot* SurfaceCells::slotOf(uint64_t key) const {
@@ -68,7 +73,7 @@ SurfaceCells::Faces SurfaceCells::facesAbout(const Vec3f& centre) const {
     constexpr float HalfDiagonal = 0.8661f; // of a cube of edge 1, and rounding
     constexpr double Flat = 1e-6;           // of the size: faces as near to a plane as this lie in it
     constexpr double Parallel = 1e-12;
-    const auto all = geometry_.facesWithin(centre, HalfDiagonal * size_ + reach_, tuning::MostFacesOfCell);
+    const auto all = geometry_.facesWithin(centre, HalfDiagonal * size_ + reach_, MostFaces);
     if (!all) return {{}, true};
     Faces found;
     for (const FaceIndex& face : *all) {

@@ -14,6 +14,9 @@ namespace tungsten::photon {
 /// from its place alone: not from who asked first, nor from whether there was room to keep it.
 class SurfaceCells {
   public:
+    /// Beyond so many faces those near a cell are searched for each record.
+    static constexpr size_t MostFaces = 16;
+
     /// Faces of one plane, or one that is not flat.
     struct Group {
         std::optional<SceneGeometry::Plane> plane;
@@ -58,7 +61,9 @@ class SurfaceCells {
         std::atomic<float> distance; ///< of the centre from the nearest surface; 0: not known yet
     };
 
-    [[nodiscard]] Place placeOf(const Vec3f& position) const;
+    /// Fine or coarse cells, of edge size * `scale`.
+    [[nodiscard]] Place placeOf(const Vec3f& position, float scale = 1.0f) const;
+    [[nodiscard]] Distance distanceBy(const Place& place, const Vec3f& position) const;
     /// Nothing where there is no room.
     [[nodiscard]] Slot* slotOf(uint64_t key) const;
     [[nodiscard]] float distanceFrom(const Vec3f& centre) const;
