@@ -43,6 +43,12 @@ Choice refractedOf(const Scene& scene, const PathSettings& settings, const Scene
                      "surface is outside"};
 }
 
+Choice allocationOf(const Scene& scene, const PathSettings& settings) {
+    const bool on = settings.policy.allocatesSamples() && !scene.camera.detectors();
+    return {on, on ? "more samples where paths vary more for what they cost"
+                   : "the preset or adaptive_samples gives pixels and detectors alike"};
+}
+
 Choice firstScatteringOf(const Scene& scene, const SceneFacts& facts, bool lasers) {
     const bool on = !lasers || (scene.camera.detectors() && !facts.specularSensorPaths);
     return {on, on ? "no light of a single direction, or places of detectors are connected to it"
@@ -77,6 +83,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Sc
     plan.edaTable = transport::tablesOf(scene, settings.policy, darts::Mode::Path, facts, plan.guidance.on);
     plan.balance =
         transport::balanceOf(scene, settings.policy, darts::Mode::Path, plan.guidance, !scene.transport.gate.delta);
+    plan.allocation = allocationOf(scene, settings);
     plan.refracted = refractedOf(scene, settings, facts);
     plan.lightVertices = lightVerticesOf(plan, scene, settings, facts);
     plan.reflectedLight.on = plan.lightVertices.on && LightPaths::reflectedIn(scene);
@@ -91,6 +98,7 @@ SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settin
     SamplingSummary said;
     said.paths = transport::describeStrategies("camera paths", guidance, balance, policy.plainShare);
     if (balance.on && scene.transport.gate.frames > 1) said.paths += "; guided ones aim at windows of the sequence";
+    if (allocation.on) said.paths += "; " + allocation.reason;
     said.vertices = guidance.on ? transport::describeVertices(scene, policy, darts::Mode::Path, facts, true)
                                 : transport::PlainVertices;
     const bool connects = settings.lightSampling || settings.volumeLightSampling;
@@ -120,6 +128,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
     add("guided paths", guidance, {"integrator.darts"}, {counter::ControlVertices});
     add("plain paths beside them", balance, {"integrator.darts"}, {counter::PilotPaths});
+    add("samples by need", allocation, {"integrator.darts"}, {"pilot samples"});
     add("light through walls", refracted, {"integrator.darts"}, {counter::WaysThroughWalls});
     add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
     if (guidance.on) transport::WaysOut::plan(scene, settings.policy, features);

@@ -20,6 +20,7 @@ struct PathPlan {
     Choice roulette;              ///< of plain paths, by throughput
     Choice guidance;              ///< walks aim at emitters inside the gate
     Choice balance;               ///< beside plain ones
+    Choice allocation;            ///< pixels get samples as their paths vary and cost
     Choice lightVertices;         ///< walks connect to surface points that light reaches first
     Choice reflectedLight;        ///< and to where glossy surfaces throw light
     Choice refracted;             ///< plain walks aim at emitters through the walls of sealed bodies

@@ -20,6 +20,7 @@ namespace tungsten::path {
 namespace {
 
 constexpr size_t TileSide = 8;
+constexpr uint32_t MostSampleRounds = 64; ///< pairs of a block of pixels in a pilot of samples
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -84,7 +85,12 @@ void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, St
         const StageTimer timer(statistics, "light through walls");
         refracted_.emplace().prepare(*scene_, facts.excludedEmitters, watch);
     }
-    if (!plan_.guidance.on) return;
+    if (plan_.guidance.on) prepareGuides(facts, watch, statistics);
+    if (plan_.allocation.on) allocateSamples(watch, statistics);
+}
+
+void PathTracer::prepareGuides(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
+    using Emitters = TargetChoice::Emitters;
     const StageTimer timer(statistics, "guide preparation");
     guides_ = PathGuides::of(*scene_, settings_.policy.sampling, facts, watch);
     if (plan_.edaTable.on) statistics.add(counter::DirectionTables, uint64_t(guides_.tables()));
@@ -110,14 +116,17 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
     if (refracted_) refracted_->trace(pass.part(0.0, 0.0));
     const StageTimer timer(statistics, "camera pass");
     const PassInfo rest = pass.part(lightVertices ? LightPathsPart : 0.0, 1.0);
-    if (guides)
-        renderGuided(rest, film, statistics);
+    withPaths(rest.watch, [&](const auto& trace) { renderTiles(rest, film, statistics, trace); });
+}
+
+template <typename Use>
+void PathTracer::withPaths(const ProgressToken& watch, const Use& use) const {
+    if (plan_.guidance.on && balance_.guided > 0.0f)
+        withGuidedPaths(watch, use);
     else if (plan_.timeResolved)
-        plan_.media ? renderPlainly<true, true>(rest, film, statistics)
-                    : renderPlainly<true, false>(rest, film, statistics);
+        plan_.media ? withPlainPaths<true, true>(watch, use) : withPlainPaths<true, false>(watch, use);
     else
-        plan_.media ? renderPlainly<false, true>(rest, film, statistics)
-                    : renderPlainly<false, false>(rest, film, statistics);
+        plan_.media ? withPlainPaths<false, true>(watch, use) : withPlainPaths<false, false>(watch, use);
 }
 
 void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const ProgressToken& watch,
@@ -142,23 +151,24 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
     const Camera& camera = scene_->camera;
     const auto width = size_t(camera.resolution.x), height = size_t(camera.resolution.y);
     const auto renderPixel = [&](int x, int y, StrategyCounters& counters) {
-        PixelSink sink(film, sensor_, x, y, pass.samples, counters.plain);
+        const SampleAllocation::Samples samples = allocation_.of(x, y, pass.firstSample, pass.samples);
+        PixelSink sink(film, sensor_, x, y, samples.count, counters.plain);
         const uint64_t pixel = size_t(y) * width + size_t(x);
         // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
         Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
         const float rotation = targets_->several() ? turns.next1D() : 0.0f;
         const double turn = balance_.both() || (windows_ && windows_->several()) ? turns.nextDouble() : 0.0;
-        for (uint32_t s = 0; s < pass.samples; ++s) {
-            // Keyed by the absolute sample: but for light vertices, each pass's own, the image does not depend on how
-            // samples are cut into passes.
-            const auto sample = uint32_t(pass.firstSample + s);
+        for (uint32_t s = 0; s < samples.count; ++s) {
+            // Keyed by the absolute sample: but for light vertices, each pass's own, samples do not depend on how they
+            // are cut into passes.
+            const uint32_t sample = samples.first + s;
             Sampler sampler(pass.seed, RandomStream::Camera, sample, pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = camera.generateRay({x, y}, uFilter, uLens);
             float u = targets_->several() ? radicalInverse(sample) + rotation : 0.0f;
             u -= u >= 1.0f ? 1.0f : 0.0f;
             pass.watch.advanceWithin(SamplesPerPoll, s + 1);
-            const double place = turn + GoldenRatio * double(pass.firstSample + s);
+            const double place = turn + GoldenRatio * double(sample);
             trace(ray, sink, counters, sampler, u, float(place - std::floor(place)));
             if (detectorLight_)
                 addDetectorLight(x, u, sink, pass.watch, counters.plain,
@@ -177,20 +187,18 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
     });
 }
 
-template <bool TimeResolved, bool Media>
-void PathTracer::renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const PathContext context = plainContext(pass.watch);
+template <bool TimeResolved, bool Media, typename Use>
+void PathTracer::withPlainPaths(const ProgressToken& watch, const Use& use) const {
+    const PathContext context = plainContext(watch);
     const bool lasers = plan_.lasers && targets_->any();
-    renderTiles(pass, film, statistics,
-                [&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u, float) {
-                    std::optional<PathTarget> source;
-                    if (lasers) {
-                        Sampler light = sampler.branch(RandomStream::Target, 0);
-                        source = targets_->sample(u, light, pass.watch, counters.plain);
-                    }
-                    tracePath<TimeResolved, Media>(context, sink, counters.plain, sampler, source ? &*source : nullptr,
-                                                   ray);
-                });
+    use([&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u, float) {
+        std::optional<PathTarget> source;
+        if (lasers) {
+            Sampler light = sampler.branch(RandomStream::Target, 0);
+            source = targets_->sample(u, light, watch, counters.plain);
+        }
+        tracePath<TimeResolved, Media>(context, sink, counters.plain, sampler, source ? &*source : nullptr, ray);
+    });
 }
 
 GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
@@ -203,9 +211,10 @@ PathContext PathTracer::plainContext(const ProgressToken& watch) const {
     return {*scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries, watch};
 }
 
-void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const {
-    const GuidedContext guided = guidedContext(pass.watch);
-    const PathContext plain = plainContext(pass.watch);
+template <typename Use>
+void PathTracer::withGuidedPaths(const ProgressToken& watch, const Use& use) const {
+    const GuidedContext guided = guidedContext(watch);
+    const PathContext plain = plainContext(watch);
     tbb::enumerable_thread_specific<PlainTrail> trails;
     const auto trace = [&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u,
                            float strategy) {
@@ -214,7 +223,7 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
             const size_t window = windows_->choose((strategy - balance_.plain) / balance_.guided);
             sink.begin(balance_.both() ? Strategy::Guided : Strategy::Alone, balance_, (*windows_)[window]);
             Sampler light = sampler.branch(RandomStream::Target, 0);
-            if (const auto target = targets_->sample(u, light, pass.watch, counters.guided))
+            if (const auto target = targets_->sample(u, light, watch, counters.guided))
                 traceGuidedPath(guided, sink, counters.guided, sampler, *target, ray, window);
             return;
         }
@@ -224,7 +233,64 @@ void PathTracer::renderGuided(const PassInfo& pass, Film& film, Statistics& stat
         trail.start(guided, *targets_, sink, counters.densities, sampler);
         tracePlainBesideGuided(plain, {&trail}, sink, counters.plain, sampler, ray);
     };
-    renderTiles(pass, film, statistics, trace);
+    use(trace);
+}
+
+void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statistics) {
+    const StageTimer timer(statistics, "pilot of samples");
+    constexpr uint64_t Key = transport::PilotKey;
+    if (plan_.lightVertices.on && balance_.guided > 0.0f) {
+        Statistics ignored;
+        lightPaths_.trace(*scene_, *targets_, tuning::FewestPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
+    }
+    if (refracted_) refracted_->trace({.seed = Key, .watch = watch});
+    const int frames = sensor_.gate.frames;
+    SampleAllocation allocation(scene_->camera.resolution);
+    Film probe(1, 1, frames, {.moments = false});
+    std::vector<Rgb> before(static_cast<size_t>(frames));
+    Sampler places(Key, RandomStream::Pilot, 1, 0);
+    double cost = 0.0;
+    uint32_t traced = 0;
+    const auto tracePair = [&](const auto& trace, size_t block) {
+        const float u = places.next1D(), v = places.next1D();
+        const Vec2i pixel = allocation.pixelOf(block, u, v);
+        double variance = 0.0;
+        StrategyCounters counters;
+        for (int k = 0; k < 2; ++k, ++traced) {
+            Sampler sampler(Key, RandomStream::Camera, traced, block);
+            const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+            const Ray ray = scene_->camera.generateRay(pixel, uFilter, uLens);
+            probe.beginPass();
+            const float uTarget = places.next1D(), uStrategy = places.next1D();
+            {
+                PixelSink sink(probe, sensor_, 0, 0, 1, counters.plain);
+                trace(ray, sink, counters, sampler, uTarget, uStrategy);
+            }
+            for (int frame = 0; frame < frames; ++frame) {
+                const Rgb value = probe.passPixel(frame, 0, 0);
+                const Rgb difference = value - before[size_t(frame)];
+                if (k == 1) variance += 0.5 * double(difference.dot(difference));
+                before[size_t(frame)] = value;
+            }
+        }
+        const double own = costs(counters).sum() + tuning::Nanoseconds.sample;
+        allocation.tell(block, variance, own);
+        cost += own;
+    };
+    watch.stage("pilot of samples", MostSampleRounds);
+    withPaths(watch, [&](const auto& trace) {
+        for (uint32_t round = 0; round < MostSampleRounds && cost < 0.5 * double(transport::tuning::MostPilotCost);
+             ++round) {
+            for (size_t block = 0; block < allocation.blocks(); ++block) {
+                watch.advanceWithin(SamplesPerPoll, block + 1);
+                tracePair(trace, block);
+            }
+            watch.advance();
+        }
+    });
+    allocation.choose();
+    allocation_ = std::move(allocation);
+    statistics.add("pilot samples", traced);
 }
 
 double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk& each) const {

@@ -4,6 +4,7 @@
 #include "path/GuidedVisitor.h"
 #include "path/PathPlan.h"
 #include "path/PathVisitor.h"
+#include "path/SampleAllocation.h"
 #include "path/Tuning.h"
 #include "path/techniques/LightPaths.h"
 #include "path/techniques/RefractedLight.h"
@@ -28,9 +29,17 @@ class PathTracer : public Integrator {
     void renderPass(const PassInfo& pass, Film& film, Statistics& statistics) override;
 
   private:
-    template <bool TimeResolved, bool Media>
-    void renderPlainly(const PassInfo& pass, Film& film, Statistics& statistics) const;
-    void renderGuided(const PassInfo& pass, Film& film, Statistics& statistics) const;
+    void prepareGuides(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics);
+    /// Measures how much pixels vary, by pairs of paths.
+    void allocateSamples(const ProgressToken& watch, Statistics& statistics);
+    /// use(trace) of the paths that the plan and the shares ask for: trace(ray, sink, counters, sampler, u, strategy)
+    /// traces one; u chooses among targets, and strategy, uniform too, among strategies.
+    template <typename Use>
+    void withPaths(const ProgressToken& watch, const Use& use) const;
+    template <bool TimeResolved, bool Media, typename Use>
+    void withPlainPaths(const ProgressToken& watch, const Use& use) const;
+    template <typename Use>
+    void withGuidedPaths(const ProgressToken& watch, const Use& use) const;
     [[nodiscard]] GuidedContext guidedContext(const ProgressToken& watch) const;
     [[nodiscard]] PathContext plainContext(const ProgressToken& watch) const;
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
@@ -38,8 +47,7 @@ class PathTracer : public Integrator {
     /// Of what was counted, in nanoseconds.
     [[nodiscard]] double cost(const PathCounters& counters, const tuning::Costs::Walk& each) const;
     [[nodiscard]] PathCosts costs(const StrategyCounters& counters) const;
-    /// `trace(ray, sink, counters, sampler, u, strategy)` for every sample of every pixel; u chooses among targets, and
-    /// strategy, uniform too, among strategies.
+    /// For every sample of every pixel.
     template <typename Trace>
     void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const;
 
@@ -59,6 +67,7 @@ class PathTracer : public Integrator {
     std::optional<transport::TimeWindows> windows_; ///< that guided paths aim at
     PathGuides guides_;
     StrategyBalance balance_;
+    SampleAllocation allocation_;
     std::unique_ptr<const transport::WaysOut> waysOut_;     ///< null: media are taken for infinite
     LightPaths lightPaths_;                                 ///< of the pass
     std::optional<RefractedLight> refracted_;               ///< of plain paths in sealed scenes

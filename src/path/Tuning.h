@@ -24,6 +24,7 @@ struct Costs {
         double vertex, ray, connection, controlVertex;
     };
     Walk plain, guided;
+    double sample;   ///< of a pixel, whatever becomes of its path
     double rayByLog; ///< so much dearer is a ray for each doubling of the number of triangles
     double trail;    ///< to keep a vertex of a plain path
     double density;  ///< of guided paths, at a vertex of a plain one
@@ -31,6 +32,7 @@ struct Costs {
 /// Fitted to CPU seconds and counters of 15 scenes: benchmarks/costs.py paths.
 inline constexpr Costs Nanoseconds{.plain = {95.0, 110.0, 20.0, 0.0},
                                    .guided = {290.0, 210.0, 115.0, 400.0},
+                                   .sample = 250.0,
                                    .rayByLog = 12.0,
                                    .trail = 80.0,
                                    .density = 550.0};

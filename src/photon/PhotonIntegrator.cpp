@@ -88,15 +88,17 @@ void PhotonIntegrator::chooseShare(const ProgressToken& watch, Statistics& stati
 }
 
 double PhotonIntegrator::memoryBytes() const {
-    const auto ofRecord = [&]<typename Primitive>(const Primitive&) {
+    const bool ends = settings_.boundaryKernels && scene_->geometry->boundsMin() != scene_->geometry->boundsMax();
+    // Stores are counted full. How many kernels end at surfaces is not known: as many as there are light paths.
+    const auto ending = double(std::min(settings_.volumePhotonCount, settings_.photonCount));
+    const auto ofVolume = [&]<typename Primitive>(const Primitive&) {
         constexpr size_t Record = sizeof(typename Primitive::Record), Kernel = sizeof(float) + sizeof(KernelEdges);
-        const bool ends = settings_.boundaryKernels && scene_->geometry->boundsMin() != scene_->geometry->boundsMax();
-        return ends && Primitive::PartsAtSurfaces > 0 ? Primitive::PartsAtSurfaces * (Record + Kernel) : Record;
+        constexpr size_t AtSurface = Primitive::PartsAtSurfaces * (Record + Kernel);
+        return double(settings_.volumePhotonCount) * double(Record) + (ends ? ending * double(AtSurface) : 0.0);
     };
     const double surface = settings_.includeSurfaces ? double(settings_.photonCount) * double(sizeof(Photon)) : 0.0;
-    size_t record = std::visit(ofRecord, settings_.primitive);
-    for (const VolumePrimitive& one : settings_.alternatives) record = std::max(record, std::visit(ofRecord, one));
-    const double volume = double(settings_.volumePhotonCount) * double(record);
+    double volume = std::visit(ofVolume, settings_.primitive);
+    for (const VolumePrimitive& one : settings_.alternatives) volume = std::max(volume, std::visit(ofVolume, one));
     const bool scatters =
         std::any_of(scene_->media.begin(), scene_->media.end(), [](const Medium& medium) { return medium.scatters(); });
     return surface + (scatters ? volume : 0.0);

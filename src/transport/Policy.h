@@ -15,7 +15,7 @@ struct Policy {
     darts::Scheme sampling;
     DirectView directView = DirectView::Auto; ///< of photon maps
     std::optional<float> plainShare;          ///< of the time; none: by a pilot
-    std::optional<bool> surfaceConnections, glossySensorPaths, singleFrames, bodies;
+    std::optional<bool> surfaceConnections, glossySensorPaths, singleFrames, bodies, adaptiveSamples;
 
     [[nodiscard]] bool guides() const { return sampling.on; }
     /// Light paths also connect their vertices to visible surfaces, camera paths theirs to surfaces that light reaches
@@ -26,6 +26,8 @@ struct Policy {
     /// Every light path of a photon map aims at one frame of a sequence, in the paper's preset alone: otherwise at all
     /// of them as one gate, since a path that aims at one of n leaves nothing in the others.
     [[nodiscard]] bool aimsAtSingleFrames() const { return singleFrames.value_or(sampling.published); }
+    /// Pixels of paths get more samples where they vary more.
+    [[nodiscard]] bool allocatesSamples() const { return guides() && adaptiveSamples.value_or(!sampling.published); }
     /// Bodies of media end where their boundaries are, for sampling too; otherwise every medium is taken for infinite.
     [[nodiscard]] bool followsBodies() const { return guides() && bodies.value_or(!sampling.published); }
 };
@@ -59,6 +61,8 @@ Policy readPolicy(const Block& block) {
         policy.singleFrames =
             flag(object, "single_frames",
                  "photon maps: a light path aims at one frame of a sequence, not at all as one gate", WithPublished);
+        policy.adaptiveSamples =
+            flag(object, "adaptive_samples", "paths: more samples of pixels that vary more", WithBest);
         policy.bodies = flag(object, "bodies", "media end at their boundaries for sampling too", WithBest);
     });
     return policy;

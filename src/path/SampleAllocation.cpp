@@ -1,0 +1,131 @@
+#include "path/SampleAllocation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tungsten::path {
+
+namespace {
+
+/// Blocks along a side of an image, at most.
+constexpr int MostBlocks = 32;
+/// Pairs that tell the variance of a block, with those of blocks about it: few follow what an image has, many what
+/// noise leaves.
+constexpr std::array<double, 3> NeighbouringPairs{64.0, 256.0, 1024.0};
+/// Bit of sample numbers that no other pass uses, for passes of too few samples to be shared out.
+constexpr uint32_t EvenSamples = 1u << 31;
+
+} // namespace
+
+SampleAllocation::SampleAllocation(Vec2i resolution)
+    : resolution_(resolution),
+      grid_(std::min(resolution.x, MostBlocks), std::min(resolution.y, MostBlocks)), halves_{Blocks(blocks()),
+                                                                                             Blocks(blocks())} {}
+
+Vec2i SampleAllocation::pixelOf(size_t block, float u, float v) const {
+    const auto along = [](int cell, int cells, int pixels, float at) {
+        return std::min(int((float(cell) + at) * float(pixels) / float(cells)), pixels - 1);
+    };
+    const auto width = size_t(grid_.x);
+    return {along(int(block % width), grid_.x, resolution_.x, u), along(int(block / width), grid_.y, resolution_.y, v)};
+}
+
+void SampleAllocation::tell(size_t block, double variance, double cost) {
+    if (!std::isfinite(variance)) return;
+    Block& told = halves_[halves_[0][block].pairs > halves_[1][block].pairs ? 1 : 0][block];
+    told.variance += variance;
+    told.cost += cost;
+    told.pairs += 1.0;
+}
+
+auto SampleAllocation::smoothed(const Blocks& told, double pairs) const -> Blocks {
+    Blocks smooth(told.size());
+    for (int y = 0; y < grid_.y; ++y)
+        for (int x = 0; x < grid_.x; ++x) {
+            Block& sum = smooth[size_t(y) * size_t(grid_.x) + size_t(x)];
+            for (int reach = 1; sum.pairs < pairs && reach < std::max(grid_.x, grid_.y); ++reach) {
+                sum = {};
+                for (int j = std::max(y - reach, 0); j <= std::min(y + reach, grid_.y - 1); ++j)
+                    for (int i = std::max(x - reach, 0); i <= std::min(x + reach, grid_.x - 1); ++i) {
+                        const Block& near = told[size_t(j) * size_t(grid_.x) + size_t(i)];
+                        sum = {sum.variance + near.variance, sum.cost + near.cost, sum.pairs + near.pairs};
+                    }
+            }
+            const double of = std::max(sum.pairs, 1.0);
+            sum = {sum.variance / of, sum.cost / of, sum.pairs};
+        }
+    return smooth;
+}
+
+auto SampleAllocation::densitiesBy(const Blocks& told, double pairs) const -> Densities {
+    const Blocks blocks = smoothed(told, pairs);
+    std::vector<double> wanted;
+    double cost = 0.0;
+    for (const Block& block : blocks) {
+        wanted.push_back(block.cost > 0.0 ? std::sqrt(block.variance / block.cost) : 0.0);
+        cost += block.cost;
+    }
+    // Powers of two make whole numbers of samples of passes of four or more, however samples are cut into them.
+    const auto rounded = [](double density) {
+        return std::clamp(std::exp2(std::round(std::log2(std::max(density, 1e-6)))), double(Least), double(Most));
+    };
+    const auto taken = [&](double scale) {
+        double sum = 0.0;
+        for (size_t i = 0; i < blocks.size(); ++i) sum += rounded(scale * wanted[i]) * blocks[i].cost;
+        return sum;
+    };
+    const double largest = *std::max_element(wanted.begin(), wanted.end());
+    if (!(largest > 0.0)) return {};
+    // The scale at which a pass costs what an even one does: `taken` grows with it, in steps.
+    double low = 0.0, high = 1.0 / largest;
+    while (taken(high) < cost && high < 1e12 / largest) high *= 2.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (taken(middle) < cost ? low : high) = middle;
+    }
+    const double scale = cost - taken(low) < taken(high) - cost ? low : high;
+    Densities densities;
+    for (const double density : wanted) densities.push_back(float(rounded(scale * density)));
+    return densities;
+}
+
+void SampleAllocation::choose() {
+    Blocks all = halves_[0];
+    for (size_t i = 0; i < all.size(); ++i) {
+        const Block& other = halves_[1][i];
+        all[i] = {all[i].variance + other.variance, all[i].cost + other.cost, all[i].pairs + other.pairs};
+    }
+    // Variance x cost, relative to even samples, as the other half of the pairs has it.
+    const auto predicted = [](const Densities& densities, const Blocks& judge) {
+        double variance = 0.0, cost = 0.0, evenVariance = 0.0, evenCost = 0.0;
+        for (size_t i = 0; i < judge.size(); ++i) {
+            const double density = densities.empty() ? 1.0 : double(densities[i]);
+            variance += judge[i].variance / density;
+            cost += judge[i].cost * density;
+            evenVariance += judge[i].variance;
+            evenCost += judge[i].cost;
+        }
+        return evenVariance > 0.0 ? variance * cost / (evenVariance * evenCost) : 1.0;
+    };
+    double least = 1.0;
+    for (const double pairs : NeighbouringPairs) {
+        const double cost = 0.5 * (predicted(densitiesBy(halves_[0], 0.5 * pairs), halves_[1]) +
+                                   predicted(densitiesBy(halves_[1], 0.5 * pairs), halves_[0]));
+        if (cost >= least) continue;
+        least = cost;
+        densities_ = densitiesBy(all, pairs);
+    }
+}
+
+auto SampleAllocation::of(int x, int y, uint64_t first, uint32_t count) const -> Samples {
+    if (densities_.empty()) return {uint32_t(first), count};
+    if (count < FewestSamples) return {uint32_t(first) | EvenSamples, count};
+    const auto cell = [](int at, int cells, int pixels) { return int(int64_t(at) * cells / pixels); };
+    const size_t block =
+        size_t(cell(y, grid_.y, resolution_.y)) * size_t(grid_.x) + size_t(cell(x, grid_.x, resolution_.x));
+    const auto density = double(densities_[block]);
+    const auto begin = uint64_t(double(first) * density), end = uint64_t(double(first + count) * density);
+    return {uint32_t(begin), uint32_t(end - begin)};
+}
+
+} // namespace tungsten::path

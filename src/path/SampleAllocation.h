@@ -1,0 +1,58 @@
+#pragma once
+// How many samples each pixel gets: more where its paths vary much for what they cost (Neyman's allocation), measured
+// by a pilot before the first pass (docs/method.md, section 11).
+
+#include "tungsten/core/Types.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tungsten::path {
+
+/// Density of samples over the image, relative to an even one: powers of two between Least and Most, with a
+/// cost-weighted mean of about 1, so that a pass takes as long as an even one. Even until something was measured.
+class SampleAllocation {
+  public:
+    /// No pixel gets less than this part of its even share: its variance is at most the inverse times that of even
+    /// samples, whatever the pilot has missed. Of so many samples a pixel a pass has at least one.
+    static constexpr float Least = 0.25f, Most = 4.0f;
+    static constexpr uint32_t FewestSamples = 4;
+
+    SampleAllocation() = default;
+    /// For images of this size.
+    explicit SampleAllocation(Vec2i resolution);
+
+    /// Blocks of pixels that are measured as one, and a pixel of a block at a random place.
+    [[nodiscard]] size_t blocks() const { return size_t(grid_.x) * size_t(grid_.y); }
+    [[nodiscard]] Vec2i pixelOf(size_t block, float u, float v) const;
+    /// What two independent paths of a pixel differ by, half of the squares summed over frames, and what they cost.
+    void tell(size_t block, double variance, double cost);
+    /// Makes the densities of what was told. They must prove themselves: densities by one half of the pairs are judged
+    /// by the other half, over neighbourhoods of different width, and those with the least variance x cost are taken;
+    /// even ones where none is better.
+    void choose();
+
+    /// Samples [first, first + count) of a pixel in a pass that has samples [first, first + count) of an even image.
+    struct Samples {
+        uint32_t first, count;
+    };
+    [[nodiscard]] Samples of(int x, int y, uint64_t first, uint32_t count) const;
+
+  private:
+    struct Block {
+        double variance = 0.0, cost = 0.0, pairs = 0.0;
+    };
+    using Blocks = std::vector<Block>;
+    using Densities = std::vector<float>;
+
+    /// Means of each block's neighbourhood, so wide that so many pairs are in it.
+    [[nodiscard]] Blocks smoothed(const Blocks& told, double pairs) const;
+    [[nodiscard]] Densities densitiesBy(const Blocks& told, double pairs) const;
+
+    Vec2i resolution_{0, 0}, grid_{0, 0};
+    std::array<Blocks, 2> halves_;
+    Densities densities_; ///< by block; empty: even
+};
+
+} // namespace tungsten::path
