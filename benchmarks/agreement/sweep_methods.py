@@ -47,7 +47,7 @@ METHODS = [
     photon_method("best beams", "beams", "best", 4, 3000),
 ]
 
-# Sliced primitives, and what they are held against: sensor paths and beams. volumes_balls are what volumes are at a gate.
+# Sliced primitives, and what they are held against: camera paths and beams. volumes_balls are what volumes are at a gate.
 SLICE_METHODS = [
     Method("plain paths", {"type": "path_tracer", "darts": "off"}, 192),
     Method("best paths", {"type": "path_tracer", "darts": "best"}, 32),

@@ -19,7 +19,7 @@ in sevenths, times in thirds) or turned and moved as a whole, 16 x 16 pixels, 8 
 SLICES_INTRODUCTION = f"""# Sweep of sliced primitives
 
 `benchmarks/agreement/sweep.py FOLDER --slices`: every sliced primitive, plain and best (at gates volumes_balls are volumes),
-against sensor paths, plain and best, and best beams; 16 x 16 pixels, 8 seeds. Delta gates are those of the slices:
+against camera paths, plain and best, and best beams; 16 x 16 pixels, 8 seeds. Delta gates are those of the slices:
 paths and beams have a box of the width of the planes' temporal kernel about the same moment. {JUDGED}"""
 SCENE_HEAD = ["scene", "shows", "worst_ratio_of_methods", "sigmas", "worst_ratio_of_copies", "sigmas_of_copies", "largest_error_percent",
               "cpu_seconds", "agrees"]

@@ -7,8 +7,8 @@ from sweep_vocabulary import (SweepScene, at, body, camera, facing, frames, gate
                               room, steady)
 
 FAST = ("spot-outside", "lamp-in-body", "orthographic-haze", "mixed-and-alpha", "zero-channels", "slow-and-fast")
-KEPT = "sensor paths keep the light that fog sends to visible surfaces, photons do not; so has the format"
-BEAM = "a sensor path cannot hit a light without a surface that shines in one direction"
+KEPT = "camera paths keep the light that fog sends to visible surfaces, photons do not; so has the format"
+BEAM = "a camera path cannot hit a light without a surface that shines in one direction"
 WAVES = {"type": "bitmap", "file": "../assets/waves.pfm", "scale": 2.0}
 STRIPES = {"type": "bitmap", "file": "../assets/stripes.pfm", "interpolate": False}
 

@@ -57,7 +57,7 @@ def refraction():
                       _view(), (5.0, 5.8), (1.2, 2.0))
     lens = [body("sphere", at(0.1, 0.2, 0.0, 0.45), outside="fog", bsdf={"type": "dielectric", "ior": 1.5}),
             lamp("sphere", at(-1.4, 0.7, 0.2, 0.35), 30.0, "fog")]
-    yield from _gates("caustic", "a caustic through a ball of glass in fog, from a lamp that sensor paths can hit",
+    yield from _gates("caustic", "a caustic through a ball of glass in fog, from a lamp that camera paths can hit",
                       [medium("fog", 0.4, 0.05)], lens, _view(inside="fog"), (5.6, 6.4), (2.0, 2.8))
 
 

@@ -38,7 +38,8 @@ Settings unguided(Mode mode) {
     return s;
 }
 
-/// Bounded candidates, the event's probability a weight, roulette on usefulness; nothing else beyond the published.
+/// Bounded candidates, the event's probability a weight, roulette on expected contribution; nothing else beyond the
+/// published.
 Settings boundedOnly(Mode mode) {
     Settings s = darts::published(mode);
     s.bounded = true;

@@ -23,14 +23,14 @@ struct Parts {
 
 /// The method's reading of two formulas that were published with errors; tests put those in its place.
 struct DerivedForm {
-    [[nodiscard]] static darts::ConnectionSample connection(const darts::Guide& guide, const darts::Residual& residual,
+    [[nodiscard]] static darts::ConnectionSample connection(const darts::Guide& guide, const darts::TimeBudget& budget,
                                                             float u) {
-        return guide.sampleConnection(residual, u);
+        return guide.sampleConnection(budget, u);
     }
     /// What bounds and shapes distances: the latest arrival.
-    [[nodiscard]] static const darts::Residual& distanceRange(const darts::Residual& residual,
-                                                              const darts::ConnectionSample&) {
-        return residual;
+    [[nodiscard]] static const darts::TimeBudget& distanceRange(const darts::TimeBudget& budget,
+                                                                const darts::ConnectionSample&) {
+        return budget;
     }
     /// 1 / density along the ray of the control vertex.
     [[nodiscard]] static float inversePdf(const darts::ControlVertex& vertex, const darts::ConnectionSample&) {
@@ -58,10 +58,10 @@ class Walk {
     template <typename Random, typename Use>
     int fromRay(const darts::Vec3& direction, Random&& random, Use&& use) const {
         State state = first(1.0f);
-        if (!state.residual.alive()) return 0;
-        const auto connection = Form::connection(guide_, state.residual, random());
+        if (!state.budget.alive()) return 0;
+        const auto connection = Form::connection(guide_, state.budget, random());
         state.direction = direction;
-        const float h = oneMinusCosine(direction, state.residual.axis);
+        const float h = oneMinusCosine(direction, state.budget.axis);
         return run(state, connection, h, random, use);
     }
     /// From an emitter of intensity 1 per steradian.
@@ -69,15 +69,15 @@ class Walk {
     int fromEmitter(Random&& random, Use&& use) const {
         const darts::HenyeyGreenstein isotropic{{0, 0, 1}, 0.0f};
         State state = first(4.0f * darts::Pi);
-        if (!state.residual.alive()) return 0;
-        const auto connection = Form::connection(guide_, state.residual, random());
+        if (!state.budget.alive()) return 0;
+        const auto connection = Form::connection(guide_, state.budget, random());
         darts::DirectionSample sample;
         if (parts_.guidedEmission) {
-            sample = guide_.sampleDirection(state.residual, connection, isotropic, random);
+            sample = guide_.sampleDirection(state.budget, connection, isotropic, random);
         } else {
             const float u = random(), v = random();
             sample.direction = isotropic.sample(u, v);
-            sample.h = oneMinusCosine(sample.direction, state.residual.axis);
+            sample.h = oneMinusCosine(sample.direction, state.budget.axis);
             sample.inversePdf = 4.0f * darts::Pi;
         }
         state.direction = sample.direction;
@@ -88,23 +88,23 @@ class Walk {
   private:
     struct State {
         darts::Vec3 position, direction;
-        darts::Residual residual;
+        darts::TimeBudget budget;
         double elapsed = 0;
         float throughput = 1;
-        float usefulnessAtStart = 0; ///< logarithm; before a direction is drawn, so that it is the same for all walks
+        float contributionAtStart = 0; ///< logarithm; before a direction is drawn, so that it is the same for all walks
     };
 
     [[nodiscard]] State first(float throughput) const {
         State state;
         state.position = route_.start;
-        state.residual = residualAt(state);
+        state.budget = residualAt(state);
         state.throughput = throughput;
-        state.usefulnessAtStart = guide_.logUsefulness(state.residual, throughput);
+        state.contributionAtStart = guide_.logExpectedContribution(state.budget, throughput);
         return state;
     }
-    [[nodiscard]] darts::Residual residualAt(const State& state) const {
-        return darts::Residual::of(route_.target - state.position,
-                                   darts::ResidualRange::of(route_.gate, state.elapsed, 1.0));
+    [[nodiscard]] darts::TimeBudget residualAt(const State& state) const {
+        return darts::TimeBudget::of(route_.target - state.position,
+                                     darts::LengthInterval::of(route_.gate, state.elapsed, 1.0));
     }
     template <typename Random, typename Use>
     int run(State state, darts::ConnectionSample connection, float h, Random&& random, Use&& use) const {
@@ -113,23 +113,23 @@ class Walk {
             if (parts_.controlVertices) connect(state, connection, h, order, use);
             if (order == route_.mostScatterings && parts_.controlVertices) return order;
             const float throughput = state.throughput;
-            const auto step =
-                guide_.sampleDistance(Form::distanceRange(state.residual, connection), {state.direction, h}, Surface,
-                                      {throughput, throughput, throughput}, random);
+            const auto step = guide_.sampleDistance(Form::distanceRange(state.budget, connection), {state.direction, h},
+                                                    Surface, {throughput, throughput, throughput}, random);
             if (!(step.transmittanceOverPdf.x > 0)) return order;
             state.throughput *= sigmaS_ * step.transmittanceOverPdf.x;
             state.position = state.position + state.direction * step.distance;
             state.elapsed += double(step.distance);
-            state.residual = residualAt(state);
-            if (!state.residual.alive()) return order;
+            state.budget = residualAt(state);
+            if (!state.budget.alive()) return order;
             if (!parts_.controlVertices) connectByChance(state, order, use);
             if (order == route_.mostScatterings) return order;
-            const float survival = guide_.survival(
-                state.residual.way, guide_.logUsefulness(state.residual, state.throughput), state.usefulnessAtStart);
+            const float survival =
+                guide_.survival(state.budget.model, guide_.logExpectedContribution(state.budget, state.throughput),
+                                state.contributionAtStart);
             if (survival < 1 && !(random() < survival)) return order;
             const darts::HenyeyGreenstein scatterer{state.direction, guide_.medium().g};
-            connection = Form::connection(guide_, state.residual, random());
-            const auto sample = guide_.sampleDirection(state.residual, connection, scatterer, random);
+            connection = Form::connection(guide_, state.budget, random());
+            const auto sample = guide_.sampleDirection(state.budget, connection, scatterer, random);
             if (!(sample.inversePdf > 0)) return order;
             state.throughput *= scatterer.pdf(sample.direction) * sample.inversePdf / survival;
             state.direction = sample.direction;
@@ -139,10 +139,10 @@ class Walk {
     /// The control vertex on the ray.
     template <typename Use>
     void connect(const State& state, const darts::ConnectionSample& connection, float h, int order, Use&& use) const {
-        const auto vertex = guide_.controlVertex(state.residual, connection, h, std::numeric_limits<float>::infinity());
+        const auto vertex = guide_.controlVertex(state.budget, connection, h, std::numeric_limits<float>::infinity());
         if (!vertex) return;
         const darts::Vec3 leg = state.direction * vertex->distance;
-        const darts::Vec3 onward = state.residual.axis * state.residual.C - leg;
+        const darts::Vec3 onward = state.budget.axis * state.budget.C - leg;
         // In double: a connection straight through a dense medium underflows a float.
         const double throughput = double(state.throughput * sigmaS_ * Form::inversePdf(*vertex, connection)) *
                                   std::exp(-double(sigmaT_) * double(vertex->distance));
@@ -152,9 +152,9 @@ class Walk {
     /// Plain sampling: the walk's own vertex counts if the rest of the path happens to end in the gate.
     template <typename Use>
     void connectByChance(const State& state, int order, Use&& use) const {
-        const darts::Residual& residual = state.residual;
-        if (residual.low > 0) return;
-        use(LastScattering{state.position, state.direction, residual.axis, double(residual.C), double(state.throughput),
+        const darts::TimeBudget& budget = state.budget;
+        if (budget.low > 0) return;
+        use(LastScattering{state.position, state.direction, budget.axis, double(budget.C), double(state.throughput),
                            order});
     }
 

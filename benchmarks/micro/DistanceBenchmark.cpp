@@ -15,8 +15,8 @@ void distance(benchmark::State& state, darts::Settings settings, int candidates,
     const auto walk = darts::benchmarks::walk();
     size_t i = 0;
     for (auto _ : state) {
-        const auto& [residual, h, u] = walk[i++ % walk.size()];
-        benchmark::DoNotOptimize(sampler.sample(residual, {{}, h}, 10.0f, {1, 1, 1}, {u[0], u[1], u[2], u[3]}));
+        const auto& [budget, h, u] = walk[i++ % walk.size()];
+        benchmark::DoNotOptimize(sampler.sample(budget, {{}, h}, 10.0f, {1, 1, 1}, {u[0], u[1], u[2], u[3]}));
     }
 }
 

@@ -19,9 +19,9 @@ void controlVertex(benchmark::State& state) {
     const auto walk = benchmarks::walk();
     size_t i = 0;
     for (auto _ : state) {
-        const auto& [residual, h, u] = walk[i++ % walk.size()];
-        const ConnectionSample connection = guide.sampleConnection(residual, u[0]);
-        benchmark::DoNotOptimize(guide.controlVertex(residual, connection, h, INFINITY));
+        const auto& [budget, h, u] = walk[i++ % walk.size()];
+        const ConnectionSample connection = guide.sampleConnection(budget, u[0]);
+        benchmark::DoNotOptimize(guide.controlVertex(budget, connection, h, INFINITY));
     }
 }
 BENCHMARK(controlVertex);
@@ -40,12 +40,12 @@ void guideVertex(benchmark::State& state, const Settings& settings, float g) {
     const HenyeyGreenstein phase{Vec3{0.6f, 0, 0.8f}, g};
     size_t i = 0;
     for (auto _ : state) {
-        const Residual& residual = walk[i++ % walk.size()].residual;
-        const ConnectionSample connection = guide.sampleConnection(residual, random());
-        const DirectionSample sample = guide.sampleDirection(residual, connection, phase, random);
-        benchmark::DoNotOptimize(guide.controlVertex(residual, connection, sample.h, INFINITY));
-        benchmark::DoNotOptimize(guide.sampleDistance(residual, sample, INFINITY, {1, 1, 1}, random));
-        benchmark::DoNotOptimize(guide.survival(residual.way, guide.logUsefulness(residual, 1.0f), 0.0f));
+        const TimeBudget& budget = walk[i++ % walk.size()].budget;
+        const ConnectionSample connection = guide.sampleConnection(budget, random());
+        const DirectionSample sample = guide.sampleDirection(budget, connection, phase, random);
+        benchmark::DoNotOptimize(guide.controlVertex(budget, connection, sample.h, INFINITY));
+        benchmark::DoNotOptimize(guide.sampleDistance(budget, sample, INFINITY, {1, 1, 1}, random));
+        benchmark::DoNotOptimize(guide.survival(budget.model, guide.logExpectedContribution(budget, 1.0f), 0.0f));
     }
 }
 BENCHMARK_CAPTURE(guideVertex, published, published(Mode::Path), 0.0f);

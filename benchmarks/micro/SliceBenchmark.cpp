@@ -25,8 +25,8 @@ struct Gate {
 /// Records about two units before the camera, in fog without occluders.
 struct Setting {
     Scene scene;
-    transport::Sensor sensor{TimeGate{}};
-    std::vector<CollapsedFlights> records;
+    transport::TimeSensor sensor{TimeGate{}};
+    std::vector<SliceRecord> records;
     std::vector<CameraSegment> rays;
 
     Setting(FlightShape shape, bool shared, const Gate& gate) {
@@ -42,7 +42,7 @@ struct Setting {
         scene.camera.model = Orthographic{1.0f}; // every record may be seen everywhere
         Sampler sampler(1, RandomStream::Test, 0, 0);
         for (size_t i = 0; i < Records; ++i) {
-            CollapsedFlights r{};
+            SliceRecord r{};
             r.shape = shape;
             r.shared = shared;
             r.base = Vec3f(0, 0, 2) + warp::squareToSphere(sampler.next2D()) * sampler.next1D();
@@ -66,7 +66,7 @@ struct Setting {
 template <typename Meet>
 void everyPair(benchmark::State& state, const Setting& setting, const Meet& meet) {
     for (auto _ : state)
-        for (const CollapsedFlights& record : setting.records)
+        for (const SliceRecord& record : setting.records)
             for (const CameraSegment& ray : setting.rays) meet(record, ray);
     state.counters["one"] = benchmark::Counter(double(Records * Rays), benchmark::Counter::kIsIterationInvariantRate |
                                                                            benchmark::Counter::kInvert);
@@ -75,8 +75,8 @@ void everyPair(benchmark::State& state, const Setting& setting, const Meet& meet
 void hit(benchmark::State& state, FlightShape shape, Gate gate) {
     const Setting setting(shape, false, gate);
     const double length = gate.warped ? 5.5 : 2.2;
-    everyPair(state, setting, [&](const CollapsedFlights& record, const CameraSegment& ray) {
-        const SightLine<double> sight{inDouble(ray.origin), inDouble(ray.direction), 0.0, 10.0, gate.warped};
+    everyPair(state, setting, [&](const SliceRecord& record, const CameraSegment& ray) {
+        const CameraRay<double> sight{inDouble(ray.origin), inDouble(ray.direction), 0.0, 10.0, gate.warped};
         std::array<Vec3d, 4> w;
         for (size_t i = 0; i < 4; ++i) w[i] = inDouble(record.directions[i]);
         const Vec3d base = inDouble(record.base);
@@ -99,7 +99,7 @@ void scalar(benchmark::State& state, FlightShape shape, bool shared, Gate gate) 
     const Setting setting(shape, shared, gate);
     const SliceEstimate estimate(setting.scene, setting.sensor);
     FrameSums sums(1, Vec3d(0.0));
-    everyPair(state, setting, [&](const CollapsedFlights& record, const CameraSegment& ray) {
+    everyPair(state, setting, [&](const SliceRecord& record, const CameraSegment& ray) {
         benchmark::DoNotOptimize(estimate.add(record, ray, sums));
     });
 }
@@ -108,7 +108,7 @@ void lanes(benchmark::State& state, FlightShape shape, bool shared, Gate gate) {
     const Setting setting(shape, shared, gate);
     const SliceFootprints footprints(setting.scene, setting.sensor, 1.0);
     std::vector<ImageSlice> slices;
-    for (const CollapsedFlights& record : setting.records)
+    for (const SliceRecord& record : setting.records)
         if (const auto slice = footprints.prepare(record, {})) slices.push_back(*slice);
     std::vector<float> x, y, z, rotation;
     for (const CameraSegment& ray : setting.rays) {
@@ -129,10 +129,10 @@ void lanes(benchmark::State& state, FlightShape shape, bool shared, Gate gate) {
                                       load(rotation)};
                 const LaneRays rays = slice.record.placed(asCast);
                 Batch sum(0.0f);
-                const auto emit = [&](int, const LaneReach& reach) {
+                const auto emit = [&](int, const LaneHit& reach) {
                     sum += xsimd::select(reach.met, reach.weight(slice.record.sigmaT.x, rays.start), Batch(0.0f));
                 };
-                std::visit([&](const auto& kernel) { kernel.meet(slice.record, rays, emit); }, slice.kernel);
+                std::visit([&](const auto& kernel) { kernel.intersect(slice.record, rays, emit); }, slice.kernel);
                 benchmark::DoNotOptimize(sum);
             }
     state.counters["one"] = benchmark::Counter(

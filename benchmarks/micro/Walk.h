@@ -1,7 +1,7 @@
 #pragma once
 // What the samplers are asked in a walk.
 
-#include "darts/ResidualRange.h"
+#include "darts/TimeBudget.h"
 
 #include <array>
 #include <random>
@@ -11,7 +11,7 @@ namespace darts::benchmarks {
 /// A vertex between one and three mean free paths from the target, with what is left of a 2 % gate; h = 1 - cos between
 /// the ray and the target's direction.
 struct Vertex {
-    Residual residual;
+    TimeBudget budget;
     float h;
     std::array<float, 4> random;
 };
@@ -23,7 +23,7 @@ inline std::array<Vertex, Vertices> walk() {
     std::array<Vertex, Vertices> result;
     for (Vertex& v : result) {
         const float C = 1.0f + 2.0f * uniform(bits), S = C * (1.02f + uniform(bits));
-        v.residual = Residual::of({0, 0, C}, {0.98 * double(S), double(S)});
+        v.budget = TimeBudget::of({0, 0, C}, {0.98 * double(S), double(S)});
         v.h = 2.0f * uniform(bits);
         for (float& u : v.random) u = uniform(bits);
     }

@@ -11,7 +11,7 @@ import measures
 from images import average_down, read_exr, read_pfm
 from study_file import Scene, Study, StudyError
 
-STAGES = ["load", "prepare", "photon pass", "build", "sensor pass", "camera pass"]
+STAGES = ["load", "prepare", "photon pass", "build", "camera pass"]
 
 
 @dataclass(frozen=True)

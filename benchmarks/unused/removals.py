@@ -9,18 +9,18 @@ REMOVALS = [
         ("src/transport/Connection.cpp", "if (forwardBoundaries_) return traceVisibility(scene_, ray, distance, region, rays);", ""),
     ]),
     ("delays and the sensor's response", [*PATHS, *MAPS], [
-        ("src/transport/Sensor.h", "if (!delay) {", "if (true) {"),
-        ("src/transport/Sensor.h", "return response ? float(response->pdf(time) * gate.frameWidth) : 1.0f;",
+        ("src/transport/TimeSensor.h", "if (!delay) {", "if (true) {"),
+        ("src/transport/TimeSensor.h", "return response ? float(response->pdf(time) * gate.frameWidth) : 1.0f;",
          "(void)time; return 1.0f;"),
-        ("src/transport/Sensor.h", "return !response || response->distribution(to) > response->distribution(from);",
+        ("src/transport/TimeSensor.h", "return !response || response->distribution(to) > response->distribution(from);",
          "(void)from; (void)to; return true;"),
-        ("src/path/PixelSink.h", "if (sensor_.delays.any()) return add(radiance, time, emitter, logRatio);", "(void)emitter;"),
-        ("src/path/PixelSink.h", "sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;", "scale_; (void)time;"),
+        ("src/path/PixelAccumulator.h", "if (sensor_.delays.any()) return add(radiance, time, emitter, logRatio);", "(void)emitter;"),
+        ("src/path/PixelAccumulator.h", "sensor_.response ? scale_ * float(sensor_.response->pdf(time)) : scale_;", "scale_; (void)time;"),
     ]),
     ("frames after the first", PATHS, [
-        ("src/path/PixelSink.h", "sensor_.gate.frames > 1 ? sensor_.gate.nearestFrame(time) : 0", "0"),
-        ("src/path/PixelSink.h", "const size_t place = size_t(frame) % MostFrames;", "constexpr size_t place = 0;"),
-        ("src/path/PixelSink.h", "if (frame > 0) ++counters_.laterFrames;", "(void)frame;"),
+        ("src/path/PixelAccumulator.h", "sensor_.gate.frames > 1 ? sensor_.gate.nearestFrame(time) : 0", "0"),
+        ("src/path/PixelAccumulator.h", "const size_t place = size_t(frame) % MostFrames;", "constexpr size_t place = 0;"),
+        ("src/path/PixelAccumulator.h", "if (frame > 0) ++counters_.laterFrames;", "(void)frame;"),
     ]),
     ("walls of bodies that refract", ["plain paths"], [
         ("src/path/PathVisitor.cpp", "if (!context_->refracted || !ahead.medium || !ahead.medium->scatters()) return true;",
@@ -60,20 +60,20 @@ REMOVALS = [
         ("src/photon/primitives/points/PointSplat.cpp", "if (k > 0 && !medium.grey) weight =", "if (false) weight ="),
     ]),
     ("light that leaves bodies", GUIDED, [
-        ("src/path/StepsToEmitter.cpp", "if (hasLookedOut() || !guided_->waysOut) return;", "if (true) return;"),
-        ("src/transport/GuidedSteps.cpp", "if (reachable_.way == darts::Way::Out)\n", "if (false)\n"),
+        ("src/path/StepsToEmitter.cpp", "if (hasEscapeModel() || !guided_->escapeModels) return;", "if (true) return;"),
+        ("src/transport/GuidedSteps.cpp", "if (reachable_.model == darts::EscapeModel::Bounded)\n", "if (false)\n"),
     ]),
     ("sliced primitives", MAPS, [
         ("src/photon/light/DepositVisitor.cpp", "if (context_->recordCounts) return chain_.end();", ""),
         ("src/photon/light/DepositVisitor.h", "if (auto* slices = std::get_if<SliceList>(&deposits_->volume)) use(*slices);", "(void)use;"),
     ]),
-    ("glossy sensor paths", MAPS, [
-        ("src/photon/view/SensorPath.h", "if (glossy && isGlossyOnly(bsdf)) return lobe::All;", "(void)bsdf;"),
-        ("src/photon/view/SensorPath.h", "if (!way.smooth()) return;", "if (true) return;"),
+    ("glossy camera subpaths", MAPS, [
+        ("src/photon/view/CameraSubpath.h", "if (glossy && isGlossyOnly(bsdf)) return lobe::All;", "(void)bsdf;"),
+        ("src/photon/view/CameraSubpath.h", "if (!way.smooth()) return;", "if (true) return;"),
     ]),
     ("delta gate and response of guided light paths", ["best points", "best beams"], [
         ("src/photon/light/StepsToCamera.cpp",
-         "if (guidance_->meetsDeltaGate() && rules_.storesVertices) return guidance_->onDeltaGate(residual);", ""),
+         "if (guidance_->meetsDeltaGate() && rules_.storesVertices) return guidance_->onDeltaGate(budget);", ""),
         ("src/photon/light/StepsToCamera.cpp", "path.random.next1D(), guidance_->response(path.time));", "path.random.next1D(), {});"),
     ]),
     ("limits of bounces in a medium", [*PATHS, *MAPS], [

@@ -1,8 +1,8 @@
 #pragma once
-// The inner loop of DistanceSampler: candidates, usefulness and choice, written once for one candidate at a time
+// The inner loop of DistanceSampler: candidates, importance and choice, written once for one candidate at a time
 // (float) and for a register of them (xsimd::batch).
 
-#include "darts/CandidateUsefulness.h"
+#include "darts/CandidateImportance.h"
 #include "darts/DistanceSampler.h"
 #include "darts/Registers.h"
 
@@ -119,11 +119,11 @@ struct Proposal {
     }
 };
 
-/// N candidates and their weights usefulness / density; usefulness is relative to the largest exponent among them.
+/// N candidates and their weights importance / density; importance is relative to the largest exponent among them.
 template <typename Batch, Shape G, int N, int Channels>
 struct Candidates {
     static constexpr int Width = lanes::Width<Batch>, Registers = N / Width;
-    alignas(64) std::array<float, size_t(N)> distance, usefulness, weight;
+    alignas(64) std::array<float, size_t(N)> distance, importance, weight;
     alignas(64) std::array<float, size_t(N)> transmittance; ///< in grey media
 
     Candidates(const CandidateDraw& draw, const DistanceRandom& random) {
@@ -146,7 +146,7 @@ struct Candidates {
             const PlaceOf<G, Batch> at(draw, d);
             reachable[r] = at.reachable;
             for (int i = 0; i < Channels; ++i) {
-                const Usefulness<G> channel(draw, i, Channels == 1);
+                const CandidateImportance<G> channel(draw, i, Channels == 1);
                 exponents[i][r] = channel.exponent(d, at, factors[i][r]);
                 highest = max(highest, select(at.reachable > 0.0f, exponents[i][r], highest));
             }
@@ -156,7 +156,7 @@ struct Candidates {
             Batch value(0.0f);
             for (int i = 0; i < Channels; ++i) value = value + factors[i][r] * lanes::exp(Batch(exponents[i][r] - top));
             const Batch useful = select(reachable[r] > 0.0f, reachable[r] * value, Batch(0.0f));
-            lanes::put(usefulness.data() + r * Width, useful);
+            lanes::put(importance.data() + r * Width, useful);
             lanes::put(weight.data() + r * Width, Batch(useful / density[r]));
         }
     }
@@ -171,7 +171,7 @@ float resample(const CandidateDraw& draw, const DistanceRandom& random, Vec3& tr
     const size_t chosen = lanes::choose<N>(candidates.weight.data(), random.choice, sum);
     if (!(candidates.weight[chosen] > 0.0f)) return 0.0f;
     const float d = candidates.distance[chosen];
-    const float inversePdf = sum / (float(N) * candidates.usefulness[chosen] * draw.probability);
+    const float inversePdf = sum / (float(N) * candidates.importance[chosen] * draw.probability);
     const Vec3 sigmaT = draw.medium->sigmaT();
     if constexpr (Channels == 1) {
         // The register's exponential ends at e^-87.

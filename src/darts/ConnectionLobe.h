@@ -47,7 +47,8 @@ class ConnectionLobe {
 template <typename Real>
 class OpenGateLobe {
   public:
-    /// Of excess lengths evenly up to `width`: (1 / a) atan(width / a), a = sqrt(2 S C h), within three tenths.
+    /// Lobe of connections whose excess lengths are uniform up to `width`: (1 / a) atan(width / a), a = sqrt(2 S C h),
+    /// within three tenths.
     OpenGateLobe(Real C, Real S, Real width)
         : OpenGateLobe(Real(2 / 3.141592653589793) * width / std::sqrt(2 * S * C)) {}
 

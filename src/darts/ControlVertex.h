@@ -74,8 +74,8 @@ struct ConnectionLength {
     }
 };
 
-/// The same for a connection whose direction is known: half of the lengths are drawn in proportion to
-/// 1 / ((low + offset)^2 + a^2), as the weight of a connection at 1 - cos = h goes with a^2 = 2 S C h.
+/// Lengths of connections whose direction is known: half of them are drawn in proportion to 1 / ((low + offset)^2 +
+/// a^2), as the weight of a connection at 1 - cos = h goes with a^2 = 2 S C h.
 template <typename Real>
 struct LengthAlong {
     ConnectionLength<Real> lengths;

@@ -3,11 +3,11 @@
 
 #include "darts/ConnectionLobe.h"
 #include "darts/DirectionStrata.h"
-#include "darts/DirectionsOut.h"
 #include "darts/EdaTable.h"
+#include "darts/EscapeDirections.h"
 #include "darts/PhaseFunction.h"
-#include "darts/ResidualRange.h"
 #include "darts/Settings.h"
+#include "darts/TimeBudget.h"
 
 #include <array>
 #include <memory>
@@ -35,7 +35,7 @@ struct AboutTarget {
     /// What a direction of this density is good for, about 1 on the average over the sphere; last() is the density of
     /// its connection's last turn per solid angle.
     template <typename Last>
-    [[nodiscard]] static float usefulness(float pdf, const Last& last) {
+    [[nodiscard]] static float importance(float pdf, const Last& last) {
         constexpr float Uniform = 1.0f / (4.0f * Pi), Floor = 0.2f * Uniform;
         return pdf * last() * (1.0f / Uniform) + Floor;
     }
@@ -60,74 +60,74 @@ class DirectionSampler {
     /// `excess`: of the connection drawn for the coming control vertex (S = C + excess). `random()` is uniform in
     /// [0, 1).
     template <typename Scatterer, typename Random>
-    [[nodiscard]] DirectionSample sample(const Residual& residual, float excess, const Scatterer& scatterer,
+    [[nodiscard]] DirectionSample sample(const TimeBudget& budget, float excess, const Scatterer& scatterer,
                                          Random&& random) const {
-        if (settings_.direction == Direction::Phase || isBehindRefraction(residual))
-            return fromScatterer(residual, scatterer, random);
-        if (residual.way == Way::Out) {
-            if (const auto turns = LastTurns::of(residual, medium_)) {
+        if (settings_.direction == Direction::Phase || isBehindRefraction(budget))
+            return fromScatterer(budget, scatterer, random);
+        if (budget.model == EscapeModel::Bounded) {
+            if (const auto turns = ConvolvedPhaseLobe::of(budget, medium_)) {
                 if (const auto phase = peakOf(scatterer))
-                    return draw(residual, strata(*phase, *turns, residual, excess), random);
-                return mix(residual, TurnsShare, scatterer, *turns, random);
+                    return draw(budget, strata(*phase, *turns, budget, excess), random);
+                return mix(budget, TurnsShare, scatterer, *turns, random);
             }
-            const DirectionsOut out(residual, least(residual, excess), medium_);
-            return mix(residual, out.share(), scatterer, out, random);
+            const EscapeDirections out(budget, least(budget, excess), medium_);
+            return mix(budget, out.share(), scatterer, out, random);
         }
         if (const auto phase = peakOf(scatterer)) {
-            const float delta = least(residual, excess);
-            return draw(residual, multiplied(*phase, residual, delta), random);
+            const float delta = least(budget, excess);
+            return draw(budget, multiplied(*phase, budget, delta), random);
         }
-        return withGuided(residual, excess, [&](const auto& guided) {
-            if (settings_.direction == Direction::Ris) return resample(residual, excess, scatterer, guided, random);
-            return mix(residual, guideShare(residual, excess), scatterer, guided, random);
+        return withGuided(budget, excess, [&](const auto& guided) {
+            if (settings_.direction == Direction::Ris) return resample(budget, excess, scatterer, guided, random);
+            return mix(budget, guideShare(budget, excess), scatterer, guided, random);
         });
     }
 
     /// Density per solid angle of sample(); for Direction::Ris, of its candidates.
     template <typename Scatterer>
-    [[nodiscard]] float pdf(const Residual& residual, float excess, const Vec3& direction,
+    [[nodiscard]] float pdf(const TimeBudget& budget, float excess, const Vec3& direction,
                             const Scatterer& scatterer) const {
-        if (settings_.direction == Direction::Phase || isBehindRefraction(residual)) return scatterer.pdf(direction);
-        const float h = oneMinusCosine(direction, residual.axis);
+        if (settings_.direction == Direction::Phase || isBehindRefraction(budget)) return scatterer.pdf(direction);
+        const float h = oneMinusCosine(direction, budget.axis);
         const auto mixture = [&](float share, const auto& guided) {
             return share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         };
-        if (residual.way == Way::Out) {
-            if (const auto turns = LastTurns::of(residual, medium_)) {
+        if (budget.model == EscapeModel::Bounded) {
+            if (const auto turns = ConvolvedPhaseLobe::of(budget, medium_)) {
                 if (const auto phase = peakOf(scatterer))
-                    return strata(*phase, *turns, residual, excess).pdf(direction, h);
+                    return strata(*phase, *turns, budget, excess).pdf(direction, h);
                 return mixture(TurnsShare, *turns);
             }
-            const DirectionsOut out(residual, least(residual, excess), medium_);
+            const EscapeDirections out(budget, least(budget, excess), medium_);
             return mixture(out.share(), out);
         }
         if (const auto phase = peakOf(scatterer))
-            return multiplied(*phase, residual, least(residual, excess)).pdf(direction, h);
-        const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(residual, excess);
-        return withGuided(residual, excess, [&](const auto& guided) { return mixture(share, guided); });
+            return multiplied(*phase, budget, least(budget, excess)).pdf(direction, h);
+        const float share = settings_.direction == Direction::Ris ? 0.5f : guideShare(budget, excess);
+        return withGuided(budget, excess, [&](const auto& guided) { return mixture(share, guided); });
     }
 
     /// gamma = (C / S) / (C / S + alpha).
-    [[nodiscard]] float guideShare(const Residual& residual, float excess) const {
-        const float ratio = residual.C / (residual.C + excess);
+    [[nodiscard]] float guideShare(const TimeBudget& budget, float excess) const {
+        const float ratio = budget.C / (budget.C + excess);
         const float alpha =
-            residual.way == Way::Through ? settings_.alpha : std::max(settings_.alpha, LeastAlphaOutside);
+            budget.model == EscapeModel::Infinite ? settings_.alpha : std::max(settings_.alpha, LeastAlphaOutside);
         return ratio > 0 ? ratio / (ratio + alpha) : 0.0f;
     }
 
   private:
     static constexpr int MostDirections = 8;
-    static constexpr float TurnsShare = 0.5f; ///< of LastTurns, the rest the scatterer's own
+    static constexpr float TurnsShare = 0.5f; ///< of ConvolvedPhaseLobe, the rest the scatterer's own
     /// Where boundaries of unknown kind lie between, the lobe is a rougher guess. (Bench: study bodies, paths.)
     static constexpr float LeastAlphaOutside = 0.5f;
     /// Behind refraction light leaves in more directions than the guide knows; phase functions do better alone. (Bench:
     /// study bodies, milk behind glass, beams: MSE x CPU 1.6, with a guided share of 0.3 3.3, of 0.8 7.7.)
-    [[nodiscard]] static bool isBehindRefraction(const Residual& residual) {
-        return residual.way == Way::Out && !residual.exit.connects;
+    [[nodiscard]] static bool isBehindRefraction(const TimeBudget& budget) {
+        return budget.model == EscapeModel::Bounded && !budget.escape.straightExit;
     }
     /// Excess lengths of 0 have no lobe.
-    [[nodiscard]] static float least(const Residual& residual, float excess) {
-        return std::max(excess, 1e-6f * residual.C);
+    [[nodiscard]] static float least(const TimeBudget& budget, float excess) {
+        return std::max(excess, 1e-6f * budget.C);
     }
     /// The scatterer as a peaked phase function, if directions are to be its product with the guide.
     template <typename Scatterer>
@@ -137,31 +137,31 @@ class DirectionSampler {
         return std::nullopt;
     }
     /// The density, per solid angle, of the last turn of a connection that leaves in this direction.
-    [[nodiscard]] auto lastTurn(const Residual& residual, float excess, const Vec3& direction, float h) const {
-        return [=, this, &residual] {
-            const Ellipse<float> e{residual.C, excess, h};
-            const Vec3 onward = residual.axis * residual.C - direction * e.firstLeg();
+    [[nodiscard]] auto lastTurn(const TimeBudget& budget, float excess, const Vec3& direction, float h) const {
+        return [=, this, &budget] {
+            const Ellipse<float> e{budget.C, excess, h};
+            const Vec3 onward = budget.axis * budget.C - direction * e.firstLeg();
             return HenyeyGreenstein{direction, g_}.pdf(onward * (1.0f / std::max(length(onward), 1e-30f)));
         };
     }
     template <typename Guided>
     [[nodiscard]] DirectionStrata<Guided> strata(const HenyeyGreenstein& phase, const Guided& guided,
-                                                 const Residual& residual, float excess) const {
+                                                 const TimeBudget& budget, float excess) const {
         return {phase, guided, [&](const Vec3& direction, float h, float own, float guide) {
-                    return own * guided.usefulness(guide, lastTurn(residual, excess, direction, h));
+                    return own * guided.importance(guide, lastTurn(budget, excess, direction, h));
                 }};
     }
-    /// By the product of the phase function and the connection's lobe.
+    /// Strata for the product of the phase function and the connection's lobe.
     [[nodiscard]] DirectionStrata<AboutTarget<ConnectionLobe<float>>>
-    multiplied(const HenyeyGreenstein& phase, const Residual& residual, float excess) const {
-        const AboutTarget lobe{connectionLobe(residual.C, excess), residual.axis};
-        return strata(phase, lobe, residual, excess);
+    multiplied(const HenyeyGreenstein& phase, const TimeBudget& budget, float excess) const {
+        const AboutTarget lobe{connectionLobe(budget.C, excess), budget.axis};
+        return strata(phase, lobe, budget, excess);
     }
     template <typename Guided, typename Random>
-    static DirectionSample draw(const Residual& residual, const Guided& guided, Random& random) {
+    static DirectionSample draw(const TimeBudget& budget, const Guided& guided, Random& random) {
         const float choice = random(), u = random(), v = random();
         const Vec3 direction = guided.sample(choice, u, v);
-        const float h = oneMinusCosine(direction, residual.axis), pdf = guided.pdf(direction, h);
+        const float h = oneMinusCosine(direction, budget.axis), pdf = guided.pdf(direction, h);
         return {{direction, h}, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
     [[nodiscard]] ConnectionLobe<float> connectionLobe(float C, float excess) const {
@@ -170,36 +170,36 @@ class DirectionSampler {
     }
     /// use(the vertex's guided distribution).
     template <typename Use>
-    [[nodiscard]] auto withGuided(const Residual& residual, float excess, Use&& use) const {
-        const float C = residual.C, delta = least(residual, excess);
-        const auto about = [&](const auto& lobe) { return use(AboutTarget{lobe, residual.axis}); };
+    [[nodiscard]] auto withGuided(const TimeBudget& budget, float excess, Use&& use) const {
+        const float C = budget.C, delta = least(budget, excess);
+        const auto about = [&](const auto& lobe) { return use(AboutTarget{lobe, budget.axis}); };
         if (settings_.direction == Direction::Eda) return about(table_->row(C, delta, sigmaT_));
         // All lengths at once, of which `excess` is the median.
-        if (settings_.preset == Preset::Best && settings_.lobe == Lobe::Path && residual.way == Way::Through &&
-            excess > residual.low)
-            return about(GateLobe<float>(C, residual.low, 2.0f * (excess - residual.low)));
+        if (settings_.preset == Preset::Best && settings_.lobe == Lobe::Path && budget.model == EscapeModel::Infinite &&
+            excess > budget.low)
+            return about(GateLobe<float>(C, budget.low, 2.0f * (excess - budget.low)));
         return about(connectionLobe(C, delta));
     }
     template <typename Scatterer, typename Random>
-    static DirectionSample fromScatterer(const Residual& residual, const Scatterer& scatterer, Random& random) {
+    static DirectionSample fromScatterer(const TimeBudget& budget, const Scatterer& scatterer, Random& random) {
         const float u = random(), v = random();
         const Vec3 direction = scatterer.sample(u, v);
         const float pdf = scatterer.pdf(direction);
-        return {{direction, oneMinusCosine(direction, residual.axis)}, pdf > 0 ? 1.0f / pdf : 0.0f};
+        return {{direction, oneMinusCosine(direction, budget.axis)}, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
     template <typename Scatterer, typename Guided, typename Random>
-    static DirectionSample mix(const Residual& residual, float share, const Scatterer& scatterer, const Guided& guided,
+    static DirectionSample mix(const TimeBudget& budget, float share, const Scatterer& scatterer, const Guided& guided,
                                Random& random) {
         const float choice = random(), u = random(), v = random();
         const Vec3 direction =
             choice < share ? guided.sample(std::min(choice / share, BelowOne), u, v) : scatterer.sample(u, v);
-        const float h = oneMinusCosine(direction, residual.axis);
+        const float h = oneMinusCosine(direction, budget.axis);
         const float pdf = share * guided.pdf(direction, h) + (1.0f - share) * scatterer.pdf(direction);
         return {{direction, h}, pdf > 0 ? 1.0f / pdf : 0.0f};
     }
-    /// Weighed by scatterer's density x usefulness.
+    /// Weighed by scatterer's density x importance.
     template <typename Scatterer, typename Guided, typename Random>
-    [[nodiscard]] DirectionSample resample(const Residual& residual, float excess, const Scatterer& scatterer,
+    [[nodiscard]] DirectionSample resample(const TimeBudget& budget, float excess, const Scatterer& scatterer,
                                            const Guided& guided, Random& random) const {
         const int count = std::min(settings_.directionCandidates, MostDirections), owns = count / 2;
         const float ownShare = float(owns) / float(count);
@@ -210,15 +210,15 @@ class DirectionSampler {
             DirectionSample& c = candidates[size_t(i)];
             const float choice = random(), u = random(), v = random();
             c.direction = i < owns ? scatterer.sample(u, v) : guided.sample(choice, u, v);
-            c.h = oneMinusCosine(c.direction, residual.axis);
+            c.h = oneMinusCosine(c.direction, budget.axis);
             const float own = scatterer.pdf(c.direction), guide = guided.pdf(c.direction, c.h);
-            const float wanted = own * guided.usefulness(guide, lastTurn(residual, excess, c.direction, c.h));
+            const float wanted = own * guided.importance(guide, lastTurn(budget, excess, c.direction, c.h));
             const float mixture = ownShare * own + (1.0f - ownShare) * guide;
             weights[size_t(i)] = mixture > 0 ? wanted / mixture : 0.0f;
             c.inversePdf = wanted > 0 ? 1.0f / wanted : 0.0f;
             sum += weights[size_t(i)];
         }
-        if (!(sum > 0)) return {{residual.axis, 0}, 0};
+        if (!(sum > 0)) return {{budget.axis, 0}, 0};
         float rest = random() * sum;
         int chosen = 0;
         for (; chosen < count - 1; ++chosen) {

@@ -58,7 +58,7 @@ class DirectionStrata {
         Frame(const Vec3& about, const Vec3& other) : axis(about) {
             const Vec3 off = other - about * dot(other, about);
             const float size = length(off);
-            // Of axes that are parallel any half-plane will do.
+            // Axes that are parallel define no half-plane: any will do.
             towards = size > 1e-6f ? off * (1.0f / size) : directionAbout(about, 1.0f, 0.0f);
             across = {axis.y * towards.z - axis.z * towards.y, axis.z * towards.x - axis.x * towards.z,
                       axis.x * towards.y - axis.y * towards.x};

@@ -43,7 +43,7 @@ Kernel kernelFor(Shape shape, int candidates, bool grey, bool scalar) {
     case Shape::FirstPassage:
         return kernelFor<Shape::FirstPassage>(candidates, grey, scalar);
     }
-    throw std::invalid_argument("unknown shape of usefulness");
+    throw std::invalid_argument("unknown shape of importance");
 }
 
 Shape shapeOf(Greens greens) {
@@ -57,7 +57,7 @@ DistanceSampler::DistanceSampler(const Settings& settings, const Medium& medium,
       grey_(medium.isGrey()), scatters_(largest(medium.sigmaS) > 0) {
     for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal, Shape::FirstPassage}) {
         kernels_[size_t(shape)] = kernelFor(shape, settings.candidates, grey_, scalar);
-        usefulness_[size_t(shape)] = LogLinearDistance::logImportance(shape, grey_, scalar);
+        importance_[size_t(shape)] = LogLinearDistance::logImportance(shape, grey_, scalar);
     }
 }
 
@@ -69,12 +69,12 @@ Vec3 DistanceSampler::transmittance(float distance) const {
     return {std::exp(-sigmaT_.x * distance), std::exp(-sigmaT_.y * distance), std::exp(-sigmaT_.z * distance)};
 }
 
-Shape DistanceSampler::shapeFor(const Residual& residual) const {
+Shape DistanceSampler::shapeFor(const TimeBudget& budget) const {
     // Without a Green's function nothing but the bound in time is wanted.
     if (settings_.greens == Greens::None) return Shape::TimeBound;
-    if (residual.way == Way::Through) return shapeOf(settings_.greens);
+    if (budget.model == EscapeModel::Infinite) return shapeOf(settings_.greens);
     // Behind refraction light leaves where it is not known.
-    return residual.exit.connects ? Shape::FirstPassage : Shape::TimeBound;
+    return budget.escape.straightExit ? Shape::FirstPassage : Shape::TimeBound;
 }
 
 auto DistanceSampler::surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const -> SurfaceEvent {
@@ -85,33 +85,33 @@ auto DistanceSampler::surfaceEvent(float surface, float firstLeg, const Vec3& th
     return {natural, reaching};
 }
 
-CandidateDraw DistanceSampler::drawOf(const Residual& residual, const Heading& ray, const Ellipse<float>& latest,
+CandidateDraw DistanceSampler::drawOf(const TimeBudget& budget, const Heading& ray, const Ellipse<float>& latest,
                                       float bound, const Vec3& throughput) const {
     CandidateDraw draw;
     draw.latest = latest;
     draw.firstLeg = latest.firstLeg();
     draw.bound = bound;
-    draw.gateWidth = std::max(residual.width, 1e-6f * draw.latest.length());
+    draw.gateWidth = std::max(budget.width, 1e-6f * draw.latest.length());
     draw.proposals = settings_.proposals;
     draw.overlap = settings_.preset == Preset::Best && settings_.greens != Greens::None;
     draw.throughput = throughput;
     draw.medium = &medium_;
-    draw.exit = &residual.exit;
+    draw.escape = &budget.escape;
     draw.direction = ray.direction;
     return draw;
 }
 
-DistanceDensity DistanceSampler::density(const Residual& residual, const Heading& ray, float surface,
+DistanceDensity DistanceSampler::density(const TimeBudget& budget, const Heading& ray, float surface,
                                          const Vec3& throughput) const {
-    const Ellipse<float> latest = residual.latest(ray.h);
+    const Ellipse<float> latest = budget.latest(ray.h);
     const float firstLeg = latest.firstLeg(), bound = std::min(surface, firstLeg);
     const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
     if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return DistanceDensity(event.probability);
-    CandidateDraw draw = drawOf(residual, ray, latest, bound, throughput);
-    if (residual.low > 0) draw.kink = Ellipse<float>{residual.C, residual.low, ray.h}.firstLeg();
-    const Shape shape = shapeFor(residual);
+    CandidateDraw draw = drawOf(budget, ray, latest, bound, throughput);
+    if (budget.low > 0) draw.kink = Ellipse<float>{budget.C, budget.low, ray.h}.firstLeg();
+    const Shape shape = shapeFor(budget);
     draw.falls = shape != Shape::TimeBound || draw.overlap;
-    return {event.probability, draw, usefulness_[size_t(shape)]};
+    return {event.probability, draw, importance_[size_t(shape)]};
 }
 
 DistanceSample DistanceSampler::sample(const DistanceDensity& density, float surface, float event, float choice) const {
@@ -123,21 +123,21 @@ DistanceSample DistanceSampler::sample(const DistanceDensity& density, float sur
     return {*drawn, false, transmittance(*drawn) * (pdf > 0 ? 1.0f / pdf : 0.0f), pdf};
 }
 
-DistanceSample DistanceSampler::sample(const Residual& residual, const Heading& ray, float surface,
+DistanceSample DistanceSampler::sample(const TimeBudget& budget, const Heading& ray, float surface,
                                        const Vec3& throughput, const DistanceRandom& random) const {
     DistanceSample sample;
     if (settings_.preset == Preset::Best && settings_.bounded)
-        return this->sample(density(residual, ray, surface, throughput), surface, random.event, random.choice);
-    const Ellipse<float> latest = residual.latest(ray.h);
+        return this->sample(density(budget, ray, surface, throughput), surface, random.event, random.choice);
+    const Ellipse<float> latest = budget.latest(ray.h);
     const float firstLeg = latest.firstLeg();
     const SurfaceEvent event = surfaceEvent(surface, firstLeg, throughput);
     if (event.probability > 0 && random.event < event.probability)
         return {surface, true, event.reaching * (1.0f / event.probability)};
     const float bound = settings_.bounded ? std::min(surface, firstLeg) : surface;
     if (!scatters_ || !(event.probability < 1.0f) || !(bound > 0)) return sample;
-    CandidateDraw draw = drawOf(residual, ray, latest, bound, throughput);
+    CandidateDraw draw = drawOf(budget, ray, latest, bound, throughput);
     draw.probability = 1.0f - event.probability;
-    sample.distance = kernels_[size_t(shapeFor(residual))](draw, random, sample.transmittanceOverPdf);
+    sample.distance = kernels_[size_t(shapeFor(budget))](draw, random, sample.transmittanceOverPdf);
     return sample;
 }
 

@@ -22,8 +22,8 @@ struct DistanceSample {
     /// surface), whose expectation over the draws is the integral of the transmittance over what can count. In the
     /// medium the caller's throughput takes sigmaS times this. Zero: nothing can arrive, the walk ends.
     Vec3 transmittanceOverPdf;
-    /// Of this draw, per length in the medium, a probability at the surface; 0 where it is resampled, so that none is
-    /// known.
+    /// Density of this draw: per length in the medium, a probability at the surface. 0 where the distance is resampled,
+    /// whose density is not known.
     float pdf = 0;
 };
 
@@ -32,8 +32,8 @@ class DistanceDensity {
   public:
     /// Nothing in the medium: every draw is the surface, if `surface` is a probability above 0.
     explicit DistanceDensity(float surface) : surface_(surface) {}
-    DistanceDensity(float surface, const CandidateDraw& draw, LogLinearDistance::LogImportance usefulness)
-        : surface_(surface), medium_(std::in_place, draw, usefulness) {}
+    DistanceDensity(float surface, const CandidateDraw& draw, LogLinearDistance::LogImportance importance)
+        : surface_(surface), medium_(std::in_place, draw, importance) {}
 
     /// Probability of the surface; the rest is the medium's, unless nothing there can be in time.
     [[nodiscard]] float surface() const { return surface_; }
@@ -51,28 +51,28 @@ class DistanceDensity {
     std::optional<LogLinearDistance> medium_;
 };
 
-/// Resampled importance sampling (Talbot et al. 2005) of N candidates by usefulness
+/// Resampled importance sampling (Talbot et al. 2005) of N candidates by importance
 ///   p(d) = e^{-sigmaT d} Phi(|x + d w - q|, S_hi - d) o(d),
 /// Phi a Green's function, or the first passage out of the body (FirstPassage.h) where the target lies outside, o(d)
 /// the length of the gate still reachable. All causality is tested at S_hi, which does not change from vertex to
-/// vertex: a length redrawn per vertex would be biased. Any positive usefulness is exact. The transmittances that
-/// the estimate needs are computed to float precision, usefulness to about 1e-3.
+/// vertex: a length redrawn per vertex would be biased. Any positive importance is exact. The transmittances that
+/// the estimate needs are computed to float precision, importance to about 1e-3.
 class DistanceSampler {
   public:
     /// Candidates in SIMD registers; `scalar` takes one by one (for comparison).
     DistanceSampler(const Settings& settings, const Medium& medium, bool scalar = false);
 
     /// `surface` is the distance to the first surface, possibly infinite; `throughput` the walk's, for coloured media.
-    [[nodiscard]] DistanceSample sample(const Residual& residual, const Heading& ray, float surface,
+    [[nodiscard]] DistanceSample sample(const TimeBudget& budget, const Heading& ray, float surface,
                                         const Vec3& throughput, const DistanceRandom& random) const;
     /// The density of sample(), of Preset::Best.
-    [[nodiscard]] DistanceDensity density(const Residual& residual, const Heading& ray, float surface,
+    [[nodiscard]] DistanceDensity density(const TimeBudget& budget, const Heading& ray, float surface,
                                           const Vec3& throughput) const;
     /// A draw by it; `event` and `choice` are uniform in [0, 1).
     [[nodiscard]] DistanceSample sample(const DistanceDensity& density, float surface, float event, float choice) const;
     /// Where the candidates end: nothing beyond can be in time. The ray need not be traced farther.
-    [[nodiscard]] float bound(const Residual& residual, float h) const {
-        return settings_.bounded ? residual.latest(h).firstLeg() : std::numeric_limits<float>::infinity();
+    [[nodiscard]] float bound(const TimeBudget& budget, float h) const {
+        return settings_.bounded ? budget.latest(h).firstLeg() : std::numeric_limits<float>::infinity();
     }
 
     /// e^{-sigmaT d} per channel.
@@ -85,10 +85,10 @@ class DistanceSampler {
         Vec3 reaching;
     };
     [[nodiscard]] SurfaceEvent surfaceEvent(float surface, float firstLeg, const Vec3& throughput) const;
-    /// Of distances in the medium, up to a bound above 0.
-    [[nodiscard]] CandidateDraw drawOf(const Residual& residual, const Heading& ray, const Ellipse<float>& latest,
+    /// What a draw of distances in the medium needs, up to a bound above 0.
+    [[nodiscard]] CandidateDraw drawOf(const TimeBudget& budget, const Heading& ray, const Ellipse<float>& latest,
                                        float bound, const Vec3& throughput) const;
-    [[nodiscard]] Shape shapeFor(const Residual& residual) const;
+    [[nodiscard]] Shape shapeFor(const TimeBudget& budget) const;
     using Kernel = float (*)(const CandidateDraw&, const DistanceRandom&, Vec3& transmittanceOverPdf);
 
     Settings settings_;
@@ -96,9 +96,9 @@ class DistanceSampler {
     Vec3 sigmaT_;
     float meanSigmaT_;
     bool grey_, scatters_;
-    // By shape.
+    // One for each Shape.
     std::array<Kernel, 4> kernels_;
-    std::array<LogLinearDistance::LogImportance, 4> usefulness_;
+    std::array<LogLinearDistance::LogImportance, 4> importance_;
 };
 
 } // namespace darts

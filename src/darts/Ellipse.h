@@ -33,7 +33,7 @@ struct Ellipse {
     }
     /// The needle: ray toward the target and no excess, where any t in [0, C] fits. Measure zero; such connections are
     /// skipped.
-    [[nodiscard]] bool isNeedle() const {
+    [[nodiscard]] bool isDegenerate() const {
         constexpr Real Ulps = 4;
         return !(denominator() > Ulps * std::numeric_limits<Real>::epsilon() * length());
     }

@@ -2,14 +2,14 @@
 
 namespace darts {
 
-FirstPassage::Slopes FirstPassage::slopes(const Departure<float>& at, const Vec3& towardsTarget) const {
+FirstPassage::Slopes FirstPassage::slopes(const EscapePoint<float>& at, const Vec3& towardsTarget) const {
     const float step = meanFreePath_;
     Slopes slopes;
-    float highest = -Exit::Infinite, total = 0;
+    float highest = -EscapeGeometry::Infinite, total = 0;
     for (size_t i = 0; i < exit_.faces.size(); ++i) {
-        const Exit::Face& face = exit_.faces[i];
-        const Departure<float>::Left here = at.to(face);
-        Departure<float>::Left deeper = here, later = here;
+        const EscapeGeometry::Face& face = exit_.faces[i];
+        const EscapePoint<float>::RemainingLength here = at.to(face);
+        EscapePoint<float>::RemainingLength deeper = here, later = here;
         deeper.depth += step;
         later.longest += step;
         const float log = logThrough(face, here);
@@ -27,7 +27,7 @@ FirstPassage::Slopes FirstPassage::slopes(const Departure<float>& at, const Vec3
     slopes.pull = slopes.pull * (1.0f / total);
     slopes.later /= total;
     for (size_t i = 0; i < exit_.sides.size(); i += 2) {
-        const Exit::Side &a = exit_.sides[i], &b = exit_.sides[i + 1], &side = a.outside > b.outside ? a : b;
+        const EscapeGeometry::Side &a = exit_.sides[i], &b = exit_.sides[i + 1], &side = a.outside > b.outside ? a : b;
         if (side.outside > 0.0f)
             slopes.pull =
                 slopes.pull - side.normal * (2.0f * side.outside * fourthInverseD_ / (at.excess + meanFreePath_));

@@ -1,47 +1,47 @@
 #pragma once
-// Light that diffuses in a body and must leave it in time: the probability that it does, as the usefulness of
+// Light that diffuses in a body and must leave it in time: the probability that it does, as the importance of
 // candidates.
 
 #include "darts/Ellipse.h"
-#include "darts/Exit.h"
+#include "darts/EscapeGeometry.h"
 #include "darts/Lanes.h"
 #include "darts/Settings.h"
 
 namespace darts {
 
-/// A place on a flight inside a body, from where light goes on in the flight's direction by `persistence` on the
+/// A place on a flight inside a body, from where light goes on in the flight's direction by `persistenceLength` on the
 /// average before it has forgotten it.
 template <typename Batch>
-struct Departure {
-    const Exit& exit;
+struct EscapePoint {
+    const EscapeGeometry& exit;
     Vec3 direction;
-    float persistence;    ///< 0: light leaves evenly in all directions
-    Batch d;              ///< along the flight
-    Batch rho;            ///< from the target
-    Batch excess;         ///< longest connection in time, over rho
-    Batch squaredOutside; ///< distance from what lies inside all sides, squared
+    float persistenceLength; ///< 0: light leaves evenly in all directions
+    Batch d;                 ///< along the flight
+    Batch rho;               ///< from the target
+    Batch excess;            ///< longest connection in time, over rho
+    Batch squaredOutside;    ///< distance from what lies inside all sides, squared
 
     /// At the distance `along`; `latest` is of the latest arrival.
-    [[gnu::always_inline]] Departure(const Exit& out, const Ellipse<float>& latest, const Vec3& flight,
-                                     const Batch& along, float onward = 0.0f)
-        : exit(out), direction(flight), persistence(onward), d(along), squaredOutside(Batch(0.0f)) {
+    [[gnu::always_inline]] EscapePoint(const EscapeGeometry& out, const Ellipse<float>& latest, const Vec3& flight,
+                                       const Batch& along, float onward = 0.0f)
+        : exit(out), direction(flight), persistenceLength(onward), d(along), squaredOutside(Batch(0.0f)) {
         using std::max;
         using std::sqrt;
         const Batch toCentre = d - latest.C, left = (2.0f * latest.denominator()) * (latest.firstLeg() - d);
         rho = sqrt(toCentre * toCentre + (2.0f * latest.C * latest.h) * d);
-        excess = max(Batch(left / (latest.length() - d + rho) - exit.surplus), Batch(0.0f));
+        excess = max(Batch(left / (latest.length() - d + rho) - exit.extraLength), Batch(0.0f));
         for (size_t i = 0; i < exit.sides.size(); i += 2) {
-            const Exit::Side &a = exit.sides[i], &b = exit.sides[i + 1];
+            const EscapeGeometry::Side &a = exit.sides[i], &b = exit.sides[i + 1];
             const Batch beside =
                 max(Batch(a.outside + d * dot(direction, a.normal)), Batch(b.outside + d * dot(direction, b.normal)));
             squaredOutside = squaredOutside + max(beside, Batch(0.0f)) * max(beside, Batch(0.0f));
         }
     }
     /// The way to a face: depth, the longest path left for it, and by how much it may be shorter inside the gate.
-    struct Left {
+    struct RemainingLength {
         Batch depth, longest, reachable;
     };
-    [[nodiscard, gnu::always_inline]] Left to(const Exit::Face& face) const {
+    [[nodiscard, gnu::always_inline]] RemainingLength to(const EscapeGeometry::Face& face) const {
         using std::max;
         using std::min;
         using std::sqrt;
@@ -51,11 +51,12 @@ struct Departure {
         const Batch above = depth * (depth + 2.0f * face.height), outside = sqrt(max(rho * rho - above, Batch(0.0f)));
         const Batch longest =
             max(Batch(excess + above / (rho + outside) - (exit.outerSpeed - 1.0f) * outside), Batch(0.0f));
-        if (persistence > 0.0f) { // mean displacement of persistent walks (Fuerth 1920)
-            const Batch onward = persistence * (1.0f - lanes::exp(Batch(longest * (-1.0f / persistence))));
+        if (persistenceLength > 0.0f) { // mean displacement of persistent walks (Fuerth 1920)
+            const Batch onward = persistenceLength * (1.0f - lanes::exp(Batch(longest * (-1.0f / persistenceLength))));
             depth = max(Batch(depth - cosine * onward), Batch(0.0f));
         }
-        // What only the surplus can reach keeps a little.
+        // At least 1 % of the gate counts as reachable, so that importance is never 0 where only the extra length
+        // allows an arrival.
         return {depth, longest, min(max(excess, Batch(0.01f * exit.gate)), min(longest, Batch(exit.gate)))};
     }
 };
@@ -72,11 +73,11 @@ struct Departure {
 class FirstPassage {
   public:
     /// `reducedS` = sigmaS (1 - g) > 0.
-    FirstPassage(float absorption, float reducedS, const Exit& exit, float allowance = 1.0f)
+    FirstPassage(float absorption, float reducedS, const EscapeGeometry& exit, float allowance = 1.0f)
         : exit_(exit), sigmaA_(absorption), fourthInverseD_(0.75f * (absorption + reducedS)),
-          margin_(0.5f * std::min(exit.mismatch, MostMismatch) / fourthInverseD_),
+          margin_(0.5f * std::min(exit.reflectionA, MostMismatch) / fourthInverseD_),
           leak_(0.5f / (std::sqrt(fourthInverseD_) * margin_)), meanFreePath_(1.0f / reducedS), allowance_(allowance) {}
-    FirstPassage(const Medium& medium, const Exit& exit, float allowance = 1.0f)
+    FirstPassage(const Medium& medium, const EscapeGeometry& exit, float allowance = 1.0f)
         : FirstPassage(mean(medium.sigmaA), medium.reducedSigmaS(), exit, allowance) {}
 
     /// 1 / sigmaS'
@@ -84,12 +85,12 @@ class FirstPassage {
 
     /// The probability of leaving in time from a place, as an exponential, whose exponent is returned, times `factor`.
     template <typename Batch>
-    Batch exponent(const Departure<Batch>& at, Batch& factor) const {
+    Batch exponent(const EscapePoint<Batch>& at, Batch& factor) const {
         using std::max;
-        const typename Departure<Batch>::Left first = at.to(exit_.faces[0]);
+        const typename EscapePoint<Batch>::RemainingLength first = at.to(exit_.faces[0]);
         Batch exponent = through(exit_.faces[0], first, factor);
         for (size_t i = 1; i < exit_.faces.size(); ++i) {
-            const Exit::Face& face = exit_.faces[size_t(i)];
+            const EscapeGeometry::Face& face = exit_.faces[size_t(i)];
             Batch otherFactor(0.0f);
             const Batch other = through(face, at.to(face), otherFactor);
             add(other, otherFactor, exponent, factor);
@@ -98,7 +99,7 @@ class FirstPassage {
         return exponent;
     }
     /// Its logarithm, never below that of 1e-37.
-    [[nodiscard]] float log(const Departure<float>& at) const {
+    [[nodiscard]] float log(const EscapePoint<float>& at) const {
         float factor = 0;
         const float power = exponent(at, factor);
         return power + std::log(std::max(factor, 1e-37f));
@@ -108,7 +109,7 @@ class FirstPassage {
         Vec3 pull;
         float later = 0;
     };
-    [[nodiscard]] Slopes slopes(const Departure<float>& at, const Vec3& towardsTarget) const;
+    [[nodiscard]] Slopes slopes(const EscapePoint<float>& at, const Vec3& towardsTarget) const;
 
   private:
     /// e^exponent factor += e^other otherFactor
@@ -121,12 +122,13 @@ class FirstPassage {
     }
     /// Through one face.
     template <typename Batch>
-    Batch through(const Exit::Face& face, const typename Departure<Batch>::Left& left, Batch& factor) const {
+    Batch through(const EscapeGeometry::Face& face, const typename EscapePoint<Batch>::RemainingLength& left,
+                  Batch& factor) const {
         using lanes::all;
         using lanes::select;
         using std::max;
         using std::sqrt;
-        const Batch z = left.depth + face.beyond;
+        const Batch z = left.depth + face.outerDepth;
         const Batch end = left.longest + allowance_ * meanFreePath_, shortest = left.longest - left.reachable;
         // Gates that begin at once reach down to (nearly) nothing.
         const Batch settled = allowance_ * meanFreePath_ / (shortest + meanFreePath_);
@@ -141,8 +143,8 @@ class FirstPassage {
         factor = 0.5641896f * leak_ * span * overRoot * (1.0f - more * (1.0f - 0.5f * more)) *
                  leaving(Batch(scaled * overRoot), Batch(leak_ * root));
         if (!all(brief)) factor = select(brief, factor, inLongGate(scaled, start, end));
-        if (face.thickness < Exit::Infinite) {
-            const float slab = face.thickness + 2.0f * margin_ + face.beyond;
+        if (face.thickness < EscapeGeometry::Infinite) {
+            const float slab = face.thickness + 2.0f * margin_ + face.outerDepth;
             const Batch wall = max(slab - margin_ - z, Batch(margin_));
             const Batch kept = 1.0f - lanes::exp(Batch(-4.0f * fourthInverseD_ * slab * wall * atEnd));
             factor = factor * max(kept, Batch(1e-6f)); // never 0: that would be a bias
@@ -189,7 +191,8 @@ class FirstPassage {
              t * (0.178343572f + t * (0.287645687f + t * (0.0361629261f + t * (0.729329825f - t * 0.32179451f)))));
         return rest + 1.77245385f * p * scaledErfc(x);
     }
-    [[nodiscard]] float logThrough(const Exit::Face& face, const Departure<float>::Left& left) const {
+    [[nodiscard]] float logThrough(const EscapeGeometry::Face& face,
+                                   const EscapePoint<float>::RemainingLength& left) const {
         float factor = 0;
         const float power = through<float>(face, left, factor);
         return power + std::log(std::max(factor, 1e-37f));
@@ -198,7 +201,7 @@ class FirstPassage {
     /// Beyond, what leaves is less, but in the same places and times.
     static constexpr float MostMismatch = 100.0f;
 
-    const Exit& exit_;
+    const EscapeGeometry& exit_;
     float sigmaA_;
     float fourthInverseD_; ///< 1 / (4 D)
     float margin_;         ///< z_b

@@ -11,13 +11,13 @@ namespace darts {
 
 namespace {
 
-/// Towards the bound in time usefulness falls to nothing; the last node's logarithm is this much below the one before
+/// Towards the bound in time importance falls to nothing; the last node's logarithm is this much below the one before
 /// it: half of it, which the mean over the interval then is, about.
 constexpr float FallToBound = 0.7f;
-/// Logarithm of usefulness, relative to the highest: what is farther down stays possible. Transmittance may be lower
+/// Logarithm of importance, relative to the highest: what is farther down stays possible. Transmittance may be lower
 /// yet: slopes that end there would be too gentle, and most draws in thick media in vain.
 constexpr float LeastLog = -57.5f;
-/// Of all, that the numbers drawn by can tell apart.
+/// Least part of all mass that the uniform numbers of a draw can resolve.
 constexpr float LeastMass = 0x1p-24f;
 
 template <typename Batch, Shape G, int Channels>
@@ -32,7 +32,7 @@ void logImportanceOf(const CandidateDraw& draw, const float* distances, float* l
         std::array<Batch, size_t(Channels)> exponents, factors;
         Batch top(-std::numeric_limits<float>::max());
         for (int i = 0; i < Channels; ++i) {
-            const Usefulness<G> channel(draw, i, Channels == 1);
+            const CandidateImportance<G> channel(draw, i, Channels == 1);
             exponents[size_t(i)] = channel.exponent(d, place, factors[size_t(i)]);
             top = max(top, exponents[size_t(i)]);
         }
@@ -65,12 +65,12 @@ LogLinearDistance::LogImportance LogLinearDistance::logImportance(Shape shape, b
     case Shape::FirstPassage:
         return importanceOf<Shape::FirstPassage>(grey, scalar);
     }
-    throw std::invalid_argument("unknown shape of usefulness");
+    throw std::invalid_argument("unknown shape of importance");
 }
 
-LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance usefulness) {
+LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance importance) {
     const float end = draw.bound;
-    // A surface ends what is in time; else usefulness falls to nothing there.
+    // A surface ends what is in time; else importance falls to nothing there.
     const bool endsInTime = !(end < draw.firstLeg);
     alignas(64) std::array<float, Nodes> at, log;
     int count = 0;
@@ -93,7 +93,7 @@ LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance us
         add(end * float(j) / (endsInTime && !near ? 4.0f : 3.0f));
     if (near) add(end * (1.0f - std::sqrt(left / float(Nodes))));
     if (!endsInTime) add(end);
-    usefulness(draw, at.data(), log.data());
+    importance(draw, at.data(), log.data());
     intervals_ = endsInTime ? Nodes : Nodes - 1;
     const float top = *std::max_element(log.begin(), log.end());
     std::array<float, Nodes + 1> values;

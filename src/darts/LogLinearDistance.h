@@ -1,13 +1,13 @@
 #pragma once
 // Distances by a density that is known: its logarithm is linear between a few nodes, at which importance is evaluated.
 
-#include "darts/CandidateUsefulness.h"
+#include "darts/CandidateImportance.h"
 
 #include <array>
 
 namespace darts {
 
-/// Density per length on [0, bound), in proportion to importance (usefulness, of DistanceSampler) at its nodes and
+/// Density per length on [0, bound), in proportion to importance (of candidates, DistanceSampler) at its nodes and
 /// log-linear between them:
 ///   p(d) = e^{L_i + (L_{i+1} - L_i) (d - b_i) / (b_{i+1} - b_i)} / sum m,
 ///   m_i = (b_{i+1} - b_i) (e^{L_{i+1}} - e^{L_i}) / (L_{i+1} - L_i).
@@ -19,7 +19,7 @@ class LogLinearDistance {
 
     /// Logarithms of importance at so many distances, up to a constant.
     using LogImportance = void (*)(const CandidateDraw& draw, const float* distances, float* logs);
-    /// Of a shape of importance, in registers, or one by one (`scalar`).
+    /// The function that evaluates a shape of importance, in SIMD registers or one by one (`scalar`).
     static LogImportance logImportance(Shape shape, bool grey, bool scalar = false);
 
     /// `draw.bound` > 0.

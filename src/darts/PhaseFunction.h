@@ -16,7 +16,7 @@ struct HenyeyGreenstein {
 
     /// Per solid angle: (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^{3/2}).
     [[nodiscard]] float pdf(const Vec3& after) const { return pdfAt(oneMinusCosine(peak(), after)); }
-    /// The same at h = 1 - cos to the peak.
+    /// The density at h = 1 - cos to the peak.
     [[nodiscard]] float pdfAt(float h) const {
         // 1 + g^2 - 2 g cos = (1 - |g|)^2 + 2 |g| h about the peak's direction: no cancellation there.
         const float strength = std::abs(g);
@@ -27,7 +27,7 @@ struct HenyeyGreenstein {
     [[nodiscard]] Vec3 sample(float u, float v) const { return directionAbout(peak(), quantile(1.0f - u), v); }
 
     [[nodiscard]] std::optional<HenyeyGreenstein> asHenyeyGreenstein() const { return *this; }
-    /// Of the peak, in whose direction most is scattered.
+    /// Direction of the peak, towards which most light is scattered.
     [[nodiscard]] Vec3 peak() const { return g < 0 ? -before : before; }
     /// h = 1 - cos to the peak, within which a part f in [0, 1] of all directions lies.
     [[nodiscard]] float quantile(float f) const {
@@ -51,7 +51,7 @@ struct PhaseScatterer {
 
     [[nodiscard]] Vec3 sample(float u, float v) const { return vec3(phase.sample(before, {u, v})); }
     [[nodiscard]] float pdf(const Vec3& after) const { return phase.pdf(before, to<Vector>(after)); }
-    /// The same as a Henyey-Greenstein function, if it is one.
+    /// This phase function as a Henyey-Greenstein function, if it is one.
     [[nodiscard]] std::optional<HenyeyGreenstein> asHenyeyGreenstein() const {
         if (!phase.isHenyeyGreenstein()) return std::nullopt;
         return HenyeyGreenstein{vec3(before), phase.g()};

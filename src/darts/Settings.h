@@ -15,7 +15,7 @@ struct Medium {
     /// sigmaS (1 - g), mean over the channels; never 0.
     [[nodiscard]] float reducedSigmaS() const { return std::max(mean(sigmaS) * (1.0f - g), 1e-20f); }
     /// How far light goes straight on after a scattering, on the average: 1 / (sigmaS (1 - g)) - 1 / sigmaS.
-    [[nodiscard]] float persistence() const { return g / reducedSigmaS(); }
+    [[nodiscard]] float persistenceLength() const { return g / reducedSigmaS(); }
     [[nodiscard]] bool isGrey() const {
         const auto equal = [](const Vec3& a) { return a.x == a.y && a.y == a.z; };
         return equal(sigmaA) && equal(sigmaS);
@@ -80,7 +80,7 @@ struct Settings {
         return preset == Preset::Best && bounded && !lengthFirst && direction != Direction::Ris;
     }
 
-    float roulette = 0.1f;    ///< walks end at random below this part of their first usefulness; 0: never
+    float roulette = 0.1f;    ///< walks end at random below this part of their first expected contribution; 0: never
     float rouletteOut = 0.1f; ///< the same on the way out of bodies
 };
 
@@ -122,7 +122,7 @@ inline Settings best(Mode mode, float g) {
     return s;
 }
 
-/// The same with plain free flights: one exponential candidate.
+/// These settings with plain free flights: one exponential candidate.
 inline Settings plainFlights(Settings s) {
     s.greens = Greens::None;
     s.proposals = Proposals::Exponential;

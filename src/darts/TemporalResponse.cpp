@@ -12,10 +12,10 @@ TemporalResponse TemporalResponse::box(double begin, double end) {
 
 TemporalResponse TemporalResponse::gaussian(double center, double sigma) {
     constexpr int Ends = 65;
-    constexpr double Reach = 4.0;
+    constexpr double CandidatePlace = 4.0;
     std::vector<double> times(Ends), values(Ends);
     for (int i = 0; i < Ends; ++i) {
-        const double x = Reach * (2.0 * i / (Ends - 1) - 1.0);
+        const double x = CandidatePlace * (2.0 * i / (Ends - 1) - 1.0);
         times[size_t(i)] = center + x * sigma;
         values[size_t(i)] = std::exp(-0.5 * x * x);
     }

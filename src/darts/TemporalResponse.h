@@ -18,7 +18,8 @@ class TemporalResponse {
     /// Throws std::invalid_argument otherwise.
     static TemporalResponse tabulated(std::vector<double> times, std::vector<double> values);
 
-    /// Of the sum of two times drawn independently: their convolution, exact where pieces meet and linear between.
+    /// Density of the sum of two times drawn independently: their convolution, exact where pieces meet and linear
+    /// between.
     static TemporalResponse convolved(const TemporalResponse& a, const TemporalResponse& b);
 
     [[nodiscard]] double begin() const { return times_.front(); }

@@ -1,6 +1,6 @@
 #include "path/ArrivalBound.h"
 
-#include "transport/Delays.h"
+#include "transport/RecordingDelays.h"
 
 namespace tungsten::path {
 
@@ -27,7 +27,8 @@ ArrivalBound::Source ArrivalBound::merged(const std::vector<Source>& sources) {
 }
 
 ArrivalBound::ArrivalBound(const Scene& scene, const SceneFacts& facts)
-    : bounds_(transport::Delays::of(scene).arrivals(scene.transport.gate), facts), highestSpeed_(facts.highestSpeed) {
+    : bounds_(transport::RecordingDelays::of(scene).arrivals(scene.transport.gate), facts),
+      highestSpeed_(facts.highestSpeed) {
     // Environments never arrive; single directions are never found.
     for (size_t i = 0; i < scene.emitters.size(); ++i) {
         const Emitter& emitter = scene.emitters[i];

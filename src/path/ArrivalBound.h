@@ -23,7 +23,7 @@ class ArrivalBound {
     [[nodiscard]] bool beforeEnd(double time, float distance, double emissionTime) const {
         return bounds_.beforeEnd(time + emissionTime, double(distance));
     }
-    /// Of light, anywhere on a path.
+    /// Highest speed of light anywhere on a path.
     [[nodiscard]] float highestSpeed() const { return highestSpeed_; }
     [[nodiscard]] bool oneSpeed() const { return bounds_.oneSpeed(); }
 

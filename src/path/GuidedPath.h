@@ -2,13 +2,13 @@
 // What techniques ask of a guided path. Each technique (src/path/techniques) connects, or draws, from where it is; how
 // dense others would have found the same path it asks them.
 
-#include "path/PixelSink.h"
+#include "path/PixelAccumulator.h"
 #include "path/StepsToEmitter.h"
 
 namespace tungsten::path {
 
 /// What the last vertex connected to besides the target: it could have found the end of the present straight way, too.
-enum class Caches { None, LightVertices, ReflectedLightToo };
+enum class Caches { None, LightVertices, GlossyVerticesToo };
 
 /// How the walk came to the ray's origin, if the vertex before was connected to reflected light and may end here.
 struct Approach {
@@ -51,23 +51,24 @@ struct WayBehind {
 /// A view of the walk at hand and of what its visitor keeps.
 struct GuidedPath {
     const GuidedContext& context;
-    PixelSink& sink;
+    PixelAccumulator& sink;
     PathCounters& counters;
     PathState& state;
     StepsToEmitter& steps;
     const WayBehind& behind;
 
-    /// Of paths whose last vertex is this surface ahead, where light vertices, or reflected light, find them too and
-    /// leave the walk this share. What is weighed is the way up to one or two vertices before, where these connect.
-    [[nodiscard]] float logRatioByLightPaths(const transport::Vertex& surface, float shareOfWalk) const;
+    /// Logarithm of the density of guided over plain paths whose last vertex is this surface ahead, where light
+    /// vertices, or reflected light, find them too and leave the walk this share. What is weighed is the way up to one
+    /// or two vertices before, where these connect.
+    [[nodiscard]] float logRatioByLightCaches(const transport::Vertex& surface, float shareOfWalk) const;
     [[nodiscard]] const Scene& scene() const { return context.scene; }
     [[nodiscard]] const PathTarget& target() const { return steps.target(); }
     [[nodiscard]] float next() const { return state.random.next1D(); }
 
     /// The straight way from `position` to the target, if there is one and light on it may fall into the gate; `time`
     /// is the path's up to there.
-    [[nodiscard]] std::optional<transport::Straight> wayInTime(const Vec3f& position, double time) const {
-        const auto way = transport::straightWay(position, target().vertex.position());
+    [[nodiscard]] std::optional<transport::Segment> wayInTime(const Vec3f& position, double time) const {
+        const auto way = transport::connectionSegment(position, target().vertex.position());
         return way && context.bound.mayConnect(time, way->distance, target().start) ? way : std::nullopt;
     }
     /// What connects to the target, through index-matched boundaries.
@@ -75,7 +76,7 @@ struct GuidedPath {
     /// From the vertex at the ray's origin, through the present region alone. None, too, where margins leave nothing of
     /// the way.
     [[nodiscard]] std::optional<transport::Connection> connectInRegion(const transport::Vertex& here,
-                                                                       const transport::ConnectionEnd& end) const {
+                                                                       const transport::ConnectionEndpoint& end) const {
         if (!(here.margin().beyond(end.direction) < end.margin.before(end.direction, end.distance)))
             return std::nullopt;
         return transport::Connector(scene(), false).connect(here, state.throughput, end, counters.shadowRays);
@@ -90,7 +91,7 @@ struct GuidedPath {
         return {scene(), surface, state.ray.direction, TransportMode::Radiance, state.region};
     }
 
-    /// Of what arrives at the ray's origin in time, from the target.
+    /// Lengths of what arrives at the ray's origin in time, from the target.
     [[nodiscard]] LengthsInGate lengthsInGate() const {
         const transport::TimeWindow& gate = steps.window();
         const double speed = double(state.region.speed), elapsed = state.time + target().start;
@@ -103,7 +104,7 @@ struct GuidedPath {
                limits.orderCounts(state.mediumScatters + mediumScatters + target().mediumScatters);
     }
     [[nodiscard]] bool mayFly(const Medium* medium) const { return !medium || state.flights < medium->maxBounces; }
-    /// Of a surface where light ends, met from the present region (StepsToEmitter::guideFor).
+    /// Guide at a surface where light ends, met from the present region (StepsToEmitter::guideFor).
     [[nodiscard]] const darts::Guide* guideFor(const transport::Vertex& vertex, const Vec3f& back) const {
         return steps.guideFor(vertex, back, state.region);
     }

@@ -2,9 +2,9 @@
 
 #include "path/techniques/ControlVertices.h"
 #include "path/techniques/EmitterConnections.h"
-#include "path/techniques/LightPaths.h"
+#include "path/techniques/GlossyVertexConnections.h"
+#include "path/techniques/LightCaches.h"
 #include "path/techniques/LightVertexConnections.h"
-#include "path/techniques/ReflectedConnections.h"
 
 namespace tungsten::path {
 
@@ -58,21 +58,21 @@ bool GuidedVisitor::vertex(PathState& path, StepsToEmitter& steps, const WalkVer
         behind_.approachOnSurface(steps, path, here, vertex.surface->hit);
         if (!steps.surfaceGuide()) return true;
     }
-    connectToLightPaths(at(path, steps), here);
+    connectToLightCaches(at(path, steps), here);
     return true;
 }
 
-void GuidedVisitor::connectToLightPaths(const GuidedPath& path, const transport::Vertex& here) {
+void GuidedVisitor::connectToLightCaches(const GuidedPath& path, const transport::Vertex& here) {
     const int emitter = path.target().index;
     behind_.connect(*context_, emitter, path.state);
     if (behind_.caches == Caches::None) return;
-    LightVertexConnections::connect(path, here, *context_->lightPaths.vertices(emitter));
-    if (behind_.caches == Caches::ReflectedLightToo)
-        ReflectedConnections::connect(path, here, *context_->lightPaths.reflected(emitter));
+    LightVertexConnections::connect(path, here, *context_->lightCaches.vertices(emitter));
+    if (behind_.caches == Caches::GlossyVerticesToo)
+        GlossyVertexConnections::connect(path, here, *context_->lightCaches.reflected(emitter));
 }
 
-void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
-                     const PathTarget& target, const Ray& ray, size_t window) {
+void traceGuidedPath(const GuidedContext& context, PixelAccumulator& sink, PathCounters& counters,
+                     const Sampler& sampler, const PathTarget& target, const Ray& ray, size_t window) {
     const Scene& scene = context.scene;
     ++counters.paths;
     transport::Walk walk{

@@ -13,7 +13,7 @@ namespace tungsten::path {
 
 class GuidedVisitor : public transport::VisitorBase {
   public:
-    GuidedVisitor(const GuidedContext& context, PixelSink& sink, PathCounters& counters)
+    GuidedVisitor(const GuidedContext& context, PixelAccumulator& sink, PathCounters& counters)
         : context_(&context), sink_(&sink), counters_(&counters) {}
 
     [[nodiscard]] bool mayGoOn(const PathState& path) const { return limits().mayGoOn(path.interactions); }
@@ -26,18 +26,18 @@ class GuidedVisitor : public transport::VisitorBase {
     [[nodiscard]] GuidedPath at(PathState& path, StepsToEmitter& steps) const {
         return {*context_, *sink_, *counters_, path, steps, behind_};
     }
-    /// By light vertices and reflected light, from the vertex at the ray's origin.
-    void connectToLightPaths(const GuidedPath& path, const transport::Vertex& here);
+    /// Connects the vertex at the ray's origin to light vertices and reflected light.
+    void connectToLightCaches(const GuidedPath& path, const transport::Vertex& here);
 
     const GuidedContext* context_;
-    PixelSink* sink_;
+    PixelAccumulator* sink_;
     PathCounters* counters_;
     WayBehind behind_;
     StepsToEmitter::InMedium inMedium_{}; ///< of paths whose last vertex is where the walk is
 };
 
 /// Traces one camera path along `ray`, guided towards the target, at the window that the sink has been told.
-void traceGuidedPath(const GuidedContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
-                     const PathTarget& target, const Ray& ray, size_t window = 0);
+void traceGuidedPath(const GuidedContext& context, PixelAccumulator& sink, PathCounters& counters,
+                     const Sampler& sampler, const PathTarget& target, const Ray& ray, size_t window = 0);
 
 } // namespace tungsten::path

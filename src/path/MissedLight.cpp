@@ -102,11 +102,13 @@ class MissedLightSearch {
         }
         return {};
     }
-    /// By turns as light starts (after a scattering: evenly), and towards a surface that mirrors or refracts.
+    /// Directions are drawn by turns as light starts (after a scattering: uniformly), and towards a surface that
+    /// mirrors or refracts.
     [[nodiscard]] std::optional<Vec3f> directionFrom(const PathTarget& from, uint32_t path, Sampler& sampler) const {
         if (path % 2 == 1) {
             const Primitive& surface = *surfaces_[path / 2 % surfaces_.size()];
-            const auto way = transport::straightWay(from.vertex.position(), pointIn(boundsOf(surface.shape), sampler));
+            const auto way =
+                transport::connectionSegment(from.vertex.position(), pointIn(boundsOf(surface.shape), sampler));
             return way ? std::optional(way->direction) : std::nullopt;
         }
         const Vec2f uPosition = sampler.next2D(), uDirection = sampler.next2D();
@@ -119,7 +121,7 @@ class MissedLightSearch {
                                                     const Sampler& sampler, const ProgressToken& watch,
                                                     PathCounters& counters) const {
         const PathState start{.random = sampler,
-                              .ray = from.vertex.leave(direction),
+                              .ray = from.vertex.spawnRay(direction),
                               .region = from.vertex.regionTowards(direction),
                               .time = from.start,
                               .interactions = from.interactions};

@@ -4,7 +4,7 @@
 
 namespace tungsten::path {
 
-PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const SceneFacts& facts,
+PathGuides PathGuides::of(const Scene& scene, const darts::SamplingOptions& options, const SceneFacts& facts,
                           const ProgressToken& watch) {
     PathGuides guides;
     watch.stage("guides of media", scene.media.size());
@@ -12,14 +12,14 @@ PathGuides PathGuides::of(const Scene& scene, const darts::Scheme& scheme, const
         watch.advance();
         const Medium& medium = scene.media[i];
         darts::Settings settings =
-            scheme.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
+            options.settings(darts::Mode::Path, medium.phase.g(), medium.guided, medium.guidedPhase);
         // Directions are guided for the sake of control vertices.
-        if (!medium.scatters() || facts.isExcluded(i) || (!scheme.elliptical && !scheme.direction))
+        if (!medium.scatters() || facts.isExcluded(i) || (!options.elliptical && !options.direction))
             settings.direction = darts::Direction::Phase;
         const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
         guides.media.emplace_back(settings, coefficients);
         darts::Settings glossy = settings;
-        if (!scheme.published) glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
+        if (!options.published) glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
         guides.glossy.emplace_back(glossy, coefficients);
     }
     return guides;

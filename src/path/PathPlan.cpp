@@ -2,13 +2,13 @@
 
 #include "path/PathTarget.h"
 #include "path/Tuning.h"
-#include "path/techniques/LightPaths.h"
-#include "path/techniques/RefractedLight.h"
+#include "path/techniques/LightCaches.h"
+#include "path/techniques/RefractiveConnections.h"
 
+#include "transport/EscapeModels.h"
 #include "transport/GuidancePlan.h"
 #include "transport/SamplingSummary.h"
 #include "transport/StepCounters.h"
-#include "transport/WaysOut.h"
 
 #include "tungsten/integrator/Names.h"
 #include "tungsten/integrator/SceneElements.h"
@@ -23,7 +23,7 @@ bool noConnection(const Scene& scene, const PathSettings& settings, const SceneF
            transport::isSealed(scene);
 }
 
-Choice guidanceOf(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
+Decision guidanceOf(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
     const std::string obstacle = transport::guidanceObstacle(scene, settings.policy, facts);
     if (!obstacle.empty()) return {false, obstacle};
     const bool on = settings.lightSampling && settings.volumeLightSampling && !noConnection(scene, settings, facts);
@@ -34,32 +34,32 @@ Choice guidanceOf(const Scene& scene, const PathSettings& settings, const SceneF
                      "refract"};
 }
 
-Choice refractedOf(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
+Decision refractedOf(const Scene& scene, const PathSettings& settings, const SceneFacts& facts) {
     const bool on = facts.timeResolved && facts.mediumScattering && facts.heterogeneousMedia.empty() &&
                     settings.lightSampling && settings.volumeLightSampling && noConnection(scene, settings, facts) &&
-                    RefractedLight::helpsWith(scene);
+                    RefractiveConnections::helpsWith(scene);
     return {on, on ? "paths aim from inside bodies at points of lights that refraction brings them to in time"
                    : "no gate, not all that scatters is sealed by walls that refract, or no light with a simple "
                      "surface is outside"};
 }
 
-Choice allocationOf(const Scene& scene, const PathSettings& settings) {
+Decision allocationOf(const Scene& scene, const PathSettings& settings) {
     const bool on = settings.policy.allocatesSamples() && !scene.camera.detectors();
     return {on, on ? "more samples where paths vary more for what they cost"
                    : "the preset or adaptive_samples gives pixels and detectors alike"};
 }
 
-Choice firstScatteringOf(const Scene& scene, const SceneFacts& facts, bool lasers) {
-    const bool on = !lasers || (scene.camera.detectors() && !facts.specularSensorPaths);
+Decision firstScatteringOf(const Scene& scene, const SceneFacts& facts, bool lasers) {
+    const bool on = !lasers || (scene.camera.detectors() && !facts.specularCameraSubpaths);
     return {on, on ? "no light of a single direction, or places of detectors are connected to it"
                    : "camera paths meet it with probability zero where it is scattered for the first time"};
 }
 
-Choice lightVerticesOf(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
-                       const SceneFacts& facts) {
+Decision lightVerticesOf(const PathPlan& plan, const Scene& scene, const PathSettings& settings,
+                         const SceneFacts& facts) {
     if (!plan.guidance.on) return plan.guidance;
     const bool on = settings.policy.connectsSurfaces() && facts.surfaceScattering && !facts.speedsDiffer &&
-                    LightPaths::helpWith(scene);
+                    LightCaches::helpWith(scene);
     return {on, on ? "paths connect to surface points that light reaches first"
                    : "the preset or surface_connections, no smooth surface, several speeds of light, or too many "
                      "emitters or none that shines in more than one direction"};
@@ -86,7 +86,7 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Sc
     plan.allocation = allocationOf(scene, settings);
     plan.refracted = refractedOf(scene, settings, facts);
     plan.lightVertices = lightVerticesOf(plan, scene, settings, facts);
-    plan.reflectedLight.on = plan.lightVertices.on && LightPaths::reflectedIn(scene);
+    plan.reflectedLight.on = plan.lightVertices.on && LightCaches::reflectedIn(scene);
     plan.reflectedLight.reason = !plan.lightVertices.on   ? plan.lightVertices.reason
                                  : plan.reflectedLight.on ? "paths connect to where glossy surfaces throw light"
                                                           : "no glossy surface";
@@ -114,7 +114,7 @@ SamplingSummary PathPlan::summary(const Scene& scene, const PathSettings& settin
 
 void PathPlan::describe(const Scene& scene, const PathSettings& settings, const SceneFacts& facts,
                         Features& features) const {
-    const auto add = [&](const std::string& name, const Choice& choice, const std::vector<std::string>& causes,
+    const auto add = [&](const std::string& name, const Decision& choice, const std::vector<std::string>& causes,
                          const std::vector<std::string>& counters = {}) {
         features.describe(name, choice.on, choice.reason, causes, counters);
     };
@@ -128,14 +128,14 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     if (!guidance.on) add("Russian roulette", roulette, {"integrator.enable_rr"});
     add("guided paths", guidance, {"integrator.darts"}, {counter::ControlVertices});
     add("plain paths beside them", balance, {"integrator.darts"}, {counter::PilotPaths});
-    add("samples by need", allocation, {"integrator.darts"}, {"pilot samples"});
-    add("light through walls", refracted, {"integrator.darts"}, {counter::WaysThroughWalls});
+    add("adaptive samples", allocation, {"integrator.darts"}, {"pilot samples"});
+    add("refractive connections", refracted, {"integrator.darts"}, {counter::RefractiveConnections});
     add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
-    if (guidance.on) transport::WaysOut::plan(scene, settings.policy, features);
+    if (guidance.on) transport::EscapeModels::plan(scene, settings.policy, features);
     add("light vertices", lightVertices, {"integrator.darts"}, {counter::LightVertexConnections, counter::LightPaths});
-    add("reflected light", reflectedLight,
+    add("glossy light vertices", reflectedLight,
         elementsWithLobe(scene, lobe::GlossyReflection | lobe::SpecularReflection).paths(),
-        {counter::ReflectedLightConnections});
+        {counter::GlossyLightVertexConnections});
 }
 
 void countArrivals(Features& features) {

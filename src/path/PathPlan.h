@@ -7,7 +7,7 @@
 
 namespace tungsten::path {
 
-using transport::Choice;
+using transport::Decision;
 
 struct PathPlan {
     /// `facts`: what the scene calls for (analyseScene). Builds nothing.
@@ -15,16 +15,16 @@ struct PathPlan {
     /// Adds every choice to the plan's effects.
     void describe(const Scene& scene, const PathSettings& settings, const SceneFacts& facts, Features& features) const;
 
-    Choice firstScatteringInView; ///< of light of a single direction, which no camera path finds
-    Choice detectorLight;         ///< places of detectors are connected to lights that no ray meets
-    Choice roulette;              ///< of plain paths, by throughput
-    Choice guidance;              ///< walks aim at emitters inside the gate
-    Choice balance;               ///< beside plain ones
-    Choice allocation;            ///< pixels get samples as their paths vary and cost
-    Choice lightVertices;         ///< walks connect to surface points that light reaches first
-    Choice reflectedLight;        ///< and to where glossy surfaces throw light
-    Choice refracted;             ///< plain walks aim at emitters through the walls of sealed bodies
-    Choice edaTable;              ///< directions come from tables of media
+    Decision firstScatteringInView; ///< of light of a single direction, which no camera path finds
+    Decision detectorLight;         ///< places of detectors are connected to lights that no ray meets
+    Decision roulette;              ///< of plain paths, by throughput
+    Decision guidance;              ///< walks aim at emitters inside the gate
+    Decision balance;               ///< beside plain ones
+    Decision allocation;            ///< pixels get samples as their paths vary and cost
+    Decision lightVertices;         ///< walks connect to surface points that light reaches first
+    Decision reflectedLight;        ///< and to where glossy surfaces throw light
+    Decision refracted;             ///< plain walks aim at emitters through the walls of sealed bodies
+    Decision edaTable;              ///< directions come from tables of media
 
     bool lasers = false; ///< some light starts in a single direction
     bool timeResolved = false;

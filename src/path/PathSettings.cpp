@@ -22,7 +22,7 @@ void warnAboutUnguided(const ObjectReader& block, const SceneFacts& facts, const
 /// connected to that vertex.
 void warnAboutSingleDirections(const ObjectReader& block, const Scene& scene, const SceneFacts& facts) {
     const bool detectors = scene.camera.detectors() != nullptr;
-    if (detectors && !facts.specularSensorPaths) return;
+    if (detectors && !facts.specularCameraSubpaths) return;
     const auto laser = std::find_if(scene.emitters.begin(), scene.emitters.end(),
                                     [](const Emitter& emitter) { return emitter.isDelta(); });
     if (laser == scene.emitters.end()) return;

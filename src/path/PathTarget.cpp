@@ -38,7 +38,7 @@ std::optional<PathTarget> TargetChoice::of(size_t index, Sampler& sampler, const
         {point, Rgb(1.0f / probability(index))}, &emitter, int(index), choice(index), emitter.emissionTime};
     if (emitter.isDelta())
         return scatterLaser(target, sampleEmission(emitter, uPosition, {0.5f, 0.5f}), sampler, watch, counters);
-    target.reach = radii_[index];
+    target.emitterRadius = radii_[index];
     return target;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // What a whole path connects to: one point that sends light, chosen before the path starts.
 
-#include "path/PixelSink.h"
+#include "path/PixelAccumulator.h"
 
 #include "transport/Balance.h"
 #include "transport/Connection.h"
@@ -21,21 +21,21 @@ struct EmitterChoice {
 
 /// The last vertex of light's own path: a point of an emitter; for light that starts in a single direction, the first
 /// vertex that scatters it: a virtual point source.
-struct PathTarget : transport::PathEnd {
+struct PathTarget : transport::SubpathEnd {
     const Emitter* emitter;
-    int index;              ///< of the emitter; -1 for virtual sources, which cannot be hit
-    EmitterChoice choice;   ///< of the emitter
-    double start;           ///< when light leaves the vertex
-    float reach = 0.0f;     ///< distance from the vertex to the emitter's farthest point
-    int interactions = 0;   ///< of the light's own path so far, the virtual source included
-    int mediumScatters = 0; ///< of these, in media
+    int index;                  ///< of the emitter; -1 for virtual sources, which cannot be hit
+    EmitterChoice choice;       ///< of the emitter
+    double start;               ///< when light leaves the vertex
+    float emitterRadius = 0.0f; ///< distance from the vertex to the emitter's farthest point
+    int interactions = 0;       ///< of the light's own path so far, the virtual source included
+    int mediumScatters = 0;     ///< of these, in media
 
     /// Density per solid angle, seen from `receiver`, of points that a vertex chooses (0 for points without a surface).
     [[nodiscard]] float pdfFrom(const Vec3f& receiver, const Vec3f& position, const Vec3f& ng) const {
         return index >= 0 ? choice.ofVertex * pdfDirect(*emitter, receiver, position, ng) : 0.0f;
     }
-    /// Of light that arrives at `receiver` from the target's vertex along the unit `direction`: the part that is not
-    /// left to paths that meet the emitter, if they leave in directions of this density.
+    /// MIS weight of light that arrives at `receiver` from the target's vertex along the unit `direction`: the part
+    /// that is not left to paths that meet the emitter, if they leave in directions of this density.
     [[nodiscard]] float shareOfConnection(const Vec3f& receiver, float ownPdf) const {
         const float pdf = pdfFrom(receiver, vertex.position(), vertex.margin().normal);
         return pdf > 0.0f ? transport::powerHeuristic(pdf, ownPdf) : 1.0f;
@@ -56,7 +56,7 @@ class TargetChoice {
     [[nodiscard]] EmitterChoice choice(size_t emitter) const {
         return {probability(emitter), ofVertices_ ? probability(emitter) : 1.0f};
     }
-    /// Of these emitters, those whose light starts in a single direction.
+    /// Those of these emitters whose light starts in a single direction.
     [[nodiscard]] const std::vector<size_t>& singleDirections() const { return singleDirections_; }
     /// `u` chooses the emitter, if there is any().
     [[nodiscard]] size_t choose(float u) const { return distribution_.sample(u).index; }

@@ -34,8 +34,8 @@ void report(const PathCounters& counters, Statistics& statistics) {
     statistics.add("plain paths beside guided ones", counters.plainPaths);
     statistics.add("vertices with densities of guided paths", counters.densities);
     statistics.add(counter::LightVertexConnections, counters.lightVertices);
-    statistics.add(counter::ReflectedLightConnections, counters.reflectedLight);
-    statistics.add(counter::WaysThroughWalls, counters.refracted);
+    statistics.add(counter::GlossyLightVertexConnections, counters.reflectedLight);
+    statistics.add(counter::RefractiveConnections, counters.refracted);
     statistics.add("connections", counters.connections);
     statistics.add(counter::ArrivalsAtDetectors, counters.intoDetectors);
     statistics.add("arrivals while the sensor is open", counters.arrivals);
@@ -61,7 +61,7 @@ float radicalInverse(uint32_t index) {
 
 PathTracer::PathTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
     : scene_(std::move(scene)), settings_(readPathSettings(settings, *scene_)),
-      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)) {
+      sensor_(transport::TimeSensor::of(*scene_, scene_->transport.gate)) {
     if (!scene_->transport.gate.delta) return;
     const std::string problem = deltaGateProblem(*scene_, settings_, analyseScene(*scene_));
     if (!problem.empty()) settings.problem("delta_time_gate", problem);
@@ -82,7 +82,7 @@ void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, St
                      beside);
     if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, facts, settings_.limits);
     if (plan_.refracted.on) {
-        const StageTimer timer(statistics, "light through walls");
+        const StageTimer timer(statistics, "refractive connections");
         refracted_.emplace().prepare(*scene_, facts.excludedEmitters, watch);
     }
     if (plan_.guidance.on) prepareGuides(facts, watch, statistics);
@@ -94,10 +94,10 @@ void PathTracer::prepareGuides(const SceneFacts& facts, const ProgressToken& wat
     const StageTimer timer(statistics, "guide preparation");
     guides_ = PathGuides::of(*scene_, settings_.policy.sampling, facts, watch);
     if (plan_.edaTable.on) statistics.add(counter::DirectionTables, uint64_t(guides_.tables()));
-    waysOut_ = transport::WaysOut::make(*scene_, settings_.policy);
+    escapeModels_ = transport::EscapeModels::make(*scene_, settings_.policy);
     windows_ = plan_.balance.on ? transport::TimeWindows::ofSequence(*scene_, facts, sensor_.arrivals)
                                 : transport::TimeWindows(sensor_.arrivals);
-    if (plan_.lightVertices.on) lightPaths_.prepare(*scene_, *targets_, watch, statistics);
+    if (plan_.lightVertices.on) lightCaches_.prepare(*scene_, *targets_, watch, statistics);
     if (plan_.balance.on) chooseShare(watch, statistics);
     // Plain paths connect to the virtual sources of lasers alone.
     if (balance_.guided == 0.0f) targets_.emplace(*scene_, Emitters::SingleDirections, facts.excludedEmitters);
@@ -110,8 +110,8 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
         const StageTimer timer(statistics, "light paths");
         const Vec2i resolution = scene_->camera.resolution;
         const double paths = double(resolution.x) * double(resolution.y) * double(pass.samples);
-        lightPaths_.trace(*scene_, *targets_, size_t(std::ceil(paths * double(balance_.guided))),
-                          pass.part(0.0, LightPathsPart), statistics);
+        lightCaches_.trace(*scene_, *targets_, size_t(std::ceil(paths * double(balance_.guided))),
+                           pass.part(0.0, LightPathsPart), statistics);
     }
     if (refracted_) refracted_->trace(pass.part(0.0, 0.0));
     const StageTimer timer(statistics, "camera pass");
@@ -129,7 +129,7 @@ void PathTracer::withPaths(const ProgressToken& watch, const Use& use) const {
         plan_.media ? withPlainPaths<false, true>(watch, use) : withPlainPaths<false, false>(watch, use);
 }
 
-void PathTracer::addDetectorLight(int column, float u, PixelSink& sink, const ProgressToken& watch,
+void PathTracer::addDetectorLight(int column, float u, PixelAccumulator& sink, const ProgressToken& watch,
                                   PathCounters& counters, Sampler sampler) const {
     sink.begin(Strategy::Alone, {});
     const auto put = [&](const Rgb& radiance, double time, const Emitter& emitter) {
@@ -152,7 +152,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
     const auto width = size_t(camera.resolution.x), height = size_t(camera.resolution.y);
     const auto renderPixel = [&](int x, int y, StrategyCounters& counters) {
         const SampleAllocation::Samples samples = allocation_.of(x, y, pass.firstSample, pass.samples);
-        PixelSink sink(film, sensor_, x, y, samples.count, counters.plain);
+        PixelAccumulator sink(film, sensor_, x, y, samples.count, counters.plain);
         const uint64_t pixel = size_t(y) * width + size_t(x);
         // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
         Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
@@ -191,7 +191,7 @@ template <bool TimeResolved, bool Media, typename Use>
 void PathTracer::withPlainPaths(const ProgressToken& watch, const Use& use) const {
     const PathContext context = plainContext(watch);
     const bool lasers = plan_.lasers && targets_->any();
-    use([&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u, float) {
+    use([&](const Ray& ray, PixelAccumulator& sink, StrategyCounters& counters, Sampler& sampler, float u, float) {
         std::optional<PathTarget> source;
         if (lasers) {
             Sampler light = sampler.branch(RandomStream::Target, 0);
@@ -202,9 +202,17 @@ void PathTracer::withPlainPaths(const ProgressToken& watch, const Use& use) cons
 }
 
 GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
-    return {
-        *scene_, settings_, sensor_, *windows_, guides_, lightPaths_, *bound_, waysOut_.get(), plan_.forwardBoundaries,
-        watch,   balance_};
+    return {*scene_,
+            settings_,
+            sensor_,
+            *windows_,
+            guides_,
+            lightCaches_,
+            *bound_,
+            escapeModels_.get(),
+            plan_.forwardBoundaries,
+            watch,
+            balance_};
 }
 
 PathContext PathTracer::plainContext(const ProgressToken& watch) const {
@@ -216,8 +224,8 @@ void PathTracer::withGuidedPaths(const ProgressToken& watch, const Use& use) con
     const GuidedContext guided = guidedContext(watch);
     const PathContext plain = plainContext(watch);
     tbb::enumerable_thread_specific<PlainTrail> trails;
-    const auto trace = [&](const Ray& ray, PixelSink& sink, StrategyCounters& counters, Sampler& sampler, float u,
-                           float strategy) {
+    const auto trace = [&](const Ray& ray, PixelAccumulator& sink, StrategyCounters& counters, Sampler& sampler,
+                           float u, float strategy) {
         if (!targets_->any()) return;
         if (!(strategy < balance_.plain)) {
             const size_t window = windows_->choose((strategy - balance_.plain) / balance_.guided);
@@ -241,7 +249,7 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
     constexpr uint64_t Key = transport::PilotKey;
     if (plan_.lightVertices.on && balance_.guided > 0.0f) {
         Statistics ignored;
-        lightPaths_.trace(*scene_, *targets_, tuning::FewestPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
+        lightCaches_.trace(*scene_, *targets_, tuning::FewestPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
     }
     if (refracted_) refracted_->trace({.seed = Key, .watch = watch});
     const int frames = sensor_.gate.frames;
@@ -263,7 +271,7 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
             probe.beginPass();
             const float uTarget = places.next1D(), uStrategy = places.next1D();
             {
-                PixelSink sink(probe, sensor_, 0, 0, 1, counters.plain);
+                PixelAccumulator sink(probe, sensor_, 0, 0, 1, counters.plain);
                 trace(ray, sink, counters, sampler, uTarget, uStrategy);
             }
             for (int frame = 0; frame < frames; ++frame) {
@@ -326,7 +334,7 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
     if (plan_.lightVertices.on) {
         Statistics ignored;
         constexpr size_t GuidedPaths = transport::tuning::MostPilotPaths / 2;
-        lightPaths_.trace(*scene_, *targets_, GuidedPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
+        lightCaches_.trace(*scene_, *targets_, GuidedPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
     }
     GuidedContext guided = guidedContext(watch);
     PathContext plain = plainContext(watch);
@@ -348,7 +356,7 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = scene_->camera.generateRay({int(pixel % width), int(pixel / width)}, uFilter, uLens);
             PathCounters& counters = guides ? counted.guided : counted.plain;
-            PixelSink sink(pilot, sensor_, counters);
+            PixelAccumulator sink(pilot, sensor_, counters);
             pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
             if (guides) {
                 const double place = GoldenRatio * double(traced / 2);

@@ -6,8 +6,8 @@
 #include "path/PathVisitor.h"
 #include "path/SampleAllocation.h"
 #include "path/Tuning.h"
-#include "path/techniques/LightPaths.h"
-#include "path/techniques/RefractedLight.h"
+#include "path/techniques/LightCaches.h"
+#include "path/techniques/RefractiveConnections.h"
 #include "transport/DetectorLight.h"
 #include "transport/SharePilot.h"
 #include "tungsten/scene/LightChoice.h"
@@ -44,21 +44,21 @@ class PathTracer : public Integrator {
     [[nodiscard]] PathContext plainContext(const ProgressToken& watch) const;
     /// How many paths are plain: by a pilot, unless the scene says (darts.plain_share).
     void chooseShare(const ProgressToken& watch, Statistics& statistics);
-    /// Of what was counted, in nanoseconds.
+    /// Cost of what was counted, in nanoseconds.
     [[nodiscard]] double cost(const PathCounters& counters, const tuning::Costs::Walk& each) const;
     [[nodiscard]] PathCosts costs(const StrategyCounters& counters) const;
     /// For every sample of every pixel.
     template <typename Trace>
     void renderTiles(const PassInfo& pass, Film& film, Statistics& statistics, const Trace& trace) const;
 
-    /// Of one sample of a pixel: what its detector gets from lights that rays do not meet, by light that nothing has
-    /// scattered, or from where light of a single direction is scattered first.
-    void addDetectorLight(int column, float u, PixelSink& sink, const ProgressToken& watch, PathCounters& counters,
-                          Sampler sampler) const;
+    /// Adds, for one sample of a pixel, what its detector gets from lights that rays do not meet: by light that nothing
+    /// has scattered, or from where light of a single direction is scattered first.
+    void addDetectorLight(int column, float u, PixelAccumulator& sink, const ProgressToken& watch,
+                          PathCounters& counters, Sampler sampler) const;
 
     std::shared_ptr<const Scene> scene_;
     PathSettings settings_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     std::optional<LightChoice> lights_; ///< from prepare() on
     PathPlan plan_;
     std::optional<TargetChoice>
@@ -68,10 +68,10 @@ class PathTracer : public Integrator {
     PathGuides guides_;
     StrategyBalance balance_;
     SampleAllocation allocation_;
-    std::unique_ptr<const transport::WaysOut> waysOut_;     ///< null: media are taken for infinite
-    LightPaths lightPaths_;                                 ///< of the pass
-    std::optional<RefractedLight> refracted_;               ///< of plain paths in sealed scenes
-    std::optional<transport::DetectorLight> detectorLight_; ///< where plan_.detectorLight is on
+    std::unique_ptr<const transport::EscapeModels> escapeModels_; ///< null: media are taken for infinite
+    LightCaches lightCaches_;                                     ///< of the pass
+    std::optional<RefractiveConnections> refracted_;              ///< of plain paths in sealed scenes
+    std::optional<transport::DetectorLight> detectorLight_;       ///< where plan_.detectorLight is on
 };
 
 } // namespace tungsten::path

@@ -163,7 +163,7 @@ void PathVisitor<TimeResolved, Beside>::connectToLight(PathState& path, const Ve
     if constexpr (TimeResolved)
         if (!context_->bound.mayConnect(path.time, direct->distance, emitter.emissionTime)) return;
     const auto connection =
-        connector_.connect(vertex, path.throughput, transport::connectionEnd(*direct), counters_->shadowRays);
+        connector_.connect(vertex, path.throughput, transport::connectionEndpoint(*direct), counters_->shadowRays);
     if (!connection || !limits().renders(path.interactions + connection->crossings)) return;
     // Point-like emitters cannot be found by the walk: full weight.
     const float pdf = direct->pdf;
@@ -177,13 +177,13 @@ template <bool TimeResolved, typename Beside>
 void PathVisitor<TimeResolved, Beside>::connectToTarget(const PathState& path, const Vertex& vertex,
                                                         const PathTarget& target, [[maybe_unused]] size_t emitter) {
     if (!orderCounts(path, target.mediumScatters)) return;
-    const auto way = transport::straightWay(path.ray.origin, target.vertex.position());
+    const auto way = transport::connectionSegment(path.ray.origin, target.vertex.position());
     if (!way) return;
     ++counters_->connections;
     if constexpr (TimeResolved)
         if (!context_->bound.mayConnect(path.time, way->distance, target.start)) return;
     const auto connection =
-        connector_.connect(vertex, path.throughput, transport::connectionEnd(*way, target), counters_->shadowRays);
+        connector_.connect(vertex, path.throughput, transport::connectionEndpoint(*way, target), counters_->shadowRays);
     if (!connection || !limits().renders(path.interactions + connection->crossings + target.interactions)) return;
     const double time = path.time + connection->time + target.start;
     float weight = 1.0f, logRatio = 0.0f;
@@ -198,7 +198,7 @@ void PathVisitor<TimeResolved, Beside>::connectToTarget(const PathState& path, c
 template <bool TimeResolved, typename Beside>
 void PathVisitor<TimeResolved, Beside>::aimThroughWall(const PathState& path, const auto& steps,
                                                        const Medium& medium) const {
-    const RefractedLight& refracted = *context_->refracted;
+    const RefractiveConnections& refracted = *context_->refracted;
     if (path.flights + 1 > medium.maxBounces) return;
     transport::Walk aimed{path, steps, *this};
     aimed.path.random = path.random.branch(RandomStream::Aimed, uint64_t(path.interactions));
@@ -232,7 +232,7 @@ float PathVisitor<TimeResolved, Beside>::refractedShare(int emitter) const {
 }
 
 template <bool TimeResolved, bool Media>
-void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
+void tracePath(const PathContext& context, PixelAccumulator& sink, PathCounters& counters, const Sampler& sampler,
                const PathTarget* source, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
@@ -245,7 +245,7 @@ void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counte
     walk.run();
 }
 
-void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelSink& sink,
+void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelAccumulator& sink,
                             PathCounters& counters, const Sampler& sampler, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
@@ -259,13 +259,13 @@ void tracePlainBesideGuided(const PathContext& context, const BesideGuided& besi
     walk.run();
 }
 
-template void tracePath<false, false>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
-                                      const Ray&);
-template void tracePath<false, true>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
-                                     const Ray&);
-template void tracePath<true, false>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
-                                     const Ray&);
-template void tracePath<true, true>(const PathContext&, PixelSink&, PathCounters&, const Sampler&, const PathTarget*,
-                                    const Ray&);
+template void tracePath<false, false>(const PathContext&, PixelAccumulator&, PathCounters&, const Sampler&,
+                                      const PathTarget*, const Ray&);
+template void tracePath<false, true>(const PathContext&, PixelAccumulator&, PathCounters&, const Sampler&,
+                                     const PathTarget*, const Ray&);
+template void tracePath<true, false>(const PathContext&, PixelAccumulator&, PathCounters&, const Sampler&,
+                                     const PathTarget*, const Ray&);
+template void tracePath<true, true>(const PathContext&, PixelAccumulator&, PathCounters&, const Sampler&,
+                                    const PathTarget*, const Ray&);
 
 } // namespace tungsten::path

@@ -4,9 +4,9 @@
 #include "path/ArrivalBound.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
-#include "path/PixelSink.h"
+#include "path/PixelAccumulator.h"
 #include "path/PlainTrail.h"
-#include "path/techniques/RefractedLight.h"
+#include "path/techniques/RefractiveConnections.h"
 
 #include "transport/PlainSteps.h"
 
@@ -20,8 +20,8 @@ struct PathContext {
     const PathSettings& settings;
     const LightChoice& lights;
     const ArrivalBound& bound;
-    const RefractedLight* refracted; ///< of scenes whose bodies are all sealed, or null
-    bool forwardBoundaries;          ///< connections must look through index-matched surfaces
+    const RefractiveConnections* refracted; ///< of scenes whose bodies are all sealed, or null
+    bool forwardBoundaries;                 ///< connections must look through index-matched surfaces
     const ProgressToken& watch;
 };
 
@@ -49,7 +49,7 @@ struct BesideGuided {
 template <bool TimeResolved, typename Beside = Alone>
 class PathVisitor : public transport::VisitorBase {
   public:
-    PathVisitor(const PathContext& context, PixelSink& sink, PathCounters& counters, const PathTarget* source,
+    PathVisitor(const PathContext& context, PixelAccumulator& sink, PathCounters& counters, const PathTarget* source,
                 const Beside& beside = {})
         : context_(&context), sink_(&sink), counters_(&counters), connector_(context.scene, context.forwardBoundaries),
           source_(source), beside_(beside) {}
@@ -91,13 +91,14 @@ class PathVisitor : public transport::VisitorBase {
     // Sealed bodies.
     /// From the vertex: a walk that aims at an emitter through a face.
     void aimThroughWall(const PathState& path, const auto& steps, const Medium& medium) const;
-    /// Of light of an emitter that is met: the part that is not left to connections.
+    /// MIS weight of light of an emitter that is met: the part that is not left to connections.
     [[nodiscard]] float shareOfMeeting(const PathState& path, int emitter, const SurfaceHit& hit) const;
-    /// Of light of an emitter that is met: the part that is not left to the other way of finding the same path.
+    /// MIS weight of light of an emitter that is met: the part that is not left to the other way of finding the same
+    /// path.
     [[nodiscard]] float refractedShare(int emitter) const;
 
     const PathContext* context_;
-    PixelSink* sink_;
+    PixelAccumulator* sink_;
     PathCounters* counters_;
     transport::Connector connector_;
     const PathTarget* source_;
@@ -109,10 +110,10 @@ class PathVisitor : public transport::VisitorBase {
 
 /// Traces one camera path along `ray` and adds what it finds to the sink.
 template <bool TimeResolved, bool Media>
-void tracePath(const PathContext& context, PixelSink& sink, PathCounters& counters, const Sampler& sampler,
+void tracePath(const PathContext& context, PixelAccumulator& sink, PathCounters& counters, const Sampler& sampler,
                const PathTarget* source, const Ray& ray);
-/// The same beside guided paths, whose trail has been started.
-void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelSink& sink,
+/// Traces a plain path beside guided ones, whose trail has been started.
+void tracePlainBesideGuided(const PathContext& context, const BesideGuided& beside, PixelAccumulator& sink,
                             PathCounters& counters, const Sampler& sampler, const Ray& ray);
 
 } // namespace tungsten::path

@@ -1,7 +1,7 @@
 #include "path/PlainTrail.h"
 
 #include "path/techniques/EmitterConnections.h"
-#include "path/techniques/LightPaths.h"
+#include "path/techniques/LightCaches.h"
 
 #include "transport/Roulette.h"
 
@@ -18,7 +18,7 @@ constexpr float Never = StrategyBalance::Never;
 
 } // namespace
 
-void PlainTrail::start(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink,
+void PlainTrail::start(const GuidedContext& context, const TargetChoice& targets, PixelAccumulator& sink,
                        PathCounters& counters, const Sampler& light) {
     record_.clear();
     for (; used_ > 0; --used_) slots_[followers_[used_ - 1]->slot] = 0;
@@ -81,16 +81,16 @@ void PlainTrail::pass(Follower& follower, const Step& step) {
     follower.logRatio = guided.logRatio;
 }
 
-float PlainTrail::byLightPaths(Follower& follower, const Step& step) {
+float PlainTrail::byLightCaches(Follower& follower, const Step& step) {
     const float alone = follower.steps->logRatioOnSurface();
     if (follower.behind.caches == Caches::None) return alone;
     PathState state = step.start;
     const GuidedPath path{*context_, *sink_, *counters_, state, *follower.steps, follower.behind};
     const transport::Vertex vertex = path.vertexOn(makeInteraction(context_->scene, *step.hit, state.ray.direction));
-    const auto way = transport::straightWay(step.hit->position, path.target().vertex.position());
+    const auto way = transport::connectionSegment(step.hit->position, path.target().vertex.position());
     if (!way) return alone;
     const float share = ConnectionsFromSurfaces::shareOfWalk(path, vertex, step.hit->t, *way);
-    return share < 1.0f ? path.logRatioByLightPaths(vertex, share) : alone;
+    return share < 1.0f ? path.logRatioByLightCaches(vertex, share) : alone;
 }
 
 void PlainTrail::follow(Follower& follower, size_t index) {
@@ -114,7 +114,7 @@ void PlainTrail::follow(Follower& follower, size_t index) {
     if (!follower.alive) return;
     logs.light = hits ? steps.logRatioOnSurface() : Never;
     logs.ending = hits ? logs.light : steps.inMedium(step.flight.distance).logRatio;
-    logs.openEnding = hits ? byLightPaths(follower, step) : logs.ending;
+    logs.openEnding = hits ? byLightCaches(follower, step) : logs.ending;
     logs.there = follower.logRatio = steps.logRatioThere(step.flight);
     follower.behind.arrive(follower.logRatio);
 }

@@ -17,8 +17,8 @@ namespace tungsten::path {
 class PlainTrail {
   public:
     /// A new path; `counters` of what densities cost, `light` of the targets.
-    void start(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink, PathCounters& counters,
-               const Sampler& light);
+    void start(const GuidedContext& context, const TargetChoice& targets, PixelAccumulator& sink,
+               PathCounters& counters, const Sampler& light);
 
     // What the path does, in order.
     void fly(const PathState& start, const transport::Ahead& ahead) { record_.fly(start, ahead); }
@@ -43,7 +43,7 @@ class PlainTrail {
         const Logs& logs = now(emitter, window);
         return (open ? logs.openEnding : logs.ending) + logOf(window);
     }
-    /// Of the way up to there, of those that aim at the first window.
+    /// Logarithm for the way up to there, of paths that aim at the first window.
     [[nodiscard]] float there(size_t emitter) { return now(emitter, 0).there; }
     /// With light that the flight at hand has met: guided paths count it if it is their target's.
     [[nodiscard]] float atLight(size_t emitter, double time) {
@@ -70,11 +70,11 @@ class PlainTrail {
     };
 
     [[nodiscard]] Follower& follower(size_t emitter, size_t window);
-    /// Of the last step, followed.
+    /// Logarithms of the last step, after it has been followed.
     [[nodiscard]] const Logs& now(size_t emitter, size_t window);
     [[nodiscard]] float logOf(size_t window) const { return std::log(context_->windows[window].probability); }
-    /// Of paths whose last vertex is the surface that ends this step, and which light paths may find.
-    float byLightPaths(Follower& follower, const Step& step);
+    /// Logarithm for paths whose last vertex is the surface that ends this step, and which light caches may find.
+    float byLightCaches(Follower& follower, const Step& step);
     /// Follows a flight, from the end of the one before.
     void follow(Follower& follower, size_t index);
     /// The guided steps do what guided paths do at the vertex that ends the step, and leave it.
@@ -86,7 +86,7 @@ class PlainTrail {
     std::vector<uint32_t> slots_; ///< by emitter and window: one above the follower's place, 0 if there is none
     const GuidedContext* context_ = nullptr;
     const TargetChoice* targets_ = nullptr;
-    PixelSink* sink_ = nullptr;
+    PixelAccumulator* sink_ = nullptr;
     PathCounters* counters_ = nullptr;
     std::optional<Sampler> light_;
 };

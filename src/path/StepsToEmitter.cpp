@@ -32,13 +32,13 @@ struct SurfaceScatterer {
 
 } // namespace
 
-bool endsReflectedLight(LobeMask lobes) {
-    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::Through)) == 0;
+bool endsGlossySubpath(LobeMask lobes) {
+    return (lobes & lobe::Smooth) != 0 && (lobes & (lobe::Specular | lobe::AnyTransmission)) == 0;
 }
 
 const darts::Guide* StepsToEmitter::guideFor(const transport::Vertex& vertex, const Vec3f& back,
                                              const Region& region) const {
-    if (!endsReflectedLight(vertex.lobes())) return nullptr;
+    if (!endsGlossySubpath(vertex.lobes())) return nullptr;
     const Region ahead = vertex.regionTowards(back, region);
     const Medium* medium = context_.scene.medium(ahead);
     if (!medium || !medium->scatters()) return nullptr;
@@ -53,41 +53,41 @@ darts::ResponseAt StepsToEmitter::response(double time) const {
 }
 
 darts::ConnectionSample StepsToEmitter::drawConnection(PathState& path, const darts::Guide& guide,
-                                                       const darts::Residual& residual, const float* h) const {
+                                                       const darts::TimeBudget& budget, const float* h) const {
     const darts::ResponseAt at{guided_->sensor.response.get(), path.time + target_.start, double(path.region.speed)};
     const float u = path.random.next1D();
-    return h ? guide.sampleConnectionAlong(residual, *h, u, at) : guide.sampleConnection(residual, u, at);
+    return h ? guide.sampleConnectionAlong(budget, *h, u, at) : guide.sampleConnection(budget, u, at);
 }
 
 // ---- Looking
 
-void StepsToEmitter::lookAheadFrom(const PathState& path, const Vec3f& position) {
+void StepsToEmitter::setTimeBudgetFrom(const PathState& path, const Vec3f& position) {
     const transport::TimeWindow& gate = window();
     const PathTarget& target = target_;
     const float speed = path.region.speed;
     const darts::TimeGate open{gate.begin - target.start, gate.end - target.start};
-    const auto range = darts::ResidualRange::of(open, path.time, double(speed));
+    const auto range = darts::LengthInterval::of(open, path.time, double(speed));
     const float faster = guided_->bound.oneSpeed() ? 0.0f : guided_->bound.highestSpeed() / speed - 1.0f;
-    lookAhead(darts::Residual::of(darts::vec3(target.vertex.position() - position), range),
-              target.reach + faster * std::max(float(range.high), 0.0f));
+    setTimeBudget(darts::TimeBudget::of(darts::vec3(target.vertex.position() - position), range),
+                  target.emitterRadius + faster * std::max(float(range.high), 0.0f));
 }
 
-void StepsToEmitter::lookOutFrom(const PathState& path, const transport::Start& start) {
-    if (hasLookedOut() || !guided_->waysOut) return;
+void StepsToEmitter::setEscapeModelFrom(const PathState& path, const transport::FlightStart& start) {
+    if (hasEscapeModel() || !guided_->escapeModels) return;
     const PathTarget& target = target_;
-    const transport::Aim aim{target.vertex.position(), target.vertex.region().medium, target.vertex.margin()};
-    lookOut(*guided_->waysOut, start, path.region, aim, context_.counters.rays);
+    const transport::EscapeTarget aim{target.vertex.position(), target.vertex.region().medium, target.vertex.margin()};
+    setEscapeModel(*guided_->escapeModels, start, path.region, aim, context_.counters.rays);
 }
 
 bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
     surfaceGuide_ = nullptr;
     if (guided_->balance.endsGuided(path.logRatio)) return false;
     if (path.timed) {
-        lookAheadFrom(path, vertex.position);
+        setTimeBudgetFrom(path, vertex.position);
         if (!reachable().alive()) return false;
     }
     if (vertex.medium) {
-        lookOutFrom(path, {vertex.position});
+        setEscapeModelFrom(path, {vertex.position});
         return true;
     }
     const SurfaceInteraction& surface = *vertex.surface;
@@ -96,8 +96,8 @@ bool StepsToEmitter::canArrive(PathState& path, const WalkVertex& vertex) {
     // It scatters back, into the region there.
     path.timed = path.scattered = true;
     path.region = regionBeyond(surface, -vertex.before, path.region);
-    lookAheadFrom(path, vertex.position);
-    if (residual().alive()) lookOutFrom(path, {vertex.position, surface.hit.margin()});
+    setTimeBudgetFrom(path, vertex.position);
+    if (budget().alive()) setEscapeModelFrom(path, {vertex.position, surface.hit.margin()});
     return true;
 }
 
@@ -110,7 +110,7 @@ std::optional<SurfaceHit> StepsToEmitter::see(const Ray& ray, const SurfaceHit* 
 }
 
 Ahead StepsToEmitter::ahead(PathState& path, const SurfaceHit* known) {
-    if (std::exchange(startsAnew_, false) && path.timed) lookAheadFrom(path, path.ray.origin);
+    if (std::exchange(startsAnew_, false) && path.timed) setTimeBudgetFrom(path, path.ray.origin);
     const Medium* medium = context_.scene.medium(path.region);
     const Ahead ahead = !medium || !medium->scatters() ? aheadInEmpty(path, medium, known)
                         : path.timed                   ? aheadInMedium(path, *medium, known)
@@ -136,7 +136,7 @@ Ahead StepsToEmitter::aheadInEmpty(PathState& path, const Medium* medium, const 
 Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const SurfaceHit* known) {
     passage_ = Passage::Medium;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
-    lookOutFrom(path, transport::Start::along(path.ray));
+    setEscapeModelFrom(path, transport::FlightStart::along(path.ray));
     if (!reachable().alive()) return {};
     const darts::Guide& guide = guideOf(path.region);
     startRoulette(guide, path.region.medium, meanComponent(path.throughput));
@@ -153,7 +153,7 @@ Ahead StepsToEmitter::aheadInMedium(PathState& path, const Medium& medium, const
 Ahead StepsToEmitter::aheadUntimed(PathState& path, const Medium& medium, const SurfaceHit* known) {
     passage_ = Passage::Untimed;
     if (!transport::BounceLimits::fly(path.flights, medium)) return {};
-    lookAheadFrom(path, path.ray.origin);
+    setTimeBudgetFrom(path, path.ray.origin);
     return {true, &medium, see(path.ray, known)};
 }
 
@@ -246,11 +246,11 @@ float StepsToEmitter::controlVertexDensity(float distance) const {
     float density = 0.0f;
     if (passage_ == Passage::Untimed) {
         density = float(controlChord(start_.ray, start_.region, reach_).pdf(double(distance)));
-    } else if (passage_ == Passage::Medium && residual().alive()) {
-        const darts::Residual before = darts::Guide::beforeSurface(residual(), heading_.h, reach_);
+    } else if (passage_ == Passage::Medium && budget().alive()) {
+        const darts::TimeBudget before = darts::Guide::beforeSurface(budget(), heading_.h, reach_);
         if (before.alive()) density = guide.pdfControlVertex(before, heading_.h, distance, response(start_.time));
     }
-    const auto way = transport::straightWay(place, target_.vertex.position());
+    const auto way = transport::connectionSegment(place, target_.vertex.position());
     if (!(density > 0.0f) || !way) return 0.0f;
     return density * shadowRayProbability({distance, way->distance, 1.0f / density}, way->direction);
 }
@@ -258,7 +258,7 @@ float StepsToEmitter::controlVertexDensity(float distance) const {
 float StepsToEmitter::shadowRayProbability(const darts::ControlVertex& vertex, const Vec3f& onward) const {
     const Vec3f& direction = start_.ray.direction;
     return guideOf(start_.region)
-        .chance(residual(), darts::vec3(direction), vertex, medium_->phase.eval(direction, onward));
+        .shadowRayProbability(budget(), darts::vec3(direction), vertex, medium_->phase.eval(direction, onward));
 }
 
 ShellChord StepsToEmitter::controlChord(const Ray& ray, const Region& region, float surface) const {
@@ -272,7 +272,7 @@ auto StepsToEmitter::inMedium(float distance) const -> InMedium {
     const float plain = this->plain().pdf(distance);
     InMedium ending{vertexDensity(distance), controlVertexDensity(distance)};
     // Own vertices that guided paths do not go on from do not connect either.
-    if ((passage_ == Passage::Medium && residual().way == darts::Way::Through && guided_->bound.oneSpeed()) ||
+    if ((passage_ == Passage::Medium && budget().model == darts::EscapeModel::Infinite && guided_->bound.oneSpeed()) ||
         guided_->balance.endsGuided(start_.logRatio + logOfQuotient(ending.own, plain)))
         ending.own = 0.0f;
     ending.logRatio = start_.logRatio + logOfQuotient(ending.own + ending.control, plain);
@@ -326,7 +326,7 @@ template <typename Scatterer>
 darts::DirectionSample StepsToEmitter::draw(PathState& path, const darts::Guide& guide, const Scatterer& scatterer) {
     const bool lengthFirst = guide.settings().lengthFirst;
     path.random.at(path.interactions, Draw::Connection);
-    if (lengthFirst) connect(drawConnection(path, guide, residual()));
+    if (lengthFirst) connect(drawConnection(path, guide, budget()));
     path.random.at(path.interactions, Draw::GuidedDirection);
     const darts::DirectionSample sample = sampleDirection(guide, scatterer, [&] { return path.random.next1D(); });
     if (lengthFirst && drawsControlVertices())
@@ -344,7 +344,7 @@ std::optional<transport::Way> StepsToEmitter::way(PathState& path, const WalkVer
 transport::Way StepsToEmitter::leaveMedium(PathState& path, const WalkVertex& vertex) {
     const darts::Guide& guide = guideOf(path.region);
     startWay();
-    if (!residual().alive() || guide.settings().direction == darts::Direction::Phase)
+    if (!budget().alive() || guide.settings().direction == darts::Direction::Phase)
         return transport::sampleMediumWay(path, vertex);
     const PhaseFunction& phase = vertex.medium->phase;
     const darts::DirectionSample sample = draw(path, guide, darts::PhaseScatterer{phase, vertex.before});
@@ -357,7 +357,7 @@ transport::Way StepsToEmitter::leaveMedium(PathState& path, const WalkVertex& ve
 transport::Way StepsToEmitter::leaveGuided(PathState& path, const WalkVertex& vertex) {
     startWay();
     const darts::DirectionSample sample = draw(path, *surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random});
-    const Ray ray = vertex.surface->hit.leave(darts::to<Vec3f>(sample.direction));
+    const Ray ray = vertex.surface->hit.spawnRay(darts::to<Vec3f>(sample.direction));
     const transport::Vertex here = vertex.connectible(context_.scene, TransportMode::Radiance);
     const float own = here.pdf(ray.direction);
     if (hasDensities()) path.logRatio -= logOfQuotient(own * sample.inversePdf);
@@ -370,7 +370,7 @@ std::optional<transport::Way> StepsToEmitter::leavePlainly(PathState& path, cons
     if (!way) return way;
     // A connection drawn before goes on through a boundary that light passes straight at its speed.
     if (way->straight() && way->region.speed == path.region.speed)
-        passBoundary(vertex.surface->hit.t);
+        crossIndexMatched(vertex.surface->hit.t);
     else
         startWay();
     startsAnew_ = true;
@@ -380,7 +380,7 @@ std::optional<transport::Way> StepsToEmitter::leavePlainly(PathState& path, cons
 void StepsToEmitter::leaveAlong(PathState& path, const WalkVertex& vertex, const transport::Way& way) {
     if (vertex.surface && !guidesSurface()) {
         if (way.straight() && way.region.speed == path.region.speed)
-            passBoundary(vertex.surface->hit.t);
+            crossIndexMatched(vertex.surface->hit.t);
         else
             startWay();
         startsAnew_ = true;
@@ -388,14 +388,14 @@ void StepsToEmitter::leaveAlong(PathState& path, const WalkVertex& vertex, const
     }
     startWay();
     const auto pdf = [&](const darts::Guide& guide, const auto& scatterer) {
-        return guide.pdfDirection(residual(), {}, darts::vec3(way.ray.direction), scatterer);
+        return guide.pdfDirection(budget(), {}, darts::vec3(way.ray.direction), scatterer);
     };
     if (vertex.surface) {
         path.logRatio += logOfQuotient(pdf(*surfaceGuide_, SurfaceScatterer{*vertex.surface, path.random}), way.pdf);
         return;
     }
     const darts::Guide& guide = guideOf(path.region);
-    if (!residual().alive() || guide.settings().direction == darts::Direction::Phase) return;
+    if (!budget().alive() || guide.settings().direction == darts::Direction::Phase) return;
     path.logRatio += logOfQuotient(pdf(guide, darts::PhaseScatterer{vertex.medium->phase, vertex.before}), way.pdf);
 }
 

@@ -10,29 +10,29 @@
 
 #include "transport/GuidedSteps.h"
 #include "transport/PlainFlight.h"
-#include "transport/Sensor.h"
 #include "transport/StrategyBalance.h"
+#include "transport/TimeSensor.h"
 #include "transport/TimeWindows.h"
 #include "transport/Walk.h"
 
 namespace tungsten::path {
 
-class LightPaths;
+class LightCaches;
 
 /// Surfaces that light may be followed to: all lobes smooth, none transmits.
-bool endsReflectedLight(LobeMask lobes);
+bool endsGlossySubpath(LobeMask lobes);
 
 /// What guided paths share.
 struct GuidedContext {
     const Scene& scene;
     const PathSettings& settings;
-    const transport::Sensor& sensor;
+    const transport::TimeSensor& sensor;
     const transport::TimeWindows& windows;
     const PathGuides& guides;
-    const LightPaths& lightPaths;
+    const LightCaches& lightCaches;
     const ArrivalBound& bound;
-    const transport::WaysOut* waysOut; ///< null: media are taken for infinite
-    bool forwardBoundaries;            ///< connections must look through index-matched surfaces
+    const transport::EscapeModels* escapeModels; ///< null: media are taken for infinite
+    bool forwardBoundaries;                      ///< connections must look through index-matched surfaces
     const ProgressToken& watch;
     transport::StrategyBalance balance{}; ///< of guided paths beside plain ones
 };
@@ -53,8 +53,8 @@ class StepsToEmitter : public transport::GuidedSteps {
     std::optional<transport::Way> way(PathState& path, const transport::WalkVertex& vertex);
     bool survives(PathState& path);
 
-    // The same steps asked of a plain path (PlainTrail): where it went, and how densely guided ones would have. `path`
-    // has the throughput that a guided path would have there.
+    // These answer for a plain path (PlainTrail) how densely guided ones would have gone where it went. `path` has the
+    // throughput that a guided path would have there.
     /// ahead(), where the surface that ends the flight may be known.
     transport::Ahead ahead(PathState& path, const SurfaceHit* known);
     [[nodiscard]] bool hasDensities() const { return guided_->balance.both(); }
@@ -63,12 +63,12 @@ class StepsToEmitter : public transport::GuidedSteps {
     /// way(), for the direction in which a plain path left: adds to the path's logRatio.
     void leaveAlong(PathState& path, const transport::WalkVertex& vertex, const transport::Way& way);
 
-    // Of the flight at hand, and of paths that end on it: logarithms of densities, guided over plain.
+    // Logarithms of densities, guided over plain, for the flight at hand and for paths that end on it:
     /// Own vertices that connect, control vertices that are traced.
     [[nodiscard]] InMedium inMedium(float distance) const;
-    /// Of one whose last vertex is the surface ahead, which guided paths see whether or not they go there.
+    /// A path whose last vertex is the surface ahead, which guided paths see whether or not they go there.
     [[nodiscard]] float logRatioOnSurface() const;
-    /// Of a plain path's way up to the end of its flight.
+    /// A plain path's way up to the end of its flight.
     [[nodiscard]] float logRatioThere(const transport::Flight& flight) const;
     /// Per length, of control vertices that are traced, and of the path's own vertices.
     [[nodiscard]] float controlVertexDensity(float distance) const;
@@ -89,17 +89,17 @@ class StepsToEmitter : public transport::GuidedSteps {
     /// the way there, turned round, through `region`.
     [[nodiscard]] const darts::Guide* guideFor(const transport::Vertex& vertex, const Vec3f& back,
                                                const Region& region) const;
-    /// The same of the surface that the path is at.
+    /// Guide of the surface that the path is at.
     [[nodiscard]] const darts::Guide* surfaceGuide() const { return surfaceGuide_; }
-    /// Of a connection from a vertex with this residual; along a way, if `h` says which.
+    /// Draws the length of a connection from a vertex with this time budget; along a way, if `h` says which.
     [[nodiscard]] darts::ConnectionSample drawConnection(PathState& path, const darts::Guide& guide,
-                                                         const darts::Residual& residual,
+                                                         const darts::TimeBudget& budget,
                                                          const float* h = nullptr) const;
 
     /// Ordinary connections share with control vertices: in bodies that light must leave, whose directions do not
     /// follow the connections' weights so closely.
     [[nodiscard]] bool sharesConnections() const {
-        return residual().way != darts::Way::Through && !guided_->sensor.gate.delta;
+        return budget().model != darts::EscapeModel::Infinite && !guided_->sensor.gate.delta;
     }
 
     /// The flight at hand.
@@ -143,9 +143,9 @@ class StepsToEmitter : public transport::GuidedSteps {
     [[nodiscard]] transport::PlainFlight plain() const { return {medium_, reach_, start_.channels}; }
 
     /// What may still come from `position`, at the present time and in the present region.
-    void lookAheadFrom(const PathState& path, const Vec3f& position);
+    void setTimeBudgetFrom(const PathState& path, const Vec3f& position);
     /// How light gets from here to the target; once, before anything is sampled.
-    void lookOutFrom(const PathState& path, const transport::Start& start);
+    void setEscapeModelFrom(const PathState& path, const transport::FlightStart& start);
     /// How many copies go on: with a probability, or as many.
     struct Onward {
         float survival = 1.0f;
@@ -153,7 +153,7 @@ class StepsToEmitter : public transport::GuidedSteps {
     };
     Onward onward(const PathState& path, const transport::WalkVertex& vertex);
     [[nodiscard]] darts::ResponseAt response(double time) const;
-    [[nodiscard]] bool guidesSurface() const { return surfaceGuide_ && residual().alive(); }
+    [[nodiscard]] bool guidesSurface() const { return surfaceGuide_ && budget().alive(); }
 
     transport::Way leaveMedium(PathState& path, const transport::WalkVertex& vertex);
     transport::Way leaveGuided(PathState& path, const transport::WalkVertex& vertex);

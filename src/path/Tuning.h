@@ -47,8 +47,8 @@ inline constexpr size_t Candidates = 64;
 
 // --- Light through walls that refract -----------------------------------------------------------------------------
 
-/// Of candidates in time, at most, whose ways are worked out. (Three bodies of milk, with 64: 1.3 times the
-/// variance x CPU.) Bench: study bodies
+/// Most candidates in time whose ways are worked out. (Three bodies of milk, with 64: 1.3 times the variance x CPU.)
+/// Bench: study bodies
 inline constexpr size_t RefractedCandidates = 8;
 
 } // namespace tungsten::path::tuning

@@ -1,12 +1,12 @@
 // What a photon map's plan says under --explain.
 
 #include "photon/PhotonPlan.h"
-#include "photon/view/SensorPath.h"
+#include "photon/view/CameraSubpath.h"
 
-#include "transport/Body.h"
+#include "transport/BoundedMedium.h"
+#include "transport/EscapeModels.h"
 #include "transport/SamplingSummary.h"
 #include "transport/StepCounters.h"
-#include "transport/WaysOut.h"
 
 #include "tungsten/integrator/Names.h"
 #include "tungsten/integrator/SceneElements.h"
@@ -57,7 +57,7 @@ void PhotonPlan::describeKernels(const Scene& scene, const PhotonSettings& setti
 }
 
 void PhotonPlan::describeSplatting(Features& features) const {
-    const bool splatted = volume.on && splats(), gathered = volume.on && (!splats() || folds);
+    const bool splatted = volume.on && splats(), gathered = volume.on && (!splats() || indirectView);
     features.describe("splatting", splatted,
                       !volume.on ? volume.reason
                       : splatted ? "straight rays: every record visits the pixels that see it"
@@ -66,10 +66,10 @@ void PhotonPlan::describeSplatting(Features& features) const {
     features.describe("gathering", gathered,
                       !volume.on ? volume.reason
                       : gathered
-                          ? std::string(splats() ? "folded rays" : "rays") + " look for the records that they meet"
+                          ? std::string(splats() ? "redirected rays" : "rays") + " look for the records that they meet"
                           : "all rays are straight: records are splatted",
                       {"camera"}, {counter::GatheredRecords});
-    features.describe("more camera paths", moreCameraPaths.on, moreCameraPaths.reason, {"camera"});
+    features.describe("extra camera paths", extraCameraPaths.on, extraCameraPaths.reason, {"camera"});
 }
 
 void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& settings, Features& features) const {
@@ -79,27 +79,28 @@ void PhotonPlan::describeGuidance(const Scene& scene, const PhotonSettings& sett
                       atVertices ? std::vector<std::string>{counter::ControlVertices} : std::vector<std::string>{});
     features.describe("EDA table", edaTable.on, edaTable.reason, darts, {counter::DirectionTables});
     features.describe("surface connections", connections.on, connections.reason, darts, {counter::SurfaceConnections});
-    features.describe("sharing", connections.on,
+    features.describe("path reuse between pixels", connections.on,
                       connections.on ? "what a surface point receives is shared among neighbouring pixels"
                                      : connections.reason,
                       darts, {counter::SurfaceConnections});
-    features.describe("glossy sensor paths", glossyPaths.on, glossyPaths.reason,
+    features.describe("glossy camera subpaths", glossyPaths.on, glossyPaths.reason,
                       elementsWithBsdf(scene, [](const Bsdf& bsdf) { return isGlossyOnly(bsdf); }).paths(),
-                      {counter::GlossySensorReflections});
+                      {counter::GlossyCameraReflections});
     if (!guidance.on) return;
     features.describe("plain light paths beside guided ones", sideBySide.on, sideBySide.reason, darts,
                       {counter::PlainBesideGuided});
-    if (!scene.transport.cameraUnwarped) transport::WaysOut::plan(scene, settings.policy, features);
-    const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutBodies(scene).size() : 0;
+    if (!scene.transport.cameraUnwarped) transport::EscapeModels::plan(scene, settings.policy, features);
+    const size_t bodies = settings.policy.followsBodies() ? transport::spheresAboutMedia(scene).size() : 0;
     features.describe("light towards bodies", bodies > 0,
                       bodies > 0 ? "a fifth of what lamps outside fog send goes towards " + std::to_string(bodies) +
                                        (bodies > 1 ? " bodies" : " body") + " of it"
                                  : "no body of fog in what does not scatter, or left alone",
                       darts);
     if (scene.transport.gate.frames > 1)
-        features.describe("frames one by one", framesOneByOne.on, framesOneByOne.reason, darts,
+        features.describe("one frame per light path", oneFramePerPath.on, oneFramePerPath.reason, darts,
                           {counter::FramesAimedAt});
-    features.describe("photons beside control vertices", ordinaryPhotons.on, ordinaryPhotons.reason, darts);
+    features.describe("photons with control vertices", photonsWithControlVertices.on, photonsWithControlVertices.reason,
+                      darts);
 }
 
 SamplingSummary PhotonPlan::summary(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) const {
@@ -115,7 +116,8 @@ SamplingSummary PhotonPlan::summary(const Scene& scene, const PhotonSettings& se
         {{volume.on, stored + " (" + volume.reason + "), " + (splats() ? "splatted" : "gathered")},
          {volume.on && !settings.radiusReason.empty(), "default radius: " + settings.radiusReason},
          {guidance.on && atVertices && policy.sampling.elliptical,
-          ordinaryPhotons.on ? "control vertices beside them" : "control vertices alone: " + ordinaryPhotons.reason},
+          photonsWithControlVertices.on ? "control vertices beside them"
+                                        : "control vertices alone: " + photonsWithControlVertices.reason},
          {connections.on, "connections to surface points that the camera sees in time"},
          {surfacePhotons.on,
           connections.on ? "surface photons for what connections cannot bring" : "surface photons, gathered"},

@@ -3,7 +3,7 @@
 #include "photon/PrimitivePilot.h"
 #include "photon/Tuning.h"
 #include "photon/primitives/ProgressiveSchedule.h"
-#include "photon/surface/SharedLight.h"
+#include "photon/surface/PathReuse.h"
 #include "transport/SharePilot.h"
 
 #include "tungsten/integrator/EarliestArrival.h"
@@ -22,7 +22,7 @@ constexpr double ImagePart = 0.6, RecordPart = 0.1, PhotonPart = 0.8, SharingPar
 /// cost little in small images alone, and in large ones there are more points than clusters can keep.
 uint32_t surfaceSamples(const Vec2i& resolution) {
     const size_t pixels = size_t(resolution.x) * size_t(resolution.y);
-    return pixels > SensorClusters::MostPoints
+    return pixels > VisiblePointClusters::MostPoints
                ? 1
                : uint32_t(std::clamp(tuning::SurfacePoints / pixels, tuning::LeastSurfaceSamples,
                                      tuning::MostSurfaceSamples));
@@ -50,7 +50,7 @@ void PhotonIntegrator::prepare(const SceneFacts& facts, const ProgressToken& wat
     if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, facts, transport::BounceLimits(scene_->transport));
     photonPass_ = std::make_unique<PhotonPass>(*scene_, settings_, plan_, watch);
     if (plan_.edaTable.on) statistics.add(counter::DirectionTables, photonPass_->guidance()->tables());
-    if (plan_.framesOneByOne.on)
+    if (plan_.oneFramePerPath.on)
         statistics.add(counter::FramesAimedAt, uint64_t(photonPass_->guidance()->frames().frames));
     if (settings_.boundaryKernels && plan_.volume.on)
         nearSurfaces_ = std::visit(
@@ -72,19 +72,19 @@ void PhotonIntegrator::choosePrimitive(const SceneFacts& facts, const ProgressTo
 
 void PhotonIntegrator::chooseShare(const ProgressToken& watch, Statistics& statistics) {
     const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
-    const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(0));
+    const transport::TimeSensor sensor = transport::TimeSensor::of(*scene_, gate(0));
     photonPass_->setGate(sensor.gate);
-    std::optional<SensorRecord> seen;
+    std::optional<CameraRecord> seen;
     std::unique_ptr<SurfaceConnections> connections;
     if (plan_.connections.on) {
         Statistics ignored;
         seen = record(pass, 0, ignored);
         connections = std::make_unique<SurfaceConnections>(
-            *scene_, sensor, *seen, pass, Spread::of(settings_.gatherRadius, 1.0f), forwardBoundaries_);
+            *scene_, sensor, *seen, pass, ConnectionBlur::of(settings_.gatherRadius, 1.0f), forwardBoundaries_);
     }
     photonPass_->chooseShare(watch, connections.get(), seen ? &*seen : nullptr, statistics);
     // Folded rays take long beside plain light paths.
-    if (plan_.folds && photonPass_->plainAlone()) plan_.cameraPaths = 1;
+    if (plan_.indirectView && photonPass_->plainAlone()) plan_.cameraPaths = 1;
 }
 
 double PhotonIntegrator::memoryBytes() const {
@@ -132,15 +132,16 @@ bool PhotonIntegrator::onDeltaGate() const {
     return plan_.meetsDeltaGate && std::visit([](const auto& p) { return p.AtVertices; }, settings_.primitive);
 }
 
-SensorRays PhotonIntegrator::sensorRays(const PassInfo& pass) const {
-    const float uFolded = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
-    return {plan_.splats(), plan_.folds && settings_.includeSurfaces, glossy_ ? tuning::HighlightPaths : 0, uFolded};
+GatherRays PhotonIntegrator::gatherRays(const PassInfo& pass) const {
+    const float uRedirected = Sampler(pass.seed, RandomStream::Folded, pass.index, 0).next1D();
+    return {plan_.splats(), plan_.indirectView && settings_.includeSurfaces, glossy_ ? tuning::HighlightPaths : 0,
+            uRedirected};
 }
 
 void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, GatherStructures& structures,
                                     Statistics& statistics) const {
     const StageTimer timer(statistics, "build");
-    const SensorRays rays = sensorRays(pass);
+    const GatherRays rays = gatherRays(pass);
     const auto build = [&]<typename Primitive>(const Primitive& primitive) {
         auto& store = std::get<Store<typename Primitive::Record>>(maps);
         if (store.records.empty()) return;
@@ -159,7 +160,7 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
     std::visit(build, settings_.primitive);
 }
 
-void PhotonIntegrator::splat(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass,
+void PhotonIntegrator::splat(GatherStructures& structures, const CameraRecords& records, const PassInfo& pass,
                              Film& film, Statistics& statistics) const {
     const StageTimer timer(statistics, "splat");
     const TimeGate& gate = structures.sensor.gate;
@@ -174,29 +175,30 @@ void PhotonIntegrator::splat(GatherStructures& structures, const SensorRecords& 
                structures.volume);
 }
 
-SensorRecord PhotonIntegrator::record(const PassInfo& pass, uint32_t sample, Statistics& statistics) const {
-    const StageTimer timer(statistics, "sensor record");
+CameraRecord PhotonIntegrator::record(const PassInfo& pass, uint32_t sample, Statistics& statistics) const {
+    const StageTimer timer(statistics, "camera record");
     const bool points = plan_.connections.on && sample == 0;
-    return recordSensorPaths(*scene_, rules_, pass.seed, uint32_t(pass.firstSample + sample),
-                             {points, points ? surfaceSamples(scene_->camera.resolution) : 1, plan_.looksAgain},
-                             statistics, pass.watch);
+    return recordCameraSubpaths(
+        *scene_, rules_, pass.seed, uint32_t(pass.firstSample + sample),
+        {points, points ? surfaceSamples(scene_->camera.resolution) : 1, plan_.gathersAfterSplat}, statistics,
+        pass.watch);
 }
 
-void PhotonIntegrator::look(GatherStructures& structures, const SensorRecords& records, const PassInfo& pass,
-                            Film& film, Statistics& statistics) const {
-    const double splatted = !structures.splatted ? 0.0 : !records.empty() && !plan_.looksAgain ? 1.0 : SplatPart;
+void PhotonIntegrator::splatAndGather(GatherStructures& structures, const CameraRecords& records, const PassInfo& pass,
+                                      Film& film, Statistics& statistics) const {
+    const double splatted = !structures.splatted ? 0.0 : !records.empty() && !plan_.gathersAfterSplat ? 1.0 : SplatPart;
     if (structures.splatted) splat(structures, records, pass.part(0.0, splatted), film, statistics);
-    if (!records.empty() && !plan_.looksAgain) return;
-    const StageTimer timer(statistics, "sensor pass");
+    if (!records.empty() && !plan_.gathersAfterSplat) return;
+    const StageTimer timer(statistics, "camera pass");
     if (records.empty())
-        return renderSensorPass(*scene_, structures, nullptr, pass.part(splatted, 1.0), film, statistics);
+        return renderCameraPass(*scene_, structures, nullptr, pass.part(splatted, 1.0), film, statistics);
     const double each = (1.0 - splatted) / double(records.size());
     for (size_t i = 0; i < records.size(); ++i)
-        renderSensorPass(*scene_, structures, records[i],
+        renderCameraPass(*scene_, structures, records[i],
                          pass.part(splatted + double(i) * each, splatted + double(i + 1) * each), film, statistics);
 }
 
-void PhotonIntegrator::addDetectorLight(const transport::Sensor& sensor, const PassInfo& pass, Film& film,
+void PhotonIntegrator::addDetectorLight(const transport::TimeSensor& sensor, const PassInfo& pass, Film& film,
                                         Statistics& statistics) const {
     const StageTimer timer(statistics, "lights at detectors");
     const double scale = 1.0 / (double(pass.samples) * (sensor.gate.steadyState ? 1.0 : sensor.gate.frameWidth));
@@ -228,43 +230,43 @@ void PhotonIntegrator::addDetectorLight(const transport::Sensor& sensor, const P
     });
 }
 
-void PhotonIntegrator::see(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
-                           const PassInfo& pass, Film& film, Statistics& statistics) const {
+void PhotonIntegrator::addPassImage(GatherStructures& structures, const PhotonMaps& maps, const CameraRecord* first,
+                                    const PassInfo& pass, Film& film, Statistics& statistics) const {
     if (plan_.connections.on) {
-        const StageTimer timer(statistics, "share light");
+        const StageTimer timer(statistics, "path reuse");
         const float factor = surfaceRadiusFactor(step(pass), settings_.alpha) * structures.kernel;
-        auto kernel = SharingKernel::of(settings_.gatherRadius, factor);
+        auto kernel = ReuseKernel::of(settings_.gatherRadius, factor);
         if (scene_->transport.gate.delta) kernel.time = structures.kernel;
-        const auto asTraced = transport::Sensor::of(*scene_, gate(step(pass)));
-        shareLight(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,
-                   pass.watch.part(0.0, SharingPart));
+        const auto asTraced = transport::TimeSensor::of(*scene_, gate(step(pass)));
+        reuseAcrossPixels(*scene_, asTraced, *first, maps.received, kernel, 1.0 / double(maps.paths), film, statistics,
+                          pass.watch.part(0.0, SharingPart));
     }
     if (detectorLight_) addDetectorLight(structures.sensor, pass.part(0.0, 0.0), film, statistics);
     const double begin = plan_.connections.on ? SharingPart : 0.0;
-    if (!first) return look(structures, {}, pass.part(begin, 1.0), film, statistics);
+    if (!first) return splatAndGather(structures, {}, pass.part(begin, 1.0), film, statistics);
     const double each = (1.0 - begin) / double(pass.samples);
     for (uint32_t s = 0; s < pass.samples; s += plan_.cameraPaths) {
         const PassInfo part = pass.part(begin + s * each, begin + (s + plan_.cameraPaths) * each);
-        std::vector<SensorRecord> further;
+        std::vector<CameraRecord> further;
         for (uint32_t k = s > 0 ? 0 : 1; k < plan_.cameraPaths; ++k) further.push_back(record(part, s + k, statistics));
-        SensorRecords together;
+        CameraRecords together;
         if (s == 0) together.push_back(first);
-        for (const SensorRecord& one : further) together.push_back(&one);
-        look(structures, together, part, film, statistics);
+        for (const CameraRecord& one : further) together.push_back(&one);
+        splatAndGather(structures, together, part, film, statistics);
     }
 }
 
-void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMaps& maps, const SensorRecord* first,
+void PhotonIntegrator::estimateBias(GatherStructures& structures, const PhotonMaps& maps, const CameraRecord* first,
                                     const PassInfo& pass, Film& film, Statistics& statistics) const {
     const StageTimer timer(statistics, "bias");
     Statistics unreported; // the pass's figures are those of its image
     structures.kernel = tuning::NarrowKernel;
     if (!onDeltaGate()) structures.sensor.gate = gate(step(pass), structures.kernel);
     std::visit(Overloaded{[](std::monostate) {},
-                          [&](auto& volume) { volume.narrow(structures.kernel, structures.sensor, sensorRays(pass)); }},
+                          [&](auto& volume) { volume.narrow(structures.kernel, structures.sensor, gatherRays(pass)); }},
                structures.volume);
     Film& bias = *pass.bias;
-    see(structures, maps, first, pass, bias, unreported);
+    addPassImage(structures, maps, first, pass, bias, unreported);
     // The bias is as the square of the kernel's width.
     const float extrapolation = 1.0f / (1.0f - sqr(structures.kernel));
     tbb::parallel_for(0, film.height(), [&](int y) {
@@ -282,15 +284,15 @@ void PhotonIntegrator::renderPass(const PassInfo& asked, Film& film, Statistics&
     PassInfo pass = asked;
     pass.firstSample *= plan_.cameraPaths;
     pass.samples *= plan_.cameraPaths;
-    const transport::Sensor sensor = transport::Sensor::of(*scene_, gate(step(pass)));
+    const transport::TimeSensor sensor = transport::TimeSensor::of(*scene_, gate(step(pass)));
     const float surfaceFactor = surfaceRadiusFactor(step(pass), settings_.alpha);
-    std::optional<SensorRecord> first;
+    std::optional<CameraRecord> first;
     const double begin = 1.0 / double(1 + pass.samples);
     const PassInfo image = pass.part(0.0, pass.bias ? ImagePart : 1.0), before = image.part(0.0, begin);
     if (plan_.records()) first = record(before.part(0.0, RecordPart), 0, statistics);
     std::unique_ptr<SurfaceConnections> connections;
     if (plan_.connections.on) {
-        const auto spread = Spread::of(settings_.gatherRadius, surfaceFactor);
+        const auto spread = ConnectionBlur::of(settings_.gatherRadius, surfaceFactor);
         connections = std::make_unique<SurfaceConnections>(*scene_, sensor, *first, pass, spread, forwardBoundaries_);
     }
     PhotonMaps maps;
@@ -307,8 +309,8 @@ void PhotonIntegrator::renderPass(const PassInfo& asked, Film& film, Statistics&
         const StageTimer timer(statistics, "build");
         structures.surfaces = std::make_unique<NearestPhotons>(maps.surface.records);
     }
-    const SensorRecord* recorded = first ? &*first : nullptr;
-    see(structures, maps, recorded, image.part(begin, 1.0), film, statistics);
+    const CameraRecord* recorded = first ? &*first : nullptr;
+    addPassImage(structures, maps, recorded, image.part(begin, 1.0), film, statistics);
     if (pass.bias) estimateBias(structures, maps, recorded, pass.part(ImagePart, 1.0), film, statistics);
 }
 

@@ -1,9 +1,9 @@
 #include "photon/PhotonPlan.h"
 
 #include "photon/Tuning.h"
-#include "photon/view/SensorPath.h"
+#include "photon/view/CameraSubpath.h"
 
-#include "transport/Body.h"
+#include "transport/BoundedMedium.h"
 #include "transport/GuidancePlan.h"
 
 namespace tungsten::photon {
@@ -39,7 +39,7 @@ bool anyGlossyOnly(const Scene& scene) {
 
 // Each of these says what is done, and why.
 
-Choice guidanceOf(const Given& given) {
+Decision guidanceOf(const Given& given) {
     std::string obstacle = transport::guidanceObstacle(given.scene, given.policy(), given.facts);
     if (!obstacle.empty()) return {false, obstacle};
     obstacle =
@@ -50,38 +50,38 @@ Choice guidanceOf(const Given& given) {
     return {on, on ? "the scene asks for DARTS" : "parallel rays, or detectors, have no one position to aim at"};
 }
 
-Choice surfacesOf(const Given& given) {
+Decision surfacesOf(const Given& given) {
     if (given.facts.surfacesOutOfTime) return {false, "what surfaces show arrives after the sensor has closed"};
     const bool on = given.settings.includeSurfaces && given.facts.surfaceScattering;
     return {on, on ? "smooth surfaces are gathered" : "include_surfaces is false, or no surface has a smooth lobe"};
 }
 
-Choice glossyPathsOf(const Given& given, const PhotonPlan& plan) {
+Decision glossyPathsOf(const Given& given, const PhotonPlan& plan) {
     if (!plan.guidance.on) return plan.guidance;
-    if (const Choice surfaces = surfacesOf(given); !surfaces.on) return surfaces;
+    if (const Decision surfaces = surfacesOf(given); !surfaces.on) return surfaces;
     // Time without camera segments ends at the first surface that is no mirror.
     const bool on = anyGlossyOnly(given.scene) && !given.unwarped() && given.policy().followsGlossy();
-    return {on, on ? "sensor paths go on at surfaces that are glossy only, as at mirrors"
+    return {on, on ? "camera subpaths go on at surfaces that are glossy only, as at mirrors"
                    : "no surface is glossy without being diffuse, or camera_unwarped, the preset or "
                      "glossy_sensor_paths leaves them to photons"};
 }
 
-Choice framesOneByOneOf(const Given& given, bool exact) {
+Decision oneFramePerPathOf(const Given& given, bool exact) {
     const bool manyFrames = given.ofPrimitive([](const auto& p) { return p.ManyFrames; });
     const bool on =
         exact && !manyFrames && given.scene.transport.gate.frames > 1 && given.policy().aimsAtSingleFrames();
     return {on, on ? "each light path aims at one frame" : "light paths aim at the whole sequence as one gate"};
 }
 
-Choice sideBySideOf(const Given& given, const PhotonPlan& plan) {
+Decision sideBySideOf(const Given& given, const PhotonPlan& plan) {
     const transport::Policy& policy = given.policy();
     if (plan.guidance.on && (policy.plainShare == 0.0f || policy.directView == transport::DirectView::On))
         return {false, "plain_share is 0, or direct_view asks for control vertices alone"};
     return transport::balanceOf(given.scene, policy, darts::Mode::Photon, plan.guidance,
-                                !plan.framesOneByOne.on && !plan.meetsDeltaGate);
+                                !plan.oneFramePerPath.on && !plan.meetsDeltaGate);
 }
 
-Choice ordinaryPhotonsOf(const Given& given, const PhotonPlan& plan) {
+Decision photonsWithControlVerticesOf(const Given& given, const PhotonPlan& plan) {
     // What is drawn for one moment, or by the sensor's response, no ordinary photon is found by as well.
     const bool complete = plan.directView && (plan.meetsDeltaGate || plan.drawsByResponse ||
                                               given.policy().directView != transport::DirectView::Auto ||
@@ -91,23 +91,23 @@ Choice ordinaryPhotonsOf(const Given& given, const PhotonPlan& plan) {
                    : "control vertices alone are complete, or no points are stored"};
 }
 
-Choice connectionsOf(const Given& given, const PhotonPlan& plan) {
+Decision connectionsOf(const Given& given, const PhotonPlan& plan) {
     if (!plan.guidance.on) return plan.guidance;
-    if (const Choice surfaces = surfacesOf(given); !surfaces.on) return surfaces;
+    if (const Decision surfaces = surfacesOf(given); !surfaces.on) return surfaces;
     const bool on = plan.straightRays && given.policy().connectsSurfaces();
     return {on, on ? "light paths connect to the surface points that the camera sees in time"
                    : "a thin lens, different speeds of light, the preset or surface_connections leaves surfaces to "
                      "photons"};
 }
 
-Choice volumeOf(const Given& given, const PhotonPlan& plan) {
+Decision volumeOf(const Given& given, const PhotonPlan& plan) {
     const bool constant = plan.homogeneous || given.atVertices(), on = given.facts.mediumScattering && constant;
     if (!on) return {on, constant ? whyNoScattering(given.facts) : heterogeneity(given.scene, given.facts)};
     const std::string& chosen = given.settings.primitiveReason;
     return {on, chosen.empty() ? given.ofPrimitive([](const auto& p) { return std::string(p.Reason); }) : chosen};
 }
 
-Choice temporalKernelOf(const Given& given, const PhotonPlan& plan) {
+Decision temporalKernelOf(const Given& given, const PhotonPlan& plan) {
     const bool on = given.delta();
     return {on, !on ? "the gate has a width, or none"
                 : plan.meetsDeltaGate && given.atVertices()
@@ -116,22 +116,24 @@ Choice temporalKernelOf(const Given& given, const PhotonPlan& plan) {
                     : "delta gate: a box about it that narrows with the radius"};
 }
 
-Choice surfacePhotonsOf(const Given& given, const PhotonPlan& plan) {
-    Choice surfaces = surfacesOf(given);
+Decision surfacePhotonsOf(const Given& given, const PhotonPlan& plan) {
+    Decision surfaces = surfacesOf(given);
     if (surfaces.on && plan.connections.on)
         surfaces.reason = "for what connections cannot bring: light by way of mirrors or refraction or of a single "
                           "direction, and to glossy surfaces";
     return surfaces;
 }
 
-Choice exactCullingOf(const Given& given, const PhotonPlan& plan) {
-    const bool on = given.facts.timeResolved && plan.straightRays && !plan.folds;
-    return {on, on ? "direct view: photons that arrive outside the gate are not stored"
-                   : "steady state, or sensor paths that can fold, change speed or start at many points: photons are "
-                     "tested when gathered"};
+Decision exactCullingOf(const Given& given, const PhotonPlan& plan) {
+    const bool on = given.facts.timeResolved && plan.straightRays && !plan.indirectView;
+    return {
+        on,
+        on ? "direct view: photons that arrive outside the gate are not stored"
+           : "steady state, or camera subpaths that are redirected, change speed or start at many points: photons are "
+             "tested when gathered"};
 }
 
-/// As many camera paths for each sample of a pixel as little time is left to, at least one.
+/// Number of camera subpaths for each sample of a pixel that take little time; at least one.
 uint32_t affordedCameraPaths(const Given& given) {
     const Vec2i& resolution = given.scene.camera.resolution;
     const uint64_t pixels = uint64_t(resolution.x) * uint64_t(resolution.y);
@@ -139,7 +141,7 @@ uint32_t affordedCameraPaths(const Given& given) {
     return uint32_t(std::clamp<uint64_t>(paths / pixels, 1, tuning::MostCameraPaths));
 }
 
-Choice moreCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t paths) {
+Decision extraCameraPathsOf(const Given& given, const PhotonPlan& plan, uint32_t paths) {
     if (!plan.guidance.on) return plan.guidance;
     const bool on = paths > 1 && !given.policy().sampling.published && !plan.glossyPaths.on &&
                     given.ofPrimitive([](const auto& p) { return p.SplatsOften; });
@@ -155,9 +157,9 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     const Given given{scene, settings, facts};
     PhotonPlan plan;
     plan.highestSpeed = facts.highestSpeed;
-    plan.lateEmitters = facts.excludedEmitters;
-    plan.mediaOutOfTime = facts.excludedMedia;
-    plan.darkFrames = facts.emptyFrames;
+    plan.excludedEmitters = facts.excludedEmitters;
+    plan.excludedMedia = facts.excludedMedia;
+    plan.emptyFrames = facts.emptyFrames;
     plan.oneSpeed = !facts.speedsDiffer;
     plan.homogeneous = facts.heterogeneousMedia.empty();
     plan.straightRays = scene.camera.hasSinglePosition() && plan.oneSpeed;
@@ -165,8 +167,8 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
     plan.edaTable =
         transport::tablesOf(scene, settings.policy, darts::Mode::Photon, facts, plan.guidance.on && !given.unwarped());
     plan.glossyPaths = glossyPathsOf(given, plan);
-    plan.folds = facts.specularSensorPaths || plan.glossyPaths.on;
-    plan.looksAgain = settings.includeSurfaces;
+    plan.indirectView = facts.specularCameraSubpaths || plan.glossyPaths.on;
+    plan.gathersAfterSplat = settings.includeSurfaces;
     plan.chooseGuidance(scene, settings, facts);
     plan.connections = connectionsOf(given, plan);
     plan.detectorLight = transport::detectorLightOf(scene, facts, settings.includeSurfaces);
@@ -176,17 +178,17 @@ PhotonPlan PhotonPlan::of(const Scene& scene, const PhotonSettings& settings, co
 
 void PhotonPlan::chooseGuidance(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) {
     const Given given{scene, settings, facts};
-    const bool straight = !folds && oneSpeed;
+    const bool straight = !indirectView && oneSpeed;
     directView = settings.policy.directView == transport::DirectView::Auto
                      ? straight
                      : settings.policy.directView == transport::DirectView::On;
     const bool pointLike = given.unwarped() || scene.camera.aperture() == 0.0f;
     const bool exact = guidance.on && directView && straight && pointLike;
-    framesOneByOne = framesOneByOneOf(given, exact);
+    oneFramePerPath = oneFramePerPathOf(given, exact);
     drawsByResponse = exact && !scene.transport.response.empty();
     meetsDeltaGate = exact && given.delta() && settings.policy.sampling.elliptical;
     sideBySide = sideBySideOf(given, *this);
-    ordinaryPhotons = ordinaryPhotonsOf(given, *this);
+    photonsWithControlVertices = photonsWithControlVerticesOf(given, *this);
 }
 
 void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts) {
@@ -195,8 +197,8 @@ void PhotonPlan::chooseStores(const Scene& scene, const PhotonSettings& settings
     primitiveSplats = given.ofPrimitive([&](const auto& p) { return p.splats(straightRays, oneTime); });
     volume = volumeOf(given, *this);
     const uint32_t afforded = affordedCameraPaths(given);
-    moreCameraPaths = moreCameraPathsOf(given, *this, afforded);
-    cameraPaths = moreCameraPaths.on ? afforded : 1;
+    extraCameraPaths = extraCameraPathsOf(given, *this, afforded);
+    cameraPaths = extraCameraPaths.on ? afforded : 1;
     temporalKernel = temporalKernelOf(given, *this);
     surfacePhotons = surfacePhotonsOf(given, *this);
     exactCulling = exactCullingOf(given, *this);

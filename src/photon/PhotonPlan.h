@@ -9,49 +9,52 @@
 
 namespace tungsten::photon {
 
-using transport::Choice;
+using transport::Decision;
 
 struct PhotonPlan {
     /// `facts`: what the scene calls for (analyseScene). Builds nothing.
     static PhotonPlan of(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts);
-    /// Adds every choice to the plan's effects.
+    /// Adds every decision to the features.
     void describe(const Scene& scene, const PhotonSettings& settings, const SceneFacts& facts,
                   Features& features) const;
 
-    Choice volume;          ///< records of the volume primitive are stored
-    Choice temporalKernel;  ///< about a delta gate
-    Choice glossyPaths;     ///< sensor paths go on at surfaces that are glossy only, as at mirrors
-    Choice surfacePhotons;  ///< stored and gathered
-    Choice guidance;        ///< light paths aim at the camera
-    Choice framesOneByOne;  ///< each at a single frame
-    Choice sideBySide;      ///< plain light paths beside guided ones, weighed by how densely both leave their records
-    Choice ordinaryPhotons; ///< beside control vertices, by the balance heuristic
-    Choice connections;     ///< guided light paths connect to visible surface points
-    Choice exactCulling;    ///< what arrives outside the gate is known and not stored
-    Choice edaTable;        ///< directions come from tables of media
-    Choice detectorLight;   ///< places of detectors are connected to lights that no ray meets
-    Choice moreCameraPaths; ///< through a pixel than its samples
+    Decision volume;          ///< records of the volume primitive are stored
+    Decision temporalKernel;  ///< about a delta gate
+    Decision glossyPaths;     ///< camera subpaths go on at surfaces that are glossy only, as at mirrors
+    Decision surfacePhotons;  ///< stored and gathered
+    Decision guidance;        ///< light paths are guided towards the camera
+    Decision oneFramePerPath; ///< each light path aims at a single frame
+    Decision sideBySide;      ///< plain light paths beside guided ones, weighed by how densely both leave their records
+    Decision photonsWithControlVertices; ///< ordinary photons beside control vertices, by the balance heuristic
+    Decision connections;                ///< guided light paths connect to visible surface points
+    Decision exactCulling;               ///< what arrives outside the gate is known and not stored
+    Decision edaTable;                   ///< directions come from tables of media
+    Decision detectorLight;              ///< places of detectors are connected to lights that no ray meets
+    Decision extraCameraPaths;           ///< several camera subpaths for each sample of a pixel (`cameraPaths`)
 
-    std::vector<bool> lateEmitters;   ///< SceneFacts::excludedEmitters
-    std::vector<bool> mediaOutOfTime; ///< SceneFacts::excludedMedia
-    int darkFrames = 0;               ///< SceneFacts::emptyFrames
+    std::vector<bool> excludedEmitters; ///< SceneFacts::excludedEmitters
+    std::vector<bool> excludedMedia;    ///< SceneFacts::excludedMedia
+    int emptyFrames = 0;                ///< SceneFacts::emptyFrames
 
     float highestSpeed = 1.0f; ///< of light, wherever a path can get
     bool oneSpeed = true;
     bool homogeneous = true;   ///< coefficients are constant in every medium: splats and records of flights count on it
     bool straightRays = false; ///< from one point at one speed: records can be splatted, surfaces connected
-    bool folds = false;        ///< mirrors, refraction or followed glossy surfaces can be seen
-    /// Every sensor path is one straight chain at one speed, or shall be taken for one: control vertices alone do.
+    bool indirectView = false; ///< mirrors, refraction or followed glossy surfaces can be seen
+    /// Every camera subpath is one straight chain at one speed, or shall be taken for one: control vertices alone do.
     bool directView = false;
     bool drawsByResponse = false; ///< connections by the sensor's response: a straight way tells the time of arrival
     bool meetsDeltaGate = false;  ///< control vertices lie on the delta gate itself, not in its kernel: likewise
 
-    bool primitiveSplats = false; ///< along the rays that this camera has
-    bool looksAgain = false;      ///< at what sensor paths meet, when the photons are there: splats are not all
-    uint32_t cameraPaths = 1;     ///< through a pixel for each of its samples
+    /// The primitive can be splatted for this camera (single origin, one speed, if it needs them).
+    bool primitiveSplats = false;
+    /// Recorded camera segments are visited again after the photon pass, because surfaces and redirected segments are
+    /// gathered, not splatted.
+    bool gathersAfterSplat = false;
+    uint32_t cameraPaths = 1; ///< camera subpaths for each sample of a pixel
 
     [[nodiscard]] bool splats() const { return volume.on && homogeneous && primitiveSplats; }
-    /// Sensor paths are traced before the photons; else after them.
+    /// Camera subpaths are traced before the photons; else after them.
     [[nodiscard]] bool records() const { return splats() || connections.on; }
 
   private:

@@ -11,7 +11,7 @@
 namespace tungsten::photon {
 
 struct PhotonSettings : KernelSettings {
-    /// Of a primitive that needs a volumeRadius: where the scene leaves it open, one that suits it.
+    /// Where the scene leaves the radius open, a primitive that needs a volumeRadius gets one that suits it.
     void requireRadius(const ObjectReader& block, const Scene& scene);
     /// With counts for a part of a pass (PassInfo::share).
     [[nodiscard]] PhotonSettings ofShare(double share) const;
@@ -33,7 +33,7 @@ struct PhotonSettings : KernelSettings {
     bool progressive = true;
     transport::Policy policy; ///< how light paths are guided
 
-    /// From sensor rays that a record of the volume primitive can show on.
+    /// From camera rays that a record of the volume primitive can show on.
     [[nodiscard]] float volumeReach() const {
         return std::visit([&](const auto& p) { return p.reach(*this); }, primitive);
     }

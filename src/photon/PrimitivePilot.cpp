@@ -52,7 +52,7 @@ double costOf(const Statistics& counted, const VolumePrimitive& primitive, doubl
                          costs.density * count("flights with densities of guided paths");
     const auto ofRecords = [&]<typename Primitive>(const Primitive& p) {
         const tuning::PassCosts::Record& record = Primitive::AtVertices      ? costs.point
-                                                  : Primitive::CountsRecords ? costs.slice
+                                                  : Primitive::LimitsRecords ? costs.slice
                                                                              : costs.beam;
         const double stored = count(p.Stored), splatted = count(counter::SplattedRecords);
         return record.stored * stored +

@@ -10,7 +10,8 @@
 
 namespace tungsten::photon::tuning {
 
-// --- Sensor paths ----------------------------------------------------------------------------------------------------
+// --- Camera subpaths
+// ----------------------------------------------------------------------------------------------------
 
 /// Camera paths per pixel that look for surface points to connect to: as many as give an image of this many, at least
 /// and at most. One leaves the noise of lines that a narrow gate lights; more cost little in small images alone. Bench:
@@ -25,16 +26,16 @@ inline constexpr size_t SurfacePoints = 1 << 16, LeastSurfaceSamples = 2, MostSu
 /// haze 0.36 and 0.45. Bench: study bodies
 inline constexpr uint64_t CameraPaths = 1 << 14, MostCameraPaths = 6;
 
-/// Photons or beams that a folded ray meets, about, out of all. MSE x CPU of dragon at 160 x 160, before highlight
+/// Photons or beams that a redirected ray meets, about, out of all. MSE x CPU of dragon at 160 x 160, before highlight
 /// paths shared them: 0.25 with all photons, 0.17 with 64, 0.20 with 32 and 16. Bench: study dragon-160
-inline constexpr double FoldedMeetings = 48.0;
+inline constexpr double RedirectedHits = 48.0;
 
 /// Paths of a pixel near glossy surfaces that look for lights. Bench: study dragon-160
 inline constexpr uint32_t HighlightPaths = 16;
 
 // --- Guided light paths ----------------------------------------------------------------------------------------------
 
-/// Of directions from lamps outside fog, the part that goes towards its bodies. What misses them costs little time, and
+/// Part of the directions from lamps outside fog that goes towards its bodies. What misses them costs little time, and
 /// what gets there by way of mirrors or refraction is the brighter the fewer of its directions are left. Variance x CPU
 /// at 0.5 and 0.2: milk behind glass, beams 3.6 and 1.7, points 0.63 and 0.38; dense cube 10, beams 0.20 and 0.21.
 /// Bench: study bodies
@@ -76,7 +77,7 @@ inline constexpr float EvenInFrames = 0.1f;
 /// Shadow rays for what a ray gathers of slices behind occluders: each stands for a dose of light, so many to a ray.
 /// volumetric-caustic: variance / mean^2 x CPU seconds 9.4 with a ray for each slice, 0.74 by doses. A
 /// sequence's frames share them: 450 for 50 frames of fogged-box, 0.69 to 1.0. Bench: study liu-primitives
-inline constexpr float DosesPerRay = 64.0f;
+inline constexpr float ShadowRaysPerRay = 64.0f;
 
 // --- Plain and guided light paths side by side -----------------------------------------------------------------------
 
@@ -133,8 +134,8 @@ inline constexpr double LeastEffort = 1.0 / 16.0, MostEffort = 2.0;
 /// How often the vertices of a path try to connect, about; the pilot of plain and guided paths chooses how many times
 /// as often. Variance x CPU of points and beams, 12 scenes, over 4 to 16, more in short passes: 0.98 and 0.96.
 inline constexpr double ConnectionsPerPath = 4.0;
-/// A pass has paths for so many tries at least, for each point but no more in all; what arrives does not decide, or
-/// dark passes would be longer. Bench: study staircase-160
+/// Least number of connection attempts of a pass: ConnectionsPerPoint for each visible point, at most MostLeast. It
+/// does not depend on what arrives, or dark passes would take longer. Bench: study staircase-160
 inline constexpr uint64_t ConnectionsPerPoint = 2, MostLeast = 1 << 14;
 
 /// Light from close by is spread over so many square roots of the area that a pixel covers. cbox, MSE x CPU: 0.086 at

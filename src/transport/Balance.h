@@ -14,7 +14,7 @@ template <typename... Densities>
     return own > 0.0f ? own / (own + ... + others) : 0.0f;
 }
 
-/// The same, more in favour of the higher of two densities (exponent 2).
+/// Power heuristic: more in favour of the higher of two densities (exponent 2).
 [[nodiscard]] inline float powerHeuristic(float own, float other) {
     const float squared = own * own, sum = squared + other * other;
     if (squared > 1e-30f && sum < std::numeric_limits<float>::infinity()) return squared / sum;

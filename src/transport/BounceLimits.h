@@ -15,7 +15,7 @@ struct BounceLimits {
     explicit BounceLimits(const TransportSettings& transport)
         : minBounces(transport.minBounces), maxBounces(transport.maxBounces) {}
 
-    /// Of whole paths, from light to sensor.
+    /// Whether whole paths, from light to sensor, with so many interactions are rendered.
     [[nodiscard]] bool renders(int interactions) const {
         return interactions >= minBounces && interactions < maxBounces;
     }
@@ -30,14 +30,15 @@ struct BounceLimits {
     [[nodiscard]] bool mayGoOn(int interactions) const { return interactions < maxBounces; }
     /// Counts a flight in a scattering medium: false if it is one too many since the last surface.
     [[nodiscard]] static bool fly(int& flights, const Medium& medium) { return ++flights <= medium.maxBounces; }
-    /// Of a path with so many scatterings in media, of which the last `inARow`, seen from the light, have no surface
-    /// between them. Without low orders one that is alone there does not count, whatever comes before it: the format
-    /// ends camera paths that meet a surface after their first scattering in a medium.
+    /// Whether a path with so many scatterings in media counts, of which the last `inARow`, seen from the light, have
+    /// no surface between them. Without low orders one that is alone there does not count, whatever comes before it:
+    /// the format ends camera paths that meet a surface after their first scattering in a medium.
     [[nodiscard]] bool orderCounts(int mediumScatters, int inARow) const {
         if (mediumScatters == 0) return includeSurfaces;
         return lowOrderScattering || inARow > 1;
     }
-    /// The same for camera paths, of which endsAtSurface() has ended the others.
+    /// Whether a camera path with so many scatterings counts: endsAtSurface() has ended those with a surface between
+    /// them.
     [[nodiscard]] bool orderCounts(int mediumScatters) const { return orderCounts(mediumScatters, mediumScatters); }
     /// A camera path ends at a surface, index-matched ones included, after so many scatterings in media.
     [[nodiscard]] bool endsAtSurface(int mediumScatters) const { return mediumScatters == 1 && !lowOrderScattering; }

@@ -2,15 +2,15 @@
 
 namespace tungsten::transport {
 
-ConnectionEnd connectionEnd(const Straight& way, const PathEnd& end) {
+ConnectionEndpoint connectionEndpoint(const Segment& way, const SubpathEnd& end) {
     return {way.direction, way.distance, end.intensity(-way.direction) / sqr(way.distance), end.vertex.margin()};
 }
 
-std::optional<Connection> Connector::connect(const Vertex& vertex, const Rgb& throughput, const ConnectionEnd& end,
+std::optional<Connection> Connector::connect(const Vertex& vertex, const Rgb& throughput, const ConnectionEndpoint& end,
                                              uint64_t& rays) const {
     const Rgb value = throughput * vertex.scattering(end.direction) * end.weight;
     if (isBlack(value)) return std::nullopt;
-    Ray ray = vertex.leave(end.direction);
+    Ray ray = vertex.spawnRay(end.direction);
     ray.tMax = end.margin.before(end.direction, end.distance);
     const Visibility seen = visibility(ray, end.distance, vertex.regionTowards(end.direction), rays);
     if (isBlack(seen.transmittance)) return std::nullopt;

@@ -7,36 +7,36 @@
 
 namespace tungsten::transport {
 
-/// From one point to another.
-struct Straight {
+/// Straight segment from one point to another.
+struct Segment {
     Vec3f direction; ///< unit
     float distance;
 };
 /// None if both are at the same place.
-inline std::optional<Straight> straightWay(const Vec3f& from, const Vec3f& to) {
+inline std::optional<Segment> connectionSegment(const Vec3f& from, const Vec3f& to) {
     const Vec3f offset = to - from;
     const float distance = offset.length();
     if (!(distance > 0.0f)) return std::nullopt;
-    return Straight{offset / distance, distance};
+    return Segment{offset / distance, distance};
 }
 
 /// What a vertex is connected to, as seen from there.
-struct ConnectionEnd {
+struct ConnectionEndpoint {
     Vec3f direction; ///< unit
     float distance;  ///< may be Infinity
     Rgb weight; ///< what it sends or takes along the line over squared distance and density; visibility not included
     SurfaceMargin margin{};
 };
 /// A point on an emitter.
-inline ConnectionEnd connectionEnd(const DirectSample& light) {
+inline ConnectionEndpoint connectionEndpoint(const DirectSample& light) {
     return {light.direction, light.distance, light.weight, light.margin};
 }
 /// A place on the camera's lens.
-inline ConnectionEnd connectionEnd(const SensorSample& sensor) {
+inline ConnectionEndpoint connectionEndpoint(const SensorSample& sensor) {
     return {sensor.direction, sensor.distance, Rgb(sensor.weight), {}};
 }
 /// A vertex at the end of the way.
-ConnectionEnd connectionEnd(const Straight& way, const PathEnd& end);
+ConnectionEndpoint connectionEndpoint(const Segment& way, const SubpathEnd& end);
 
 struct Connection {
     Rgb throughput;       ///< of the path up to the vertex, times scattering there, the end's weight and transmittance
@@ -53,7 +53,7 @@ class Connector {
     /// `throughput` is the path's up to the vertex. None where nothing gets through. Adds the rays traced to `rays`;
     /// none is traced where nothing scatters that way.
     [[nodiscard]] std::optional<Connection> connect(const Vertex& vertex, const Rgb& throughput,
-                                                    const ConnectionEnd& end, uint64_t& rays) const;
+                                                    const ConnectionEndpoint& end, uint64_t& rays) const;
     /// Along a ray that starts in `region`; its limits as traceVisibility() has them.
     [[nodiscard]] Visibility visibility(const Ray& ray, float distance, const Region& region, uint64_t& rays) const;
 

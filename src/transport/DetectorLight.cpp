@@ -56,7 +56,7 @@ bool DetectorLight::mayReach(const Scene& scene, const SceneFacts& facts) {
 
 DetectorLight::DetectorLight(const Scene& scene, const SceneFacts& facts, const BounceLimits& limits)
     : scene_(scene), limits_(limits), connector_(scene, facts.forwardBoundaries || facts.everything),
-      emitters_(pointLikeEmitters(scene, facts)), specular_(facts.specularSensorPaths) {}
+      emitters_(pointLikeEmitters(scene, facts)), specular_(facts.specularCameraSubpaths) {}
 
 void DetectorLight::sample(size_t column, Sampler& sampler, const ProgressToken& watch, uint64_t& rays,
                            const Put& put) const {
@@ -85,12 +85,12 @@ void DetectorLight::sample(size_t column, Sampler& sampler, const ProgressToken&
     rays += counters.rays;
 }
 
-void DetectorLight::connect(size_t column, const PathEnd& end, const Emitter& emitter, double time, int interactions,
+void DetectorLight::connect(size_t column, const SubpathEnd& end, const Emitter& emitter, double time, int interactions,
                             Sampler& sampler, uint64_t& rays, const Put& put) const {
     sampler.at(interactions, Draw::Sensor);
     const auto place = scene_.camera.detectors()->sample(column, end.vertex.position(), sampler.next2D());
     if (!place) return;
-    const auto connection = connector_.connect(end.vertex, end.power, connectionEnd(*place), rays);
+    const auto connection = connector_.connect(end.vertex, end.power, connectionEndpoint(*place), rays);
     if (!connection || !limits_.renders(interactions + connection->crossings)) return;
     put(connection->throughput, scene_.transport.cameraUnwarped ? time : time + connection->time, emitter);
 }

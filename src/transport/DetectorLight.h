@@ -30,8 +30,8 @@ class DetectorLight {
     /// One sample of what the detector in `column` gets. Adds the rays traced to `rays`. Throws PassCancelled where the
     /// watch does.
     void sample(size_t column, Sampler& sampler, const ProgressToken& watch, uint64_t& rays, const Put& put) const;
-    /// The same of the end of a path from a light, `time` after 0 and so many interactions.
-    void connect(size_t column, const PathEnd& end, const Emitter& emitter, double time, int interactions,
+    /// Connects the end of a path from a light, `time` after 0 and so many interactions, to the detector.
+    void connect(size_t column, const SubpathEnd& end, const Emitter& emitter, double time, int interactions,
                  Sampler& sampler, uint64_t& rays, const Put& put) const;
 
   private:

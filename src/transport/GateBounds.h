@@ -17,7 +17,7 @@ class GateBounds {
         : limited_(!gate.steadyState), oneSpeed_(!facts.speedsDiffer), start_(gate.start), end_(gate.end()),
           slowness_(1.0 / double(facts.highestSpeed)) {}
 
-    /// The same scene, the sensor open at another time.
+    /// Bounds of the same scene with the sensor open at another time.
     [[nodiscard]] GateBounds during(const TimeGate& gate) const {
         GateBounds bounds = *this;
         bounds.limited_ = !gate.steadyState;

@@ -19,7 +19,7 @@ darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mo
     return settings;
 }
 
-Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts, bool aims) {
+Decision tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts, bool aims) {
     bool any = false;
     for (size_t i = 0; i < scene.media.size(); ++i)
         any = any || (scene.media[i].scatters() && !facts.isExcluded(i) &&
@@ -27,7 +27,7 @@ Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, cons
     return {any, any ? "directions are drawn from the published table" : "directions come from closed forms"};
 }
 
-Choice balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, const Choice& guidance, bool meets) {
+Decision balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, const Decision& guidance, bool meets) {
     if (!guidance.on) return guidance;
     const bool known = std::ranges::all_of(scene.media, [&](const Medium& medium) {
         return !medium.scatters() || settingsIn(medium, policy, mode).hasDensities();
@@ -38,7 +38,7 @@ Choice balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, con
                      "have no part"};
 }
 
-Choice detectorLightOf(const Scene& scene, const SceneFacts& facts, bool shown) {
+Decision detectorLightOf(const Scene& scene, const SceneFacts& facts, bool shown) {
     const bool on = shown && DetectorLight::mayReach(scene, facts);
     return {on, on ? "places of detectors are connected to lights that no ray meets"
                    : "no detector, rays meet every light, or include_surfaces is false"};

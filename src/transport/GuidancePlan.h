@@ -14,12 +14,12 @@ std::string guidanceObstacle(const Scene& scene, const Policy& policy, const Sce
 darts::Settings settingsIn(const Medium& medium, const Policy& policy, darts::Mode mode, bool aims = true);
 
 /// Whether the directions of some medium come from a table. `aims` as above; false where nothing is guided.
-Choice tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts, bool aims);
+Decision tablesOf(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts, bool aims);
 
 /// Whether plain walks run beside guided ones. `meets`: they meet what those aim at.
-Choice balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, const Choice& guidance, bool meets);
+Decision balanceOf(const Scene& scene, const Policy& policy, darts::Mode mode, const Decision& guidance, bool meets);
 
 /// Whether places of detectors are connected to lights, where paths without scattering are `shown`.
-Choice detectorLightOf(const Scene& scene, const SceneFacts& facts, bool shown);
+Decision detectorLightOf(const Scene& scene, const SceneFacts& facts, bool shown);
 
 } // namespace tungsten::transport

@@ -4,43 +4,43 @@
 
 namespace tungsten::transport {
 
-void GuidedSteps::lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim,
-                          uint64_t& rays) {
-    looked_ = Looked::Out;
-    waysOut.look(start, region, aim, residual_, rays);
-    reachable_.way = residual_.way;
-    reachable_.exit = residual_.exit;
+void GuidedSteps::setEscapeModel(const EscapeModels& escapeModels, const FlightStart& start, const Region& region,
+                                 const EscapeTarget& aim, uint64_t& rays) {
+    known_ = Known::EscapeModel;
+    escapeModels.choose(start, region, aim, budget_, rays);
+    reachable_.model = budget_.model;
+    reachable_.escape = budget_.escape;
     // What cannot be connected to is met by chance, anywhere on the emitter.
-    if (reachable_.exit.connects) reachable_.exit.surplus = surplus_;
+    if (reachable_.escape.straightExit) reachable_.escape.extraLength = extraLength_;
 }
 
 void GuidedSteps::startRoulette(const darts::Guide& guide, int medium, float throughput) {
     if (!(guide.settings().roulette > 0.0f)) return;
-    if (first_ && first_->medium == medium && first_->way == reachable_.way) return;
-    first_ = First{guide.logUsefulness(reachable_, throughput), medium, reachable_.way};
+    if (first_ && first_->medium == medium && first_->model == reachable_.model) return;
+    first_ = First{guide.logExpectedContribution(reachable_, throughput), medium, reachable_.model};
 }
 
 float GuidedSteps::survival(const darts::Guide& guide, int medium, float throughput) {
     if (!(guide.settings().roulette > 0.0f)) return 1.0f;
-    useful_ = guide.logUsefulness(reachable_, throughput);
-    if (!(first_ && first_->medium == medium && first_->way == reachable_.way))
-        first_ = First{useful_, medium, reachable_.way};
-    const float survival = guide.survival(reachable_.way, useful_, first_->usefulness);
-    lineage_ *= survival;
+    logContribution_ = guide.logExpectedContribution(reachable_, throughput);
+    if (!(first_ && first_->medium == medium && first_->model == reachable_.model))
+        first_ = First{logContribution_, medium, reachable_.model};
+    const float survival = guide.survival(reachable_.model, logContribution_, first_->logContribution);
+    expectedOffspring_ *= survival;
     return survival;
 }
 
 int GuidedSteps::copiesBy(const darts::Guide& guide) {
     int copies = 1;
-    if (reachable_.way == darts::Way::Out)
+    if (reachable_.model == darts::EscapeModel::Bounded)
         copies = splits_.copies(guide.splits(reachable_));
     else if (first_)
-        copies = guide.copies(useful_, first_->usefulness, tuning::MostCopies / lineage_);
-    lineage_ *= float(copies);
+        copies = guide.copies(logContribution_, first_->logContribution, tuning::MostCopies / expectedOffspring_);
+    expectedOffspring_ *= float(copies);
     return copies;
 }
 
-void GuidedSteps::passBoundary(float distance) {
+void GuidedSteps::crossIndexMatched(float distance) {
     if (std::holds_alternative<OnWay>(connection_)) std::get<OnWay>(connection_).vertex.distance -= distance;
     if (shared_) shared_->behind += distance;
 }

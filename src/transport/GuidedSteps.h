@@ -10,7 +10,7 @@
 // Random numbers are the walk's own, which says how they are drawn.
 
 #include "transport/Balance.h"
-#include "transport/WaysOut.h"
+#include "transport/EscapeModels.h"
 
 #include "darts/Guide.h"
 
@@ -27,49 +27,50 @@ class GuidedSteps {
         double length = 0.0;         ///< of the whole connection
         double departure = 0.0;      ///< the walk's time where the connection starts
     };
-    /// Of paths whose last vertex is in the medium, at one distance: per length, of own vertices and of control
-    /// vertices; and the logarithm of both over the density of plain paths.
+    /// Densities of paths whose last vertex is in the medium, at one distance: per length, of own vertices and of
+    /// control vertices; and the logarithm of both over the density of plain paths.
     struct InMedium {
         float own = 0.0f, control = 0.0f, logRatio = 0.0f;
         [[nodiscard]] float shareOfControl() const { return transport::balance(control, own); }
     };
 
-    // Look. Whatever the walk may find besides its target may arrive later by `surplus`, a length.
-    void lookAhead(const darts::Residual& residual, float surplus) {
-        setTimeBudget(residual);
-        looked_ = Looked::Ahead;
-        reachable_.excess += surplus;
-        reachable_.width += surplus;
-        surplus_ = surplus;
+    // Time budget. Whatever the walk may find besides its target may arrive later by `extraLength`, a length.
+    void setTimeBudget(const darts::TimeBudget& budget, float extraLength) {
+        setTimeBudgetAndModel(budget);
+        known_ = Known::TimeBudget;
+        reachable_.excess += extraLength;
+        reachable_.width += extraLength;
+        extraLength_ = extraLength;
     }
-    /// How light gets to the target, too. Adds the rays traced to `rays`.
-    void lookOut(const WaysOut& waysOut, const Start& start, const Region& region, const Aim& aim, uint64_t& rays);
+    /// Chooses how light gets to the target, too. Adds the rays traced to `rays`.
+    void setEscapeModel(const EscapeModels& escapeModels, const FlightStart& start, const Region& region,
+                        const EscapeTarget& aim, uint64_t& rays);
     /// Both at once, when the walk knows.
-    void setTimeBudget(const darts::Residual& residual) {
-        looked_ = Looked::Out;
-        residual_ = residual;
-        reachable_ = residual;
-        surplus_ = 0.0f;
+    void setTimeBudgetAndModel(const darts::TimeBudget& budget) {
+        known_ = Known::EscapeModel;
+        budget_ = budget;
+        reachable_ = budget;
+        extraLength_ = 0.0f;
     }
     /// At another vertex: what the walk knew of the last one is over.
     void forget() {
-        looked_ = Looked::Nowhere;
+        known_ = Known::Nothing;
         startWay();
     }
-    [[nodiscard]] bool hasLooked() const { return looked_ != Looked::Nowhere; }
-    [[nodiscard]] bool hasLookedOut() const { return looked_ == Looked::Out; }
+    [[nodiscard]] bool hasTimeBudget() const { return known_ != Known::Nothing; }
+    [[nodiscard]] bool hasEscapeModel() const { return known_ == Known::EscapeModel; }
     /// Towards the target.
-    [[nodiscard]] const darts::Residual& residual() const { return residual_; }
-    /// The same for everything that the walk may find.
-    [[nodiscard]] const darts::Residual& reachable() const { return reachable_; }
+    [[nodiscard]] const darts::TimeBudget& budget() const { return budget_; }
+    /// Time budget of everything that the walk may find.
+    [[nodiscard]] const darts::TimeBudget& reachable() const { return reachable_; }
 
     // Roulette. Models of what is still to come do not compare: where another one holds, in another medium or by
-    // another way out, usefulness is measured anew.
+    // another way out, the expected contribution is measured anew.
     void startRoulette(const darts::Guide& guide, int medium, float throughput);
     /// Probability of going on; 1 where the roulette starts.
     [[nodiscard]] float survival(const darts::Guide& guide, int medium, float throughput);
-    /// Into how many copies the walk goes on, itself included: out of bodies by darts::Splits, elsewhere where it has
-    /// become too useful.
+    /// Into how many copies the walk goes on, itself included: out of bodies by darts::SplittingSchedule, elsewhere
+    /// where its expected contribution has grown too much.
     [[nodiscard]] int copiesBy(const darts::Guide& guide);
 
     // Connection.
@@ -87,7 +88,7 @@ class GuidedSteps {
     [[nodiscard]] darts::DirectionSample sampleDirection(const darts::Guide& guide, const Scatterer& scatterer,
                                                          Random&& random) const {
         const bool drawn = std::holds_alternative<darts::ConnectionSample>(connection_);
-        return guide.sampleDirection(residual_, drawn ? std::get<darts::ConnectionSample>(connection_) : NoConnection,
+        return guide.sampleDirection(budget_, drawn ? std::get<darts::ConnectionSample>(connection_) : NoConnection,
                                      scatterer, random);
     }
     /// What a flight's control vertex depends on.
@@ -97,22 +98,22 @@ class GuidedSteps {
         double elapsed; ///< the walk's time at the ray's origin
         bool shares;    ///< ordinary vertices share with control vertices: controlVertexPdf() will be asked for
     };
-    /// Of a connection drawn before: its control vertex now lies on the way.
+    /// Places the control vertex of a connection drawn before, which now lies on the way.
     void place(const Line& way) {
         if (!std::holds_alternative<darts::ConnectionSample>(connection_)) return;
         const auto placed = onWay(way, std::get<darts::ConnectionSample>(connection_), Infinity);
-        if (way.shares) shared_ = Shared{&way.guide, residual_, way.h, 0.0f};
+        if (way.shares) shared_ = Shared{&way.guide, budget_, way.h, 0.0f};
         if (placed)
             connection_ = *placed;
         else
             connection_ = Over{};
     }
     /// Beyond a boundary that light passes straight at its speed, at this distance.
-    void passBoundary(float distance);
+    void crossIndexMatched(float distance);
 
     // Flight.
     [[nodiscard]] darts::Heading headingOf(const Vec3f& direction) const {
-        return residual_.heading(darts::vec3(direction));
+        return budget_.heading(darts::vec3(direction));
     }
     /// Distance beyond which nothing can be in time; for flights through what scatters, if its guide is to end them.
     [[nodiscard]] float bound(const Vec3f& direction) const {
@@ -122,7 +123,7 @@ class GuidedSteps {
         return guide.distance().bound(reachable_, h);
     }
     /// The control vertex between the ray's origin and the surface ahead, if there is one. Its connection is drawn now
-    /// by draw(residual) if it has not been before.
+    /// by draw(budget) if it has not been before.
     template <typename Draw>
     [[nodiscard]] std::optional<OnWay> meetControlVertex(const Line& way, float surface, Draw&& draw) {
         if (std::holds_alternative<Later>(connection_)) return drawControlVertex(way, surface, draw);
@@ -133,7 +134,7 @@ class GuidedSteps {
     /// do not share, or if none can lie before the surface.
     [[nodiscard]] std::optional<float> controlVertexPdf(float distance) const {
         if (!shared_) return std::nullopt;
-        return shared_->guide->pdfControlVertex(shared_->residual, shared_->h, shared_->behind + distance);
+        return shared_->guide->pdfControlVertex(shared_->budget, shared_->h, shared_->behind + distance);
     }
     template <typename Random>
     [[nodiscard]] darts::DistanceSample sampleDistance(const darts::Guide& guide, const darts::Heading& heading,
@@ -142,21 +143,21 @@ class GuidedSteps {
     }
 
   private:
-    enum class Looked { Nowhere, Ahead, Out };
+    enum class Known { Nothing, TimeBudget, EscapeModel };
     struct Later {}; ///< not drawn yet
     struct Over {};  ///< its control vertex is behind, or there is none
     /// How the connections of the present straight way were drawn.
     struct Shared {
         const darts::Guide* guide;
-        darts::Residual residual; ///< of the connection's length
+        darts::TimeBudget budget; ///< of the connection's length
         float h;
         float behind; ///< distance from where it was drawn to the ray's origin
     };
-    /// The usefulness that the walk is measured by, and the model it holds for.
+    /// The expected contribution that the walk is measured by, and the model it holds for.
     struct First {
-        float usefulness; ///< logarithm
+        float logContribution; ///< logarithm
         int medium;
-        darts::Way way;
+        darts::EscapeModel model;
     };
 
     static constexpr darts::ConnectionSample NoConnection{};
@@ -164,8 +165,8 @@ class GuidedSteps {
     template <typename Draw>
     std::optional<OnWay> drawControlVertex(const Line& way, float surface, Draw&& draw) {
         shared_.reset();
-        if (!residual_.alive()) return std::nullopt;
-        const darts::Residual before = darts::Guide::beforeSurface(residual_, way.h, surface);
+        if (!budget_.alive()) return std::nullopt;
+        const darts::TimeBudget before = darts::Guide::beforeSurface(budget_, way.h, surface);
         if (!before.alive()) return std::nullopt;
         const darts::ConnectionSample connection = draw(before);
         if (way.shares) shared_ = Shared{&way.guide, before, way.h, 0.0f};
@@ -181,20 +182,21 @@ class GuidedSteps {
     }
     [[nodiscard]] std::optional<OnWay> onWay(const Line& way, const darts::ConnectionSample& connection,
                                              float surface) const {
-        const auto vertex = way.guide.controlVertex(residual_, connection, way.h, surface);
+        const auto vertex = way.guide.controlVertex(budget_, connection, way.h, surface);
         if (!vertex) return std::nullopt;
-        return OnWay{*vertex, residual_.shortest + double(connection.excess - residual_.low), way.elapsed};
+        return OnWay{*vertex, budget_.shortest + double(connection.excess - budget_.low), way.elapsed};
     }
 
-    Looked looked_ = Looked::Nowhere;
-    darts::Residual residual_, reachable_; ///< at the vertex looked from
-    float surplus_ = 0.0f;                 ///< of reachable_ over residual_, a length
+    Known known_ = Known::Nothing;
+    darts::TimeBudget budget_, reachable_; ///< at the vertex that they were set at
+    float extraLength_ = 0.0f;             ///< of reachable_ over budget_, a length
     std::variant<Later, darts::ConnectionSample, OnWay, Over> connection_;
     std::optional<Shared> shared_;
     std::optional<First> first_;
-    float useful_ = 0.0f;  ///< logarithm, at the last survival()
-    float lineage_ = 1.0f; ///< copies that stem from the walk's start, as many as roulette leaves on the average
-    darts::Splits splits_;
+    float logContribution_ = 0.0f; ///< logarithm, at the last survival()
+    /// Mean number of walks alive, after roulette, that stem from this walk's start.
+    float expectedOffspring_ = 1.0f;
+    darts::SplittingSchedule splits_;
 };
 
 } // namespace tungsten::transport

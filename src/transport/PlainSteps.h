@@ -13,15 +13,15 @@ inline std::optional<Way> sampleSurfaceWay(PathState& path, const WalkVertex& ve
                                            LobeMask lobes = lobe::All) {
     const SurfaceInteraction& surface = *vertex.surface;
     path.random.at(path.interactions, Draw::Direction);
-    const auto exit = sampleExit(surface, surface.query(mode, lobes), checks, path.random);
+    const auto exit = sampleBsdf(surface, surface.query(mode, lobes), checks, path.random);
     if (!exit) return std::nullopt;
     const bool shades = mode == TransportMode::Photons && !exit->straight();
-    return Way{surface.hit.leave(exit->direction), regionBeyond(surface, exit->direction, path.region),
+    return Way{surface.hit.spawnRay(exit->direction), regionBeyond(surface, exit->direction, path.region),
                shades ? exit->weight * surface.photonShadingFactor(-vertex.before, exit->direction) : exit->weight,
                (exit->lobe & lobe::Smooth) != 0 ? exit->pdf : 0.0f, exit->lobe};
 }
 
-/// By the phase function.
+/// Draws a direction by the phase function.
 inline Way sampleMediumWay(PathState& path, const WalkVertex& vertex) {
     path.random.at(path.interactions, Draw::Direction);
     const PhaseFunction& phase = vertex.medium->phase;

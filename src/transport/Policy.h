@@ -1,7 +1,7 @@
 #pragma once
 // What integrators do with residual-time sampling beside sampling itself: which ways to find light they use.
 
-#include "darts/Scheme.h"
+#include "darts/SamplingOptions.h"
 
 #include <string>
 
@@ -12,17 +12,17 @@ enum class DirectView { Auto, On, Off };
 
 /// The `darts` block: how to sample, and the renderer's own switches. The paper's preset leaves out what is not in it.
 struct Policy {
-    darts::Scheme sampling;
+    darts::SamplingOptions sampling;
     DirectView directView = DirectView::Auto; ///< of photon maps
     std::optional<float> plainShare;          ///< of the time; none: by a pilot
-    std::optional<bool> surfaceConnections, glossySensorPaths, singleFrames, bodies, adaptiveSamples;
+    std::optional<bool> surfaceConnections, glossyCameraSubpaths, singleFrames, bodies, adaptiveSamples;
 
     [[nodiscard]] bool guides() const { return sampling.on; }
     /// Light paths also connect their vertices to visible surfaces, camera paths theirs to surfaces that light reaches
     /// first.
     [[nodiscard]] bool connectsSurfaces() const { return surfaceConnections.value_or(!sampling.published); }
-    /// Sensor paths of a photon map go on along the lobes of glossy surfaces, as they do along mirrors.
-    [[nodiscard]] bool followsGlossy() const { return guides() && glossySensorPaths.value_or(!sampling.published); }
+    /// Camera subpaths of a photon map go on along the lobes of glossy surfaces, as they do along mirrors.
+    [[nodiscard]] bool followsGlossy() const { return guides() && glossyCameraSubpaths.value_or(!sampling.published); }
     /// Every light path of a photon map aims at one frame of a sequence, in the paper's preset alone: otherwise at all
     /// of them as one gate, since a path that aims at one of n leaves nothing in the others.
     [[nodiscard]] bool aimsAtSingleFrames() const { return singleFrames.value_or(sampling.published); }
@@ -33,18 +33,18 @@ struct Policy {
 };
 
 /// What a plan decides, and why.
-struct Choice {
+struct Decision {
     bool on = false;
     std::string reason;
 };
 
-/// Reads an integrator's block as darts::readScheme does.
+/// Reads an integrator's block as darts::readSamplingOptions does.
 template <typename Block>
 Policy readPolicy(const Block& block) {
     using darts::switches::flag;
     constexpr const char *WithBest = "true with best", *WithPublished = "true with published";
     Policy policy;
-    policy.sampling = darts::readScheme(block, [&](const Block& object) {
+    policy.sampling = darts::readSamplingOptions(block, [&](const Block& object) {
         policy.directView = darts::switches::named<DirectView>(
                                 object, "direct_view",
                                 "photon maps: control vertices alone (on), ordinary photons beside them (off), which "
@@ -56,8 +56,9 @@ Policy readPolicy(const Block& block) {
             "the share of time of plain paths beside guided ones, of the camera or of lights; by a pilot", 1.0);
         policy.surfaceConnections = flag(object, "surface_connections",
                                          "light paths connect to visible surfaces, camera paths to lit ones", WithBest);
-        policy.glossySensorPaths = flag(object, "glossy_sensor_paths",
-                                        "photon maps: sensor paths go on at glossy surfaces, as at mirrors", WithBest);
+        policy.glossyCameraSubpaths =
+            flag(object, "glossy_sensor_paths", "photon maps: camera subpaths go on at glossy surfaces, as at mirrors",
+                 WithBest);
         policy.singleFrames =
             flag(object, "single_frames",
                  "photon maps: a light path aims at one frame of a sequence, not at all as one gate", WithPublished);

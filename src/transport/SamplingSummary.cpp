@@ -1,7 +1,7 @@
 #include "transport/SamplingSummary.h"
 
+#include "transport/EscapeModels.h"
 #include "transport/GuidancePlan.h"
-#include "transport/WaysOut.h"
 
 #include "tungsten/scene/Field.h"
 
@@ -40,7 +40,7 @@ std::string directionsOf(const darts::Settings& settings) {
 
 } // namespace
 
-std::string describeStrategies(const std::string& walks, const Choice& guidance, const Choice& sideBySide,
+std::string describeStrategies(const std::string& walks, const Decision& guidance, const Decision& sideBySide,
                                const std::optional<float>& plainShare) {
     if (!guidance.on) return "plain " + walks + ": " + guidance.reason;
     if (!sideBySide.on) return "guided " + walks + " alone: " + sideBySide.reason;
@@ -62,13 +62,13 @@ std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mo
         addOnce(distances, distancesOf(settings), " or ");
         addOnce(directions, directionsOf(settings), " or ");
     }
-    if (aims && WaysOut::make(scene, policy)) distances += ", out of bodies by first passage";
+    if (aims && EscapeModels::make(scene, policy)) distances += ", out of bodies by first passage";
     return "guided ones: distances " + distances + "; directions " + directions;
 }
 
-std::string describeEnds(const std::vector<Choice>& ends) {
+std::string describeEnds(const std::vector<Decision>& ends) {
     std::string list;
-    for (const Choice& end : ends)
+    for (const Decision& end : ends)
         if (end.on) addOnce(list, end.reason, "; ");
     return list.empty() ? "nothing" : list;
 }

@@ -8,7 +8,7 @@
 namespace tungsten::transport {
 
 /// Which strategies run. `walks`: "camera paths" or "light paths".
-std::string describeStrategies(const std::string& walks, const Choice& guidance, const Choice& sideBySide,
+std::string describeStrategies(const std::string& walks, const Decision& guidance, const Decision& sideBySide,
                                const std::optional<float>& plainShare);
 /// How plain walks draw distances and directions.
 inline constexpr const char* PlainVertices = "plain ones: distances by transmittance, directions by phase functions";
@@ -16,6 +16,6 @@ inline constexpr const char* PlainVertices = "plain ones: distances by transmitt
 std::string describeVertices(const Scene& scene, const Policy& policy, darts::Mode mode, const SceneFacts& facts,
                              bool aims);
 /// The reasons of those that are on, in order.
-std::string describeEnds(const std::vector<Choice>& ends);
+std::string describeEnds(const std::vector<Decision>& ends);
 
 } // namespace tungsten::transport

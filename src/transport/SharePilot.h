@@ -5,12 +5,13 @@
 #include "transport/StrategyBalance.h"
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace tungsten::transport {
 
-/// Of a pilot's random numbers: not the render's, so that all its parts choose alike.
+/// Key of a pilot's random numbers: not the render's, so that all its parts choose alike.
 inline constexpr uint64_t PilotKey = 0x5EED0F511A5E5ull;
 
 /// What a plain path costs alone, what its densities cost, and what a guided path costs; in one unit. `shared`: what
@@ -21,19 +22,19 @@ struct PathCosts {
     /// Plain's share of the paths if it has this share of the time.
     [[nodiscard]] StrategyBalance ofTime(double plainTime) const;
     [[nodiscard]] double sum() const { return plain + densities + guided; }
-    /// Of a path, on the average.
+    /// Mean cost of a path at this balance.
     [[nodiscard]] double mean(const StrategyBalance& balance) const;
 };
 
 class SharePilot {
   public:
-    /// Of the time, that plain paths may get; 1: all paths are plain, and nothing is weighed.
+    /// Shares of the time that plain paths may get; 1: all paths are plain, and nothing is weighed.
     static constexpr std::array<double, 5> Times{1.0, 0.75, 0.5, 0.25, 0.1};
 
     /// Another path, of the pixel at hand; they come in groups of PathsOfPixel: plain, guided, plain, guided.
     static constexpr int PathsOfPixel = 4;
     void begin(Strategy strategy) { paths_.push_back({strategy, found_.size()}); }
-    /// By the strategy's own estimate.
+    /// Notes what a path has found, by the strategy's own estimate.
     void tell(float value, int frame, LogRatio logRatio, Found found) {
         found_.push_back({value, logRatio, frame, found});
     }
@@ -43,7 +44,7 @@ class SharePilot {
     [[nodiscard]] double effective(Strategy strategy) const;
     /// E[squares of what a path finds in a frame] at this balance.
     [[nodiscard]] double secondMoment(const StrategyBalance& balance) const { return moments(balance).second; }
-    /// Of the squared error of the image, per path and up to a factor.
+    /// Variance of the image (squared error), per path and up to a factor.
     [[nodiscard]] double variance(const StrategyBalance& balance) const;
 
     /// E[squares of what a path of the strategy finds in a frame], by its own estimate and its own paths.
@@ -54,7 +55,7 @@ class SharePilot {
     [[nodiscard]] double choose(const PathCosts& costs) const {
         return choose(costs, [&](const StrategyBalance& balance) { return variance(balance) * costs.mean(balance); });
     }
-    /// The same by another score, of which the least is best.
+    /// Chooses by another score, of which the least is best.
     [[nodiscard]] double choose(const PathCosts& costs,
                                 const std::function<double(const StrategyBalance&)>& scoreOf) const;
 

@@ -46,7 +46,7 @@ struct StepCounters {
         if (!medium.scatters() && !medium.isVacuum()) ++absorbing;
     }
     /// A surface is left by this lobe.
-    void leave(LobeMask lobe) {
+    void countLobe(LobeMask lobe) {
         if ((lobe & lobe::Smooth) != 0) ++scattered;
         if ((lobe & lobe::SpecularReflection) != 0) ++mirrored;
         if ((lobe & lobe::Transmissive) != 0) ++refracted;
@@ -73,7 +73,7 @@ inline void countSteps(Features& features) {
     features.count(feature::ColouredMedia, {"scatterings in coloured media"});
     features.count(feature::AbsorptionOnly, {"flights through absorbing media"});
     features.count(feature::SurfaceScattering, {"surface scatterings"});
-    features.count(feature::SpecularSensorPaths, {"mirror reflections"});
+    features.count(feature::SpecularCameraSubpaths, {"mirror reflections"});
     features.count(feature::Refraction, {"refractions"});
     features.count(feature::IndexMatchedBoundaries, {"straight passages"});
 }

@@ -21,7 +21,7 @@ struct LogRatio {
     float weighed;         ///< as both strategies weigh it: StrategyBalance
     float plainToEstimate; ///< plain paths' own estimate over the one at hand
 
-    /// The same, unless an estimate is random: what light paths bring is weighed by the way up to them.
+    /// Both are the same, unless an estimate is random: what light paths bring is weighed by the way up to them.
     LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
     LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
     /// Where a part of the guided paths alone may find it, the logarithm of which this is.
@@ -40,7 +40,7 @@ struct StrategyBalance {
     float plain = 0.0f, guided = 1.0f; ///< sum 1
 
     [[nodiscard]] bool both() const { return plain > 0.0f && guided > 0.0f; }
-    /// Of what a plain path has found, as its own estimate alone would have it; `logRatio` is L.
+    /// Weight of what a plain path has found, as its own estimate alone would have it; `logRatio` is L.
     [[nodiscard]] float weightOfPlain(float logRatio) const {
         return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));
     }

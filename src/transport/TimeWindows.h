@@ -26,12 +26,12 @@ class TimeWindows {
   public:
     /// The whole gate.
     explicit TimeWindows(const TimeGate& arrivals) : windows_{{arrivals.start, arrivals.end(), 1.0f}} {}
-    /// Of what is recorded in a sequence of frames: windows that grow with the time since the first light started.
+    /// Windows for what is recorded in a sequence of frames: they grow with the time since the first light started.
     static TimeWindows ofSequence(const Scene& scene, const SceneFacts& facts, const TimeGate& arrivals);
 
     [[nodiscard]] size_t size() const { return windows_.size(); }
     [[nodiscard]] const TimeWindow& operator[](size_t index) const { return windows_[index]; }
-    /// Of the window that a time in the gate falls in.
+    /// Index of the window that a time in the gate falls in.
     [[nodiscard]] size_t indexOf(double time) const {
         const auto after = [](double t, const TimeWindow& window) { return t < window.begin; };
         const auto next = std::upper_bound(windows_.begin() + 1, windows_.end(), time, after);

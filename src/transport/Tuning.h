@@ -17,8 +17,9 @@ inline constexpr int RouletteFirstInteraction = 3;
 
 // --- Splitting of guided walks ---------------------------------------------------------------------------------------
 
-/// Of one walk, on the average after roulette: a bound on time, where what is still to come is guessed badly. Bench: a
-/// closed white box (docs/notebook.md), paths: standard errors of .021 at 64, .011 at 1e3, .008 here, .006 at 1e6.
+/// Upper bound on the expected number of walks that stem from one; it limits the time lost where importance is wrong.
+/// Bench: a closed white box (docs/notebook.md), paths: standard errors of .021 at 64, .011 at 1e3, .008 here, .006 at
+/// 1e6.
 inline constexpr float MostCopies = 1e4f;
 
 // --- Ways out of bodies. Bench: study bodies ----------------------------------------------------------------------

@@ -69,8 +69,8 @@ float Vertex::pdfReverse(const Vec3f& direction) const {
                       point_);
 }
 
-Ray Vertex::leave(const Vec3f& direction) const {
-    return margin().leave(position(), direction);
+Ray Vertex::spawnRay(const Vec3f& direction) const {
+    return margin().spawnRay(position(), direction);
 }
 
 Region Vertex::regionTowards(const Vec3f& direction, const Region& region) const {

@@ -43,7 +43,7 @@ class Vertex {
     [[nodiscard]] SurfaceMargin margin() const;
     /// Null in media and on lights.
     [[nodiscard]] const SurfaceInteraction* surface() const;
-    /// Of the surface; none elsewhere.
+    /// Lobes of the surface; none elsewhere.
     [[nodiscard]] LobeMask lobes() const { return surface() ? surface()->bsdf->lobes() : lobe::None; }
     /// Light leaves it in more than single directions.
     [[nodiscard]] bool isConnectible() const;
@@ -61,12 +61,12 @@ class Vertex {
     /// distance from here, seen along the unit `direction`.
     [[nodiscard]] float areaDensity(float pdfSolidAngle, const Vec3f& direction, float distance) const;
     /// A ray that does not meet the surface here.
-    [[nodiscard]] Ray leave(const Vec3f& direction) const;
+    [[nodiscard]] Ray spawnRay(const Vec3f& direction) const;
     /// The one that the path came through, or the light's.
     [[nodiscard]] const Region& region() const { return region_; }
     /// The region along `direction`.
     [[nodiscard]] Region regionTowards(const Vec3f& direction) const { return regionTowards(direction, region_); }
-    /// The same of a path that came through `region`.
+    /// Region in a direction, for a path that came through `region`.
     [[nodiscard]] Region regionTowards(const Vec3f& direction, const Region& region) const;
 
   private:
@@ -76,7 +76,7 @@ class Vertex {
 
 /// The last vertex of light's path so far: what techniques draw, keep and connect to. Each adds what its own densities
 /// need.
-struct PathEnd {
+struct SubpathEnd {
     Vertex vertex;
     Rgb power; ///< of the path up to the vertex, over the densities with which it was drawn
 

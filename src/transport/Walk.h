@@ -46,7 +46,7 @@ struct WalkVertex {
     Vec3f before;  ///< direction of propagation up to here
     Region region; ///< through which the walk came; canArrive() may have set path.region to what is ahead
 
-    /// As others are connected to it.
+    /// This vertex as others are connected to it.
     [[nodiscard]] Vertex connectible(const Scene& scene, TransportMode mode) const {
         return surface ? Vertex(scene, *surface, before, mode, region) : Vertex(*medium, position, before, region);
     }
@@ -184,11 +184,11 @@ struct Walk {
         path.ray = {scatters ? path.ray.at(flight.distance) : ahead.hit->position, path.ray.direction};
     }
 
-    /// By a way that the steps draw; false if none goes on.
+    /// Leaves by a way that the steps draw; false if none goes on.
     bool leave(const WalkVertex& vertex) {
         const auto way = steps.way(path, vertex);
         if (!way) return false;
-        if (vertex.surface) steps.context().counters.leave(way->lobe);
+        if (vertex.surface) steps.context().counters.countLobe(way->lobe);
         visitor.leave(path, steps, vertex, *way);
         path.ray = way->ray;
         path.region = way->region;

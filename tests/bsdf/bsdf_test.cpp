@@ -4,8 +4,8 @@
 #include "support/ChiSquare.h"
 
 #include "tungsten/bsdf/Bsdf.h"
-#include "tungsten/bsdf/Evenness.h"
 #include "tungsten/bsdf/Fresnel.h"
+#include "tungsten/bsdf/Lambertian.h"
 #include "tungsten/bsdf/ShadingFrame.h"
 #include "tungsten/core/Warp.h"
 
@@ -125,8 +125,8 @@ TEST(Bsdf, EvenOnesHaveOneValue) {
             if (wo.z < 0.0f && f > 0.0f) least = 0.0f; // comes out on the other side
             most = std::max(most, f);
         }
-        EXPECT_EQ(scattersEvenly(model.bsdf), most <= 1.0001f * least) << model.name << ": " << least << ", " << most;
-        even += scattersEvenly(model.bsdf) ? 1 : 0;
+        EXPECT_EQ(isLambertian(model.bsdf), most <= 1.0001f * least) << model.name << ": " << least << ", " << most;
+        even += isLambertian(model.bsdf) ? 1 : 0;
     }
     EXPECT_EQ(even, 3);
 }

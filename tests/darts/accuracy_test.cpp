@@ -233,7 +233,7 @@ TEST(Accuracy, Residuals) {
         const Exact C = sqrt(exactDot(toTarget, toTarget));
         const double gap = logUniform(s, 1e-7, 10.0) * double(C), width = logUniform(s, 1e-7, 1.0) * (double(C) + gap);
         const double high = double(C) + gap, low = high - width;
-        const Residual r = Residual::of(toTarget, {low, high});
+        const TimeBudget r = TimeBudget::of(toTarget, {low, high});
         const Exact first = C > low ? C : Exact(low);
         ASSERT_TRUE(near(r.C, C));
         ASSERT_TRUE(near(r.excess, high - C));
@@ -256,34 +256,34 @@ TEST(Accuracy, ControlVertices) {
         const double depth = logUniform(s, 1e-6, 100.0);
         const auto sigma = float(depth / high);
         const Guide guide(best(Mode::Photon, 0.0f), Medium{{0, 0, 0}, {sigma, sigma, sigma}, 0.0f});
-        const Residual residual = Residual::of({0, float(C), 0}, {high - width, high});
-        if (!residual.alive()) continue;
-        const ConnectionSample connection = guide.sampleConnection(residual, s.next1D());
+        const TimeBudget budget = TimeBudget::of({0, float(C), 0}, {high - width, high});
+        if (!budget.alive()) continue;
+        const ConnectionSample connection = guide.sampleConnection(budget, s.next1D());
         const float choice = s.next1D(), h = choice < 0.1f   ? 0.0f
                                              : choice < 0.2f ? 2.0f
                                                              : float(logUniform(s, 1e-12, 2.0));
-        const auto vertex = guide.controlVertex(residual, connection, h, INFINITY);
+        const auto vertex = guide.controlVertex(budget, connection, h, INFINITY);
         if (!vertex) continue;
         ++tested;
         SCOPED_TRACE(testing::Message() << "C " << C << " delta " << connection.excess << " h " << h << " width "
                                         << width);
-        const Definition exact(residual.C, connection.excess, h);
-        const Exact drop = -expm1(-Exact(sigma) * residual.width);
+        const Definition exact(budget.C, connection.excess, h);
+        const Exact drop = -expm1(-Exact(sigma) * budget.width);
         // Of the length as it was rounded: its offset is known to an ulp of the excess, so e^{-sigma offset} is.
-        const Exact offset = Exact(connection.excess) - residual.low;
+        const Exact offset = Exact(connection.excess) - budget.low;
         const Exact pdf = sigma * exp(-sigma * offset) / drop;
         ASSERT_TRUE(near(vertex->distance, exact.t()));
         ASSERT_TRUE(near(vertex->toTarget, exact.r()));
         ASSERT_TRUE(near(vertex->inversePdf, exact.tPerLength() / pdf, 3 * Bound));
         // Seen from the ray: of the connection through the vertex as it was rounded, which may have left the range.
-        const Exact d(vertex->distance), delta = d + exact.toTarget(d) - residual.C, seenOffset = delta - residual.low;
-        if (seenOffset < 0 || seenOffset > residual.width) continue;
+        const Exact d(vertex->distance), delta = d + exact.toTarget(d) - budget.C, seenOffset = delta - budget.low;
+        if (seenOffset < 0 || seenOffset > budget.width) continue;
         ++within;
-        const Exact expected = sigma * exp(-sigma * seenOffset) / drop / Definition(residual.C, delta, h).tPerLength();
-        ASSERT_TRUE(near(guide.pdfControlVertex(residual, h, vertex->distance), expected, 3 * Bound));
+        const Exact expected = sigma * exp(-sigma * seenOffset) / drop / Definition(budget.C, delta, h).tPerLength();
+        ASSERT_TRUE(near(guide.pdfControlVertex(budget, h, vertex->distance), expected, 3 * Bound));
         // The range seen from the ray ends where it ends.
-        if (residual.width > 1e-3f * residual.excess) {
-            ASSERT_EQ(guide.pdfControlVertex(residual, h, 1.001f * residual.latest(h).firstLeg()), 0.0f);
+        if (budget.width > 1e-3f * budget.excess) {
+            ASSERT_EQ(guide.pdfControlVertex(budget, h, 1.001f * budget.latest(h).firstLeg()), 0.0f);
         }
     }
     EXPECT_GT(within, 15000u);

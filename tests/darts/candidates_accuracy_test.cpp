@@ -103,7 +103,7 @@ TEST(CandidatesAccuracy, DensitiesOfProposals) {
 }
 
 /// log(e^{-sigmaT d} Phi(rho, S - d)), of the Green's functions' definitions; but for what all candidates share.
-Exact logUseful(const Drawn& drawn, Shape shape, const Exact& d, Exact& terms) {
+Exact logContribution(const Drawn& drawn, Shape shape, const Exact& d, Exact& terms) {
     const Ellipse<float>& e = drawn.draw.latest;
     const Exact C(e.C), S = C + e.delta, s = S - d, rho2 = d * d - 2 * d * C * (1 - Exact(e.h)) + C * C;
     const Exact sigmaA(drawn.medium.sigmaA.x), sigmaS(drawn.medium.sigmaS.x),
@@ -128,16 +128,16 @@ void expectUseful(const char* name, double bound) {
         const Drawn drawn(i);
         Sampler s(53, RandomStream::Test, 0, i);
         const float d = s.next1D() * drawn.draw.firstLeg * (1.0f - 1e-6f);
-        const Reach<Register> at(drawn.draw, Register(d));
-        const Reach<float> alone(drawn.draw, d);
+        const CandidatePlace<Register> at(drawn.draw, Register(d));
+        const CandidatePlace<float> alone(drawn.draw, d);
         Register factors(0.0f);
         float factor = 0.0f;
-        const Usefulness<G> usefulness(drawn.draw, 0, true);
+        const CandidateImportance<G> importance(drawn.draw, 0, true);
         const double found =
-            double(firstLane(usefulness.exponent(Register(d), at, factors))) + std::log(double(firstLane(factors)));
-        const double single = double(usefulness.exponent(d, alone, factor)) + std::log(double(factor));
+            double(firstLane(importance.exponent(Register(d), at, factors))) + std::log(double(firstLane(factors)));
+        const double single = double(importance.exponent(d, alone, factor)) + std::log(double(factor));
         Exact terms;
-        const Exact exact = logUseful(drawn, G, d, terms);
+        const Exact exact = logContribution(drawn, G, d, terms);
         useful.add(found, exact, terms);
         useful.add(single, exact, terms);
         const Ellipse<float>& e = drawn.draw.latest;
@@ -149,7 +149,7 @@ void expectUseful(const char* name, double bound) {
     EXPECT_TRUE(reachable.within(1.5e-6));
 }
 
-TEST(CandidatesAccuracy, Usefulness) {
+TEST(CandidatesAccuracy, CandidateImportance) {
     expectUseful<Shape::TimeBound>("time_bound", 2e-7);
     expectUseful<Shape::Diffusion>("diffusion", 2.5e-6);
     expectUseful<Shape::Causal>("causal", 5e-6);
@@ -188,25 +188,26 @@ TEST(CandidatesAccuracy, MixturesOfDirections) {
         const Medium medium{{0, 0, 0}, {sigma, sigma, sigma}, 0.0f};
         const Guide guide(best(Mode::Photon, 0.0f), medium);
         const double C = logUniform(s, 1e-2, 1e2), high = C * (1.0 + logUniform(s, 1e-4, 10.0));
-        const Residual residual = Residual::of(directionAbout({0, 0, 1}, s.next1D(), s.next1D()) * float(C), {C, high});
+        const TimeBudget budget =
+            TimeBudget::of(directionAbout({0, 0, 1}, s.next1D(), s.next1D()) * float(C), {C, high});
         // Directions suit the median length, whatever was drawn.
-        const ConnectionSample connection = guide.sampleConnection(residual, 0.5f);
-        const ConnectionSample drawn = guide.sampleConnection(residual, s.next1D());
-        const Vec3 direction = directionAbout(residual.axis, float(logUniform(s, 1e-2, 2.0)), s.next1D());
+        const ConnectionSample connection = guide.sampleConnection(budget, 0.5f);
+        const ConnectionSample drawn = guide.sampleConnection(budget, s.next1D());
+        const Vec3 direction = directionAbout(budget.axis, float(logUniform(s, 1e-2, 2.0)), s.next1D());
         const HenyeyGreenstein phase{{0, 0, 1}, 0.3f};
-        const Exact distance(residual.C), delta(connection.excess), S = distance + delta;
+        const Exact distance(budget.C), delta(connection.excess), S = distance + delta;
         // Of unit vectors as they were rounded.
         const auto apart = [&](const Vec3& a, const Vec3& b) {
             const Vec3 difference = a - b;
             return Exact(dotOf(difference, difference) / 2);
         };
-        const Exact h = apart(direction, residual.axis);
+        const Exact h = apart(direction, budget.axis);
         const Exact lobe = 1 / (2 * ExactPi * (delta / distance + h) * log1p(2 * distance / delta));
         const Settings& settings = guide.settings();
         const Exact ratio = distance / S, share = ratio / (ratio + Exact(settings.alpha));
         const Exact exact =
             share * lobe + (1 - share) * henyeyGreenstein(Exact(phase.g), apart(direction, phase.before));
-        mixed.add(double(guide.pdfDirection(residual, drawn, direction, phase)), exact);
+        mixed.add(double(guide.pdfDirection(budget, drawn, direction, phase)), exact);
     }
     EXPECT_TRUE(mixed.within(1.3e-6));
 }

@@ -52,16 +52,16 @@ TEST(HenyeyGreenstein, SamplesItsDensity) {
 
 void expectSamplesDensity(const Settings& settings, const DirectionCase& c) {
     const DirectionSampler sampler(settings, coloured(c.g));
-    const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
+    const TimeBudget budget = TimeBudget::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
     const HenyeyGreenstein phase{Before, c.g};
     const double p = tungsten::test::chiSquareSphere(
         [&](Sampler& s) {
-            const auto sample = sampler.sample(residual, c.excess, phase, [&s] { return s.next1D(); });
-            const float pdf = sampler.pdf(residual, c.excess, sample.direction, phase);
+            const auto sample = sampler.sample(budget, c.excess, phase, [&s] { return s.next1D(); });
+            const float pdf = sampler.pdf(budget, c.excess, sample.direction, phase);
             EXPECT_NEAR(sample.inversePdf * pdf, 1.0f, 2e-3f);
             return std::optional(toHost(sample.direction));
         },
-        [&](const tungsten::Vec3f& d) { return double(sampler.pdf(residual, c.excess, fromHost(d), phase)); });
+        [&](const tungsten::Vec3f& d) { return double(sampler.pdf(budget, c.excess, fromHost(d), phase)); });
     EXPECT_GT(p, tungsten::test::SmallestPValue) << c.C << " " << c.excess << " " << c.g;
 }
 
@@ -95,10 +95,10 @@ TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
                 settings.direction = direction;
                 settings.lobe = lobe;
                 const DirectionSampler sampler(settings, coloured(0.0f));
-                const Residual residual = Residual::of(ToTarget, {1.0, 1.0 + double(excess)});
+                const TimeBudget budget = TimeBudget::of(ToTarget, {1.0, 1.0 + double(excess)});
                 const auto density = [&](double h) {
-                    const Vec3 d = directionAbout(residual.axis, float(h), 0.3f);
-                    return 2.0 * double(Pi) * double(sampler.pdf(residual, excess, d, HenyeyGreenstein{}));
+                    const Vec3 d = directionAbout(budget.axis, float(h), 0.3f);
+                    return 2.0 * double(Pi) * double(sampler.pdf(budget, excess, d, HenyeyGreenstein{}));
                 };
                 auto edges = tungsten::test::ratioEdges(1e-10, 2.0, 60);
                 edges.insert(edges.begin(), 0.0);
@@ -110,7 +110,7 @@ TEST(DirectionSampler, NarrowMixturesSampleTheirDensityWhichIntegratesToOne) {
                 const double p = tungsten::test::chiSquareInterval(
                     [&](Sampler& s) {
                         const auto random = [&s] { return s.next1D(); };
-                        return double(sampler.sample(residual, excess, HenyeyGreenstein{}, random).h);
+                        return double(sampler.sample(budget, excess, HenyeyGreenstein{}, random).h);
                     },
                     density, edges);
                 EXPECT_GT(p, tungsten::test::SmallestPValue) << int(direction) << " " << int(lobe) << " " << excess;
@@ -125,30 +125,30 @@ TEST(DirectionSampler, TheEdaTablesShareIsTheTablesOwnDensity) {
     for (uint64_t i = 0; i < 2000; ++i) {
         Sampler s(22, RandomStream::Test, 0, i);
         const float C = std::exp(6.0f * s.next1D() - 3.0f), excess = C * std::exp2(-20.0f * s.next1D());
-        const Residual residual = Residual::of(ToTarget * C, {0.0, double(C) + double(excess)});
-        const float share = residual.C / (residual.C + excess) / (residual.C / (residual.C + excess) + 0.5f);
+        const TimeBudget budget = TimeBudget::of(ToTarget * C, {0.0, double(C) + double(excess)});
+        const float share = budget.C / (budget.C + excess) / (budget.C / (budget.C + excess) + 0.5f);
         const Vec3 direction = directionAbout(ToTarget, 2.0f * std::exp2(-20.0f * s.next1D()), s.next1D());
-        const float h = oneMinusCosine(direction, residual.axis);
-        const float expected = share * table->pdf(residual.C, excess, 2.0f, h) + (1.0f - share) * phase.pdf(direction);
+        const float h = oneMinusCosine(direction, budget.axis);
+        const float expected = share * table->pdf(budget.C, excess, 2.0f, h) + (1.0f - share) * phase.pdf(direction);
         for (const DirectionSampler* sampler : {&built, &given})
-            ASSERT_NEAR(sampler->pdf(residual, excess, direction, phase) / expected, 1.0f, 1e-5f)
+            ASSERT_NEAR(sampler->pdf(budget, excess, direction, phase) / expected, 1.0f, 1e-5f)
                 << C << " " << excess << " " << h;
     }
 }
 
 TEST(DirectionSampler, EmptyMediaHaveNoTableAndUseThePhaseFunction) {
     const DirectionSampler sampler(published(Mode::Path), Medium{});
-    const Residual residual = Residual::of({0, 0, 1}, {1.0, 1.5});
+    const TimeBudget budget = TimeBudget::of({0, 0, 1}, {1.0, 1.5});
     const HenyeyGreenstein phase{Before, 0.3f};
-    EXPECT_EQ(sampler.pdf(residual, 0.5f, ToTarget, phase), phase.pdf(ToTarget));
+    EXPECT_EQ(sampler.pdf(budget, 0.5f, ToTarget, phase), phase.pdf(ToTarget));
 }
 
 TEST(DirectionSampler, WithoutAShareOfThePhaseFunctionATargetAtTheVertexStillHasDirections) {
     Settings settings = best(Mode::Path, 0.0f);
     settings.alpha = 0.0f;
     const DirectionSampler sampler(settings, coloured(0.0f));
-    const Residual residual = Residual::of({0, 0, 0}, {0.0, 1.0});
-    const auto sample = sampler.sample(residual, 1.0f, HenyeyGreenstein{}, [] { return 0.25f; });
+    const TimeBudget budget = TimeBudget::of({0, 0, 0}, {0.0, 1.0});
+    const auto sample = sampler.sample(budget, 1.0f, HenyeyGreenstein{}, [] { return 0.25f; });
     EXPECT_NEAR(sample.inversePdf, 4.0f * Pi, 1e-4f);
 }
 
@@ -160,7 +160,7 @@ TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
             settings.direction = Direction::Ris;
             settings.directionCandidates = count;
             const DirectionSampler sampler(settings, coloured(c.g));
-            const Residual residual = Residual::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
+            const TimeBudget budget = TimeBudget::of(ToTarget * c.C, {double(c.C), double(c.C) + double(c.excess)});
             const HenyeyGreenstein phase{Before, c.g};
             // F = phase (1 + w.a): its integral is 1 + g (before . a).
             const Vec3 a{0.2f, -0.9f, 0.3f};
@@ -168,7 +168,7 @@ TEST(DirectionSampler, ResampledMeansMatchTheIntegral) {
             constexpr int Count = 100000;
             for (uint64_t i = 0; i < Count; ++i) {
                 Sampler s(21, RandomStream::Test, 0, i);
-                const auto sample = sampler.sample(residual, c.excess, phase, [&s] { return s.next1D(); });
+                const auto sample = sampler.sample(budget, c.excess, phase, [&s] { return s.next1D(); });
                 const double x = double(phase.pdf(sample.direction)) * (1.0 + double(dot(sample.direction, a))) *
                                  double(sample.inversePdf);
                 sum += x, squares += x * x;

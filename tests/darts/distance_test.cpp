@@ -73,21 +73,21 @@ struct Sums {
     }
 };
 
-Residual residualOf(const DistanceCase& c) {
-    return Residual::of({0, 0, float(c.C)}, {0.98 * c.S, c.S});
+TimeBudget residualOf(const DistanceCase& c) {
+    return TimeBudget::of({0, 0, float(c.C)}, {0.98 * c.S, c.S});
 }
 
 /// E[transmittance / pdf F(d)] = the integral of e^{-sigmaT d} F(d) over what is in time, and the surface's share.
 void expectUnbiased(const DistanceCase& c, const Settings& settings, bool scalar, uint64_t seed, double sigmas = 5.0) {
     const DistanceSampler sampler(settings, c.medium, scalar);
-    const Residual residual = residualOf(c);
-    const double last = residual.latest(float(c.h)).firstLeg(), bound = std::min(last, c.surface);
+    const TimeBudget budget = residualOf(c);
+    const double last = budget.latest(float(c.h)).firstLeg(), bound = std::min(last, c.surface);
     const auto shape = [&](double d) { return 1.0 + d / bound; };
     const Vec3 sigmaT = c.medium.sigmaT();
     Sums medium[3], surface[3];
     for (uint64_t i = 0; i < 20000; ++i) {
         Sampler s(seed, RandomStream::Test, 0, i);
-        const DistanceSample sample = sampler.sample(residual, {{}, float(c.h)}, float(c.surface), {0.3f, 1.0f, 0.7f},
+        const DistanceSample sample = sampler.sample(budget, {{}, float(c.h)}, float(c.surface), {0.3f, 1.0f, 0.7f},
                                                      {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
         for (int k = 0; k < 3; ++k) {
             const double weight = double(k == 0   ? sample.transmittanceOverPdf.x
@@ -161,18 +161,18 @@ TEST(DistanceSampler, DrawsKnowTheirDensity) {
             Settings settings = best(Mode::Path, 0.0f);
             settings.greens = greens;
             const DistanceSampler sampler(settings, c.medium);
-            const Residual residual = residualOf(c);
+            const TimeBudget budget = residualOf(c);
             const Heading ray{{}, float(c.h)};
-            const DistanceDensity density = sampler.density(residual, ray, float(c.surface), throughput);
+            const DistanceDensity density = sampler.density(budget, ray, float(c.surface), throughput);
             for (uint64_t i = 0; i < 1000; ++i) {
                 Sampler s(78, RandomStream::Test, 0, i);
-                const DistanceSample sample = sampler.sample(residual, ray, float(c.surface), throughput,
+                const DistanceSample sample = sampler.sample(budget, ray, float(c.surface), throughput,
                                                              {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
                 ASSERT_EQ(sample.pdf, sample.surface ? density.surface() : density.pdf(sample.distance)) << c.name;
                 const float through = sampler.transmittance(sample.distance).x;
                 ASSERT_NEAR(sample.transmittanceOverPdf.x * sample.pdf, through, 1e-6f * through) << c.name;
             }
-            const double bound = std::min(double(residual.latest(float(c.h)).firstLeg()), c.surface);
+            const double bound = std::min(double(budget.latest(float(c.h)).firstLeg()), c.surface);
             double integral = double(density.surface());
             auto edges = tungsten::test::evenEdges(0.0, bound, 200);
             for (size_t i = 0; i + 1 < edges.size(); ++i)
@@ -194,9 +194,9 @@ void expectRegistersDrawTheSame(const Settings& settings) {
         for (uint64_t i = 0; i < 500; ++i) {
             Sampler s(77, RandomStream::Test, 0, i);
             const DistanceRandom random{s.next1D(), s.next1D(), s.next1D(), s.next1D()};
-            const Residual residual = residualOf(c);
-            const auto a = simd.sample(residual, {{}, float(c.h)}, float(c.surface), {1, 1, 1}, random);
-            const auto b = scalar.sample(residual, {{}, float(c.h)}, float(c.surface), {1, 1, 1}, random);
+            const TimeBudget budget = residualOf(c);
+            const auto a = simd.sample(budget, {{}, float(c.h)}, float(c.surface), {1, 1, 1}, random);
+            const auto b = scalar.sample(budget, {{}, float(c.h)}, float(c.surface), {1, 1, 1}, random);
             ASSERT_EQ(a.surface, b.surface);
             // A choice on the border of two candidates may fall to either.
             if (std::abs(a.distance - b.distance) > 1e-3f * float(c.S)) continue;
@@ -212,11 +212,11 @@ TEST(DistanceSampler, RegistersAndSingleCandidatesDrawTheSame) {
 
 TEST(DistanceSampler, NothingScattersInAnAbsorber) {
     const DistanceSampler sampler(best(Mode::Photon, 0.0f), Medium{{1, 1, 1}, {0, 0, 0}, 0.0f});
-    const Residual residual = Residual::of({0, 0, 1}, {2.0, 2.1});
-    const DistanceSample sample = sampler.sample(residual, {{}, 1.0f}, 0.5f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f});
+    const TimeBudget budget = TimeBudget::of({0, 0, 1}, {2.0, 2.1});
+    const DistanceSample sample = sampler.sample(budget, {{}, 1.0f}, 0.5f, {1, 1, 1}, {0.5f, 0.5f, 0.5f, 0.5f});
     EXPECT_TRUE(sample.surface);
     EXPECT_NEAR(sample.transmittanceOverPdf.x, std::exp(-0.5f), 1e-6f);
-    EXPECT_EQ(sampler.sample(residual, {{}, 1.0f}, float(Infinite), {1, 1, 1}, {}).transmittanceOverPdf.x, 0.0f);
+    EXPECT_EQ(sampler.sample(budget, {{}, 1.0f}, float(Infinite), {1, 1, 1}, {}).transmittanceOverPdf.x, 0.0f);
 }
 
 TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
@@ -232,12 +232,12 @@ TEST(DistanceSampler, StaysFiniteAtTheHardCases) {
         if (s.next1D() < 0.2f) settings = published(Mode::Path);
         if (s.next1D() < 0.4f) settings.preset = Preset::Published;
         const DistanceSampler sampler(settings, medium);
-        const Residual residual = Residual::of({0, 0, float(C)}, {S * (1.0 - 1e-7), S});
+        const TimeBudget budget = TimeBudget::of({0, 0, float(C)}, {S * (1.0 - 1e-7), S});
         const float h = s.next1D() < 0.1f ? 0.0f : s.next1D() < 0.1f ? 2.0f : float(logUniform(s, 1e-12, 2.0));
         const float surface = s.next1D() < 0.5f ? float(scale * logUniform(s, 1e-6, 10.0)) : float(Infinite);
-        if (!residual.alive() || residual.latest(h).isNeedle()) continue;
+        if (!budget.alive() || budget.latest(h).isDegenerate()) continue;
         const DistanceSample sample =
-            sampler.sample(residual, {{}, h}, surface, {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+            sampler.sample(budget, {{}, h}, surface, {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
         ASSERT_TRUE(sample.distance >= 0.0f && (std::isfinite(sample.distance))) << C << " " << S << " " << h;
         for (const float w : {sample.transmittanceOverPdf.x, sample.transmittanceOverPdf.y})
             ASSERT_TRUE(std::isfinite(w) && w >= 0.0f) << C << " " << S << " " << h << " " << depth << " " << w;

@@ -29,11 +29,11 @@ Exact dotExactly(const Vec3& a, const Vec3& b) {
 
 /// A flight in a body that has to be left.
 struct Configuration {
-    float sigmaA, reducedS, allowance, persistence;
+    float sigmaA, reducedS, allowance, persistenceLength;
     Ellipse<float> latest;
     Vec3 direction;
     float along;
-    Exit exit;
+    EscapeGeometry escape;
 
     /// Faces whose normals the target is before, as rho has it; `sides`: of what the target sees.
     explicit Configuration(uint64_t i, int faces = 1, bool sides = false) {
@@ -42,7 +42,7 @@ struct Configuration {
         reducedS = float(1.0 / mfp);
         sigmaA = s.next1D() < 0.2f ? 0.0f : float(logUniform(s, 1e-4, 10.0) / mfp);
         allowance = s.next1D() < 0.5f ? 1.0f : 0.5f;
-        persistence = s.next1D() < 0.5f ? 0.0f : float(mfp * logUniform(s, 0.01, 100.0));
+        persistenceLength = s.next1D() < 0.5f ? 0.0f : float(mfp * logUniform(s, 0.01, 100.0));
         const double depth = mfp * logUniform(s, 1e-3, 1e3);
         const double height = s.next1D() < 0.1f ? 0.0 : depth * logUniform(s, 1e-3, 1e3);
         const double lateral = s.next1D() < 0.1f ? 0.0 : depth * logUniform(s, 1e-3, 1e2);
@@ -53,37 +53,37 @@ struct Configuration {
         latest.h = oneMinusCosine(direction, target * (1.0f / latest.C));
         latest.delta = float((depth + mfp) * logUniform(s, 1e-3, 1e3));
         along = s.next1D() * latest.firstLeg();
-        exit.gate = float(double(latest.delta) * logUniform(s, 1e-6, 2.0));
-        exit.mismatch = s.next1D() < 0.5f ? 1.0f : float(logUniform(s, 1.0, 90.0));
-        exit.surplus = s.next1D() < 0.8f ? 0.0f : 0.1f * latest.delta;
-        exit.outerSpeed = s.next1D() < 0.5f ? 1.0f : 0.5f + s.next1D();
-        const float wall = s.next1D() < 0.5f ? Exit::Infinite : float(depth * logUniform(s, 1.01, 100.0));
+        escape.gate = float(double(latest.delta) * logUniform(s, 1e-6, 2.0));
+        escape.reflectionA = s.next1D() < 0.5f ? 1.0f : float(logUniform(s, 1.0, 90.0));
+        escape.extraLength = s.next1D() < 0.8f ? 0.0f : 0.1f * latest.delta;
+        escape.outerSpeed = s.next1D() < 0.5f ? 1.0f : 0.5f + s.next1D();
+        const float wall = s.next1D() < 0.5f ? EscapeGeometry::Infinite : float(depth * logUniform(s, 1.01, 100.0));
         const float beyond = s.next1D() < 0.7f ? 0.0f : float(mfp * s.nextDouble());
-        exit.faces.add({{0, 0, 1}, float(depth), float(height), wall, beyond});
+        escape.faces.add({{0, 0, 1}, float(depth), float(height), wall, beyond});
         const float part = s.next1D();
         if (faces > 1 && lateral > 0.0)
-            exit.faces.add({{1, 0, 0}, part * target.x, (1.0f - part) * target.x, Exit::Infinite, 0.0f});
+            escape.faces.add({{1, 0, 0}, part * target.x, (1.0f - part) * target.x, EscapeGeometry::Infinite, 0.0f});
         for (int k = 0; sides && k < 4; ++k)
-            exit.sides.add({k < 2 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, float(depth) * (2.0f * s.next1D() - 1.0f)});
+            escape.sides.add({k < 2 ? Vec3{0, 1, 0} : Vec3{1, 0, 0}, float(depth) * (2.0f * s.next1D() - 1.0f)});
     }
-    [[nodiscard]] FirstPassage passage() const { return {sigmaA, reducedS, exit, allowance}; }
-    [[nodiscard]] Departure<float> departure() const { return {exit, latest, direction, along, persistence}; }
+    [[nodiscard]] FirstPassage passage() const { return {sigmaA, reducedS, escape, allowance}; }
+    [[nodiscard]] EscapePoint<float> departure() const { return {escape, latest, direction, along, persistenceLength}; }
 };
 
 /// The same place and its chances, as the formulas have them.
 struct ExactPassage {
     const Configuration& c;
     Exact rho, excess, squaredOutside = 0, meanFreePath, fourthInverseD, margin;
-    struct Left {
+    struct RemainingLength {
         Exact depth, longest, reachable;
     };
 
     explicit ExactPassage(const Configuration& configuration) : c(configuration) {
         const Exact C(c.latest.C), d(c.along);
         rho = sqrt(d * d - 2 * d * C * (1 - Exact(c.latest.h)) + C * C);
-        excess = positive(C + c.latest.delta - d - rho - c.exit.surplus);
-        for (size_t i = 0; i < c.exit.sides.size(); i += 2) {
-            const Exit::Side &a = c.exit.sides[i], &b = c.exit.sides[i + 1];
+        excess = positive(C + c.latest.delta - d - rho - c.escape.extraLength);
+        for (size_t i = 0; i < c.escape.sides.size(); i += 2) {
+            const EscapeGeometry::Side &a = c.escape.sides[i], &b = c.escape.sides[i + 1];
             const Exact toA = a.outside + d * dotExactly(c.direction, a.normal),
                         toB = b.outside + d * dotExactly(c.direction, b.normal);
             const Exact outside = positive(toA > toB ? toA : toB);
@@ -91,19 +91,20 @@ struct ExactPassage {
         }
         meanFreePath = 1 / Exact(c.reducedS);
         fourthInverseD = Exact(3) / 4 * (Exact(c.sigmaA) + c.reducedS);
-        margin = c.exit.mismatch / (2 * fourthInverseD);
+        margin = c.escape.reflectionA / (2 * fourthInverseD);
     }
     static Exact positive(const Exact& x) { return x > 0 ? x : Exact(0); }
     static Exact least(const Exact& a, const Exact& b) { return a < b ? a : b; }
     static Exact most(const Exact& a, const Exact& b) { return a > b ? a : b; }
 
-    [[nodiscard]] Left to(const Exit::Face& face) const {
+    [[nodiscard]] RemainingLength to(const EscapeGeometry::Face& face) const {
         const Exact cosine = dotExactly(c.direction, face.normal);
         Exact depth = positive(face.depth - c.along * cosine);
         const Exact outside = sqrt(positive(rho * rho - depth * (depth + 2 * Exact(face.height))));
-        const Exact longest = positive(excess + rho - outside * c.exit.outerSpeed);
-        if (c.persistence > 0) depth = positive(depth - cosine * c.persistence * -expm1(-longest / c.persistence));
-        const Exact reachable = least(most(excess, c.exit.gate * Exact(0.01f)), least(longest, c.exit.gate));
+        const Exact longest = positive(excess + rho - outside * c.escape.outerSpeed);
+        if (c.persistenceLength > 0)
+            depth = positive(depth - cosine * c.persistenceLength * -expm1(-longest / c.persistenceLength));
+        const Exact reachable = least(most(excess, c.escape.gate * Exact(0.01f)), least(longest, c.escape.gate));
         return {depth, longest, reachable};
     }
     /// The part that has left after the length s from the depth z.
@@ -111,27 +112,27 @@ struct ExactPassage {
         const Exact p = z * sqrt(fourthInverseD / s), w = sqrt(s / (4 * fourthInverseD)) / margin;
         return erfc(p) - exp(2 * p * w + w * w) * erfc(p + w);
     }
-    [[nodiscard]] Exact through(const Exit::Face& face, const Left& left) const {
-        const Exact z = left.depth + face.beyond, end = left.longest + c.allowance * meanFreePath;
+    [[nodiscard]] Exact through(const EscapeGeometry::Face& face, const RemainingLength& left) const {
+        const Exact z = left.depth + face.outerDepth, end = left.longest + c.allowance * meanFreePath;
         const Exact shortest = left.longest - left.reachable;
         const Exact start = most(shortest * (1 + c.allowance * meanFreePath / (shortest + meanFreePath)), end / 10000);
         Exact chance = leftBy(z, end) - leftBy(z, start);
-        if (face.thickness < Exit::Infinite) {
-            const Exact slab = face.thickness + 2 * margin + face.beyond, wall = most(slab - margin - z, margin);
+        if (face.thickness < EscapeGeometry::Infinite) {
+            const Exact slab = face.thickness + 2 * margin + face.outerDepth, wall = most(slab - margin - z, margin);
             chance *= most(-expm1(-4 * fourthInverseD * slab * wall / end), Exact(1e-6f));
         }
         return chance * exp(-c.sigmaA * left.longest);
     }
     /// `deeper`, `later`: by so much than it is.
     [[nodiscard]] Exact throughFace(size_t i, const Exact& deeper, const Exact& later) const {
-        Left left = to(c.exit.faces[i]);
+        RemainingLength left = to(c.escape.faces[i]);
         left.depth += deeper;
         left.longest += later;
-        return through(c.exit.faces[i], left);
+        return through(c.escape.faces[i], left);
     }
     [[nodiscard]] Exact chance() const {
         Exact sum = 0;
-        for (size_t i = 0; i < c.exit.faces.size(); ++i) sum += throughFace(i, 0, 0);
+        for (size_t i = 0; i < c.escape.faces.size(); ++i) sum += throughFace(i, 0, 0);
         sum *= exp(-squaredOutside * fourthInverseD / (excess + meanFreePath));
         return sum;
     }
@@ -143,17 +144,17 @@ TEST(FirstPassageAccuracy, Departures) {
     for (uint64_t i = 0; i < 4000; ++i) {
         const Configuration c(i, 1, true);
         const ExactPassage exact(c);
-        const Departure<float> at = c.departure();
+        const EscapePoint<float> at = c.departure();
         const Exact whole = Exact(c.latest.C) + c.latest.delta;
         rho.add(double(at.rho), exact.rho);
         excess.add(double(at.excess), exact.excess, Exact(c.latest.delta));
         outside.add(double(at.squaredOutside), exact.squaredOutside, exact.squaredOutside + whole * whole);
-        const auto left = at.to(c.exit.faces[0]);
-        const auto exactly = exact.to(c.exit.faces[0]);
-        depth.add(double(left.depth), exactly.depth, Exact(c.exit.faces[0].depth) + c.along + c.persistence);
+        const auto left = at.to(c.escape.faces[0]);
+        const auto exactly = exact.to(c.escape.faces[0]);
+        depth.add(double(left.depth), exactly.depth, Exact(c.escape.faces[0].depth) + c.along + c.persistenceLength);
         // Of targets on the boundary the way outside is a root of a difference.
         longest.add(double(left.longest), exactly.longest, exact.excess + exact.rho);
-        reachable.add(double(left.reachable), exactly.reachable, Exact(c.exit.gate));
+        reachable.add(double(left.reachable), exactly.reachable, Exact(c.escape.gate));
     }
     EXPECT_TRUE(rho.within(2.5e-7));
     EXPECT_TRUE(excess.within(1e-6));
@@ -176,7 +177,7 @@ TEST(FirstPassageAccuracy, ProbabilitiesOfHalfSpacesAndSlabs) {
             rare.add(found, exactly);
         Batch factor(0.0f);
         const Batch power = c.passage().exponent(
-            Departure<Batch>(c.exit, c.latest, c.direction, Batch(c.along), c.persistence), factor);
+            EscapePoint<Batch>(c.escape, c.latest, c.direction, Batch(c.along), c.persistenceLength), factor);
         alignas(64) std::array<float, size_t(lanes::Width<Batch>)> logs{}, factors{};
         lanes::put(logs.data(), power);
         lanes::put(factors.data(), factor);

@@ -17,9 +17,9 @@ using tungsten::test::thickMedium;
 constexpr double SigmaA = 0.02, ReducedS = 10.0;
 constexpr double D = 1.0 / (3.0 * (SigmaA + ReducedS));
 
-double logPassage(const Residual& residual, float allowance) {
-    const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit, allowance);
-    return double(passage.log({residual.exit, residual.latest(0), residual.axis, 0.0f}));
+double logPassage(const TimeBudget& budget, float allowance) {
+    const FirstPassage passage(float(SigmaA), float(ReducedS), budget.escape, allowance);
+    return double(passage.log({budget.escape, budget.latest(0), budget.axis, 0.0f}));
 }
 
 /// Density per length of leaving at s from depth z under a half-space whose boundary sends back a part of what meets
@@ -38,13 +38,13 @@ TEST(FirstPassage, IsTheFluxThroughTheBoundaryIntegratedOverTheGate) {
         for (const double length : {0.5, 2.0, 12.0})
             for (const double gate : {0.002, 0.2, 0.45}) {
                 // Target straight above: what is left inside is the depth and the whole excess.
-                const Residual residual = outOf(depth, 3.0, 3.0 + length, gate);
-                if (!residual.alive()) continue;
+                const TimeBudget budget = outOf(depth, 3.0, 3.0 + length, gate);
+                if (!budget.alive()) continue;
                 const double expected = tungsten::test::integrate<31>([&](double s) { return flux(depth, s); },
                                                                       std::max(length - gate, depth), length, 15, 1e-9);
                 // The gate's start is moved by at most 1e-4 of a mean free path.
                 const double tolerance = 2e-3 + 2e-5 / gate;
-                EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, tolerance)
+                EXPECT_NEAR(logPassage(budget, 0.0f), std::log(expected) - SigmaA * length, tolerance)
                     << depth << " " << length << " " << gate;
             }
 }
@@ -60,30 +60,30 @@ double fresnel(double n, double cosine) {
 }
 
 TEST(FirstPassage, LeavesSlowlyWhereTheBoundaryReflects) {
-    EXPECT_EQ(boundaryMismatch(1.0f), 1.0f);
+    EXPECT_EQ(boundaryReflectionA(1.0f), 1.0f);
     for (const double n : {1.2, 1.4, 1.5}) {
         const double reflectance = tungsten::test::integrate<31>(
             [n](double cosine) { return 2.0 * cosine * fresnel(n, cosine); }, 0.0, 1.0, 15, 1e-8);
-        EXPECT_NEAR(boundaryMismatch(float(n)), (1.0 + reflectance) / (1.0 - reflectance), 0.1) << n;
+        EXPECT_NEAR(boundaryReflectionA(float(n)), (1.0 + reflectance) / (1.0 - reflectance), 0.1) << n;
     }
-    Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
-    residual.exit.mismatch = 2.95f;
+    TimeBudget budget = outOf(0.3, 3.0, 5.0, 0.2);
+    budget.escape.reflectionA = 2.95f;
     const double length = 2.0;
     const double expected =
         tungsten::test::integrate<31>([&](double s) { return flux(0.3, s, 2.95); }, length - 0.2, length, 15, 1e-9);
-    EXPECT_NEAR(logPassage(residual, 0.0f), std::log(expected) - SigmaA * length, 3e-3);
+    EXPECT_NEAR(logPassage(budget, 0.0f), std::log(expected) - SigmaA * length, 3e-3);
 }
 
 /// Light at a boundary that reflects nearly all of it may leave at any time. Guided light paths that took it for
 /// hopeless ended there: bodies of an index of 3 and more were black.
 TEST(FirstPassage, LeavesSoonHoweverMuchTheBoundaryReflects) {
     const auto at = [](double length, float mismatch) {
-        Residual residual = outOf(0.01, 3.0, 3.0 + length, 0.1);
-        residual.exit.mismatch = mismatch;
-        return logPassage(residual, 1.0f);
+        TimeBudget budget = outOf(0.01, 3.0, 3.0 + length, 0.1);
+        budget.escape.reflectionA = mismatch;
+        return logPassage(budget, 1.0f);
     };
     for (const float index : {1.5f, 2.0f, 3.0f, 4.0f, 20.0f})
-        EXPECT_GT(at(0.3, boundaryMismatch(index)) - at(10.0, boundaryMismatch(index)), -10.0) << index;
+        EXPECT_GT(at(0.3, boundaryReflectionA(index)) - at(10.0, boundaryReflectionA(index)), -10.0) << index;
 }
 
 TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
@@ -92,9 +92,9 @@ TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
     };
     const double thickness = 0.5, length = 4.0;
     const auto at = [&](double depth, double time) {
-        Residual residual = outOf(depth, 3.0, 3.0 + time, 0.05);
-        residual.exit.faces[0].thickness = float(thickness);
-        return logPassage(residual, 0.0f);
+        TimeBudget budget = outOf(depth, 3.0, 3.0 + time, 0.05);
+        budget.escape.faces[0].thickness = float(thickness);
+        return logPassage(budget, 0.0f);
     };
     const double wide = thickness + 4.0 * D;
     const auto exact = [&](double depth) { // image sources
@@ -112,11 +112,11 @@ TEST(FirstPassage, SlabsLoseLightThroughTheirBack) {
 TEST(FirstPassage, IsNeverZero) {
     for (const double length : {1e-3, 1.0, 1e4, 1e7})
         for (const double gate : {1e-6, 0.1}) {
-            Residual residual = outOf(0.01, 3.0, 3.01 + length, gate);
-            residual.exit.faces[0].thickness = 0.02f;
-            const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit);
+            TimeBudget budget = outOf(0.01, 3.0, 3.01 + length, gate);
+            budget.escape.faces[0].thickness = 0.02f;
+            const FirstPassage passage(float(SigmaA), float(ReducedS), budget.escape);
             float factor = 0.0f;
-            (void)passage.exponent(Departure<float>(residual.exit, residual.latest(0), residual.axis, 0.0f), factor);
+            (void)passage.exponent(EscapePoint<float>(budget.escape, budget.latest(0), budget.axis, 0.0f), factor);
             EXPECT_GT(factor, 0.0f) << length << " " << gate;
         }
 }
@@ -124,57 +124,57 @@ TEST(FirstPassage, IsNeverZero) {
 /// A control vertex as deep as can be, seen from a boundary that hides nearer ones: rare, but not lost.
 TEST(Guide, TracesControlVerticesInBodiesOftenEnough) {
     const Guide guide(best(Mode::Path, 0.0f), thickMedium(0.0f));
-    const Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
-    const Vec3 down = residual.axis * -1.0f;
-    EXPECT_FLOAT_EQ(guide.chance(residual, down, {20.0f, 23.0f, 1.0f}, 0.08f), 0.1f);
-    EXPECT_FLOAT_EQ(guide.chance(residual, residual.axis, {0.29f, 3.01f, 1.0f}, 0.08f), 1.0f);
-    Residual through = residual;
-    through.way = Way::Through;
-    EXPECT_EQ(guide.chance(through, down, {20.0f, 23.0f, 1.0f}, 0.08f), 1.0f);
+    const TimeBudget budget = outOf(0.3, 3.0, 5.0, 0.2);
+    const Vec3 down = budget.axis * -1.0f;
+    EXPECT_FLOAT_EQ(guide.shadowRayProbability(budget, down, {20.0f, 23.0f, 1.0f}, 0.08f), 0.1f);
+    EXPECT_FLOAT_EQ(guide.shadowRayProbability(budget, budget.axis, {0.29f, 3.01f, 1.0f}, 0.08f), 1.0f);
+    TimeBudget through = budget;
+    through.model = EscapeModel::Infinite;
+    EXPECT_EQ(guide.shadowRayProbability(through, down, {20.0f, 23.0f, 1.0f}, 0.08f), 1.0f);
 }
 
 /// In two whenever the length left has halved, however many vertices that takes.
 TEST(Guide, SplitsWalksThatLeaveSoon) {
     const Guide guide(best(Mode::Path, 0.0f), thickMedium(0.0f)); // a mean free path is 0.1
     int copies = 1;
-    Splits splits;
+    SplittingSchedule splits;
     for (const double left : {3.0, 1.2, 1.3, 0.7, 0.15, 0.01, 0.001}) {
-        const Residual residual = outOf(0.001, 3.0, 3.0 + left, 0.2);
-        copies *= splits.copies(guide.splits(residual));
+        const TimeBudget budget = outOf(0.001, 3.0, 3.0 + left, 0.2);
+        copies *= splits.copies(guide.splits(budget));
         EXPECT_EQ(copies, left > 1.6 ? 1 : left > 0.8 ? 2 : left > 0.4 ? 4 : left > 0.1 ? 16 : 32) << left;
     }
-    Splits late; // little is left from the first vertex on: only the halvings after it count
+    SplittingSchedule late; // little is left from the first vertex on: only the halvings after it count
     EXPECT_EQ(late.copies(guide.splits(outOf(0.001, 3.0, 3.7, 0.2))), 1);
     EXPECT_EQ(late.copies(guide.splits(outOf(0.001, 3.0, 3.01, 0.2))), 8);
-    Residual through = outOf(0.001, 3.0, 3.05, 0.2);
-    through.way = Way::Through;
+    TimeBudget through = outOf(0.001, 3.0, 3.05, 0.2);
+    through.model = EscapeModel::Infinite;
     EXPECT_EQ(guide.splits(through), 0);
 }
 
 TEST(FirstPassage, FacesAddUp) {
-    Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
-    const double one = logPassage(residual, 1.0f);
-    residual.exit.faces.add(residual.exit.faces[0]);
-    EXPECT_NEAR(logPassage(residual, 1.0f), one + std::log(2.0), 1e-5);
+    TimeBudget budget = outOf(0.3, 3.0, 5.0, 0.2);
+    const double one = logPassage(budget, 1.0f);
+    budget.escape.faces.add(budget.escape.faces[0]);
+    EXPECT_NEAR(logPassage(budget, 1.0f), one + std::log(2.0), 1e-5);
 }
 
 TEST(FirstPassage, PullsTowardsTheBoundaryAndInsideTheSides) {
-    Residual residual = outOf(0.3, 3.0, 5.0, 0.2);
-    const Departure<float> here(residual.exit, residual.latest(0), residual.axis, 0.0f);
+    TimeBudget budget = outOf(0.3, 3.0, 5.0, 0.2);
+    const EscapePoint<float> here(budget.escape, budget.latest(0), budget.axis, 0.0f);
     const FirstPassage::Slopes slopes =
-        FirstPassage(float(SigmaA), float(ReducedS), residual.exit).slopes(here, residual.axis);
-    EXPECT_GT(dot(slopes.pull, residual.exit.faces[0].normal), 0.9f * length(slopes.pull));
+        FirstPassage(float(SigmaA), float(ReducedS), budget.escape).slopes(here, budget.axis);
+    EXPECT_GT(dot(slopes.pull, budget.escape.faces[0].normal), 0.9f * length(slopes.pull));
     // Too little time to get anywhere: straight out at great strength; plenty of time: hardly pulled.
-    const Residual hurried = outOf(1.0, 3.0, 4.3, 0.2), patient = outOf(1.0, 3.0, 40.0, 0.2);
-    const auto strength = [](const Residual& r) {
-        const Departure<float> place(r.exit, r.latest(0), r.axis, 0.0f);
-        return length(FirstPassage(float(SigmaA), float(ReducedS), r.exit).slopes(place, r.axis).pull);
+    const TimeBudget hurried = outOf(1.0, 3.0, 4.3, 0.2), patient = outOf(1.0, 3.0, 40.0, 0.2);
+    const auto strength = [](const TimeBudget& r) {
+        const EscapePoint<float> place(r.escape, r.latest(0), r.axis, 0.0f);
+        return length(FirstPassage(float(SigmaA), float(ReducedS), r.escape).slopes(place, r.axis).pull);
     };
     EXPECT_GT(strength(hurried), 3.0f * strength(patient));
-    residual.exit.sides.add({{0, 1, 0}, 0.5f});
-    for (int i = 1; i < 4; ++i) residual.exit.sides.add({{1, 0, 0}, -1.0f});
-    const Departure<float> beside(residual.exit, residual.latest(0), residual.axis, 0.0f);
-    EXPECT_LT(FirstPassage(float(SigmaA), float(ReducedS), residual.exit).slopes(beside, residual.axis).pull.y, -0.1f);
+    budget.escape.sides.add({{0, 1, 0}, 0.5f});
+    for (int i = 1; i < 4; ++i) budget.escape.sides.add({{1, 0, 0}, -1.0f});
+    const EscapePoint<float> beside(budget.escape, budget.latest(0), budget.axis, 0.0f);
+    EXPECT_LT(FirstPassage(float(SigmaA), float(ReducedS), budget.escape).slopes(beside, budget.axis).pull.y, -0.1f);
 }
 
 /// Over a mean free path, in depth and in the length left: the target is straight above, where neither changes the
@@ -183,34 +183,34 @@ TEST(FirstPassage, SlopesAreDifferences) {
     const double step = 1.0 / ReducedS;
     for (const auto& [depth, height, longest, gate] :
          {std::array{0.3, 3.0, 5.0, 0.2}, {1.0, 3.0, 4.3, 0.2}, {0.05, 1.0, 20.0, 1.0}}) {
-        const Residual residual = outOf(depth, height, longest, gate);
-        const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit);
-        const Departure<float> here(residual.exit, residual.latest(0), residual.axis, 0.0f);
-        const FirstPassage::Slopes slopes = passage.slopes(here, residual.axis);
-        const double log = logPassage(residual, 1.0f);
+        const TimeBudget budget = outOf(depth, height, longest, gate);
+        const FirstPassage passage(float(SigmaA), float(ReducedS), budget.escape);
+        const EscapePoint<float> here(budget.escape, budget.latest(0), budget.axis, 0.0f);
+        const FirstPassage::Slopes slopes = passage.slopes(here, budget.axis);
+        const double log = logPassage(budget, 1.0f);
         const double change = log - logPassage(outOf(depth + step, height, longest, gate), 1.0f);
         const double later = logPassage(outOf(depth, height, longest + step, gate), 1.0f) - log;
         EXPECT_NEAR(slopes.later, later / step, 0.01 + 0.01 * std::abs(later / step)) << depth;
         const double outward = (change > 0.0 ? change : std::expm1(change)) / step;
-        EXPECT_NEAR(dot(slopes.pull, residual.exit.faces[0].normal), outward, 0.01 + 0.01 * std::abs(outward)) << depth;
+        EXPECT_NEAR(dot(slopes.pull, budget.escape.faces[0].normal), outward, 0.01 + 0.01 * std::abs(outward)) << depth;
     }
 }
 
 TEST(FirstPassage, RegistersAndSinglePlacesAgree) {
-    Residual residual = outOf(0.5, 2.0, 4.0, 0.3);
-    residual.exit.faces[0].thickness = 1.5f;
-    const FirstPassage passage(float(SigmaA), float(ReducedS), residual.exit);
+    TimeBudget budget = outOf(0.5, 2.0, 4.0, 0.3);
+    budget.escape.faces[0].thickness = 1.5f;
+    const FirstPassage passage(float(SigmaA), float(ReducedS), budget.escape);
     using Batch = xsimd::batch<float>;
-    const Vec3 direction = directionAbout(residual.axis, 0.6f, 0.2f);
-    const Ellipse<float> latest = residual.latest(0.6f);
+    const Vec3 direction = directionAbout(budget.axis, 0.6f, 0.2f);
+    const Ellipse<float> latest = budget.latest(0.6f);
     alignas(64) std::array<float, size_t(lanes::Width<Batch>)> along{}, logs{};
     for (size_t i = 0; i < along.size(); ++i) along[i] = latest.firstLeg() * float(i) / float(along.size());
     Batch factor;
     const Batch power = passage.exponent(
-        Departure<Batch>(residual.exit, latest, direction, Batch::load_unaligned(along.data()), 0.05f), factor);
+        EscapePoint<Batch>(budget.escape, latest, direction, Batch::load_unaligned(along.data()), 0.05f), factor);
     lanes::put(logs.data(), Batch(power + xsimd::log(factor)));
     for (size_t i = 0; i < along.size(); ++i)
-        EXPECT_NEAR(logs[i], passage.log({residual.exit, latest, direction, along[i], 0.05f}), 1e-3f) << i;
+        EXPECT_NEAR(logs[i], passage.log({budget.escape, latest, direction, along[i], 0.05f}), 1e-3f) << i;
 }
 
 } // namespace

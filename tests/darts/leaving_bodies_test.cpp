@@ -25,23 +25,23 @@ const Place Places[] = {{0.3, 3.0, 4.5, 0.2}, {1.0, 0.5, 1.7, 0.05}, {0.02, 5.0,
 void expectDirectionsOf(Mode mode, const Place& p, float g, bool connects) {
     const HenyeyGreenstein phase{{0.6f, 0.0f, 0.8f}, g};
     const DirectionSampler sampler(best(mode, g), thickMedium(g));
-    Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
-    residual.exit.connects = connects;
-    const float excess = std::max(residual.excess, 0.2f); // narrower lobes are thinner than the test's cells
+    TimeBudget budget = outOf(p.depth, p.height, p.longest, p.gate);
+    budget.escape.straightExit = connects;
+    const float excess = std::max(budget.excess, 0.2f); // narrower lobes are thinner than the test's cells
     const double value = tungsten::test::chiSquareSphere(
         [&](Sampler& s) {
-            const auto sample = sampler.sample(residual, excess, phase, [&s] { return s.next1D(); });
-            const float pdf = sampler.pdf(residual, excess, sample.direction, phase);
+            const auto sample = sampler.sample(budget, excess, phase, [&s] { return s.next1D(); });
+            const float pdf = sampler.pdf(budget, excess, sample.direction, phase);
             EXPECT_NEAR(sample.inversePdf * pdf, 1.0f, 2e-3f);
             return std::optional(tungsten::Vec3f(sample.direction.x, sample.direction.y, sample.direction.z));
         },
         [&](const tungsten::Vec3f& d) {
-            return double(sampler.pdf(residual, excess, {d.x, d.y, d.z}, phase));
+            return double(sampler.pdf(budget, excess, {d.x, d.y, d.z}, phase));
         });
     EXPECT_GT(value, tungsten::test::SmallestPValue) << int(mode) << " " << p.depth << " " << g << " " << connects;
 }
 
-TEST(DirectionsOut, SampleTheirDensity) {
+TEST(EscapeDirections, SampleTheirDensity) {
     for (const Place& p : Places)
         for (const float g : {0.0f, 0.4f, -0.3f})
             for (const bool connects : {true, false}) expectDirectionsOf(Mode::Path, p, g, connects);
@@ -51,7 +51,7 @@ TEST(DirectionsOut, SampleTheirDensity) {
 
 /// By the product with the phase function, or mixed: E[F(w) inverse pdf] = the integral of F = phase (1 + w.a) over the
 /// sphere, 1 + g (before . a).
-TEST(LastTurns, MeansMatchTheIntegral) {
+TEST(ConvolvedPhaseLobe, MeansMatchTheIntegral) {
     const Vec3 before{0.6f, 0.0f, 0.8f}, a{0.2f, -0.9f, 0.3f};
     for (const double depth : {0.0, 0.03, 0.15})
         for (const float g : {0.5f, 0.8f, 0.99f})
@@ -59,15 +59,15 @@ TEST(LastTurns, MeansMatchTheIntegral) {
                 Settings settings = best(Mode::Path, g);
                 settings.direction = strata ? Direction::Product : Direction::Connection;
                 const DirectionSampler sampler(settings, thickMedium(g));
-                const Residual residual = outOf(depth, 3.0, 3.0 + depth + 0.06, 0.05);
-                EXPECT_TRUE(LastTurns::of(residual, thickMedium(g))) << depth << " " << g;
+                const TimeBudget budget = outOf(depth, 3.0, 3.0 + depth + 0.06, 0.05);
+                EXPECT_TRUE(ConvolvedPhaseLobe::of(budget, thickMedium(g))) << depth << " " << g;
                 const HenyeyGreenstein phase{before, g};
                 double sum = 0.0, squares = 0.0;
                 constexpr int Count = 100000;
                 for (uint64_t i = 0; i < Count; ++i) {
                     Sampler s(36, RandomStream::Test, 0, i);
-                    const auto sample = sampler.sample(residual, 0.02f, phase, [&s] { return s.next1D(); });
-                    const float pdf = sampler.pdf(residual, 0.02f, sample.direction, phase);
+                    const auto sample = sampler.sample(budget, 0.02f, phase, [&s] { return s.next1D(); });
+                    const float pdf = sampler.pdf(budget, 0.02f, sample.direction, phase);
                     ASSERT_NEAR(sample.inversePdf * pdf, 1.0f, 1e-5f);
                     const double weight = double(phase.pdf(sample.direction)) * double(sample.inversePdf);
                     const double x = weight * (1.0 + double(dot(sample.direction, a)));
@@ -78,17 +78,17 @@ TEST(LastTurns, MeansMatchTheIntegral) {
             }
 }
 
-TEST(LastTurns, AreForgottenDeepInside) {
-    const Residual deep = outOf(1.0, 3.0, 5.0, 0.05), near = outOf(0.05, 3.0, 3.1, 0.05);
-    EXPECT_FALSE(LastTurns::of(deep, thickMedium(0.8f)));
-    EXPECT_TRUE(LastTurns::of(near, thickMedium(0.8f)));
-    EXPECT_FALSE(LastTurns::of(near, thickMedium(0.4f)));
+TEST(ConvolvedPhaseLobe, AreForgottenDeepInside) {
+    const TimeBudget deep = outOf(1.0, 3.0, 5.0, 0.05), near = outOf(0.05, 3.0, 3.1, 0.05);
+    EXPECT_FALSE(ConvolvedPhaseLobe::of(deep, thickMedium(0.8f)));
+    EXPECT_TRUE(ConvolvedPhaseLobe::of(near, thickMedium(0.8f)));
+    EXPECT_FALSE(ConvolvedPhaseLobe::of(near, thickMedium(0.4f)));
 }
 
 /// What comes round to the target is drawn more often than by the phase function, and weighs less.
-TEST(LastTurns, AreTowardsTheTarget) {
-    const Residual residual = outOf(0.03, 3.0, 3.06, 0.05);
-    const Vec3 before = directionAbout(residual.axis, 1.0f, 0.0f); // across
+TEST(ConvolvedPhaseLobe, AreTowardsTheTarget) {
+    const TimeBudget budget = outOf(0.03, 3.0, 3.06, 0.05);
+    const Vec3 before = directionAbout(budget.axis, 1.0f, 0.0f); // across
     double share[2] = {0.0, 0.0};
     for (const Direction direction : {Direction::Phase, Direction::Connection}) {
         Settings settings = best(Mode::Path, 0.8f);
@@ -97,7 +97,7 @@ TEST(LastTurns, AreTowardsTheTarget) {
         for (uint64_t i = 0; i < 20000; ++i) {
             Sampler s(37, RandomStream::Test, 0, i);
             const auto sample =
-                sampler.sample(residual, 0.02f, HenyeyGreenstein{before, 0.8f}, [&s] { return s.next1D(); });
+                sampler.sample(budget, 0.02f, HenyeyGreenstein{before, 0.8f}, [&s] { return s.next1D(); });
             share[direction == Direction::Connection] += sample.h < 0.3f ? 1.0 / 20000.0 : 0.0;
         }
     }
@@ -108,17 +108,17 @@ TEST(LastTurns, AreTowardsTheTarget) {
 void expectDistancesOf(Mode mode, const Place& p, float g, double h, bool connects = true) {
     SCOPED_TRACE(testing::Message() << int(mode) << " " << p.depth << " " << g << " " << h);
     const DistanceSampler sampler(best(mode, g), thickMedium(g));
-    Residual residual = outOf(p.depth, p.height, p.longest, p.gate);
-    residual.exit.connects = connects;
-    const Heading ray{directionAbout(residual.axis, float(h), 0.3f), float(h)};
+    TimeBudget budget = outOf(p.depth, p.height, p.longest, p.gate);
+    budget.escape.straightExit = connects;
+    const Heading ray{directionAbout(budget.axis, float(h), 0.3f), float(h)};
     const double surface = h < 1.0 ? p.depth / (1.0 - h) : 1e30,
-                 end = std::min(double(residual.latest(float(h)).firstLeg()), surface);
+                 end = std::min(double(budget.latest(float(h)).firstLeg()), surface);
     double sum = 0.0, squares = 0.0, reached = 0.0, reachedSquares = 0.0;
     constexpr int Count = 20000;
     for (uint64_t i = 0; i < Count; ++i) {
         Sampler s(32, RandomStream::Test, 0, i);
         const DistanceSample sample =
-            sampler.sample(residual, ray, float(surface), {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
+            sampler.sample(budget, ray, float(surface), {1, 1, 1}, {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
         const double weight = double(sample.transmittanceOverPdf.x);
         const double x = sample.surface ? 0.0 : weight * (1.0 + double(sample.distance));
         sum += x, squares += x * x;
@@ -150,13 +150,13 @@ TEST(DistancesOut, MeansMatchQuadrature) {
 TEST(DistancesOut, NothingIsRareBehindRefraction) {
     const auto heaviest = [](bool connects) {
         const DistanceSampler sampler(best(Mode::Photon, 0.0f), thickMedium(0.0f));
-        Residual residual = outOf(0.5, 3.0, 4.1, 0.09);
-        residual.exit.connects = connects;
+        TimeBudget budget = outOf(0.5, 3.0, 4.1, 0.09);
+        budget.escape.straightExit = connects;
         float most = 0.0f;
         for (uint64_t i = 0; i < 50000; ++i) {
             Sampler s(35, RandomStream::Test, 0, i);
-            const Heading ray{directionAbout(residual.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
-            const DistanceSample sample = sampler.sample(residual, residual.heading(ray.direction), 1e30f, {1, 1, 1},
+            const Heading ray{directionAbout(budget.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
+            const DistanceSample sample = sampler.sample(budget, budget.heading(ray.direction), 1e30f, {1, 1, 1},
                                                          {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
             most = std::max(most, 10.02f * sample.transmittanceOverPdf.x);
         }
@@ -166,19 +166,19 @@ TEST(DistancesOut, NothingIsRareBehindRefraction) {
     EXPECT_GT(heaviest(true), 2.0f);
 }
 
-/// Deep in a body usefulness hardly varies within a flight: nor may weights, which multiply over hundreds of them.
+/// Deep in a body importance hardly varies within a flight: nor may weights, which multiply over hundreds of them.
 TEST(DistancesOut, WeightsOfCameraPathsHardlyVaryDeepInside) {
     const auto spread = [](bool logLinear) {
         Settings settings = best(Mode::Path, 0.0f);
         settings.preset = logLinear ? Preset::Best : Preset::Published;
         const DistanceSampler sampler(settings, thickMedium(0.0f));
-        const Residual residual = outOf(2.0, 3.0, 45.0, 0.15);
+        const TimeBudget budget = outOf(2.0, 3.0, 45.0, 0.15);
         double squares = 0.0;
         constexpr int Count = 5000;
         for (uint64_t i = 0; i < Count; ++i) {
             Sampler s(34, RandomStream::Test, 0, i);
-            const Heading ray{directionAbout(residual.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
-            const DistanceSample sample = sampler.sample(residual, residual.heading(ray.direction), 1e30f, {1, 1, 1},
+            const Heading ray{directionAbout(budget.axis, 2.0f * s.next1D(), s.next1D()), 0.0f};
+            const DistanceSample sample = sampler.sample(budget, budget.heading(ray.direction), 1e30f, {1, 1, 1},
                                                          {s.next1D(), s.next1D(), s.next1D(), s.next1D()});
             const double log = std::log(10.02 * double(sample.transmittanceOverPdf.x));
             squares += log * log;

@@ -21,19 +21,19 @@ constexpr Shape Shapes[] = {Shape::TimeBound, Shape::Diffusion, Shape::Causal, S
 /// optical depth up to the bound.
 struct Drawn {
     Medium medium;
-    Residual residual = outOf(0.4, 1.0, 1.9, 0.1);
+    TimeBudget budget = outOf(0.4, 1.0, 1.9, 0.1);
     CandidateDraw draw;
 
     Drawn(bool grey, float depth, float surface, float kink, float h = 0.6f) {
-        draw.latest = residual.latest(h);
+        draw.latest = budget.latest(h);
         draw.firstLeg = draw.latest.firstLeg();
         draw.bound = draw.firstLeg * std::min(surface, 1.0f);
         draw.kink = draw.firstLeg * kink;
-        draw.gateWidth = residual.width;
+        draw.gateWidth = budget.width;
         draw.overlap = true;
         draw.throughput = {0.5f, 1.0f, 0.8f};
-        draw.exit = &residual.exit;
-        draw.direction = directionAbout(residual.axis, h, 0.3f);
+        draw.escape = &budget.escape;
+        draw.direction = directionAbout(budget.axis, h, 0.3f);
         const float s = 0.8f * depth / draw.bound, a = 0.2f * depth / draw.bound;
         medium = grey ? Medium{{a, a, a}, {s, s, s}, 0.2f} : Medium{{a, 0, 2 * a}, {0.3f * s, s, 1.7f * s}, 0.2f};
         draw.medium = &medium;
@@ -60,7 +60,7 @@ void forEveryDraw(const Use& use) {
                     }
 }
 
-/// Fine where flights are short, and towards the bound, where usefulness falls.
+/// Fine where flights are short, and towards the bound, where importance falls.
 std::vector<double> edgesUpTo(double bound) {
     auto edges = tungsten::test::ratioEdges(bound * 1e-6, bound * 0.5, 60);
     const auto back = tungsten::test::ratioEdges(bound * 1e-5, bound * 0.5, 40);
@@ -103,7 +103,7 @@ TEST(LogLinearDistance, RegistersAndSingleNodesAgree) {
         const LogLinearDistance wide = drawn.distance(shape), single = drawn.distance(shape, true);
         for (int i = 0; i < 100; ++i) {
             const float u = (float(i) + 0.5f) / 100.0f, d = single.sample(u);
-            // Of exponents up to 57: usefulness in registers is right to 3e-3 for bodies, else to a few 1e-6.
+            // Of exponents up to 57: importance in registers is right to 3e-3 for bodies, else to a few 1e-6.
             const float bound = shape == Shape::FirstPassage ? 6e-3f : 3e-4f;
             EXPECT_NEAR(wide.pdf(d) / single.pdf(d), 1.0f, bound) << d;
         }
@@ -132,25 +132,26 @@ TEST(LogLinearDistance, ByTimeAloneIsTheTruncatedExponential) {
 TEST(LogLinearDistance, OfPlainFlightsHasNoNoise) {
     const Medium medium{{0.2f, 0.2f, 0.2f}, {1.8f, 1.8f, 1.8f}, 0.0f};
     const DistanceSampler sampler(plainFlights(best(Mode::Path, 0.0f)), medium);
-    const Residual residual = Residual::of({0, 0, 1}, {1.4, 1.5});
-    const float end = residual.latest(0.4f).firstLeg();
+    const TimeBudget budget = TimeBudget::of({0, 0, 1}, {1.4, 1.5});
+    const float end = budget.latest(0.4f).firstLeg();
     for (int i = 0; i < 100; ++i) {
         const DistanceSample sample =
-            sampler.sample(residual, {{}, 0.4f}, INFINITY, {1, 1, 1}, {0.5f, 0.5f, float(i) / 100.0f, 0.5f});
+            sampler.sample(budget, {{}, 0.4f}, INFINITY, {1, 1, 1}, {0.5f, 0.5f, float(i) / 100.0f, 0.5f});
         EXPECT_NEAR(sample.transmittanceOverPdf.x, -std::expm1(-2.0f * end) / 2.0f, 1e-5f);
     }
 }
 
-/// Usefulness includes the part of the gate that is left: S - d - rho of the latest arrival over the gate, at most 1.
+/// CandidateImportance includes the part of the gate that is left: S - d - rho of the latest arrival over the gate, at
+/// most 1.
 TEST(LogLinearDistance, NodesKnowThePartOfTheGateStillInReach) {
     for (const Shape shape : {Shape::TimeBound, Shape::Diffusion, Shape::Causal}) {
         Drawn drawn(true, 1.0f, 1.0f, 0.0f);
         alignas(64) std::array<float, LogLinearDistance::Nodes> at{}, with{}, without{};
         for (size_t j = 0; j < at.size(); ++j) at[j] = drawn.draw.firstLeg * (1.0f - std::exp2(-float(j)));
-        const auto usefulness = LogLinearDistance::logImportance(shape, true);
-        usefulness(drawn.draw, at.data(), with.data());
+        const auto importance = LogLinearDistance::logImportance(shape, true);
+        importance(drawn.draw, at.data(), with.data());
         drawn.draw.overlap = false;
-        usefulness(drawn.draw, at.data(), without.data());
+        importance(drawn.draw, at.data(), without.data());
         const Ellipse<double> e{drawn.draw.latest.C, drawn.draw.latest.delta, drawn.draw.latest.h};
         for (size_t j = 0; j < at.size(); ++j) {
             const double left = e.length() - double(at[j]) - e.distanceToTarget(double(at[j]));

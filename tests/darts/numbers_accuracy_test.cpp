@@ -68,7 +68,7 @@ TEST(NumbersAccuracy, WhatBoundariesReflect) {
         if (n == 1.0f) continue;
         const Exact N(n), outside = reflectedFromOutside(n > 1.0f ? N : Exact(1 / N));
         const Exact exact = n > 1.0f ? Exact(1 - (1 - outside) / (N * N)) : outside;
-        const auto A = double(boundaryMismatch(n));
+        const auto A = double(boundaryReflectionA(n));
         const bool fitted = n >= 0.5f && n <= 2.0f;
         if (fitted) reflectance.add((A - 1.0) / (A + 1.0), exact, Exact(1));
         (fitted ? mismatch : beyond).add(A, (1 + exact) / (1 - exact));
@@ -79,12 +79,12 @@ TEST(NumbersAccuracy, WhatBoundariesReflect) {
 }
 
 TEST(NumbersAccuracy, GatesFramesAndMedia) {
-    LargestError range("range"), frames("frames"), reduced("reduced"), persistence("persistence");
+    LargestError range("range"), frames("frames"), reduced("reduced"), persistenceLength("persistence");
     for (uint64_t i = 0; i < 2000; ++i) {
         Sampler s(43, RandomStream::Test, 0, i);
         const double begin = logUniform(s, 1e-3, 1e5), width = begin * logUniform(s, 1e-7, 10.0),
                      elapsed = begin * s.nextDouble(), speed = logUniform(s, 1e-3, 1e3);
-        const ResidualRange left = ResidualRange::of({begin, begin + width}, elapsed, speed);
+        const LengthInterval left = LengthInterval::of({begin, begin + width}, elapsed, speed);
         range.add(left.low, Exact(speed) * (Exact(begin) - elapsed));
         range.add(left.high, Exact(speed) * (Exact(begin + width) - elapsed));
         const FrameSequence sequence{begin, width, 10000};
@@ -98,12 +98,12 @@ TEST(NumbersAccuracy, GatesFramesAndMedia) {
         const Exact mean = (Exact(medium.sigmaS.x) + medium.sigmaS.y + medium.sigmaS.z) / 3,
                     exactly = mean * (1 - Exact(medium.g));
         reduced.add(double(medium.reducedSigmaS()), exactly);
-        persistence.add(double(medium.persistence()), medium.g / exactly);
+        persistenceLength.add(double(medium.persistenceLength()), medium.g / exactly);
     }
     EXPECT_TRUE(range.within(4e-16));
     EXPECT_TRUE(frames.within(2.5e-16));
     EXPECT_TRUE(reduced.within(4e-7));
-    EXPECT_TRUE(persistence.within(4e-7));
+    EXPECT_TRUE(persistenceLength.within(4e-7));
 }
 
 /// Drawn angles have the rounding of floats of unit vectors, which moves h by 1e-7 sqrt(2 h).
@@ -129,7 +129,7 @@ TEST(NumbersAccuracy, PhaseFunctionsAsTheyAreDrawn) {
 
 /// Where the answer in floats is far from trivial: products of logarithms, and gates that end before they begin.
 TEST(NumbersAccuracy, UsefulnessOfWalks) {
-    LargestError useful("logUsefulness"), survival("survival"), limited("beforeSurface");
+    LargestError useful("logExpectedContribution"), survival("survival"), limited("beforeSurface");
     for (uint64_t i = 0; i < 1500; ++i) {
         Sampler s(45, RandomStream::Test, 0, i);
         const double scale = logUniform(s, 1e-4, 1e5), depth = logUniform(s, 1e-3, 1e3);
@@ -137,30 +137,29 @@ TEST(NumbersAccuracy, UsefulnessOfWalks) {
         const double S = double(C) + double(excess), width = S * logUniform(s, 1e-7, 1.0);
         const auto a = float(depth / S * s.nextDouble()), b = float(depth / S * (0.01 + s.nextDouble()));
         const Medium medium{{a, a, a}, {b, b, b}, 0.9f * s.next1D()};
-        const Residual residual = Residual::of({0, 0, C}, {S - width, S});
+        const TimeBudget budget = TimeBudget::of({0, 0, C}, {S - width, S});
         const float throughput = float(logUniform(s, 1e-6, 1e3));
         Settings settings = best(Mode::Path, 0.0f);
         settings.greens = i % 2 == 0 ? Greens::Diffusion : Greens::Causal;
         const Guide guide(settings, medium);
-        const Exact length = Exact(residual.C) + residual.excess, sigmaA(a), l = 1 / (b * (1 - Exact(medium.g)));
-        const Exact fourDs = 4 * length / (3 * (sigmaA + 1 / l)), rho(residual.C);
+        const Exact length = Exact(budget.C) + budget.excess, sigmaA(a), l = 1 / (b * (1 - Exact(medium.g)));
+        const Exact fourDs = 4 * length / (3 * (sigmaA + 1 / l)), rho(budget.C);
         const Exact u = 1 - rho * rho / (length * length), x = length / l * pow(u, Exact(0.75));
         const Exact phi = i % 2 == 0 ? Exact(-1.5 * log(ExactPi * fourDs) - rho * rho / fourDs)
                                      : Exact(log(u) / 8 - 1.5 * log(4 * ExactPi * l * length / 3) - length / l + x +
                                              log(1 + Exact(2.026) / x) / 2);
-        const Exact least = 1e-6 * length,
-                    reach = std::min(Exact(residual.excess), std::max(Exact(residual.width), least));
+        const Exact least = 1e-6 * length, reach = std::min(Exact(budget.excess), std::max(Exact(budget.width), least));
         const Exact exact = log(throughput * reach) + phi - sigmaA * length;
-        const float found = guide.logUsefulness(residual, throughput);
+        const float found = guide.logExpectedContribution(budget, throughput);
         useful.add(double(found), exact, 1 + abs(exact));
         const float first = found + 4.0f * s.next1D();
-        survival.add(double(guide.survival(Way::Through, found, first)),
+        survival.add(double(guide.survival(EscapeModel::Infinite, found, first)),
                      std::min(Exact(1), Exact(exp(Exact(found) - first) / guide.settings().roulette)));
-        const float h = float(logUniform(s, 1e-9, 2.0)), surface = s.next1D() * residual.latest(h).firstLeg();
+        const float h = float(logUniform(s, 1e-9, 2.0)), surface = s.next1D() * budget.latest(h).firstLeg();
         const Exact toTarget = sqrt(Exact(surface) * surface - 2 * surface * rho * (1 - Exact(h)) + rho * rho);
-        const Exact beyond = length - surface - toTarget, exactly = residual.width - beyond;
-        limited.add(double(Guide::beforeSurface(residual, h, surface).width), exactly > 0 ? exactly : Exact(0),
-                    Exact(residual.width) + beyond);
+        const Exact beyond = length - surface - toTarget, exactly = budget.width - beyond;
+        limited.add(double(Guide::beforeSurface(budget, h, surface).width), exactly > 0 ? exactly : Exact(0),
+                    Exact(budget.width) + beyond);
     }
     EXPECT_TRUE(useful.within(3e-6));
     EXPECT_TRUE(survival.within(2e-7));

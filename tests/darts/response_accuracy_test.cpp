@@ -150,15 +150,15 @@ TEST(ResponseAccuracy, ConnectionsThatFollowIt) {
         const TemporalResponse response = pieces.response();
         Sampler s(33, RandomStream::Test, 0, i);
         const double speed = logUniform(s, 0.1, 10.0), elapsed = response.begin() - s.nextDouble();
-        const ResidualRange range = ResidualRange::of({response.begin(), response.end()}, elapsed, speed);
-        const Residual residual = Residual::of({0, 0, float(range.high * s.nextDouble())}, range);
-        if (!residual.alive()) continue;
+        const LengthInterval range = LengthInterval::of({response.begin(), response.end()}, elapsed, speed);
+        const TimeBudget budget = TimeBudget::of({0, 0, float(range.high * s.nextDouble())}, range);
+        if (!budget.alive()) continue;
         const float u = s.next1D();
-        const ConnectionSample connection = guide.sampleConnection(residual, u, {&response, elapsed, speed});
+        const ConnectionSample connection = guide.sampleConnection(budget, u, {&response, elapsed, speed});
         if (!(connection.inversePdf > 0.0f)) continue;
-        const Exact begin = elapsed + Exact(residual.shortest) / speed;
-        const Exact time = begin + (Exact(connection.excess) - residual.low) / speed;
-        const Exact low = pieces.integral(begin), high = pieces.integral(begin + Exact(residual.width) / speed);
+        const Exact begin = elapsed + Exact(budget.shortest) / speed;
+        const Exact time = begin + (Exact(connection.excess) - budget.low) / speed;
+        const Exact low = pieces.integral(begin), high = pieces.integral(begin + Exact(budget.width) / speed);
         inverted.add(double((pieces.integral(time) - low) / pieces.total()), u * (high - low) / pieces.total(),
                      Exact(1));
         inverse.add(double(pieces.at(time) / (speed * (high - low))), 1 / Exact(connection.inversePdf),

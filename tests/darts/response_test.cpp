@@ -24,17 +24,17 @@ TEST(FrameSequence, StratifiedChoiceVisitsEveryFrameEquallyOften) {
     EXPECT_DOUBLE_EQ(frames.all().end, 5.5);
 }
 
-TEST(Residual, KeepsShortGatesAtTheEndOfLongPaths) {
+TEST(TimeBudget, KeepsShortGatesAtTheEndOfLongPaths) {
     // A gate of 1e-4 after 1e3 of path; the target is 300 away.
-    const ResidualRange range = ResidualRange::of({1000.0, 1000.0 + 1e-4}, 500.0, 1.0);
-    const Residual r = Residual::of({0, 0, 300}, range);
+    const LengthInterval range = LengthInterval::of({1000.0, 1000.0 + 1e-4}, 500.0, 1.0);
+    const TimeBudget r = TimeBudget::of({0, 0, 300}, range);
     EXPECT_NEAR(r.width, 1e-4, 1e-10);
     EXPECT_NEAR(r.shortest, 500.0, 1e-10);
     EXPECT_NEAR(r.low, 200.0, 1e-4);
     EXPECT_TRUE(r.alive());
-    EXPECT_FALSE(Residual::of({0, 0, 600}, range).alive());
+    EXPECT_FALSE(TimeBudget::of({0, 0, 600}, range).alive());
     // The gate's begin has passed: what is left of it starts at the straight line.
-    const Residual late = Residual::of({0, 0, 1}, {0.5, 1.25});
+    const TimeBudget late = TimeBudget::of({0, 0, 1}, {0.5, 1.25});
     EXPECT_EQ(late.low, 0.0f);
     EXPECT_EQ(late.width, 0.25f);
 }
@@ -116,13 +116,13 @@ TEST(TemporalResponse, RefusesWhatIsNoResponse) {
 TEST(TemporalResponse, ConnectionsFollowItInsideTheResidualRange) {
     // Elapsed 0.9 at speed 2, the target 0.3 away: arrival between 1.05 and 1.7 is possible and asked for.
     const Guide guide(best(Mode::Path, 0.0f), Medium{{0, 0, 0}, {1, 1, 1}, 0.0f});
-    const ResidualRange range = ResidualRange::of({TwoPeaks.begin(), 1.7}, 0.9, 2.0);
-    const Residual residual = Residual::of({0.3f, 0, 0}, range);
+    const LengthInterval range = LengthInterval::of({TwoPeaks.begin(), 1.7}, 0.9, 2.0);
+    const TimeBudget budget = TimeBudget::of({0.3f, 0, 0}, range);
     const double low = TwoPeaks.distribution(1.05), high = TwoPeaks.distribution(1.7);
     std::vector<double> quantiles;
     const double p = tungsten::test::chiSquareUniform(
         [&](Sampler& s) {
-            const ConnectionSample c = guide.sampleConnection(residual, s.next1D(), {&TwoPeaks, 0.9, 2.0});
+            const ConnectionSample c = guide.sampleConnection(budget, s.next1D(), {&TwoPeaks, 0.9, 2.0});
             const double time = 0.9 + (0.3 + double(c.excess)) / 2.0;
             EXPECT_NEAR(double(c.inversePdf) * TwoPeaks.pdf(time), 2.0 * (high - low), 1e-4);
             return (TwoPeaks.distribution(time) - low) / (high - low);
@@ -158,19 +158,19 @@ TEST(TemporalResponse, ControlVerticesHitTwoPeaksThatPlainConnectionsMiss) {
         position = {0, 0, 0}, direction = {0, 0, 1};
         double elapsed = 0.0;
         for (int bounce = 0; bounce < 20; ++bounce) {
-            const ResidualRange range = ResidualRange::of({peaks.begin(), peaks.end()}, elapsed, 1.0);
-            const Residual residual = Residual::of(target - position, range);
-            if (!residual.alive()) break;
-            const auto connection = guide.sampleConnection(residual, s.next1D(), {&peaks, elapsed, 1.0});
+            const LengthInterval range = LengthInterval::of({peaks.begin(), peaks.end()}, elapsed, 1.0);
+            const TimeBudget budget = TimeBudget::of(target - position, range);
+            if (!budget.alive()) break;
+            const auto connection = guide.sampleConnection(budget, s.next1D(), {&peaks, elapsed, 1.0});
             const HenyeyGreenstein phase{direction, 0.0f};
-            const DirectionSample next = guide.sampleDirection(residual, connection, phase, random);
-            if (const auto vertex = guide.controlVertex(residual, connection, next.h, INFINITY)) {
+            const DirectionSample next = guide.sampleDirection(budget, connection, phase, random);
+            if (const auto vertex = guide.controlVertex(budget, connection, next.h, INFINITY)) {
                 const Vec3 at = position + next.direction * vertex->distance;
                 const double time = elapsed + double(vertex->distance) + double(length(target - at));
                 ++elliptical;
                 if (!(peaks.pdf(time) > 0.0)) ++ellipticalOutside;
             }
-            const DistanceSample step = guide.sampleDistance(residual, next, INFINITY, {1, 1, 1}, random);
+            const DistanceSample step = guide.sampleDistance(budget, next, INFINITY, {1, 1, 1}, random);
             if (!(step.transmittanceOverPdf.x > 0.0f)) break;
             position = position + next.direction * step.distance;
             direction = next.direction;

@@ -129,15 +129,15 @@ TEST(DirectionStrata, DrawsOfTheSamplerKnowTheirDensity) {
         for (const bool out : {false, true}) {
             const Medium medium = tungsten::test::thickMedium(g);
             const DirectionSampler sampler(best(Mode::Photon, g), medium);
-            Residual residual = tungsten::test::outOf(0.03, 3.0, 3.08, 0.05);
-            if (!out) residual.way = Way::Through;
+            TimeBudget budget = tungsten::test::outOf(0.03, 3.0, 3.08, 0.05);
+            if (!out) budget.model = EscapeModel::Infinite;
             const HenyeyGreenstein phase{{0.6f, 0.0f, 0.8f}, g};
             double sum = 0.0, squares = 0.0; // of the integral of the phase function
             constexpr int Count = 50000;
             for (uint64_t i = 0; i < Count; ++i) {
                 Sampler s(94, RandomStream::Test, 0, i);
-                const auto sample = sampler.sample(residual, 0.02f, phase, [&s] { return s.next1D(); });
-                const float pdf = sampler.pdf(residual, 0.02f, sample.direction, phase);
+                const auto sample = sampler.sample(budget, 0.02f, phase, [&s] { return s.next1D(); });
+                const float pdf = sampler.pdf(budget, 0.02f, sample.direction, phase);
                 ASSERT_NEAR(sample.inversePdf * pdf, 1.0f, 1e-3f) << g << " " << out;
                 const double x = double(phase.pdf(sample.direction)) * double(sample.inversePdf);
                 sum += x, squares += x * x;

@@ -50,7 +50,7 @@ class AmbientOcclusion : public Integrator {
         if (!hit) return 0.0f;
         const Frame frame(hit->ng.dot(ray.direction) < 0.0f ? hit->ng : -hit->ng);
         const Vec3f direction = frame.toWorld(warp::squareToCosineHemisphere(uDirection));
-        Ray shadow = hit->leave(direction);
+        Ray shadow = hit->spawnRay(direction);
         shadow.tMax = distance_;
         return scene_->geometry->occluded(shadow) ? 0.0f : 1.0f;
     }

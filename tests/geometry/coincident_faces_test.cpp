@@ -183,22 +183,22 @@ TEST(CoincidentFaces, ABodyOnAFloor) {
             const auto face = scene.geometry.intersect({at - direction * 0.3f, direction});
             ASSERT_TRUE(face);
             EXPECT_EQ(face->shape, 1u);
-            const auto ground = scene.geometry.intersect(face->leave(direction));
+            const auto ground = scene.geometry.intersect(face->spawnRay(direction));
             ASSERT_TRUE(ground);
             EXPECT_EQ(ground->shape, 0u);
-            EXPECT_FALSE(scene.geometry.intersect(ground->leave(direction)));
+            EXPECT_FALSE(scene.geometry.intersect(ground->spawnRay(direction)));
             // Back from the floor: through the face into the body, and out of it at its other side.
             const Vec3f up = (place.y + randomDirection(random) * 0.9f).normalized();
-            const auto back = scene.geometry.intersect(ground->leave(up));
+            const auto back = scene.geometry.intersect(ground->spawnRay(up));
             ASSERT_TRUE(back);
             EXPECT_EQ(back->shape, 1u);
             EXPECT_LT(up.dot(back->ng), 0.0f);
-            const auto out = scene.geometry.intersect(back->leave(up));
+            const auto out = scene.geometry.intersect(back->spawnRay(up));
             ASSERT_TRUE(out);
             EXPECT_GT(up.dot(out->ng), 0.0f);
-            EXPECT_TRUE(scene.geometry.occluded(ground->leave(up)));
+            EXPECT_TRUE(scene.geometry.occluded(ground->spawnRay(up)));
             // And reflected by the body's face alone, never the floor.
-            EXPECT_GT(scene.geometry.intersect(face->leave(up))->t, 0.0f);
+            EXPECT_GT(scene.geometry.intersect(face->spawnRay(up))->t, 0.0f);
         }
     }
 }
@@ -218,7 +218,7 @@ TEST(CoincidentFaces, ALampOnACeilingShines) {
                 SurfaceSample start = sampler.sample(scene.shapes[1], random.next2D());
                 start.face.shape = 1;
                 const Vec3f direction = (place.y * -1.0f + randomDirection(random) * 0.99f).normalized();
-                EXPECT_FALSE(scene.geometry.intersect(start.leave(direction)));
+                EXPECT_FALSE(scene.geometry.intersect(start.spawnRay(direction)));
             }
         }
     }

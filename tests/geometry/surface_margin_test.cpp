@@ -78,8 +78,8 @@ Failures failuresOf(const Draw& draw) {
             if (!hit) continue; // an edge
             ++failures.tests;
             const Vec3f side = closed || front ? hit->ng : -hit->ng;
-            failures.left += geometry.occluded(hit->leave(leaving(side, random)));
-            failures.left += geometry.occluded(point.leave(leaving(closed ? point.normal : side, random)));
+            failures.left += geometry.occluded(hit->spawnRay(leaving(side, random)));
+            failures.left += geometry.occluded(point.spawnRay(leaving(closed ? point.normal : side, random)));
         }
     }
     return failures;
@@ -125,8 +125,8 @@ TEST(SurfaceMargin, WhatIsCloseByIsMet) {
     const auto hit = geometry.intersect({{0.1f, 0.0f, 0.05f}, {0, 1, 0}});
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->shape, 0u);
-    EXPECT_TRUE(geometry.occluded(hit->leave({0.0f, 1.0f, 0.0f})));
-    EXPECT_TRUE(geometry.occluded(hit->leave(Vec3f(0.99f, 0.1f, 0.0f).normalized())));
+    EXPECT_TRUE(geometry.occluded(hit->spawnRay({0.0f, 1.0f, 0.0f})));
+    EXPECT_TRUE(geometry.occluded(hit->spawnRay(Vec3f(0.99f, 0.1f, 0.0f).normalized())));
 }
 
 TriangleMesh quadAt(const Vec3f& place, const Vec3f& degrees) {
@@ -165,7 +165,7 @@ int walksThatGetOut(const std::vector<Shape>& walls, float c, int walks, int bou
                 break;
             }
             const Vec3f normal = hit->ng.dot(ray.direction) > 0.0f ? -hit->ng : hit->ng;
-            ray = hit->leave(Frame(normal).toWorld(warp::squareToCosineHemisphere(random.next2D())));
+            ray = hit->spawnRay(Frame(normal).toWorld(warp::squareToCosineHemisphere(random.next2D())));
         }
     }
     return out;

@@ -11,13 +11,13 @@ namespace {
 
 /// The target length is drawn anew at every vertex, evenly, and what is not in time for it gets no weight.
 struct FreshTarget : DerivedForm {
-    [[nodiscard]] static darts::ConnectionSample connection(const darts::Guide&, const darts::Residual& residual,
+    [[nodiscard]] static darts::ConnectionSample connection(const darts::Guide&, const darts::TimeBudget& budget,
                                                             float u) {
-        return {residual.low + residual.width * u, residual.width};
+        return {budget.low + budget.width * u, budget.width};
     }
-    [[nodiscard]] static darts::Residual distanceRange(const darts::Residual& residual,
-                                                       const darts::ConnectionSample& connection) {
-        darts::Residual aimed = residual;
+    [[nodiscard]] static darts::TimeBudget distanceRange(const darts::TimeBudget& budget,
+                                                         const darts::ConnectionSample& connection) {
+        darts::TimeBudget aimed = budget;
         aimed.excess = connection.excess;
         return aimed;
     }

@@ -42,7 +42,7 @@ TEST(SceneFacts, ABareSceneCallsForLittle) {
     EXPECT_TRUE(facts.greyMedia);
     EXPECT_EQ(heterogeneity(*of.scene, facts), "");
     EXPECT_TRUE(facts.surfaceScattering);
-    EXPECT_FALSE(facts.specularSensorPaths);
+    EXPECT_FALSE(facts.specularCameraSubpaths);
     EXPECT_FALSE(facts.forwardBoundaries);
     EXPECT_FALSE(facts.surfaceEmission);
     EXPECT_FALSE(facts.environment);
@@ -70,7 +70,7 @@ TEST(SceneFacts, EveryEffectOfARichSceneIsOnWithItsReason) {
     EXPECT_TRUE(facts.mediumScattering);
     EXPECT_FALSE(facts.greyMedia);
     EXPECT_TRUE(facts.surfaceScattering);
-    EXPECT_TRUE(facts.specularSensorPaths);
+    EXPECT_TRUE(facts.specularCameraSubpaths);
     EXPECT_TRUE(facts.forwardBoundaries);
     EXPECT_TRUE(facts.surfaceEmission);
     EXPECT_TRUE(facts.textures);

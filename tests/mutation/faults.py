@@ -107,14 +107,14 @@ FAULTS = [
      [("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:PointGather*")]),
     ("src/photon/light/DepositVisitor.cpp", "path.time = emitter.emissionTime +", "path.time = 0.0 +",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
-    ("src/photon/SensorGather.cpp", "surface.wi, wo) / std::abs(wo.z)", "surface.wi, wo)",
+    ("src/photon/CameraGather.cpp", "surface.wi, wo) / std::abs(wo.z)", "surface.wi, wo)",
      [("photon_tests", "PhotonMap.DirectLightingAndItsArrivalTime")]),
-    ("src/photon/SensorGather.cpp", "state.time + own)", "state.time - own)",
+    ("src/photon/CameraGather.cpp", "state.time + own)", "state.time - own)",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
-    ("src/photon/SensorGather.cpp", "state.interactions + photon.bounce", "state.interactions + photon.bounce + 1",
+    ("src/photon/CameraGather.cpp", "state.interactions + photon.bounce", "state.interactions + photon.bounce + 1",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
-    ("src/photon/surface/SharedLight.cpp", "scale_ / double(among)", "scale_ * double(among)",
-     [("photon_tests", "SharedLight.KeepWhatIsTheSameEverywhere")]),
+    ("src/photon/surface/PathReuse.cpp", "scale_ / double(among)", "scale_ * double(among)",
+     [("photon_tests", "PathReuse.KeepWhatIsTheSameEverywhere")]),
     ("src/photon/primitives/beams/BeamGather.cpp", "(ribbon.width() * approach->sine)", "ribbon.width()",
      [("photon_tests", "BeamGather.EvaluatesEveryBeamOnTheRayOnce")]),
     ("src/photon/primitives/points/FoldedKernels.cpp", "edge.normal * (2.0f * edge.reach)", "edge.normal * edge.reach",
@@ -136,7 +136,7 @@ FAULTS = [
      [("darts_tests", "DistancesOut.MeansMatchQuadrature")]),  # surfaces seen through a guided medium are too dark
     ("src/darts/CandidateKernel.h", "Batch(useful / density[r]));", "Batch(useful * density[r]));",
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # resampled distances are biased: candidates weighed by their density instead of over it
-    ("src/darts/CandidateKernel.h", "candidates.usefulness[chosen] * draw.probability);", "candidates.usefulness[chosen]);",
+    ("src/darts/CandidateKernel.h", "candidates.importance[chosen] * draw.probability);", "candidates.importance[chosen]);",
      [("darts_tests", "DistanceSampler.MeansMatchQuadratureForEveryTargetProposalAndCount")]),  # light from media before surfaces is too dark by the chance of the medium event
     ("src/darts/EdaTable.h", "bins_.edge(bin)) * 6.283185307f);", "bins_.edge(bin)) * 3.141592653f);",
      [("darts_tests", "EdaTable.SamplesFollowTheDensityWhichIntegratesToOne")]),  # EDA density per solid angle twice too large
@@ -190,23 +190,23 @@ FAULTS = [
      [("darts_tests", "Inverse.ConnectionLobes")]),  # parts of lobes do not invert their quantiles
     ("src/darts/ControlVertex.h", "(part < 1 ? below : above) = middle;", "below = middle;",
      [("darts_tests", "ConnectionLength.HalfOfThemAreShorterThanTheMedian")]),  # lobes are of the longer median: more variance
-    ("src/darts/Guide.h", "return residual.low + lengths(residual).median();", "return residual.low + lengths(residual).sample(0.5f).offset;",
+    ("src/darts/Guide.h", "return budget.low + lengths(budget).median();", "return budget.low + lengths(budget).sample(0.5f).offset;",
      [("darts_tests", "Guide.LobesAreOfTheMedianLength")]),  # lobes of forward peaks are needles
-    ("src/darts/Scheme.h", "set(s.direction, direction);", ";",
-     [("darts_tests", "Scheme.DirectionsThatAreNamedAreJustThose")]),  # the direction that is named has no effect
-    ("src/darts/Scheme.h", "if (!scheme.published) ignoreWithBest(block, scheme);", ";",
-     [("darts_tests", "Scheme.SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout")]),  # switches undo the known densities of best
+    ("src/darts/SamplingOptions.h", "set(s.direction, direction);", ";",
+     [("darts_tests", "SamplingOptions.DirectionsThatAreNamedAreJustThose")]),  # the direction that is named has no effect
+    ("src/darts/SamplingOptions.h", "if (!options.published) ignoreWithBest(block, options);", ";",
+     [("darts_tests", "SamplingOptions.SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout")]),  # switches undo the known densities of best
     ("src/darts/ConnectionLobe.h", "1 / (Real(TwoPi) * (kappa_ + h) * range_)", "1 / (Real(TwoPi) * (kappa_ + h))",
      [("darts_tests", "Accuracy.ConnectionLobes")]),  # lobe's density is not normalised
-    ("src/darts/DirectionsOut.cpp", "+ (1.0f - connectionShare_) * drift;", "+ drift;",
+    ("src/darts/EscapeDirections.cpp", "+ (1.0f - connectionShare_) * drift;", "+ drift;",
      [("path_tests", "Bodies.AHalfSpacesReflectanceDecaysAsInTheDiffusionLimit")]),  # directions out of bodies: density too large, image too dark
     ("src/darts/GreensFunction.h", "- Real(0.25) * logU + Real(0.5)", "+ Real(0.25) * logU + Real(0.5)",
      [("darts_tests", "NumbersAccuracy.UsefulnessOfWalks")]),  # causal Green's function wrong near the light front
-    ("src/darts/ResidualRange.h", "return {speed * (gate.begin - elapsed), speed * (gate.end - elapsed)};", "return {speed * (gate.begin - elapsed), speed * gate.end};",
+    ("src/darts/TimeBudget.h", "return {speed * (gate.begin - elapsed), speed * (gate.end - elapsed)};", "return {speed * (gate.begin - elapsed), speed * gate.end};",
      [("darts_tests", "NumbersAccuracy.GatesFramesAndMedia")]),  # connections of guided walks arrive after the gate
-    ("src/darts/ResidualRange.h", "r.width = float(range.high - C - low);", "r.width = float(range.high - range.low);",
-     [("darts_tests", "Residual.KeepsShortGatesAtTheEndOfLongPaths")]),  # lengths are drawn beyond the gate where the target is farther away than its start
-    ("src/darts/ResidualRange.h", "{begin + index * width, begin + (index + 1) * width}", "{begin + index * width, begin + (index + 2) * width}",
+    ("src/darts/TimeBudget.h", "r.width = float(range.high - C - low);", "r.width = float(range.high - range.low);",
+     [("darts_tests", "TimeBudget.KeepsShortGatesAtTheEndOfLongPaths")]),  # lengths are drawn beyond the gate where the target is farther away than its start
+    ("src/darts/TimeBudget.h", "{begin + index * width, begin + (index + 1) * width}", "{begin + index * width, begin + (index + 2) * width}",
      [("darts_tests", "NumbersAccuracy.GatesFramesAndMedia")]),  # light paths aimed at one frame bring the next one's light, too
     ("src/darts/Guide.h", "float(at.speed * (high - low) / density)", "float((high - low) / density)",
      [("darts_tests", "ResponseAccuracy.ConnectionsThatFollowIt")]),  # lengths drawn by the sensor's response: density per time taken for one per length
@@ -238,21 +238,21 @@ FAULTS = [
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # lights are taken for hidden by what lies behind them
     ("src/transport/Connection.cpp", "vertex.regionTowards(end.direction), rays);", "vertex.region(), rays);",
      [("transport_tests", "Connections.*")]),  # connections through a surface go through the medium on its other side
-    ("src/transport/Delays.cpp", "widened.start = gate.start - most_;", "widened.start = gate.start - least_;",
+    ("src/transport/RecordingDelays.cpp", "widened.start = gate.start - most_;", "widened.start = gate.start - least_;",
      [("photon_tests", "Sampling/Delays.SingleScatteringIsTheClosedFormByFrame/PublishedPaths")]),  # light of long pulses that arrives early for the gate is lost
-    ("src/transport/Delays.cpp", "most = std::max(most, each ? each->end() : 0.0);", "most = std::max(most, each ? each->begin() : 0.0);",
+    ("src/transport/RecordingDelays.cpp", "most = std::max(most, each ? each->end() : 0.0);", "most = std::max(most, each ? each->begin() : 0.0);",
      [("photon_tests", "Sampling/Delays.SingleScatteringIsTheClosedFormByFrame/PublishedPaths")]),  # latest part of pulses is left out of gates
     ("src/transport/Vertex.cpp", "return value * surface.photonShadingFactor(-at.before, direction);", "return value;",
      [("transport_tests", "Surfaces/Reversed.LightAndCameraPathsFindTheSameValue/Lambert")]),  # light paths at interpolated normals: too bright or too dark facets
-    ("src/transport/Sensor.h", "before = until;", ";",
+    ("src/transport/TimeSensor.h", "before = until;", ";",
      [("photon_tests", "Delays.EachEmitterHasItsOwnPulse")]),  # pulses: later frames get the light of all frames before them again
-    ("src/transport/Sensor.h", "float(response->pdf(time) * gate.frameWidth)", "float(response->pdf(time))",
+    ("src/transport/TimeSensor.h", "float(response->pdf(time) * gate.frameWidth)", "float(response->pdf(time))",
      [("photon_tests", "PhotonResponseOnSurfaces.VisibleEmissionIsWeighedByItsArrival")]),  # photon maps under a temporal response are wrong by the gate's width
-    ("src/transport/Sensor.h", "open.back().end = r.times[i + 1];", "open.back().end = r.times[i];",
+    ("src/transport/TimeSensor.h", "open.back().end = r.times[i + 1];", "open.back().end = r.times[i];",
      [("photon_tests", "PhotonResponseOnSurfaces.AgreesWithPaths")]),  # light in the last piece of a response is lost
     ("src/transport/GuidedSteps.cpp", "vertex.distance -= distance;", "vertex.distance += distance;",
      [("transport_tests", "GuidedSteps.ConnectionGoesOnThroughBoundaries")]),  # control vertices behind an index-matched boundary lie too far away
-    ("src/transport/GuidedSteps.h", "residual_.shortest + double(connection.excess - residual_.low)", "residual_.shortest + double(connection.excess)",
+    ("src/transport/GuidedSteps.h", "budget_.shortest + double(connection.excess - budget_.low)", "budget_.shortest + double(connection.excess)",
      [("transport_tests", "GuidedSteps.ConnectionDrawnInFlight")]),  # control vertices arrive in later frames than they are made for
     ("src/transport/GateBounds.h", "slowness_(1.0 / double(facts.highestSpeed))", "slowness_(double(facts.highestSpeed))",
      [("transport_tests", "TransportAccuracy.TimesOfArrival")]),  # light is culled as too late where its speed is not 1
@@ -291,7 +291,7 @@ FAULTS = [
     ("src/transport/Walk.h", "path.flights = path.inARow = 0;", "path.inARow = 0;",
      [("path_tests", "Energy.MediumLimitsStartAnewAtSurfaces")]),  # max_bounces of media counts on across surfaces: paths end early
     ("src/path/PathVisitor.cpp", "(phase * drawn->weight * share / density)", "(phase * drawn->weight / density)",
-     [("path_tests", "RefractedLight.AgreesBesideAWideLamp")]),  # light through refracting walls is counted twice
+     [("path_tests", "RefractiveConnections.AgreesBesideAWideLamp")]),  # light through refracting walls is counted twice
     ("src/path/PathVisitor.cpp", "pdfDirect(emitter, path.last.position, hit.position, hit.ng)", "pdfDirect(emitter, hit.position, path.last.position, hit.ng)",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # swapped ends: emitters that are met get the wrong share
     ("src/path/PathVisitor.cpp", "limits().renders(path.interactions + connection->crossings + target.interactions)", "limits().renders(path.interactions + connection->crossings)",
@@ -301,9 +301,9 @@ FAULTS = [
      [("path_tests", "SpecularTime.GlassBallDelaysAndEchoes")]),  # every pass repeats the first one's random numbers: more samples bring nothing
     ("src/path/PathTarget.cpp", "path.throughput = path.throughput / scatters;", "path.throughput = path.throughput * scatters;",
      [("path_tests", "TargetChoice.LasersBecomeVirtualSourcesWhereTheyAreScattered")]),  # lasers on plastic: what it scatters is four times too dark
-    ("src/path/PixelSink.h", "if (inUse) addToFilm(sum);", ";",
+    ("src/path/PixelAccumulator.h", "if (inUse) addToFilm(sum);", ";",
      [("path_tests", "TimeBounds.ManyLightsShareOneBound")]),  # paths that reach more than 8 frames lose light
-    ("src/path/PixelSink.h", "(1.0 / (double(samples) * sensor.evenWidth()))", "(1.0 / double(samples))",
+    ("src/path/PixelAccumulator.h", "(1.0 / (double(samples) * sensor.evenWidth()))", "(1.0 / double(samples))",
      [("path_tests", "SpecularTime.MirrorPathsCountEverySegment")]),  # radiance is not divided by the frame's width
     ("src/path/ArrivalBound.cpp", "(position - source.centre).length() - source.radius, 0.0f)", "(position - source.centre).length() + source.radius, 0.0f)",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # paths that arrive just in time from large lights are cut off
@@ -336,7 +336,7 @@ FAULTS = [
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # plain paths that meet a lamp take it for that of all guided ones
     ("src/path/PlainTrail.h", "(open ? logs.openEnding : logs.ending) + logOf(window);", "(open ? logs.openEnding : logs.ending);",
      [("path_tests", "TimeWindows.*")]),  # plain paths of a sequence take every window for one that all guided ones aim at
-    ("src/path/PixelSink.h", "if (!window_.contains(time)) return;", ";",
+    ("src/path/PixelAccumulator.h", "if (!window_.contains(time)) return;", ";",
      [("path_tests", "TimeWindows.*")]),  # guided paths count in windows that they do not aim at
     ("src/path/PathTarget.h", "index >= 0 ? choice.ofVertex * pdfDirect", "index >= 0 ? pdfDirect",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/TwoLampsMetAndConnectedTo")]),  # guided paths share lamps that are met otherwise than plain ones
@@ -358,7 +358,7 @@ FAULTS = [
     ("src/path/StepsToEmitter.cpp", "Rgb(own * sample.inversePdf)", "Rgb(sample.inversePdf)",
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # guided directions lose the phase function's value
     # src/path/light
-    ("src/path/light/FilmSplats.cpp", "filter_.pdf(splat->raster.x - float(x))", "filter_.pdf(splat->raster.y - float(x))",
+    ("src/path/light/SplatBuffer.cpp", "filter_.pdf(splat->raster.x - float(x))", "filter_.pdf(splat->raster.y - float(x))",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer: filter takes rows for columns
     ("src/path/light/LightTracer.cpp", "float(1.0 / double(paths))", "float(1.0 / double(pixels))",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer too bright by the samples of a pass
@@ -375,30 +375,30 @@ FAULTS = [
     # src/path/techniques
     ("src/path/techniques/EmitterConnections.cpp", "(weight / target.choice.ofPath)", "weight",
      [("path_tests", "ManyLights.*")]),  # emitters met by guided paths lack 1 / probability of their choice
-    ("src/path/techniques/ReflectedConnections.cpp", "* transmittance * (choice.weight * share),", "* transmittance * choice.weight,",
+    ("src/path/techniques/GlossyVertexConnections.cpp", "* transmittance * (choice.weight * share),", "* transmittance * choice.weight,",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light of glossy reflections is counted twice
-    ("src/path/techniques/ReflectedLight.cpp", "vertices.back().power = reflected / (pdf * density);", "vertices.back().power = reflected / pdf;",
+    ("src/path/techniques/GlossyLightVertices.cpp", "vertices.back().power = reflected / (pdf * density);", "vertices.back().power = reflected / pdf;",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/Point")]),  # glossy light in fog lacks the density of its flight
     ("src/path/techniques/LightVertices.cpp", "LightVertex{{vertex, emission.power / choice.ofPath},", "LightVertex{{vertex, emission.power},",
      [("path_tests", "ManyLights.ShownByFogAboveAFloor")]),  # light paths too dark where there are several lights
     ("src/path/techniques/LightVertexConnections.cpp", "transport::balance(density(light.areaPdf), walk, reflected);", "transport::balance(density(light.areaPdf), walk);",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light vertices take the share of reflected light, too
-    ("src/path/techniques/RefractedWay.cpp", "out * cosInside / sqr(cosOutside))", "out * cosInside / cosOutside)",
+    ("src/path/techniques/RefractedPath.cpp", "out * cosInside / sqr(cosOutside))", "out * cosInside / cosOutside)",
      [("path_tests", "RefractionAccuracy.WaysThroughAPlane")]),  # spreading of refracted light at slant angles
     ("src/path/techniques/RefractedView.cpp", "b1 + b2 > determinant", "b1 > determinant",
-     [("path_tests", "RefractedLight.DrawsAreAsDenseAsItSays")]),  # density of refracted draws counts directions beside the lamp's triangles
-    ("src/path/techniques/RefractedLight.cpp", "aim.density * float(inTime) / float(delays.size());", "aim.density;",
-     [("path_tests", "RefractedLight.DrawsAreAsDenseAsItSays")]),  # density of refracted draws ignores how often they are in time
+     [("path_tests", "RefractiveConnections.DrawsAreAsDenseAsItSays")]),  # density of refracted draws counts directions beside the lamp's triangles
+    ("src/path/techniques/RefractiveConnections.cpp", "aim.density * float(inTime) / float(delays.size());", "aim.density;",
+     [("path_tests", "RefractiveConnections.DrawsAreAsDenseAsItSays")]),  # density of refracted draws ignores how often they are in time
     ("src/path/techniques/ShellChord.cpp", "perRadius[size_t(count++)] = radius / half;", "perRadius[size_t(count++)] = half / radius;",
      [("path_tests", "ShellChord.MeetsASphereWhereTheDistanceIsItsRadius")]),  # unwarped delta gate: inverse Jacobian
     ("src/path/techniques/ShellChord.cpp", "offset * offset) * (range_[0] + range_[1]));", "offset * offset) * range_[0]);",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # distances on the far half of a shell: density not normalised
-    ("src/path/techniques/ArrivalWindow.h", "float(count) * thinned.each /", "float(count) /",
+    ("src/path/techniques/ArrivalCandidates.h", "float(count) * thinned.each /", "float(count) /",
      [("photon_tests", "PhotonMapsOfBodies.ShowLightBehindWallsThatReflectNearlyAll")]),  # thinned candidates of refracted light stand for themselves alone
     # src/photon/primitives
     ("src/photon/primitives/ProgressiveSchedule.h", "::lgamma_r(i + 2.0, &sign)", "::lgamma_r(i + 1.0, &sign)",
      [("photon_tests", "KernelsAccuracy.RadiiFromPassToPass")]),  # progressive radii grow instead of shrinking
-    ("src/photon/primitives/VolumeGather.h", "folded_.radii.scale(factor);", ";",
+    ("src/photon/primitives/VolumeGather.h", "redirected_.radii.scale(factor);", ";",
      [("photon_tests", "KernelBiasBehindMirrors.IsThatOfTheSameViewWithoutOne")]),  # --bias: behind mirrors the narrow kernel is the wide one
     # src/photon/primitives/beams
     ("src/photon/primitives/beams/BeamGather.cpp", "segment.interactions + beam.bounce + 1;", "segment.interactions + beam.bounce;",
@@ -431,7 +431,7 @@ FAULTS = [
      [("photon_sliced_tests", "SlicesAccuracy.Balls")]),  # warped balls at a moment are half as bright
     ("src/photon/primitives/balls/BallLanes.h", "record.towardsCamera(last, rays) * angles / h;", "record.towardsCamera(last, rays) * angles;",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/volumesA2UnwarpedBox")]),  # splatted balls lack 1 / distance from the ray
-    ("src/photon/primitives/balls/VolumeOrBall.h", "Real(1) : ratio / (1 + ratio);", "Real(1) : ratio * ratio / (1 + ratio * ratio);",
+    ("src/photon/primitives/balls/VolumeBallMis.h", "Real(1) : ratio / (1 + ratio);", "Real(1) : ratio * ratio / (1 + ratio * ratio);",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # volumes take the power heuristic, balls the balance heuristic
     # src/photon/primitives/hypervolumes
     ("src/photon/primitives/hypervolumes/HypervolumeSlice.h", "system.solve(sight.direction + w[3] * warp)", "system.solve(sight.direction - w[3] * warp)",
@@ -441,19 +441,19 @@ FAULTS = [
     # src/photon/primitives/sliced
     ("src/photon/primitives/sliced/BallEstimate.cpp", "double factor = m.speed * width * m.phase(", "double factor = width * m.phase(",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedFast")]),  # balls at a moment: density per length taken for one per time
-    ("src/photon/primitives/sliced/FlightChain.cpp", "flights.power = flights.power / expected;", "flights.power = flights.power * expected;",
+    ("src/photon/primitives/sliced/SliceBuilder.cpp", "flights.power = flights.power / expected;", "flights.power = flights.power * expected;",
      [("photon_sliced_tests", "Kinds/GuidedSliceOrders.MatchVerifiedValues/planesA3WarpedBox")]),  # records of branched flights carry the wrong power
-    ("src/photon/primitives/sliced/FlightChain.cpp", "surface.wi, Vec3f(0, 0, 1)) * Pi;", "surface.wi, Vec3f(0, 0, 1));",
+    ("src/photon/primitives/sliced/SliceBuilder.cpp", "surface.wi, Vec3f(0, 0, 1)) * Pi;", "surface.wi, Vec3f(0, 0, 1));",
      [("photon_sliced_tests", "SlicesAboveFloors.AgreeWithBeams")]),  # light that walls scatter into fog is pi times too dark
-    ("src/photon/primitives/sliced/FrameShares.cpp", "share ? float(1.0 / share) : 0.0f;", "share ? 1.0f : 0.0f;",
-     [("photon_sliced_tests", "FrameShares.MakeUpForWhatTheyLeaveOut")]),  # dim frames of slices lose light
-    ("src/photon/primitives/sliced/SliceDoses.cpp", "whole * dose / lit, Batch(0.0f)", "dose / lit, Batch(0.0f)",
+    ("src/photon/primitives/sliced/FrameRoulette.cpp", "share ? float(1.0 / share) : 0.0f;", "share ? 1.0f : 0.0f;",
+     [("photon_sliced_tests", "FrameRoulette.MakeUpForWhatTheyLeaveOut")]),  # dim frames of slices lose light
+    ("src/photon/primitives/sliced/SystematicShadowRays.cpp", "whole * dose / lit, Batch(0.0f)", "dose / lit, Batch(0.0f)",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/planesW4WarpedDelta")]),  # bright slices among surfaces bring one dose at most
     ("src/photon/primitives/sliced/SliceEstimate.cpp", "m.phase(m.flights.directions[3]) * m.speed", "m.phase(m.flights.directions[2]) * m.speed",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # hypervolumes scatter towards the camera from the third flight
     ("src/photon/primitives/sliced/SliceEstimate.cpp", "if (lengths[0] >= double(flights.reach)) return false;", ";",
      [("photon_sliced_tests", "SliceGather.EndsFirstFlightsAtWalls")]),  # slices pass through the wall that ends their first flight
-    ("src/photon/primitives/sliced/SliceSplat.cpp", "piece.end[pixel] - start,", "piece.end[pixel],",
+    ("src/photon/primitives/sliced/SliceSplat.cpp", "segment.end[pixel] - start,", "segment.end[pixel],",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedRayByRay")]),  # camera segments behind boundaries are too long
     ("src/photon/primitives/sliced/SliceFootprints.cpp", "speed * gate_.frameWidth : 1.0;", "gate_.frameWidth : 1.0;",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedFast")]),  # splatted slices wrong where light's speed is not 1
@@ -475,21 +475,21 @@ FAULTS = [
     # src/photon/store
     ("src/photon/store/NearestPhotons.cpp", "found.front().squaredDistance : radius * radius;", "found.front().squaredDistance : radius;",
      [("photon_tests", "NearestPhotons.MatchBruteForce")]),  # sparse surface photons are divided by a wrong area
-    ("src/photon/store/FoldedSelection.h", "elements[i].power * float(1.0 / share)", "elements[i].power",
-     [("photon_tests", "FoldedSelection.KeepsEveryElementEquallyOftenAndThePowerOnAverage")]),  # volumes seen in mirrors too dark: chosen photons do not stand for the others
+    ("src/photon/store/RedirectedSelection.h", "elements[i].power * float(1.0 / share)", "elements[i].power",
+     [("photon_tests", "RedirectedSelection.KeepsEveryElementEquallyOftenAndThePowerOnAverage")]),  # volumes seen in mirrors too dark: chosen photons do not stand for the others
     ("src/photon/store/StoreFilling.h", "store.full = true;", ";",
      [("photon_tests", "Rooms/StoreFilling.LeavesEveryPathsShare/ForManyPaths")]),  # a full store still takes short paths: their light is too bright
     # src/photon/view
-    ("src/photon/view/SensorRecord.cpp", "behind += length;", "behind = length;",
-     [("photon_tests", "SensorRecord.HoldsStraightPiecesAndVisiblePoints")]),  # fog behind two boundaries starts at the wrong place
+    ("src/photon/view/CameraRecord.cpp", "behind += length;", "behind = length;",
+     [("photon_tests", "CameraRecord.HoldsStraightPiecesAndVisiblePoints")]),  # fog behind two boundaries starts at the wrong place
     ("src/photon/view/GlossyLight.cpp", "transport::powerHeuristic(light->direct.pdf * light->probability, bsdfPdf)", "transport::powerHeuristic(light->direct.pdf, bsdfPdf)",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # highlights of several lights: shares do not sum to 1
     ("src/photon/view/LightConnection.cpp", "{connection->throughput / choice->probability, start", "{connection->throughput, start",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # glossy surfaces lit by several lights too dark
-    ("src/photon/view/SensorPath.h", "state_.time = path.time;", ";",
-     [("photon_tests", "SensorRecord.TimesGoByTheSpeedOfEachRegion")]),  # times behind mirrors and glass as if light's speed were 1
-    ("src/photon/view/SensorPath.h", "state_.glossyPdf = way.pdf;", "if (way.smooth()) state_.glossyPdf = way.pdf;",
-     [("photon_tests", "SensorPath.KnowsItsLastGlossyVertexUntilAMirror")]),  # lights seen by a mirror behind a glossy surface get a share as if connected
+    ("src/photon/view/CameraSubpath.h", "state_.time = path.time;", ";",
+     [("photon_tests", "CameraRecord.TimesGoByTheSpeedOfEachRegion")]),  # times behind mirrors and glass as if light's speed were 1
+    ("src/photon/view/CameraSubpath.h", "state_.glossyPdf = way.pdf;", "if (way.smooth()) state_.glossyPdf = way.pdf;",
+     [("photon_tests", "CameraSubpath.KnowsItsLastGlossyVertexUntilAMirror")]),  # lights seen by a mirror behind a glossy surface get a share as if connected
     # src/photon/light
     ("src/transport/BounceLimits.h", "++flights <= medium.maxBounces", "++flights < medium.maxBounces",
      [("photon_tests", "BeamMap.OrdersAndLimitsAsForPoints")]),  # max_bounces of a medium ends light paths one early
@@ -521,12 +521,12 @@ FAULTS = [
     # src/photon/surface
     ("src/photon/surface/SurfaceConnections.cpp", "light.light * visibility.transmittance * sensor_.weight(time);", "light.light * sensor_.weight(time);",
      [("photon_tests", "Delays.OfLightOnSurfacesAgree")]),  # fog does not dim what surface connections bring
-    ("src/photon/surface/ClusterDraws.cpp", "inverseVisits * points.total() / (point.weight * expected)", "points.total() / (point.weight * expected)",
-     [("photon_tests", "SensorClusters.BringAboutTheTargetWithEachDraw")]),  # surface connections lack the probability of their cluster
-    ("src/photon/surface/SharedLight.cpp", "kernel, scale / width, film);", "kernel, scale, film);",
-     [("photon_tests", "SharedLight.BelowOnePixelEachPointKeepsItsOwn")]),  # shared light is not divided by the frame's width
-    ("src/photon/surface/SpreadLight.h", "1.0f / squared};", "1.0f / std::sqrt(squared)};",
-     [("photon_tests", "SensorClusters.BringAboutTheTargetWithEachDraw")]),  # light of surface connections falls off with the distance, not its square
+    ("src/photon/surface/ClusterSampling.cpp", "inverseVisits * points.total() / (point.weight * expected)", "points.total() / (point.weight * expected)",
+     [("photon_tests", "VisiblePointClusters.BringAboutTheTargetWithEachDraw")]),  # surface connections lack the probability of their cluster
+    ("src/photon/surface/PathReuse.cpp", "kernel, scale / width, film);", "kernel, scale, film);",
+     [("photon_tests", "PathReuse.BelowOnePixelEachPointKeepsItsOwn")]),  # shared light is not divided by the frame's width
+    ("src/photon/surface/RegularisedConnection.h", "1.0f / squared};", "1.0f / std::sqrt(squared)};",
+     [("photon_tests", "VisiblePointClusters.BringAboutTheTargetWithEachDraw")]),  # light of surface connections falls off with the distance, not its square
     # src/photon
     ("src/photon/PhotonIntegrator.cpp", "return {false, false, gate.start - tau, 2.0 * tau, 1};", "return {false, false, gate.start - tau, tau, 1};",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/volumesC3WarpedDelta")]),  # temporal kernel of a delta gate ends at the gate
@@ -534,11 +534,11 @@ FAULTS = [
      [("photon_tests", "BestPreset/GuidedOrders.MatchVerifiedValues/A2UnwarpedBoxBestBeams")]),  # splats too bright by the samples of a pass
     ("src/photon/PhotonIntegrator.cpp", "1.0f / (1.0f - sqr(structures.kernel));", "1.0f / (1.0f - structures.kernel);",
      [("photon_tests", "KernelBiasOf.IsWithinAFactorOfTwo/ColouredPoints")]),  # estimated bias is extrapolated too far
-    ("src/photon/SensorGather.cpp", "share * structures_.glossy->emissionWeight(state, surface)", "structures_.glossy->emissionWeight(state, surface)",
+    ("src/photon/CameraGather.cpp", "share * structures_.glossy->emissionWeight(state, surface)", "structures_.glossy->emissionWeight(state, surface)",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # lights in glossy surfaces too bright by the highlight paths
-    ("src/photon/SensorGather.cpp", "structures_.surfacePhotons.scale() * InvPi / squaredRadius;", "structures_.surfacePhotons.scale() / squaredRadius;",
+    ("src/photon/CameraGather.cpp", "structures_.surfacePhotons.scale() * InvPi / squaredRadius;", "structures_.surfacePhotons.scale() / squaredRadius;",
      [("photon_tests", "Presets/GuidedMaps.AgreeWithPathsInEveryFrame/PublishedPoints")]),  # surface photons pi times too bright
-    ("src/photon/SensorPass.cpp", "addSample({x, y}, first_ + s, workspace, counters);", "addSample({x, y}, s, workspace, counters);",
+    ("src/photon/CameraPass.cpp", "addSample({x, y}, first_ + s, workspace, counters);", "addSample({x, y}, s, workspace, counters);",
      [("photon_tests", "PhotonMap.PassesHaveCameraPathsOfTheirOwn")]),  # camera paths of photon maps are the same in every pass
     ("src/photon/DefaultRadius.cpp", "float(gate.frameWidth) * scene.cameraRegion.speed", "float(gate.frameWidth)",
      [("photon_tests", "DefaultRadius.IsALengthWhateverTheSpeedOfLight")]),  # default radius takes a time for a length
@@ -650,7 +650,7 @@ FAULTS = [
     ("tungsten/scene/LoadTimeProfile.cpp", "profile.times.push_back(origin + x * unit);", "profile.times.push_back(x * unit);",
      [("scene_tests", "TimeProfiles.AResponseBringsItsOwnGate")]),  # pulses ignore their centre and start
     ("tungsten/scene/LoadMedia.cpp", "medium.model = Homogeneous(sigmaA, sigmaS);", "medium.model = Homogeneous(sigmaS, sigmaA);",
-     [("transport_tests", "WaysOut.NoneWhereNothingEndsOrThePolicyLeavesThemOut")]),  # sigma_a and sigma_s swapped
+     [("transport_tests", "EscapeModels.NoneWhereNothingEndsOrThePolicyLeavesThemOut")]),  # sigma_a and sigma_s swapped
     ("tungsten/scene/LoadMedia.cpp", "medium.guided = type == \"guided_homo\";", "medium.guided = type != \"guided_homo\";",
      [("path_tests", "DirectLight.EscapingRaysSeeTheLastEnvironmentOutsideMediaOnly")]),  # the published method guides the media that do not ask for it
     ("tungsten/scene/LoadPrimitives.cpp", "emitter.medium = stored.outside.medium;", "emitter.medium = stored.inside.medium;",
@@ -823,10 +823,10 @@ FAULTS = [
     ("tungsten/python/Result.cpp", "valuesOf(inOutputUnits(frameOf(frame), scene, 1),", "valuesOf(frameOf(frame),",
      [("tests/python/module_test.py", "")]),  # python: arrays ignore time_normalization
     # seen from afar, and nearest photons
-    ("src/photon/SensorGather.cpp", "if (neighbours.size() == structures_.gatherCount)", "if (neighbours.empty())",
+    ("src/photon/CameraGather.cpp", "if (neighbours.size() == structures_.gatherCount)", "if (neighbours.empty())",
      [("photon_tests", "Counts/NearestGather.IsRightOnAverage/Five")]),  # surfaces of k nearest photons are k / (k - 1) times too bright
-    ("src/photon/primitives/sliced/FrameShares.cpp", "Even + (1.0 - Even) *", "(1.0 - Even) *",
-     [("photon_sliced_tests", "FrameShares.LeaveNothingOut")]),  # slices that should be dark are never drawn
+    ("src/photon/primitives/sliced/FrameRoulette.cpp", "Even + (1.0 - Even) *", "(1.0 - Even) *",
+     [("photon_sliced_tests", "FrameRoulette.LeaveNothingOut")]),  # slices that should be dark are never drawn
     ("src/photon/primitives/sliced/SliceLanes.h", "rays.lag = foot - common;", "rays.lag = foot + common;",
      [("photon_sliced_tests", "Cases/FarSlices.BringWhatPathsBring/Balls")]),  # slices are seen at a wrong time from where the ray does not begin
     # long paths, contents of files, links

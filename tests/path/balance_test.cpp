@@ -89,8 +89,8 @@ TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
                              R"({"type": "rough_conductor", "material": "Al", "roughness": 0.3})"}) {
         GuidedSetup setup(roomOf(bsdf));
         Statistics ignored;
-        setup.lightPaths.prepare(setup.scene, setup.targets, setup.watch, ignored);
-        setup.lightPaths.trace(setup.scene, setup.targets, 8192, PassInfo{.seed = 1, .watch = setup.watch}, ignored);
+        setup.lightCaches.prepare(setup.scene, setup.targets, setup.watch, ignored);
+        setup.lightCaches.trace(setup.scene, setup.targets, 8192, PassInfo{.seed = 1, .watch = setup.watch}, ignored);
         const GuidedContext guided = setup.guided();
         const PathContext plain = setup.plain();
         PathCounters counters;
@@ -98,7 +98,7 @@ TEST(SharePilot, JudgesPlainPathsByWhatTheyWouldBring) {
         PlainTrail trail;
         for (uint64_t i = 0; i < 200000; ++i) {
             const bool guides = i % 2 == 1;
-            PixelSink sink(pilot, setup.sensor, counters);
+            PixelAccumulator sink(pilot, setup.sensor, counters);
             pilot.begin(guides ? Strategy::Guided : Strategy::Plain);
             Sampler sampler(3, RandomStream::Test, 0, i);
             const Vec2f film = sampler.next2D();

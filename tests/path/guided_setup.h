@@ -5,7 +5,7 @@
 #include "path/PathPlan.h"
 #include "path/PathVisitor.h"
 #include "path/PlainTrail.h"
-#include "path/techniques/LightPaths.h"
+#include "path/techniques/LightCaches.h"
 #include "transport/SharePilot.h"
 
 #include "support/SceneFile.h"
@@ -22,7 +22,8 @@ struct GuidedSetup {
     GuidedSetup& operator=(const GuidedSetup&) = delete;
 
     [[nodiscard]] GuidedContext guided() const {
-        return {scene, settings, sensor, windows, guides, lightPaths, bound, waysOut.get(), true, watch, {0.5f, 0.5f}};
+        return {scene, settings,           sensor, windows, guides,      lightCaches,
+                bound, escapeModels.get(), true,   watch,   {0.5f, 0.5f}};
     }
     [[nodiscard]] PathContext plain() const { return {scene, settings, lights, bound, nullptr, true, watch}; }
 
@@ -32,12 +33,12 @@ struct GuidedSetup {
     PathSettings settings = readPathSettings(loaded.integratorSettings, scene);
     SceneFacts facts = analyseScene(scene);
     ProgressToken watch;
-    transport::Sensor sensor = transport::Sensor::of(scene, scene.transport.gate);
+    transport::TimeSensor sensor = transport::TimeSensor::of(scene, scene.transport.gate);
     transport::TimeWindows windows{sensor.arrivals};
     PathGuides guides = PathGuides::of(scene, settings.policy.sampling, facts, watch);
-    LightPaths lightPaths; ///< none
+    LightCaches lightCaches; ///< none
     ArrivalBound bound{scene, facts};
-    std::unique_ptr<const transport::WaysOut> waysOut = transport::WaysOut::make(scene, settings.policy);
+    std::unique_ptr<const transport::EscapeModels> escapeModels = transport::EscapeModels::make(scene, settings.policy);
     TargetChoice targets{scene, TargetChoice::Emitters::All, {}, true};
     LightChoice lights{scene, std::vector<bool>(scene.emitters.size())};
 };

@@ -197,7 +197,7 @@ TEST(GuidedPaths, SameImageOnOneAndTwoThreadsBitForBit) {
 
 TEST(GuidedPaths, StagesThatAreOffCountNothing) {
     struct Counts {
-        uint64_t controlVertices, lightPaths, lightConnections, reflectedLight;
+        uint64_t controlVertices, lightCaches, lightConnections, reflectedLight;
     };
     const std::string Alone = R"({"plain_share": 0})"; // guided paths, whatever a pilot would choose
     const auto counts = [](const std::string& darts, std::vector<std::string> overrides = {}) {
@@ -205,11 +205,11 @@ TEST(GuidedPaths, StagesThatAreOffCountNothing) {
         const Statistics& statistics = rendered->statistics;
         return Counts{statistics.counter("control vertices"), statistics.counter("light paths"),
                       statistics.counter("light vertex connections"),
-                      statistics.counter("reflected light connections")};
+                      statistics.counter("glossy light vertex connections")};
     };
     const Counts best = counts(Alone);
     EXPECT_GT(best.controlVertices, 0u);
-    EXPECT_GT(best.lightPaths, 0u);
+    EXPECT_GT(best.lightCaches, 0u);
     EXPECT_GT(best.lightConnections, 0u);
     EXPECT_EQ(best.reflectedLight, 0u) << "the floor is diffuse";
     const std::string glossy = R"(primitives.1.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.2})";
@@ -219,7 +219,7 @@ TEST(GuidedPaths, StagesThatAreOffCountNothing) {
     const std::string black = R"(primitives.1.bsdf={"type": "null"})";
     for (const Counts& c :
          {counts("published"), counts(Alone, {black}), counts(Alone, {"media.0.speed_of_light=0.5"}), counts("off")}) {
-        EXPECT_EQ(c.lightPaths, 0u);
+        EXPECT_EQ(c.lightCaches, 0u);
         EXPECT_EQ(c.lightConnections, 0u);
     }
     EXPECT_EQ(counts("off").controlVertices, 0u);
@@ -242,7 +242,7 @@ TEST(GuidedPaths, ThePlanSaysWhy) {
     EXPECT_EQ(planned(R"("off")", "guided paths").substr(0, 4), "off:");
     EXPECT_EQ(planned(R"("best")", "light vertices").substr(0, 3), "on:");
     EXPECT_EQ(planned(R"("published")", "light vertices").substr(0, 4), "off:");
-    EXPECT_EQ(planned(R"("best")", "reflected light"), "off: no glossy surface");
+    EXPECT_EQ(planned(R"("best")", "glossy light vertices"), "off: no glossy surface");
 }
 
 TEST(PathTracer, SaysThatLightOfASingleDirectionIsMissedInView) {

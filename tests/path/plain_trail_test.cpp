@@ -16,7 +16,7 @@ using transport::Way;
 /// Follows a guided path as if it were a plain one, and compares.
 class Replay : public transport::VisitorBase {
   public:
-    Replay(const GuidedContext& context, const TargetChoice& targets, PixelSink& sink, PathCounters& counters,
+    Replay(const GuidedContext& context, const TargetChoice& targets, PixelAccumulator& sink, PathCounters& counters,
            const PathTarget& target, const Sampler& light)
         : context_(&context) {
         emitter_ = size_t(target.index);
@@ -84,7 +84,7 @@ void replay(const std::string& json) {
     for (uint64_t i = 0; i < 300; ++i) {
         PathCounters counters;
         SharePilot pilot;
-        PixelSink sink(pilot, setup.sensor, counters);
+        PixelAccumulator sink(pilot, setup.sensor, counters);
         const Sampler sampler(1, RandomStream::Test, 0, i);
         Sampler light = sampler.branch(RandomStream::Target, 0);
         const auto target = setup.targets.of(0, light, setup.watch, counters);

@@ -1,7 +1,7 @@
 // Refracted ways against 50 digits: depths and heights from 1e-4 to 1e4, ways that leave along the boundary, indices
 // from 0.4 to 2.5.
 
-#include "path/techniques/RefractedWay.h"
+#include "path/techniques/RefractedPath.h"
 
 #include "support/Exact.h"
 #include "support/LogUniform.h"
@@ -38,7 +38,7 @@ TEST(RefractionAccuracy, WaysThroughAPlane) {
         const auto depth = float(logUniform(s, 1e-4, 1e4)), height = float(double(depth) * logUniform(s, 1e-4, 1e4)),
                    lateral = i % 9 == 0 ? 0.0f : float(double(depth + height) * logUniform(s, 1e-4, 1e3)),
                    index = i % 7 == 0 ? 1.0f : float(logUniform(s, 0.4, 2.5));
-        const auto way = refractedWay(depth, height, lateral, index);
+        const auto way = refractedPath(depth, height, lateral, index);
         ASSERT_TRUE(way);
         const Exact sine = lateral > 0.0f ? sineInside(depth, height, lateral, index) : Exact(0);
         const Exact in = sqrt(1 - sine * sine), out = sqrt(1 - Exact(index) * index * sine * sine);

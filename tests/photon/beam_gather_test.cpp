@@ -146,7 +146,7 @@ TEST(BeamGather, OnlyItsMediumItsOrdersAndItsFrames) {
 
 struct PartCase {
     const char* name;
-    bool unwarped, folds;
+    bool unwarped, indirectView;
     float flightSpeed;
 };
 class FlightParts : public testing::TestWithParam<PartCase> {};
@@ -159,7 +159,7 @@ TEST_P(FlightParts, AreWhereDepositsCount) {
     scene.transport.cameraUnwarped = c.unwarped;
     scene.camera.model = Pinhole{};
     scene.camera.toWorld.translation = Vec3f(0.5f, 0.2f, -1.0f);
-    const ArrivalCulling arrival(scene, {c.folds, c.flightSpeed == 1.0f, std::max(c.flightSpeed, 1.0f)});
+    const ArrivalCulling arrival(scene, {c.indirectView, c.flightSpeed == 1.0f, std::max(c.flightSpeed, 1.0f)});
     Sampler sampler(5, RandomStream::Test, 0, 0);
     int inside = 0, outside = 0;
     for (int i = 0; i < 2000; ++i) {

@@ -158,7 +158,7 @@ TEST(BeamMap, FramesSumToTheSteadyState) {
 
 TEST(BeamMap, PartsOfBeamsMakeTheSameImageAsWholeOnes) {
     const std::string json = test::fogOverFloor(R"("transient_time_center": 8, "transient_time_width": 0.5)");
-    // Too small to be met, but it lets sensor paths fold: beams are kept up to the gate's end.
+    // Too small to be met, but it lets camera subpaths fold: beams are kept up to the gate's end.
     std::string folded = json;
     const std::string first = R"("primitives": [)";
     folded.insert(folded.find(first) + first.size(), R"({"type": "quad", "bsdf": {"type": "mirror"},

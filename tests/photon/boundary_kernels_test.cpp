@@ -5,7 +5,7 @@
 #include "photon/primitives/beams/CutBeams.h"
 #include "photon/primitives/points/FoldedKernels.h"
 #include "photon/primitives/points/PointGather.h"
-#include "photon/view/SensorPath.h"
+#include "photon/view/CameraSubpath.h"
 
 #include "support/PathsAndPhotons.h"
 
@@ -55,7 +55,7 @@ class Rays {
                 frame_.s * (HalfWidth * float(2.0 * u - 1.0)) + frame_.t * (HalfWidth * float(2.0 * v - 1.0));
             Shown<Gather> shown{scene_, gather, FrameSums(1, Vec3d(0.0))};
             const Sampler unused(1, RandomStream::Test, 0, 0);
-            followSensorPath(scene_, Ray{place - direction_ * 20.0f, direction_}, {}, unused, shown);
+            followCameraSubpath(scene_, Ray{place - direction_ * 20.0f, direction_}, {}, unused, shown);
             sum += shown.sums[0].x * weight(place);
         }
         return sum * double(sqr(2.0f * HalfWidth)) / Count;
@@ -70,14 +70,14 @@ class Rays {
         const Scene& scene;
         const Gather& gather;
         FrameSums sums;
-        void segment(const SensorState& state, const std::optional<SurfaceHit>& hit) {
+        void segment(const CameraSubpath& state, const std::optional<SurfaceHit>& hit) {
             if (scene.medium(state.region))
                 gather.gather({state.ray.origin, state.ray.direction, hit ? hit->t : Infinity, state.time, 1.0,
                                state.interactions, state.region.medium},
                               sums);
         }
-        void surface(const SensorState&, const SurfaceInteraction&) const {}
-        void escaped(const SensorState&) const {}
+        void surface(const CameraSubpath&, const SurfaceInteraction&) const {}
+        void escaped(const CameraSubpath&) const {}
     };
 
     const Scene& scene_;
@@ -137,7 +137,9 @@ class BoundaryKernels : public testing::TestWithParam<BoundaryCase> {
         EXPECT_NEAR(mean, 1.0, 0.7 * GetParam().each);
     }
     [[nodiscard]] const Scene& scene() const { return *loaded_.scene; }
-    [[nodiscard]] transport::Sensor sensor() const { return transport::Sensor::of(scene(), scene().transport.gate); }
+    [[nodiscard]] transport::TimeSensor sensor() const {
+        return transport::TimeSensor::of(scene(), scene().transport.gate);
+    }
     [[nodiscard]] KernelEnds ends() const { return {scene(), surfaces_, Sampler(1, RandomStream::Test, 1, 0)}; }
 
   private:

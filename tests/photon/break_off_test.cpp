@@ -112,7 +112,7 @@ const std::vector<BreakOffCase> BreakOffCases{
     {"points", Maps, {"camera paths", "photons", "radii", "splat", "gather"}},
     {"beams", Maps + R"(, "volume_photon_type": "beams")", {"photons", "splat", "gather"}},
     {"planes", Maps + R"(, "volume_photon_type": "planes")", {"photons", "splat", "gather"}},
-    {"guided points", Maps + R"(, "darts": "best")", {"photons", "splat", "shared light"}},
+    {"guided points", Maps + R"(, "darts": "best")", {"photons", "splat", "path reuse"}},
 };
 
 class BreakOff : public testing::TestWithParam<BreakOffCase> {};

@@ -1,4 +1,4 @@
-// Guided light paths on surfaces in whole scenes: connections, mirrors, glossy sensor paths.
+// Guided light paths on surfaces in whole scenes: connections, mirrors, glossy camera subpaths.
 
 #include "support/Folders.h"
 #include "support/PathsAndPhotons.h"
@@ -66,7 +66,7 @@ TEST_P(SurfaceLight, ByConnectionsIsThatOfPathsAndPhotons) {
 }
 
 /// A block and a wall of rough metal, which show lamp, floor and each other.
-TEST(GlossySurfaces, AreRightWithAndWithoutGlossySensorPaths) {
+TEST(GlossySurfaces, AreRightWithAndWithoutGlossyCameraSubpaths) {
     const std::string json = room(R"("transient_time_center": 8.1, "transient_time_width": 1.2)");
     const Overrides metal{R"(primitives.block.bsdf={"type": "rough_conductor", "material": "Ag", "roughness": 0.3})",
                           R"(primitives.wall.bsdf={"type": "rough_conductor", "material": "Au", "roughness": 0.4})",

@@ -5,7 +5,7 @@
 #include "photon/primitives/balls/SharedLanes.h"
 #include "photon/primitives/beams/BeamGather.h"
 #include "photon/primitives/points/PointGather.h"
-#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/primitives/sliced/RecordBudget.h"
 
 #include "support/Exact.h"
 #include "support/FogScene.h"
@@ -136,7 +136,7 @@ TEST(KernelsAccuracy, Registers) {
         const Vector3 normal = across(a, b);
         const Exact square = product(normal, normal);
         if (square < 1e-6) continue;
-        const DualPair pair(before, after);
+        const ReciprocalBasis2 pair(before, after);
         const Vector3 first = across(b, normal);
         for (size_t k = 0; k < 3; ++k) dual.add(double(pair.first[int(k)]), first[k] / square, 1 / square);
     }
@@ -153,7 +153,7 @@ TEST(KernelsAccuracy, LightOfRecords) {
     const Exact sigma(meanComponent(scene.media[0].sigmaT()));
     for (uint64_t i = 0; i < 1500; ++i) {
         Sampler s(95, RandomStream::Test, 0, i);
-        CollapsedFlights record{};
+        SliceRecord record{};
         record.emitter = -1;
         record.time = logUniform(s, 1e-3, 1e3);
         record.base = warp::squareToSphere(s.next2D()) * 2.0f;

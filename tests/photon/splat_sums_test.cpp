@@ -23,11 +23,11 @@ Scene fogBeforeCamera() {
 }
 
 /// Rays through the pixels' centres, all of them in fog.
-SensorRecord recordOf(const Scene& scene) {
-    SensorRecord record;
+CameraRecord recordOf(const Scene& scene) {
+    CameraRecord record;
     record.width = record.height = Pixels;
     record.origin = scene.camera.position();
-    StraightPiece& fog = record.pieces.emplace_back();
+    MediumSegment& fog = record.mediumSegments.emplace_back();
     for (int i = 0; i < Pixels * Pixels; ++i) {
         const Ray ray = scene.camera.generateRay({i % Pixels, i / Pixels}, {0.5f, 0.5f}, {0.5f, 0.5f});
         record.x.push_back(ray.direction.x);
@@ -76,7 +76,7 @@ Drift driftOf(int frames, const Splat& splat) {
 
 TEST(SplatSums, OfEqualPhotonsDoNotDrift) {
     const Scene scene = fogBeforeCamera();
-    const SensorRecord record = recordOf(scene);
+    const CameraRecord record = recordOf(scene);
     const Vec3f ahead = scene.camera.generateRay({Pixels / 2, Pixels / 2}, {0.0f, 0.0f}, {0.5f, 0.5f}).direction;
     const Drift drift = driftOf(1, [&](int count, Film& film) {
         const std::vector<Photon> photons(size_t(count), Photon{0.0, ahead * 2.0f, ahead, Rgb(0.3f, 0.7f, 1.1f), 1, 0});
@@ -89,7 +89,7 @@ TEST(SplatSums, OfEqualPhotonsDoNotDrift) {
 /// By registers in one gate, pixel by pixel into the film of a sequence.
 TEST(SplatSums, OfEqualBeamsDoNotDrift) {
     Scene scene = fogBeforeCamera();
-    const SensorRecord record = recordOf(scene);
+    const CameraRecord record = recordOf(scene);
     const Vec3f ahead = scene.camera.generateRay({Pixels / 2, Pixels / 2}, {0.0f, 0.0f}, {0.5f, 0.5f}).direction;
     for (const int frames : {1, 2}) {
         const TimeGate gate = frames == 1 ? TimeGate{} : TimeGate{false, false, 0.0, 50.0, frames};

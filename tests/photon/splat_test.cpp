@@ -20,7 +20,7 @@ struct SplatCase {
     Vec2i resolution;
     float fov;
     bool steady, unwarped, radiusEach;
-    size_t pieces;
+    size_t segments;
     int onlyMedium = -1; ///< of all rays, if any
     bool edges = false;  ///< kernels end at planes near them
 };
@@ -73,13 +73,13 @@ Store<Photon> photonsAround(const Vec3f& camera) {
     return store;
 }
 
-SensorRecord randomRecord(const Scene& scene, size_t pieces) {
+CameraRecord randomRecord(const Scene& scene, size_t segments) {
     Sampler sampler(4, RandomStream::Test, 0, 0);
-    SensorRecord record;
+    CameraRecord record;
     record.width = scene.camera.resolution.x;
     record.height = scene.camera.resolution.y;
     record.origin = scene.camera.position();
-    record.pieces.resize(pieces);
+    record.mediumSegments.resize(segments);
     for (int y = 0; y < record.height; ++y)
         for (int x = 0; x < record.width; ++x) {
             const Ray ray = scene.camera.generateRay({x, y}, sampler.next2D(), sampler.next2D());
@@ -87,38 +87,39 @@ SensorRecord randomRecord(const Scene& scene, size_t pieces) {
             record.y.push_back(ray.direction.y);
             record.z.push_back(ray.direction.z);
             float start = 0.0f;
-            for (StraightPiece& piece : record.pieces) {
-                // Some pixels lack a piece; some never end.
+            for (MediumSegment& segment : record.mediumSegments) {
+                // Some pixels lack a segment; some never end.
                 const bool none = sampler.next1D() < 0.2f;
-                if (&piece != &record.pieces.front()) start += 0.5f * sampler.next1D();
+                if (&segment != &record.mediumSegments.front()) start += 0.5f * sampler.next1D();
                 const float end = sampler.next1D() < 0.2f ? Infinity : start + 2.0f * sampler.next1D();
-                piece.start.push_back(none ? 0.0f : start);
-                piece.end.push_back(none ? 0.0f : end);
-                piece.medium.push_back(int16_t(sampler.nextBits() % 3));
-                piece.interactions.push_back(uint16_t(sampler.nextBits() % 3));
-                piece.throughput.emplace_back(sampler.next1D(), 0.5f, 1.0f);
+                segment.start.push_back(none ? 0.0f : start);
+                segment.end.push_back(none ? 0.0f : end);
+                segment.medium.push_back(int16_t(sampler.nextBits() % 3));
+                segment.interactions.push_back(uint16_t(sampler.nextBits() % 3));
+                segment.throughput.emplace_back(sampler.next1D(), 0.5f, 1.0f);
                 if (std::isfinite(end)) start = end;
             }
         }
     return record;
 }
 
-/// The same rays in one medium, with as many interactions everywhere. A first piece may begin a little behind the
+/// The same rays in one medium, with as many interactions everywhere. A first segment may begin a little behind the
 /// camera.
-void useOneMedium(SensorRecord& record, int medium, bool behindCamera) {
-    for (StraightPiece& piece : record.pieces) {
-        std::fill(piece.medium.begin(), piece.medium.end(), int16_t(medium));
-        std::fill(piece.interactions.begin(), piece.interactions.end(), uint16_t(1));
+void useOneMedium(CameraRecord& record, int medium, bool behindCamera) {
+    for (MediumSegment& segment : record.mediumSegments) {
+        std::fill(segment.medium.begin(), segment.medium.end(), int16_t(medium));
+        std::fill(segment.interactions.begin(), segment.interactions.end(), uint16_t(1));
     }
-    StraightPiece& first = record.pieces.front();
+    MediumSegment& first = record.mediumSegments.front();
     for (size_t i = 0; i < first.start.size() && behindCamera; ++i)
         if (first.end[i] > 0.0f) first.start[i] = 0.5f * std::min(first.end[i], 0.2f + 0.01f * float(i % 3));
 }
 
 /// Rays as the case wants them.
-SensorRecord recordOf(const SplatCase& c, const Scene& scene) {
-    SensorRecord record = randomRecord(scene, c.pieces);
-    // Beyond the first piece a gather takes a photon's time from the piece's start, which is a detour: no gate there.
+CameraRecord recordOf(const SplatCase& c, const Scene& scene) {
+    CameraRecord record = randomRecord(scene, c.segments);
+    // Beyond the first segment a gather takes a photon's time from the segment's start, which is a detour: no gate
+    // there.
     if (c.onlyMedium >= 0) useOneMedium(record, c.onlyMedium, c.steady);
     return record;
 }
@@ -148,23 +149,23 @@ std::vector<PhotonBeam> beamsAround(const Vec3f& camera, size_t count) {
     return beams;
 }
 
-/// What a PointGather or BeamGather finds along every recorded piece.
+/// What a PointGather or BeamGather finds along every recorded segment.
 template <typename Gather>
-uint64_t gatherRecord(const Gather& gather, const TimeGate& gate, const SensorRecord& record, Film& film) {
+uint64_t gatherRecord(const Gather& gather, const TimeGate& gate, const CameraRecord& record, Film& film) {
     uint64_t gathered = 0;
-    for (const StraightPiece& piece : record.pieces)
+    for (const MediumSegment& segment : record.mediumSegments)
         for (size_t i = 0; i < record.x.size(); ++i) {
-            if (!(piece.end[i] > piece.start[i])) continue;
+            if (!(segment.end[i] > segment.start[i])) continue;
             const Vec3f direction(record.x[i], record.y[i], record.z[i]);
             FrameSums sums(size_t(gate.frames), Vec3d(0.0));
-            gathered += gather.gather({record.origin + direction * piece.start[i], direction,
-                                       piece.end[i] - piece.start[i], double(piece.start[i] / 0.8f), 1.0 / double(0.8f),
-                                       piece.interactions[i], piece.medium[i]},
+            gathered += gather.gather({record.origin + direction * segment.start[i], direction,
+                                       segment.end[i] - segment.start[i], double(segment.start[i] / 0.8f),
+                                       1.0 / double(0.8f), segment.interactions[i], segment.medium[i]},
                                       sums);
             for (int frame = 0; frame < gate.frames; ++frame) {
                 const Vec3d& sum = sums[size_t(frame)];
                 film.add(frame, int(i) % record.width, int(i) / record.width,
-                         Rgb(float(sum.x), float(sum.y), float(sum.z)) * piece.throughput[i]);
+                         Rgb(float(sum.x), float(sum.y), float(sum.z)) * segment.throughput[i]);
             }
         }
     return gathered;
@@ -198,7 +199,7 @@ TEST_P(Splat, AddsWhatGatheringFinds) {
     const Scene scene = foggyScene(c);
     Store<Photon> store = photonsAround(scene.camera.position());
     store.records = inMediumOf(c, store.records);
-    const SensorRecord record = recordOf(c, scene);
+    const CameraRecord record = recordOf(c, scene);
     std::vector<float> radii{0.15f};
     if (c.radiusEach)
         for (size_t i = 1; i < store.records.size(); ++i) radii.push_back(0.02f + 0.3f * float(i % 7) / 7.0f);
@@ -224,7 +225,7 @@ TEST_P(Splat, AddsWhatGatheringFinds) {
 TEST_P(Splat, AddsTheBeamsThatGatheringFinds) {
     const SplatCase& c = GetParam();
     const Scene scene = foggyScene(c);
-    const SensorRecord record = recordOf(c, scene);
+    const CameraRecord record = recordOf(c, scene);
     const TimeGate gate = gateOf(c);
     Film splatted(record.width, record.height, gate.frames), gathered = splatted;
     uint64_t total = 0;
@@ -254,7 +255,7 @@ TEST_P(Splat, AddsTheBeamsThatGatheringFinds) {
 TEST_P(Splat, AddsUpBeams) {
     const SplatCase& c = GetParam();
     const Scene scene = foggyScene(c);
-    const SensorRecord record = recordOf(c, scene);
+    const CameraRecord record = recordOf(c, scene);
     const TimeGate gate = gateOf(c);
     Film together(record.width, record.height, gate.frames), singly = together;
     together.beginPass();
@@ -266,7 +267,7 @@ TEST_P(Splat, AddsUpBeams) {
     expectScaled(together, singly, gate.frames, 1.0f, 1e-5f);
 }
 
-// Beyond the first piece a gather takes a photon's time from the piece's start, which is a detour: no gate there.
+// Beyond the first segment a gather takes a photon's time from the segment's start, which is a detour: no gate there.
 INSTANTIATE_TEST_SUITE_P(Views, Splat,
                          testing::Values(SplatCase{"Frames", {37, 21}, 60.0f, false, false, false, 1},
                                          SplatCase{"UnwarpedFrames", {37, 21}, 60.0f, false, true, true, 1},
@@ -286,9 +287,9 @@ INSTANTIATE_TEST_SUITE_P(Views, Splat,
 /// Pixels whose fog begins at slightly different distances see one photon, to rounding: just within the cubic's range.
 TEST(PointSplat, AttenuatesFromTheStartOfEveryRay) {
     const Scene scene = foggyScene({"", {16, 16}, 3.0f, true, false, false, 1});
-    SensorRecord record = randomRecord(scene, 1);
+    CameraRecord record = randomRecord(scene, 1);
     useOneMedium(record, 3, false);
-    StraightPiece& fog = record.pieces.front();
+    MediumSegment& fog = record.mediumSegments.front();
     for (size_t i = 0; i < fog.start.size(); ++i) {
         fog.start[i] = 0.0035f * float(i % 16);
         fog.end[i] = Infinity;

@@ -44,7 +44,7 @@ struct ViewCase {
 class Sight : public testing::TestWithParam<ViewCase> {};
 
 /// A photon culled although some ray passes near it would be missing from the image.
-TEST_P(Sight, MissesNoPointNearASensorRay) {
+TEST_P(Sight, MissesNoPointNearACameraRay) {
     const Camera camera = slantedCamera(GetParam().model, GetParam().filter);
     const CameraView view(camera);
     Sampler sampler(3, RandomStream::Test, 0, 0);
@@ -122,8 +122,8 @@ TEST(EmissionDirections, FollowTheirDensityTowardsABody) {
     SurfaceSample start{};
     start.position = Vec3f(0.0f);
     start.normal = Vec3f(0.48f, -0.6f, 0.64f);
-    const transport::BodySphere body{Vec3f(-3.0f, 3.0f, -3.0f), 1.0f}, around{Vec3f(0.1f, 0.0f, 0.0f), 1.0f};
-    const std::vector<transport::BodySphere> bodies = {body, around};
+    const transport::MediumSphere body{Vec3f(-3.0f, 3.0f, -3.0f), 1.0f}, around{Vec3f(0.1f, 0.0f, 0.0f), 1.0f};
+    const std::vector<transport::MediumSphere> bodies = {body, around};
     Emitter emitter;
     emitter.model = PointEmitter{Vec3f(0.0f), White};
     const EmissionDirections point(emitter, start, bodies);
@@ -176,13 +176,13 @@ TEST(EmissionDirections, CarryThePowerOfTheEmitter) {
     for (const Vec3f& axis : {Vec3f(2.0f, 4.0f, 2.0f), Vec3f(-1.0f, 2.0f, 5.0f), Vec3f(3.0f, -1.0f, 0.2f)})
         emitters.push_back(Emitter{"", SpotEmitter{Vec3f(0.0f), axis.normalized(), White,
                                                    std::cos(0.135f * Pi / 180.0f), std::cos(0.15f * Pi / 180.0f)}});
-    const std::vector<transport::BodySphere> bodies = {{Vec3f(1.0f, -4.0f, 3.0f), 0.6f},
-                                                       {Vec3f(1.0f, 3.0f, 0.5f), 0.8f}};
+    const std::vector<transport::MediumSphere> bodies = {{Vec3f(1.0f, -4.0f, 3.0f), 0.6f},
+                                                         {Vec3f(1.0f, 3.0f, 0.5f), 0.8f}};
     for (const bool towards : {false, true})
         for (const Emitter& emitter : emitters) {
             const SurfaceSample start = sampleEmissionPoint(emitter, Vec2f(0.5f, 0.5f));
             const EmissionDirections directions(emitter, start,
-                                                towards ? bodies : std::vector<transport::BodySphere>());
+                                                towards ? bodies : std::vector<transport::MediumSphere>());
             double sum = 0.0;
             constexpr int Side = 500;
             for (int i = 0; i < Side * Side; ++i) {

@@ -76,16 +76,16 @@ def check_itself():
     def told(*lines):
         return list(wrong("".join(f"### {heading}\n\n" + "\n".join(lines) + "\n" for heading in MOST)))[:1]
 
-    first, second = "1. `src/path/PathTracer.cpp`: `renderPass`, all of it.", "2. `src/path/PixelSink.h`: `PixelSink`."
+    first, second = "1. `src/path/PathTracer.cpp`: `renderPass`, all of it.", "2. `src/path/PixelAccumulator.h`: `PixelAccumulator`."
     assert told(first, second) == []
-    assert "NOWHERE.h does not exist" in told(first, "2. `src/path/NOWHERE.h`: `PixelSink`.")[0]
-    assert "does not define Sink" in told(first, "2. `src/path/PixelSink.h`: `Sink`.")[0]
+    assert "NOWHERE.h does not exist" in told(first, "2. `src/path/NOWHERE.h`: `PixelAccumulator`.")[0]
+    assert "does not define Sink" in told(first, "2. `src/path/PixelAccumulator.h`: `Sink`.")[0]
     assert "does not define pollWithin" in told(first, "2. `src/path/PathTracer.cpp`: `pollWithin`, which it calls.")[0]
-    assert "no file before it uses FilmSplats" in told(first, "2. `src/path/light/FilmSplats.h`: `FilmSplats`.")[0]
-    assert "no file before it uses Walk" in told("1. `src/path/PixelSink.h`: `PixelSink`.", "2. `src/transport/Walk.h`: `Walk`.")[0]
-    assert "no file before it uses what it has" in told(first, "2. `src/path/PixelSink.h`: frames.")[0]
+    assert "no file before it uses SplatBuffer" in told(first, "2. `src/path/light/SplatBuffer.h`: `SplatBuffer`.")[0]
+    assert "no file before it uses Walk" in told("1. `src/path/PixelAccumulator.h`: `PixelAccumulator`.", "2. `src/transport/Walk.h`: `Walk`.")[0]
+    assert "no file before it uses what it has" in told(first, "2. `src/path/PixelAccumulator.h`: frames.")[0]
     assert "instead of 2" in told(first, second.replace("2.", "3."))[0]
-    assert "at most 20" in told(first, *(f"{i}. `src/path/PixelSink.h`: `PixelSink`." for i in range(2, 28)))[0]
+    assert "at most 20" in told(first, *(f"{i}. `src/path/PixelAccumulator.h`: `PixelAccumulator`." for i in range(2, 28)))[0]
     assert "no list below" in told()[0]
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """All walks through the scene are the loop of src/transport/Walk.h: what another one would need is called in few places of src/.
 
-  sampleFlight, sampleExit   draw the next step by the scene's own distributions, which is what steps are for.
+  sampleFlight, sampleBsdf   draw the next step by the scene's own distributions, which is what steps are for.
   regionBeyond               follows a way into the region behind a surface.
   geometry->intersect        traces a ray to the next surface; in a loop only where no light is followed.
 
@@ -17,13 +17,13 @@ PROJECT = Path(__file__).resolve().parents[2]
 STEPS = "steps of walks"
 PLACES = {
     "sampleFlight": {"src/transport/PlainSteps.h": STEPS},
-    "sampleExit": {"src/transport/PlainSteps.h": STEPS},
+    "sampleBsdf": {"src/transport/PlainSteps.h": STEPS},
     "regionBeyond": {
         "src/transport/PlainSteps.h": STEPS,
         "src/path/StepsToEmitter.cpp": "the region that a guided surface scatters back into, before a direction is drawn",
         "src/transport/Vertex.cpp": "the region of a connection",
-        "src/transport/WaysOut.cpp": "what lies behind the boundary of a body, on a straight way",
-        "src/photon/primitives/sliced/FlightChain.cpp": "the medium on the side where a surface starts a chain of flights",
+        "src/transport/EscapeModels.cpp": "what lies behind the boundary of a body, on a straight way",
+        "src/photon/primitives/sliced/SliceBuilder.cpp": "the medium on the side where a surface starts a chain of flights",
         "src/photon/light/RecordImportance.cpp": "what lies behind what lets light pass, on a straight way",
     },
     "geometry->intersect": {
@@ -33,17 +33,17 @@ PLACES = {
         "src/photon/light/StepsToCamera.cpp": STEPS,
         "src/path/PathVisitor.cpp": "the first way, which is given, of a walk that is aimed through a wall",
         "src/path/techniques/LightVertices.cpp": "a single step, from a light to the first surface",
-        "src/path/techniques/ReflectedLight.cpp": "a single step, from there to the next surface",
-        "src/path/techniques/RefractedPilot.cpp": "its loop",
-        "src/transport/WaysOut.cpp": "its loops",
+        "src/path/techniques/GlossyLightVertices.cpp": "a single step, from there to the next surface",
+        "src/path/techniques/RefractivePilot.cpp": "its loop",
+        "src/transport/EscapeModels.cpp": "its loops",
         "src/photon/DefaultRadius.cpp": "its loop",
         "src/photon/light/RecordImportance.cpp": "its loop",
     },
 }
 #: How many geometry->intersect have a loop around them, and what it does.
 IN_LOOPS = {
-    "src/path/techniques/RefractedPilot.cpp": (1, "indexTowards: refractive indices along a straight line"),
-    "src/transport/WaysOut.cpp": (2, "findExit, lookBeyond: the boundary of a body on a straight line, and the layers behind it"),
+    "src/path/techniques/RefractivePilot.cpp": (1, "indexTowards: refractive indices along a straight line"),
+    "src/transport/EscapeModels.cpp": (2, "findBoundary, addOuterDepth: the boundary of a body on a straight line, and the layers behind it"),
     "src/photon/light/RecordImportance.cpp": (1, "segmentToCamera: what a straight line passes"),
     "src/photon/DefaultRadius.cpp": (1, "depthOf: single rays, all over the image"),
 }

@@ -3,7 +3,7 @@
 // verified values without a renderer. Analog walks in an infinite medium, or beside an absorbing plane.
 
 #include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/balls/VolumeBallMis.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
 #include "photon/primitives/volumes/VolumeSlice.h"
@@ -173,9 +173,9 @@ class SlicedOrder {
         }
         const double jacobian = t[2] * t[2] * std::abs(d[2].dot(sight_.direction) + sight_.warp());
         const double ratio = shared(d, t[0], t[1], t[2], true), plain = shared(d, t[0], t[1], t[2], false);
-        if (jacobian < NearJacobian) add(sums, Sliced::NearBalls, value * photon::volumeShare(ratio));
-        add(sums, Sliced::Shared, value * photon::volumeShare(ratio));
-        add(sums, Sliced::SharedPlainly, value * photon::volumeShare(plain));
+        if (jacobian < NearJacobian) add(sums, Sliced::NearBalls, value * photon::volumeWeight(ratio));
+        add(sums, Sliced::Shared, value * photon::volumeWeight(ratio));
+        add(sums, Sliced::SharedPlainly, value * photon::volumeWeight(plain));
     }
 
     void chords(const Walk& w, size_t base, const std::array<Vec3d, 3>& d, double power, Sums& sums) const {
@@ -215,17 +215,17 @@ class SlicedOrder {
         const Vec3d y = w.position[centre];
         const auto slice = photon::sliceBall(y, sight_, w.slice - w.length[centre]);
         for (int i = 0; i < slice.count; ++i) {
-            const auto& reach = slice.reaches[size_t(i)];
+            const auto& reach = slice.hits[size_t(i)];
             const double value = scattered(w, centre, reach) * reach.weight(Medium);
             add(sums, Sliced::Balls, value);
             if (centre < 2) continue;
             const Vec3d last = (sight_.at(reach.alongRay) - y).normalized();
             const std::array<Vec3d, 3> d{w.direction[centre - 2], w.direction[centre - 1], last};
             const double t1 = w.flight[centre - 2], t2 = w.flight[centre - 1];
-            const double share = photon::ballShare(shared(d, t1, t2, reach.length, true));
+            const double share = photon::ballWeight(shared(d, t1, t2, reach.length, true));
             add(sums, Sliced::NearBalls, value * (reach.jacobian < NearJacobian ? share : 1.0));
             add(sums, Sliced::Shared, value * share);
-            add(sums, Sliced::SharedPlainly, value * photon::ballShare(shared(d, t1, t2, reach.length, false)));
+            add(sums, Sliced::SharedPlainly, value * photon::ballWeight(shared(d, t1, t2, reach.length, false)));
         }
         if (value_.delta) return;
         const auto lit = photon::gateBall<double>(y, sight_, {low_ - w.length[centre], high_ - w.length[centre]});
@@ -237,7 +237,7 @@ class SlicedOrder {
             add(sums, Sliced::ShortBallChords, power * lit.weight(reach, Medium, 0.0, false));
     }
     /// Power times both phase functions.
-    [[nodiscard]] double scattered(const Walk& w, size_t centre, const photon::BallReach<double>& reach) const {
+    [[nodiscard]] double scattered(const Walk& w, size_t centre, const photon::BallHit<double>& reach) const {
         const Vec3d last = (sight_.at(reach.alongRay) - w.position[centre]).normalized();
         const double first = centre == 0 ? 0.25 / M_PI : phase(w.direction[centre - 1], last);
         return w.power[centre] * first * phase(last, -sight_.direction);
@@ -245,7 +245,7 @@ class SlicedOrder {
 
     VerifiedValue value_;
     double low_ = 0.0, high_ = 0.0, g_ = 0.0;
-    photon::SightLine<double> sight_;
+    photon::CameraRay<double> sight_;
 };
 
 } // namespace tungsten::test

@@ -22,44 +22,44 @@ darts::Guide guideWith(float roulette, darts::Greens greens = darts::Greens::Dif
 }
 
 /// 4 away from the target along z, up to 6 to go.
-darts::Residual ahead(double low = 5.0, double high = 6.0) {
-    return darts::Residual::of({0.0f, 0.0f, 4.0f}, {low, high});
+darts::TimeBudget ahead(double low = 5.0, double high = 6.0) {
+    return darts::TimeBudget::of({0.0f, 0.0f, 4.0f}, {low, high});
 }
 
 const Vec3f Aslant(0.6f, 0.0f, 0.8f);
 
-darts::ConnectionSample noDraw(const darts::Residual&) {
+darts::ConnectionSample noDraw(const darts::TimeBudget&) {
     ADD_FAILURE() << "a connection was drawn twice";
     return {};
 }
 
 TEST(GuidedSteps, LooksInTwoStages) {
     GuidedSteps step;
-    EXPECT_FALSE(step.hasLooked());
-    step.lookAhead(ahead(), 0.5f);
-    EXPECT_TRUE(step.hasLooked());
-    EXPECT_FALSE(step.hasLookedOut());
-    EXPECT_FLOAT_EQ(step.residual().excess, 2.0f);
+    EXPECT_FALSE(step.hasTimeBudget());
+    step.setTimeBudget(ahead(), 0.5f);
+    EXPECT_TRUE(step.hasTimeBudget());
+    EXPECT_FALSE(step.hasEscapeModel());
+    EXPECT_FLOAT_EQ(step.budget().excess, 2.0f);
     EXPECT_FLOAT_EQ(step.reachable().excess, 2.5f);
-    EXPECT_FLOAT_EQ(step.reachable().width, step.residual().width + 0.5f);
-    EXPECT_EQ(step.reachable().low, step.residual().low);
-    step.setTimeBudget(ahead());
-    EXPECT_TRUE(step.hasLookedOut());
-    EXPECT_EQ(step.reachable().excess, step.residual().excess);
+    EXPECT_FLOAT_EQ(step.reachable().width, step.budget().width + 0.5f);
+    EXPECT_EQ(step.reachable().low, step.budget().low);
+    step.setTimeBudgetAndModel(ahead());
+    EXPECT_TRUE(step.hasEscapeModel());
+    EXPECT_EQ(step.reachable().excess, step.budget().excess);
     step.forget();
-    EXPECT_FALSE(step.hasLooked());
+    EXPECT_FALSE(step.hasTimeBudget());
 }
 
 TEST(GuidedSteps, WhatHasBecomeTooUsefulSplits) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     step.startRoulette(guide, 0, 1.0f);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 3.9f), 1.0f);
     EXPECT_EQ(step.copiesBy(guide), 1);
     EXPECT_FLOAT_EQ(step.survival(guide, 0, 20.0f), 1.0f);
     EXPECT_EQ(step.copiesBy(guide), 6);
-    // Never more of one walk than the bound allows, however useful it is.
+    // Never more of one walk than the bound allows, however large its expected contribution is.
     float stemming = 6.0f;
     for (int i = 0; i < 100; ++i) {
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1e6f), 1.0f);
@@ -77,7 +77,7 @@ TEST(GuidedSteps, OutOfBodiesCameraPathsEndSooner) {
     const darts::Guide guide(darts::best(darts::Mode::Path, 0.0f), Fog);
     for (const bool out : {false, true}) {
         GuidedSteps step;
-        step.setTimeBudget(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
+        step.setTimeBudgetAndModel(out ? test::outOf(0.5, 3.0, 43.5, 1.0) : ahead());
         EXPECT_FLOAT_EQ(step.survival(guide, 0, 1.0f), 1.0f);
         EXPECT_NEAR(step.survival(guide, 0, 0.06f), out ? 0.2f : 1.0f, 1e-4f);
     }
@@ -94,13 +94,13 @@ void expectArrivesAfter(float length, const GuidedSteps::OnWay& met) {
 TEST(GuidedSteps, ConnectionDrawnInFlight) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     const float h = step.headingOf(Aslant).h;
     int draws = 0;
-    const auto draw = [&](const darts::Residual& residual) {
+    const auto draw = [&](const darts::TimeBudget& budget) {
         ++draws;
-        EXPECT_LT(residual.width, 1.0f) << "connections that end behind the surface are left out";
-        return darts::ConnectionSample{residual.low + 0.5f * residual.width, residual.width};
+        EXPECT_LT(budget.width, 1.0f) << "connections that end behind the surface are left out";
+        return darts::ConnectionSample{budget.low + 0.5f * budget.width, budget.width};
     };
     const auto met = step.meetControlVertex({guide, h, 3.0, true}, 2.8f, draw);
     ASSERT_TRUE(met);
@@ -120,7 +120,7 @@ TEST(GuidedSteps, ConnectionDrawnInFlight) {
 TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     step.connect({1.5f, 2.0f});
     const GuidedSteps::Line way{guide, step.headingOf(Aslant).h, 3.0, true};
     const auto met = step.meetControlVertex(way, Infinity, noDraw);
@@ -134,7 +134,7 @@ TEST(GuidedSteps, ConnectionDrawnBeforeIsMetOnce) {
 TEST(GuidedSteps, ConnectionGoesOnThroughBoundaries) {
     const darts::Guide guide = guideWith(0.1f);
     GuidedSteps step;
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     step.connect({1.5f, 2.0f});
     const float h = step.headingOf(Aslant).h;
     step.place({guide, h, 3.0, true});
@@ -144,7 +144,7 @@ TEST(GuidedSteps, ConnectionGoesOnThroughBoundaries) {
     const float distance = there->vertex.distance, pdf = *step.controlVertexPdf(distance);
 
     EXPECT_FALSE(step.meetControlVertex({guide, h, 3.0, true}, 0.5f * distance, noDraw)) << "not reached yet";
-    step.passBoundary(0.5f * distance);
+    step.crossIndexMatched(0.5f * distance);
     EXPECT_EQ(*step.controlVertexPdf(distance - 0.5f * distance), pdf);
     // Time has gone on since: the connection still counts from its own start.
     const auto beyond = step.meetControlVertex({guide, h, 4.0, true}, distance, noDraw);
@@ -156,7 +156,7 @@ TEST(GuidedSteps, ConnectionGoesOnThroughBoundaries) {
     step.startWay();
     step.connect({1.5f, 2.0f});
     step.place({guide, h, 3.0, true});
-    step.passBoundary(1.5f * distance);
+    step.crossIndexMatched(1.5f * distance);
     EXPECT_FALSE(step.meetControlVertex({guide, h, 3.0, true}, Infinity, noDraw)) << "it lies in what was passed";
 }
 
@@ -166,7 +166,7 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
     const darts::Guide guide(settings, Fog);
     const auto density = [&](float excess) {
         GuidedSteps step;
-        step.setTimeBudget(ahead());
+        step.setTimeBudgetAndModel(ahead());
         step.connect({excess, 1.0f});
         const auto half = [] { return 0.5f; };
         return step.sampleDirection(guide, darts::HenyeyGreenstein{}, half).inversePdf;
@@ -177,22 +177,22 @@ TEST(GuidedSteps, DirectionsSuitTheConnectionDrawnBefore) {
 TEST(GuidedSteps, RouletteStartsAnewWithAnotherModel) {
     const darts::Guide guide = guideWith(0.5f);
     GuidedSteps step;
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     EXPECT_EQ(step.survival(guide, 0, 1.0f), 1.0f) << "it starts";
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);
     step.forget();
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f) << "vertices of one model compare";
     EXPECT_EQ(step.survival(guide, 1, 0.25f), 1.0f) << "another medium";
     EXPECT_NEAR(step.survival(guide, 1, 0.0625f), 0.5f, 1e-5f);
-    step.setTimeBudget(test::outOf(0.5, 3.0, 43.5, 1.0));
+    step.setTimeBudgetAndModel(test::outOf(0.5, 3.0, 43.5, 1.0));
     EXPECT_EQ(step.survival(guide, 1, 1e-6f), 1.0f) << "another way";
 }
 
 TEST(GuidedSteps, RouletteCanStartBeforeItIsPlayed) {
     const darts::Guide guide = guideWith(0.5f);
     GuidedSteps step;
-    step.setTimeBudget(ahead());
+    step.setTimeBudgetAndModel(ahead());
     step.startRoulette(guide, 0, 1.0f);
     step.startRoulette(guide, 0, 0.25f); // goes on
     EXPECT_NEAR(step.survival(guide, 0, 0.25f), 0.5f, 1e-5f);

@@ -2,10 +2,10 @@
 // positions just inside a body and far from the origin.
 
 #include "transport/Balance.h"
-#include "transport/Body.h"
+#include "transport/BoundedMedium.h"
 #include "transport/Connection.h"
 #include "transport/GateBounds.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
 #include "support/Exact.h"
 #include "support/LogUniform.h"
@@ -53,7 +53,7 @@ TEST(TransportAccuracy, StraightWaysAndDensitiesAtTheirEnds) {
         Sampler s(62, RandomStream::Test, 0, i);
         const auto scale = float(logUniform(s, 1e-6, 1e6)), near = scale * float(logUniform(s, 1e-4, 1.0));
         const Vec3f from = anywhere(s, scale), to = from + anywhere(s, near);
-        const auto way = straightWay(from, to);
+        const auto way = connectionSegment(from, to);
         if (!way) continue;
         const std::array<Exact, 3> offset{Exact(to.x) - from.x, Exact(to.y) - from.y, Exact(to.z) - from.z};
         const Exact exactly = sqrt(offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]);
@@ -63,8 +63,8 @@ TEST(TransportAccuracy, StraightWaysAndDensitiesAtTheirEnds) {
         const Vertex vertex(fog, to, way->direction, Region{});
         const float pdf = s.next1D() + 0.1f;
         density.add(double(vertex.areaDensity(pdf, way->direction, way->distance)), pdf / (exactly * exactly));
-        const PathEnd sent{vertex, Rgb(pdf)};
-        end.add(double(connectionEnd(*way, sent).weight.x), pdf / (4 * test::ExactPi * exactly * exactly));
+        const SubpathEnd sent{vertex, Rgb(pdf)};
+        end.add(double(connectionEndpoint(*way, sent).weight.x), pdf / (4 * test::ExactPi * exactly * exactly));
     }
     EXPECT_TRUE(distance.within(2.2e-7));
     EXPECT_TRUE(direction.within(2e-7));
@@ -115,7 +115,7 @@ TEST(TransportAccuracy, SensorsWithDelays) {
         Emitter lamp;
         lamp.pulse = {{begin, begin + width}, {1.0, 0.0}}; // falls linearly
         scene.emitters.push_back(lamp);
-        const Sensor sensor = Sensor::of(scene, gate);
+        const TimeSensor sensor = TimeSensor::of(scene, gate);
         const Exact from(begin), over = Exact(begin + width) - from;
         start.add(sensor.arrivals.start, Exact(gate.start) - Exact(begin + width), Exact(gate.end()) + over);
         length.add(sensor.arrivals.end(), Exact(gate.start) + 5 * Exact(gate.frameWidth) - from,
@@ -136,7 +136,7 @@ TEST(TransportAccuracy, SensorsWithDelays) {
         gate.frames = 1;
         const double seen = gate.start + gate.frameWidth * s.nextDouble();
         const Exact gone = (Exact(seen) - gate.start) / (Exact(gate.start + gate.frameWidth) - gate.start);
-        weight.add(double(Sensor::of(scene, gate).weight(seen)), 2 * (1 - gone),
+        weight.add(double(TimeSensor::of(scene, gate).weight(seen)), 2 * (1 - gone),
                    1 + Exact(gate.start) * 1e-9 / gate.frameWidth);
     }
     EXPECT_TRUE(share.within(6e-8));
@@ -153,13 +153,13 @@ TEST(TransportAccuracy, WaysOutOfSimpleBodies) {
         Sphere ball;
         ball.centre = anywhere(s, 3.0f * radius);
         ball.radius = radius;
-        Body body;
+        BoundedMedium body;
         body.sphere = &ball;
         // Anywhere inside, half of them just under the surface.
         const float depth = i % 2 == 0 ? s.next1D() : float(logUniform(s, 1e-6, 1.0));
         const Vec3f position = ball.centre + warp::squareToSphere(s.next2D()) * (radius * (1.0f - depth)),
                     direction = warp::squareToSphere(s.next2D());
-        const Body::Exit exit = body.leave(position, direction);
+        const BoundedMedium::BoundaryHit exit = body.intersectBoundary(position, direction);
         std::array<Exact, 3> from;
         Exact along = 0, squared = 0, unit = exactDot(direction, direction);
         for (int axis = 0; axis < 3; ++axis) {
@@ -175,7 +175,7 @@ TEST(TransportAccuracy, WaysOutOfSimpleBodies) {
         for (int axis = 0; axis < 3; ++axis)
             normal.add(double(exit.face.normal[axis]), (from[size_t(axis)] + distance * direction[axis]) / radius,
                        Exact(1));
-        Body walls;
+        BoundedMedium walls;
         for (int axis = 0; axis < 3; ++axis)
             for (const float side : {-1.0f, 1.0f}) {
                 Vec3f out(0.0f), corner = ball.centre + Vec3f(radius);
@@ -184,12 +184,12 @@ TEST(TransportAccuracy, WaysOutOfSimpleBodies) {
                 walls.faces.push_back({corner, out});
             }
         Exact nearest = 1e30;
-        for (const Body::Face& face : walls.faces) {
+        for (const BoundedMedium::Face& face : walls.faces) {
             const Exact cosine = exactDot(direction, face.normal);
             const Exact under = exactDot(face.point, face.normal) - exactDot(position, face.normal);
             if (cosine > 0 && under / cosine < nearest) nearest = under / cosine;
         }
-        block.add(double(walls.leave(position, direction).distance), nearest, nearest + radius);
+        block.add(double(walls.intersectBoundary(position, direction).distance), nearest, nearest + radius);
     }
     EXPECT_TRUE(sphere.within(8e-6));
     EXPECT_TRUE(normal.within(6e-6));

@@ -93,9 +93,9 @@ TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
     const Vertex floor = floorAt(above.x, above.z, Vec3f(-0.6f, -0.8f, 0.0f), TransportMode::Radiance);
     for (const bool fromLight : {false, true}) {
         const Vertex &from = fromLight ? light : floor, &to = fromLight ? floor : light;
-        const auto way = straightWay(from.position(), to.position());
+        const auto way = connectionSegment(from.position(), to.position());
         ASSERT_TRUE(way);
-        const auto connection = connector_.connect(from, Rgb(0.5f), connectionEnd(*way, {to, Rgb(4.0f)}), rays_);
+        const auto connection = connector_.connect(from, Rgb(0.5f), connectionEndpoint(*way, {to, Rgb(4.0f)}), rays_);
         ASSERT_TRUE(connection);
         EXPECT_NEAR(connection->throughput.x, 2.0f * 0.5f * InvPi * 12.0f / 16.0f * std::exp(-0.5f), 1e-5f);
         EXPECT_NEAR(connection->time, 5.0, 1e-5); // 3 at speed 1, 1 at 0.5
@@ -104,10 +104,10 @@ TEST_F(Lamp, ConnectionsCrossTheFogFromBothEnds) {
     }
     // Behind the lamp there is nothing.
     const Vertex behind(scene_->media[0], Vec3f(0, 5, 0), Vec3f(0, 1, 0), Region{-1, 1.0f});
-    const auto down = straightWay(behind.position(), floor.position());
+    const auto down = connectionSegment(behind.position(), floor.position());
     ASSERT_TRUE(down);
-    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), connectionEnd(*down, {floor, Rgb(1.0f)}), rays_));
-    EXPECT_FALSE(straightWay(above, above));
+    EXPECT_FALSE(connector_.connect(behind, Rgb(1.0f), connectionEndpoint(*down, {floor, Rgb(1.0f)}), rays_));
+    EXPECT_FALSE(connectionSegment(above, above));
 }
 
 TEST(Connections, ThroughASurfaceGoThroughTheMediumBeyondIt) {
@@ -121,7 +121,7 @@ TEST(Connections, ThroughASurfaceGoThroughTheMediumBeyondIt) {
     const auto hit = scene->geometry->intersect({Vec3f(0.1f, 2.0f, 0.2f), down});
     ASSERT_TRUE(hit);
     const Vertex top(*scene, makeInteraction(*scene, *hit, down), down, TransportMode::Radiance, Region{-1, 1.0f});
-    const ConnectionEnd inside{down, 0.8f, Rgb(2.0f), {}};
+    const ConnectionEndpoint inside{down, 0.8f, Rgb(2.0f), {}};
     uint64_t rays = 0;
     const auto connection = Connector(*scene, false).connect(top, Rgb(0.5f), inside, rays);
     ASSERT_TRUE(connection);
@@ -202,7 +202,7 @@ TEST(Visibility, OfALampFromInsideBoxesIsNeverHiddenByTheLampItself) {
         const Vec3f from = (Vec3f(sampler.next1D(), sampler.next1D(), sampler.next1D()) - Vec3f(0.5f)) * 0.9f;
         const auto direct = sampleDirect(scene->emitters[0], from, sampler.next2D());
         if (!direct) continue;
-        const ConnectionEnd end = connectionEnd(*direct);
+        const ConnectionEndpoint end = connectionEndpoint(*direct);
         const Ray ray{from, end.direction, 0.0f, end.margin.before(end.direction, end.distance)};
         const Visibility seen = traceVisibility(*scene, ray, end.distance, box.inside, rays);
         ASSERT_EQ(seen.crossings, 3) << i;

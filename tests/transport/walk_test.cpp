@@ -451,7 +451,7 @@ TEST_F(OwnSteps, DirectionsAreDrawnWithTheNumbersOfTheirVertex) {
     const SurfaceInteraction floor = makeInteraction(*scene_, *scene_->geometry->intersect(path.ray), Downwards);
     const auto way = steps.way(path, {nullptr, &floor, floor.hit.position, Downwards, InVacuum});
     Sampler own = numbers(3, Draw::Direction);
-    const auto exit = sampleExit(floor, floor.query(TransportMode::Photons), false, own);
+    const auto exit = sampleBsdf(floor, floor.query(TransportMode::Photons), false, own);
     ASSERT_TRUE(way && exit);
     EXPECT_EQ(way->ray.direction, exit->direction);
     EXPECT_NEAR(way->pdf, way->ray.direction.y * InvPi, 1e-6f);

@@ -1,6 +1,6 @@
 #include "tungsten/bsdf/Bsdf.h"
 
-#include "tungsten/bsdf/Evenness.h"
+#include "tungsten/bsdf/Lambertian.h"
 #include "tungsten/bsdf/Models.h"
 #include "tungsten/core/Overloaded.h"
 
@@ -54,10 +54,10 @@ float relativeIndex(const Bsdf& bsdf) {
                       bsdf.model);
 }
 
-bool scattersEvenly(const Bsdf& bsdf) {
+bool isLambertian(const Bsdf& bsdf) {
     return std::visit(
-        Overloaded{[](const Lambert&) { return true; }, [](const Transparency& m) { return scattersEvenly(*m.base); },
-                   [](const Mixed& m) { return scattersEvenly(*m.bsdf0) && scattersEvenly(*m.bsdf1); },
+        Overloaded{[](const Lambert&) { return true; }, [](const Transparency& m) { return isLambertian(*m.base); },
+                   [](const Mixed& m) { return isLambertian(*m.bsdf0) && isLambertian(*m.bsdf1); },
                    [](const OneOf<OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric, Plastic,
                                   RoughPlastic, PbrtPlastic, Null, Forward> auto&) { return false; }},
         bsdf.model);

@@ -29,7 +29,7 @@ inline constexpr LobeMask Forward = 32; ///< straight through, index matched
 inline constexpr LobeMask Smooth = DiffuseReflection | GlossyReflection | GlossyTransmission;
 inline constexpr LobeMask Specular = SpecularReflection | SpecularTransmission;
 inline constexpr LobeMask Transmissive = GlossyTransmission | SpecularTransmission;
-inline constexpr LobeMask Through = Transmissive | Forward; ///< all that brings light to the other side
+inline constexpr LobeMask AnyTransmission = Transmissive | Forward; ///< all that brings light to the other side
 inline constexpr LobeMask All = 63;
 } // namespace lobe
 

@@ -54,11 +54,11 @@ class Camera {
     [[nodiscard]] float focusDistance() const;
     /// Of a perspective image; none where rays are parallel.
     [[nodiscard]] std::optional<FieldOfView> fieldOfView() const;
-    /// Every sensor ray leaves the same point.
+    /// Every camera ray leaves the same point.
     [[nodiscard]] bool hasSinglePosition() const;
     /// None of other cameras.
     [[nodiscard]] const Detectors* detectors() const;
-    /// position() says nothing about where a sensor ray starts: all have the same direction, or there are detectors.
+    /// position() says nothing about where a camera ray starts: all have the same direction, or there are detectors.
     [[nodiscard]] bool hasParallelRays() const;
 };
 

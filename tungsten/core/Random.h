@@ -19,7 +19,7 @@ enum class RandomStream : uint32_t {
     Test = 4,
     Emitter = 5, ///< which of them, and which of its points
     LightVertex = 6,
-    SensorPoint = 7,
+    VisiblePoint = 7,
     Pilot = 8,
     Frame = 9,
     Folded = 10,

@@ -27,7 +27,7 @@ EmissionSample sampleEmission(const AreaEmitter& area, const Vec2f& uPosition, c
     const Vec3f local = warp::squareToCosineCone(uDirection, cone);
     const Vec3f direction = Frame(start.normal).toWorld(local).normalized();
     const Rgb power = area.radiance.rgb(start.uv) * area.extent(); // L cos over the densities of position and direction
-    return {start.leave(direction), power, warp::squareToCosineConePdf(local, cone), start.normal};
+    return {start.spawnRay(direction), power, warp::squareToCosineConePdf(local, cone), start.normal};
 }
 
 std::optional<DirectSample> sampleDirect(const AreaEmitter& area, const Vec3f& receiver, const Vec2f& u) {

@@ -50,7 +50,7 @@ Rgb emittedIntensity(const Emitter& emitter, const SurfaceSample& start, const V
                        return area.radiance.rgb(start.uv) * (cosine * area.areaSampler->area());
                    },
                    [](const OneOf<DirectionalPointEmitter, CollimatedEmitter> auto&) { return Rgb(0.0f); },
-                   // It has no start that all directions share.
+                   // An environment has no starting point common to all directions.
                    [](const InfiniteSphereEmitter&) { return Rgb(0.0f); }},
         emitter.model);
 }
@@ -130,7 +130,7 @@ float pdfDirect(const Emitter& emitter, const Vec3f& receiver, const Vec3f& posi
                       emitter.model);
 }
 
-std::optional<Rgb> evenIntensity(const Emitter& emitter) {
+std::optional<Rgb> isotropicIntensity(const Emitter& emitter) {
     using Answer = std::optional<Rgb>;
     return std::visit(Overloaded{[](const PointEmitter& point) { return Answer(point.intensity); },
                                  [](const OneOf<DirectionalPointEmitter, CollimatedEmitter, SpotEmitter, AreaEmitter,

@@ -132,7 +132,7 @@ EmissionCone emissionCone(const Emitter& emitter, const SurfaceSample& start);
 float pdfEmissionDirection(const Emitter& emitter, const SurfaceSample& start, const Vec3f& direction);
 
 /// Of a point that shines alike in every direction; none of others.
-std::optional<Rgb> evenIntensity(const Emitter& emitter);
+std::optional<Rgb> isotropicIntensity(const Emitter& emitter);
 
 /// Of the surface that emits; 0 for emitters that are none.
 float emittingArea(const Emitter& emitter);

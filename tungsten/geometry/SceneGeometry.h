@@ -28,12 +28,12 @@ struct SurfaceHit {
     [[nodiscard]] FaceIndex index() const { return {shape, face}; }
     [[nodiscard]] SurfaceMargin margin() const { return {ng, error, index()}; }
     /// A ray on from here that does not meet the surface here, and does meet others that touch it here.
-    [[nodiscard]] Ray leave(const Vec3f& direction) const {
+    [[nodiscard]] Ray spawnRay(const Vec3f& direction) const {
         return {margin().off(position, direction), direction, 0.0f, Infinity, index()};
     }
     /// The rest of the ray that met it, up to the same end; lengths along it count from here.
     [[nodiscard]] Ray rest(const Ray& ray) const {
-        Ray onward = leave(ray.direction);
+        Ray onward = spawnRay(ray.direction);
         if (!(ray.tMax < Infinity)) return onward;
         // It starts beside the ray, by some of the margin: from there to the same point, else it would meet what the
         // ray ends short of.

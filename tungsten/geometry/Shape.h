@@ -54,7 +54,7 @@ struct SurfaceSample {
 
     [[nodiscard]] SurfaceMargin margin() const { return {normal, error, face}; }
     /// A ray from here that does not meet the surface here.
-    [[nodiscard]] Ray leave(const Vec3f& direction) const { return margin().leave(position, direction); }
+    [[nodiscard]] Ray spawnRay(const Vec3f& direction) const { return margin().spawnRay(position, direction); }
 };
 
 /// Draws points uniformly over a shape's surface.

@@ -31,7 +31,7 @@ struct SurfaceMargin {
     }
 
     /// A ray from `position`, a point of the surface, that does not meet the surface there.
-    [[nodiscard]] Ray leave(const Vec3f& position, const Vec3f& direction) const {
+    [[nodiscard]] Ray spawnRay(const Vec3f& position, const Vec3f& direction) const {
         return {position, direction, beyond(direction), Infinity, face};
     }
 

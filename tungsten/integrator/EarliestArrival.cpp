@@ -39,7 +39,7 @@ double gapToPlane(const Transform& toWorld, const Imath::Box3f& box) {
     return std::max({least, -most, 0.0});
 }
 
-/// How far the box is at least from where sensor rays start.
+/// How far the box is at least from where camera rays start.
 double wayToSensor(const Camera& camera, const Imath::Box3f& box) {
     const auto wayTo = [&](const Vec3f& place) { return wayBetween(nearestIn(box, place), place); };
     if (const Detectors* detectors = camera.detectors()) {

@@ -121,7 +121,7 @@ void describeSurfaces(const Scene& scene, Features& features) {
     };
     describe(feature::SurfaceScattering, lobe::Smooth, "with diffuse or glossy lobes",
              "every surface is specular, forward or black");
-    describe(feature::SpecularSensorPaths, lobe::Specular, "with lobes that mirror or refract",
+    describe(feature::SpecularCameraSubpaths, lobe::Specular, "with lobes that mirror or refract",
              "no mirror or smooth dielectric");
     describe(feature::Refraction, lobe::Transmissive, "with lobes that refract", "no surface refracts");
     describe(feature::IndexMatchedBoundaries, lobe::Forward, "with lobes that light passes straight",

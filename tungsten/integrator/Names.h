@@ -31,7 +31,7 @@ inline constexpr FeatureName AbsorptionOnly{"absorption only"};
 inline constexpr FeatureName ColouredMedia{"coloured media"};
 inline constexpr FeatureName AnisotropicScattering{"anisotropic scattering"};
 inline constexpr FeatureName SurfaceScattering{"surface scattering"};
-inline constexpr FeatureName SpecularSensorPaths{"specular sensor paths"};
+inline constexpr FeatureName SpecularCameraSubpaths{"specular camera subpaths"};
 inline constexpr FeatureName Refraction{"refraction"};
 inline constexpr FeatureName IndexMatchedBoundaries{"index-matched boundaries"};
 inline constexpr FeatureName LateEmitters{"late emitters left out"};
@@ -55,13 +55,13 @@ inline constexpr CounterName ArrivalsByResponse{"arrivals weighed by the respons
 inline constexpr CounterName ArrivalsAtDetectors{"arrivals from lights at detectors"};
 inline constexpr CounterName SurfaceConnections{"surface connections"};
 inline constexpr CounterName LightVertexConnections{"light vertex connections"};
-inline constexpr CounterName ReflectedLightConnections{"reflected light connections"};
-inline constexpr CounterName WaysThroughWalls{"ways through walls"};
+inline constexpr CounterName GlossyLightVertexConnections{"glossy light vertex connections"};
+inline constexpr CounterName RefractiveConnections{"refractive connections"};
 inline constexpr CounterName StoredSurfacePhotons{"stored surface photons"};
 inline constexpr CounterName GatheredOnSurfaces{"photons gathered on surfaces"};
 inline constexpr CounterName SplattedRecords{"splatted records"};
 inline constexpr CounterName GatheredRecords{"gathered records"};
-inline constexpr CounterName GlossySensorReflections{"glossy sensor reflections"};
+inline constexpr CounterName GlossyCameraReflections{"glossy camera reflections"};
 inline constexpr CounterName PlainBesideGuided{"plain light paths beside guided ones"};
 inline constexpr CounterName FramesAimedAt{"frames aimed at"};
 } // namespace counter

@@ -17,7 +17,7 @@ void analyseMedia(const Scene& scene, SceneFacts& facts) {
 
 void analyseSurfaces(const Scene& scene, SceneFacts& facts) {
     facts.surfaceScattering = elementsWithLobe(scene, lobe::Smooth).any();
-    facts.specularSensorPaths = elementsWithLobe(scene, lobe::Specular).any();
+    facts.specularCameraSubpaths = elementsWithLobe(scene, lobe::Specular).any();
     facts.forwardBoundaries = elementsWithLobe(scene, lobe::Forward).any();
     facts.textures = elementsWithTexture(scene).any();
 }

@@ -13,7 +13,7 @@ struct SceneFacts {
     bool multipleFrames = false;
     bool mediumScattering = false;       ///< some medium a path can reach, in time, scatters
     bool surfaceScattering = false;      ///< some surface has a smooth lobe
-    bool specularSensorPaths = false;    ///< mirrors or refraction exist: sensor paths can fold
+    bool specularCameraSubpaths = false; ///< mirrors or refraction exist: camera subpaths can fold
     bool speedsDiffer = false;           ///< light travels at different speeds in different regions
     float highestSpeed = 1.0f;           ///< of light, in any region that a path can reach
     bool greyMedia = true;               ///< all media have equal coefficients in all channels

@@ -14,7 +14,7 @@ class Homogeneous {
   public:
     Homogeneous() : Homogeneous(Rgb(0.0f), Rgb(0.0f)) {}
     Homogeneous(const Rgb& sigmaA, const Rgb& sigmaS)
-        : sigmaA_(sigmaA), sigmaS_(sigmaS), grey_(isEven(sigmaA) && isEven(sigmaS)) {}
+        : sigmaA_(sigmaA), sigmaS_(sigmaS), grey_(hasEqualChannels(sigmaA) && hasEqualChannels(sigmaS)) {}
 
     [[nodiscard]] const Rgb& sigmaA() const { return sigmaA_; }
     [[nodiscard]] const Rgb& sigmaS() const { return sigmaS_; }
@@ -26,7 +26,7 @@ class Homogeneous {
     [[nodiscard]] Rgb transmittance(float distance) const;
 
   private:
-    [[nodiscard]] static bool isEven(const Rgb& sigma) { return sigma.x == sigma.y && sigma.y == sigma.z; }
+    [[nodiscard]] static bool hasEqualChannels(const Rgb& sigma) { return sigma.x == sigma.y && sigma.y == sigma.z; }
 
     Rgb sigmaA_, sigmaS_;
     bool grey_; ///< asked in every flight

@@ -26,7 +26,7 @@ std::optional<uint32_t> surfaceAt(const Scene& scene, const Vec3f& position, flo
 /// Light that does not come from an emitter right behind it cannot pass.
 bool isWall(const Scene& scene, const SurfaceHit& hit) {
     const Primitive& primitive = scene.primitives[hit.shape];
-    return primitive.emitter < 0 && !primitive.boundsRegion && (scene.bsdfOf(hit).lobes() & lobe::Through) == 0;
+    return primitive.emitter < 0 && !primitive.boundsRegion && (scene.bsdfOf(hit).lobes() & lobe::AnyTransmission) == 0;
 }
 
 /// No light is in sight from here.
@@ -78,7 +78,7 @@ const Primitive* surfaceAcross(const Scene& scene, const Detector& detector) {
         Ray spoke{detector.position, detector.frame.s * std::cos(angle) + detector.frame.t * std::sin(angle)};
         spoke.tMax = detector.radius;
         const auto hit = scene.geometry->intersect(spoke);
-        if (hit && (scene.bsdfOf(*hit).lobes() & lobe::Through) == 0) return &scene.primitives[hit->shape];
+        if (hit && (scene.bsdfOf(*hit).lobes() & lobe::AnyTransmission) == 0) return &scene.primitives[hit->shape];
     }
     return nullptr;
 }

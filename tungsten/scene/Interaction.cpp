@@ -39,12 +39,12 @@ SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, co
     return interaction;
 }
 
-std::optional<SurfaceExit> sampleExit(const SurfaceInteraction& surface, const BsdfQuery& query, bool checksOn,
-                                      Sampler& sampler) {
+std::optional<BsdfDirection> sampleBsdf(const SurfaceInteraction& surface, const BsdfQuery& query, bool checksOn,
+                                        Sampler& sampler) {
     const BsdfRandom random{sampler.next2D(), sampler.next1D()};
     const auto sample = surface.bsdf->sample(query, surface.wi, random);
     if (!sample) return std::nullopt;
-    const SurfaceExit exit{surface.frame.toWorld(sample->wo).normalized(), sample->weight, sample->pdf, sample->lobe};
+    const BsdfDirection exit{surface.frame.toWorld(sample->wo).normalized(), sample->weight, sample->pdf, sample->lobe};
     if (!exit.straight() && !surface.consistent(exit.direction, checksOn)) return std::nullopt;
     return exit;
 }

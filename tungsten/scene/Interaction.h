@@ -25,7 +25,7 @@ struct SurfaceInteraction {
 SurfaceInteraction makeInteraction(const Scene& scene, const SurfaceHit& hit, const Vec3f& rayDirection);
 
 /// How a path goes on from a surface; weight, pdf and lobe as in BsdfSample.
-struct SurfaceExit {
+struct BsdfDirection {
     Vec3f direction; ///< world, unit
     Rgb weight;
     float pdf;
@@ -35,8 +35,8 @@ struct SurfaceExit {
 };
 /// Draws it from the BSDF's lobes that the query asks for. None when they absorb the path, or when `checksOn` and its
 /// direction is not consistent(); straight on always is.
-std::optional<SurfaceExit> sampleExit(const SurfaceInteraction& surface, const BsdfQuery& query, bool checksOn,
-                                      Sampler& sampler);
+std::optional<BsdfDirection> sampleBsdf(const SurfaceInteraction& surface, const BsdfQuery& query, bool checksOn,
+                                        Sampler& sampler);
 
 /// The region of a path that leaves a surface along `direction` (world). The primitive's own sides decide; only a path
 /// reflected to a side for which the primitive names no medium stays in `current`: meshes that bound nothing may be hit

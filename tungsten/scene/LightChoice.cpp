@@ -22,10 +22,10 @@ LightChoice::LightChoice(const Scene& scene, const std::vector<bool>& leftOut)
     : scene_(scene), distribution_(emitterDistribution(
                          scene, [](const Emitter& e) { return e.isConnectable(); }, leftOut)) {}
 
-std::optional<LightChoice::Choice> LightChoice::sample(float u) const {
+std::optional<LightChoice::EmitterSample> LightChoice::sample(float u) const {
     if (!(distribution_.total() > 0.0)) return std::nullopt;
     const auto chosen = distribution_.sample(u);
-    return Choice{&scene_.emitters[chosen.index], chosen.probability};
+    return EmitterSample{&scene_.emitters[chosen.index], chosen.probability};
 }
 
 } // namespace tungsten

@@ -18,12 +18,12 @@ class LightChoice {
     /// `leftOut`: by emitter; empty: none.
     explicit LightChoice(const Scene& scene, const std::vector<bool>& leftOut = {});
 
-    struct Choice {
+    struct EmitterSample {
         const Emitter* emitter;
         float probability;
     };
     /// None when no emitter can be connected to.
-    [[nodiscard]] std::optional<Choice> sample(float u) const;
+    [[nodiscard]] std::optional<EmitterSample> sample(float u) const;
     /// Probability of choosing the emitter with this index (0 for those that cannot be connected to).
     [[nodiscard]] float probability(int emitter) const {
         return distribution_.total() > 0.0 ? distribution_.probability(size_t(emitter)) : 0.0f;

@@ -175,7 +175,7 @@ class MediaAgreement {
     [[nodiscard]] bool says(const Primitive& primitive, bool inside, int32_t material) const {
         if (!primitive.boundsMedium) return false;
         if ((inside ? primitive.inside : primitive.outside).medium >= 0) return true;
-        return (bsdfOf(primitive, material).lobes() & lobe::Through) != 0;
+        return (bsdfOf(primitive, material).lobes() & lobe::AnyTransmission) != 0;
     }
     static const Bsdf& bsdfOf(const Primitive& primitive, int32_t material) {
         return *primitive.bsdfs[size_t(std::clamp(material, 0, int(primitive.bsdfs.size()) - 1))];
@@ -216,7 +216,7 @@ class MediaAgreement {
                 const int medium = (inside ? primitive.inside : primitive.outside).medium;
                 return {true, SegmentEnd{int(hit->shape), inside, medium}, {hit->position, hit->ng, hit->material}};
             }
-            if (hit->shape != own && (scene_.bsdfOf(*hit).lobes() & lobe::Through) == 0) return {true, {}};
+            if (hit->shape != own && (scene_.bsdfOf(*hit).lobes() & lobe::AnyTransmission) == 0) return {true, {}};
             ray.tMin = hit->margin().beyond(ray.direction, hit->t);
         }
         return {true, {}};
@@ -227,7 +227,7 @@ class MediaAgreement {
         const Vec3f way = sensorRay(-1, k).origin - point.position;
         const SegmentEnd sensor{-1, false, scene_.cameraRegion.medium};
         if (!(way.length() > 0.0f)) return {false, sensor};
-        Ray ray = point.leave(way.normalized());
+        Ray ray = point.spawnRay(way.normalized());
         ray.tMax = way.length();
         Segment found = segmentAlong(ray, emitter.primitive());
         if (!found.blocked) found.end = sensor;

@@ -57,8 +57,9 @@ void finishGeometry(Scene& scene, const LoadWatch& watch = {}) {
     std::vector<bool> opaque;
     for (const Primitive& primitive : scene.primitives) {
         shapes.push_back(&primitive.shape);
-        const bool passes = std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(),
-                                        [](const BsdfPtr& bsdf) { return (bsdf->lobes() & lobe::Through) != 0; });
+        const bool passes = std::any_of(primitive.bsdfs.begin(), primitive.bsdfs.end(), [](const BsdfPtr& bsdf) {
+            return (bsdf->lobes() & lobe::AnyTransmission) != 0;
+        });
         opaque.push_back(!passes && primitive.emitter < 0);
     }
     scene.geometry = std::make_shared<const SceneGeometry>(shapes, opaque, watch);

@@ -48,8 +48,8 @@ class GroupFailure : public std::exception {
     std::exception_ptr toTell_;
 };
 
-/// Runs action() in every rank. Where it throws in any, all ranks throw a GroupFailure; the same failure in rank 0 and
-/// others is told by rank 0. Without a group it is just run.
+/// Runs action() in every rank. Where it throws in any, all ranks throw a GroupFailure; if rank 0
+/// failed, it alone reports; otherwise each failed rank reports its own failure. Without a group action() just runs.
 template <typename Action>
 void runOnAll(ProcessGroup* group, const Action& action) {
     if (!group) return action();

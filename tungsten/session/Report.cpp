@@ -23,7 +23,7 @@ namespace {
 
 /// Whether the feature is that of excluding something, and does.
 bool excludes(const Feature& feature, const SceneFacts& facts) {
-    const bool surfaces = facts.surfaceScattering || facts.surfaceEmission || facts.specularSensorPaths;
+    const bool surfaces = facts.surfaceScattering || facts.surfaceEmission || facts.specularCameraSubpaths;
     if (feature.name == tungsten::feature::SurfacesInTime) return surfaces && facts.surfacesOutOfTime;
     if (feature.name == tungsten::feature::MediaInTime) return !facts.excludedMedia.empty();
     using namespace tungsten::feature;

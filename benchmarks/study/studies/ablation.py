@@ -27,7 +27,7 @@ PARTS = {
     "bounds by time": {"bounded": False},
     "roulette": {"roulette": 0},
     "surface connections": {"surface_connections": False},
-    "glossy sensor paths": {"glossy_sensor_paths": False},
+    "glossy camera subpaths": {"glossy_sensor_paths": False},
     "bodies": {"bodies": False},
 }
 # Small passes: many of them in little time.

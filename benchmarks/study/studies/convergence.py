@@ -98,7 +98,7 @@ def run(bench: Bench):
     bench.write(TITLE, f"Single scattering of a pulse in fog (benchmarks/study/scenes/pulse-in-fog.json), {scene.words()} pixels, "
                 f"{passes[0]} to {passes[-1]} passes, {bench.short(8, 2)} seeds, against the closed form. Exponents are slopes of straight lines "
                 "through logarithms, ± the standard error of the fit. Theory: variance of the mean of passes with kernels of d "
-                "dimensions and bias as the square of the width, with the radii of [method](../../../docs/method.md#7-the-photon-pass-and-the-sensor-pass) "
+                "dimensions and bias as the square of the width, with the radii of [method](../../../docs/method.md#7-the-photon-pass-and-the-camera-pass) "
                 "summed over the passes and fitted at the same ones: what the powers -1, -0.8, ... are before n is large.",
                 "![variance and bias against passes](convergence.svg)",
                 table(["method", "variance ~ n^", "theory", "bias ~ n^", "theory", "error ~ n^", "error ~ time^", "error in the end",

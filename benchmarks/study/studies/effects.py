@@ -11,21 +11,21 @@ COUNTS = ["integrator.photon_count=60000", "integrator.volume_photon_count=30000
 FEW = ["integrator.photon_count=20000", "integrator.volume_photon_count=5000"]
 BEST, PLAIN = ["integrator.darts=best"], ["integrator.darts=off"]
 BEAMS, SLICES = (["integrator.volume_photon_type=" + kind] for kind in ("beams", "mis_volumes_balls"))
-VOLUME, LOOK = ["build", "splat"], ["sensor record", "splat", "sensor pass"]
+VOLUME, LOOK = ["build", "splat"], ["camera record", "splat", "camera pass"]
 PHOTONS, CAMERA = ["photon pass"], ["camera pass"]
-STAGES = ["photon pass", "light paths", "sensor record", "build", "splat", "share light", "sensor pass", "camera pass", "bias"]
+STAGES = ["photon pass", "light paths", "camera record", "build", "splat", "path reuse", "camera pass", "bias"]
 GREY = ["media.water.sigma_s=0.7", "media.water.sigma_a=0.04"]
 CHECKER = 'bsdfs.white.albedo={"type":"checker","on_color":0.8,"off_color":0.6,"res_u":8,"res_v":8}'
 # As the plan calls it; the scene; the stages that work for it; what both set; what has its cause; what has not.
 EFFECTS = [
     ("medium scattering", "cornell-fog", PHOTONS + VOLUME + LOOK, COUNTS, [], ["media.fog.sigma_s=0"]),
     ("medium scattering", "cornell-fog", CAMERA, PATHS, [], ["media.fog.sigma_s=0"]),
-    ("surface photons", "cornell-fog", PHOTONS + ["build", "sensor pass"], COUNTS, [], ["integrator.include_surfaces=false"]),
+    ("surface photons", "cornell-fog", PHOTONS + ["build", "camera pass"], COUNTS, [], ["integrator.include_surfaces=false"]),
     ("coloured media", "glass-tank", PHOTONS + VOLUME + LOOK, COUNTS, [], GREY),
     ("anisotropic scattering", "glass-tank", PHOTONS + VOLUME + LOOK, COUNTS, [], ['media.water.phase_function={"type":"isotropic"}']),
     ("refraction", "glass-tank", PHOTONS + VOLUME + LOOK, COUNTS, [], ['primitives.tank.bsdf={"type":"forward"}']),
     ("several speeds of light", "glass-tank", PHOTONS + VOLUME + LOOK, COUNTS, [], ["media.water.speed_of_light=1"]),
-    ("specular sensor paths", "mirror-fog", PHOTONS + VOLUME + LOOK, COUNTS, [], ["primitives.mirror.bsdf=plaster"]),
+    ("specular camera subpaths", "mirror-fog", PHOTONS + VOLUME + LOOK, COUNTS, [], ["primitives.mirror.bsdf=plaster"]),
     ("frames", "two-pulses", VOLUME + LOOK, COUNTS, [], ["integrator.frame_num=1", "integrator.transient_time_width=5"]),
     ("emission times", "two-pulses", PHOTONS + VOLUME + LOOK, COUNTS, [], ["primitives.blue pulse.emission_time=0"]),
     ("pulses", "two-pulses", PHOTONS, COUNTS, ['primitives.blue pulse.pulse={"type":"exponential","decay":0.5}'], []),
@@ -44,8 +44,8 @@ EFFECTS = [
     ("textures", "cornell-fog", CAMERA, PATHS, [CHECKER], []),
     ("guided paths", "lamp-in-fog", CAMERA, PATHS, BEST, PLAIN),
     ("light vertices", "cornell-fog", ["light paths", *CAMERA], PATHS, BEST, ['integrator.darts={"preset":"best","surface_connections":false}']),
-    ("guided light paths", "cornell-fog", PHOTONS + VOLUME + LOOK + ["share light"], COUNTS, BEST, PLAIN),
-    ("surface connections", "cornell-fog", PHOTONS + ["share light", *LOOK], COUNTS, BEST,
+    ("guided light paths", "cornell-fog", PHOTONS + VOLUME + LOOK + ["path reuse"], COUNTS, BEST, PLAIN),
+    ("surface connections", "cornell-fog", PHOTONS + ["path reuse", *LOOK], COUNTS, BEST,
      ['integrator.darts={"preset":"best","surface_connections":false}']),
     ("Russian roulette", "cornell-fog", CAMERA, PATHS + PLAIN, ["integrator.enable_rr=true"], []),
     ("bias", "cornell-fog", ["bias"], COUNTS, ["--bias"], []),  # no effect of the plan

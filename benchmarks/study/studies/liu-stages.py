@@ -4,8 +4,8 @@ from bench import MAP, Bench, Scene
 
 TITLE = "Sliced primitives: memory and time by stage"
 TYPES = ["planes", "volumes", "balls", "mis_volumes_balls", "hypervolumes"]
-STAGES = ["photon pass", "sensor record", "build", "splat", "sensor pass"]
-RECORD_BYTES = 104  # sizeof(CollapsedFlights)
+STAGES = ["photon pass", "camera record", "build", "splat", "camera pass"]
+RECORD_BYTES = 104  # sizeof(SliceRecord)
 # Scene: resolution; moment, which is the middle of a gate of 0.1 as well. Without the camera's leg.
 SCENES = {"fogged-box": ((144, 144), 1.6), "laser-in-fog": ((160, 120), 1.8), "amber-half-space": ((160, 90), 2.4),
           "volumetric-caustic": ((160, 90), 2.45)}

@@ -1,4 +1,4 @@
-"""Light vertices of paths where there are many lights: when are there too many for them? Shows LightPaths::helpWith."""
+"""Light vertices of paths where there are many lights: when are there too many for them? Shows LightCaches::helpWith."""
 
 import json
 

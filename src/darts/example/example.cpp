@@ -8,7 +8,7 @@
 
 int main() {
     const darts::Medium medium{{0.1f, 0.1f, 0.1f}, {0.7f, 0.7f, 0.7f}, 0.0f};
-    const darts::Residual residual = darts::Residual::of({0.0f, 0.0f, 2.0f}, {2.5, 2.6});
+    const darts::TimeBudget budget = darts::TimeBudget::of({0.0f, 0.0f, 2.0f}, {2.5, 2.6});
     const darts::HenyeyGreenstein isotropic;
     const auto estimate = [&](const darts::Settings& settings) {
         const darts::Guide guide(settings, medium);
@@ -18,9 +18,9 @@ int main() {
         double sum = 0.0;
         for (int i = 0; i < Samples; ++i) {
             // A direction, the connection's length S, the vertex where the path has this length.
-            const auto sample = guide.sampleDirection(residual, {}, isotropic, random);
-            const auto connection = guide.sampleConnectionAlong(residual, sample.h, random());
-            const auto vertex = guide.controlVertex(residual, connection, sample.h, INFINITY);
+            const auto sample = guide.sampleDirection(budget, {}, isotropic, random);
+            const auto connection = guide.sampleConnectionAlong(budget, sample.h, random());
+            const auto vertex = guide.controlVertex(budget, connection, sample.h, INFINITY);
             if (!vertex) continue;
             const float S = vertex->distance + vertex->toTarget, sigmaS = medium.sigmaS.x, sigmaT = medium.sigmaT().x;
             const float contribution =

@@ -29,10 +29,10 @@ darts::Settings presetOf(const std::string& preset, const std::string& mode, flo
     throw py::value_error("preset: expected 'best' or 'published'");
 }
 
-darts::Residual residualOf(float C, double low, double high) {
+darts::TimeBudget residualOf(float C, double low, double high) {
     notNegative(C, "C");
     if (!(finite(high, "high") > finite(low, "low"))) throw py::value_error("low, high: expected high > low");
-    return darts::Residual::of({0.0f, 0.0f, C}, {low, high});
+    return darts::TimeBudget::of({0.0f, 0.0f, C}, {low, high});
 }
 
 namespace {
@@ -66,8 +66,8 @@ class GuideOfMedium {
         if (count < 0) throw py::value_error("count: expected at least 0");
         cosine(before, "before");
         length(surface, "surface");
-        const darts::Residual residual = residualOf(C, low, high);
-        if (!residual.alive()) throw py::value_error("high: expected more than C, as no connection is shorter");
+        const darts::TimeBudget budget = residualOf(C, low, high);
+        if (!budget.alive()) throw py::value_error("high: expected more than C, as no connection is shorter");
         const darts::HenyeyGreenstein phase{{std::sqrt(before * (2.0f - before)), 0.0f, 1.0f - before},
                                             guide_.medium().g};
         Columns columns(count);
@@ -79,12 +79,11 @@ class GuideOfMedium {
         std::mt19937_64 bits(seed);
         const auto random = [&bits] { return float(bits() >> 40) * 0x1p-24f; };
         for (py::ssize_t i = 0; i < count; ++i) {
-            darts::ConnectionSample connection = guide_.sampleConnection(residual, random());
-            const darts::DirectionSample ray = guide_.sampleDirection(residual, connection, phase, random);
-            if (!guide_.settings().lengthFirst) connection = guide_.sampleConnectionAlong(residual, ray.h, random());
-            const auto vertex = guide_.controlVertex(residual, connection, ray.h, surface);
-            const darts::DistanceSample step =
-                guide_.sampleDistance(residual, ray, surface, {1.0f, 1.0f, 1.0f}, random);
+            darts::ConnectionSample connection = guide_.sampleConnection(budget, random());
+            const darts::DirectionSample ray = guide_.sampleDirection(budget, connection, phase, random);
+            if (!guide_.settings().lengthFirst) connection = guide_.sampleConnectionAlong(budget, ray.h, random());
+            const auto vertex = guide_.controlVertex(budget, connection, ray.h, surface);
+            const darts::DistanceSample step = guide_.sampleDistance(budget, ray, surface, {1.0f, 1.0f, 1.0f}, random);
             lengths[i] = C + connection.excess;
             lengthWeights[i] = connection.inversePdf;
             hs[i] = ray.h;
@@ -100,15 +99,16 @@ class GuideOfMedium {
     }
 
     [[nodiscard]] float vertexPdf(float C, double low, double high, float h, float distance) const {
-        const darts::Residual residual = residualOf(C, low, high);
+        const darts::TimeBudget budget = residualOf(C, low, high);
         cosine(h);
         notNegative(distance, "distance");
-        return residual.alive() ? guide_.pdfControlVertex(residual, h, distance) : 0.0f;
+        return budget.alive() ? guide_.pdfControlVertex(budget, h, distance) : 0.0f;
     }
-    [[nodiscard]] float logUsefulness(float C, double low, double high, float throughput) const {
-        const darts::Residual residual = residualOf(C, low, high);
+    [[nodiscard]] float logExpectedContribution(float C, double low, double high, float throughput) const {
+        const darts::TimeBudget budget = residualOf(C, low, high);
         notNegative(throughput, "throughput");
-        return residual.alive() ? guide_.logUsefulness(residual, throughput) : -std::numeric_limits<float>::infinity();
+        return budget.alive() ? guide_.logExpectedContribution(budget, throughput)
+                              : -std::numeric_limits<float>::infinity();
     }
 
   private:
@@ -127,16 +127,16 @@ double firstPassageLog(double depth, double longest, double gate, double sigmaA,
     length(thickness, "thickness");
     within(relativeIndex, "relative_index", 1e-3, 1e3);
     notNegative(allowance, "allowance");
-    darts::Residual residual =
-        darts::Residual::of({0.0f, 0.0f, float(depth + Height)}, {Height + longest - gate, Height + longest});
-    residual.way = darts::Way::Out;
-    residual.exit.faces.add({{0, 0, 1}, float(depth), float(Height), float(thickness), 0.0f});
-    residual.exit.inside = float(depth);
-    residual.exit.gate = residual.width;
-    residual.exit.mismatch = darts::boundaryMismatch(float(relativeIndex));
-    if (!residual.alive()) return -std::numeric_limits<double>::infinity();
-    const darts::FirstPassage passage(float(sigmaA), float(reducedS), residual.exit, float(allowance));
-    return double(passage.log({residual.exit, residual.latest(0), residual.axis, 0.0f}));
+    darts::TimeBudget budget =
+        darts::TimeBudget::of({0.0f, 0.0f, float(depth + Height)}, {Height + longest - gate, Height + longest});
+    budget.model = darts::EscapeModel::Bounded;
+    budget.escape.faces.add({{0, 0, 1}, float(depth), float(Height), float(thickness), 0.0f});
+    budget.escape.inside = float(depth);
+    budget.escape.gate = budget.width;
+    budget.escape.reflectionA = darts::boundaryReflectionA(float(relativeIndex));
+    if (!budget.alive()) return -std::numeric_limits<double>::infinity();
+    const darts::FirstPassage passage(float(sigmaA), float(reducedS), budget.escape, float(allowance));
+    return double(passage.log({budget.escape, budget.latest(0), budget.axis, 0.0f}));
 }
 
 } // namespace
@@ -160,7 +160,7 @@ void declareGuides(py::module_& sampling) {
             "surface"_a = std::numeric_limits<float>::infinity())
         .def("vertex_pdf", py::vectorize(&GuideOfMedium::vertexPdf),
              "density per length along the ray of the control vertex", "C"_a, "low"_a, "high"_a, "h"_a, "distance"_a)
-        .def("log_usefulness", py::vectorize(&GuideOfMedium::logUsefulness),
+        .def("log_usefulness", py::vectorize(&GuideOfMedium::logExpectedContribution),
              "log of what a walk with this throughput is good for here", "C"_a, "low"_a, "high"_a,
              "throughput"_a = 1.0f);
     sampling.def(

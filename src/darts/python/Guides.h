@@ -1,8 +1,8 @@
 #pragma once
 // What the module is put together from.
 
-#include "darts/ResidualRange.h"
 #include "darts/Settings.h"
+#include "darts/TimeBudget.h"
 
 #include <pybind11/numpy.h>
 
@@ -10,11 +10,11 @@
 
 namespace darts::python {
 
-// Of arguments that several classes have; each throws ValueError for what it does not take.
+// These read arguments that several classes have; each throws ValueError for what it does not take.
 darts::Medium mediumOf(float sigmaA, float sigmaS, float g);
 darts::Settings presetOf(const std::string& preset, const std::string& mode, float g);
-/// Of a target on the axis z.
-darts::Residual residualOf(float C, double low, double high);
+/// Time budget towards a target on the axis z.
+darts::TimeBudget residualOf(float C, double low, double high);
 
 /// The part about whole steps of a walk.
 void declareGuides(pybind11::module_& sampling);

@@ -128,16 +128,15 @@ class Distances {
         if (random.ndim() != 2 || random.shape(1) != 4) throw py::value_error("random: expected an array (n, 4)");
         cosine(h);
         length(surface, "surface");
-        const darts::Residual residual = residualOf(C, low, high);
+        const darts::TimeBudget budget = residualOf(C, low, high);
         const darts::Heading ray{{std::sqrt(h * (2.0f - h)), 0.0f, 1.0f - h}, h};
         const py::ssize_t count = random.shape(0);
         py::array_t<float> distances(count), weights(count);
         for (py::ssize_t i = 0; i < count; ++i) {
             darts::DistanceRandom u;
             for (int k = 0; k < 4; ++k) u.*Numbers[k] = python::random(random.at(i, k), "random");
-            const darts::DistanceSample sample = residual.alive()
-                                                     ? sampler_.sample(residual, ray, surface, {1.0f, 1.0f, 1.0f}, u)
-                                                     : darts::DistanceSample();
+            const darts::DistanceSample sample =
+                budget.alive() ? sampler_.sample(budget, ray, surface, {1.0f, 1.0f, 1.0f}, u) : darts::DistanceSample();
             distances.mutable_at(i) = sample.distance;
             weights.mutable_at(i) = sample.transmittanceOverPdf.x;
         }

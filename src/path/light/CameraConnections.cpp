@@ -87,8 +87,8 @@ void CameraConnections::connect(PathState& path, const Vertex& vertex, const Rgb
     if (const Detectors* detectors = scene().camera.detectors(); detectors && mayMeet)
         share = transport::balance(detectors->pdf(size_t(sensor->raster.x), sensor->direction, sensor->distance),
                                    vertex.pdf(sensor->direction));
-    const auto connection =
-        context_->connector.connect(vertex, power * share, transport::connectionEnd(*sensor), counters_->shadowRays);
+    const auto connection = context_->connector.connect(vertex, power * share, transport::connectionEndpoint(*sensor),
+                                                        counters_->shadowRays);
     if (connection) arriveAtSensor(path, sensor->raster, *connection, path.time);
 }
 

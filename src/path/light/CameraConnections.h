@@ -2,11 +2,11 @@
 // What plain walks from a light do on their way: every vertex is connected to the camera. Directions that they take to
 // a detector count, too: both ways to find a path share it by the balance heuristic.
 
-#include "path/light/FilmSplats.h"
+#include "path/light/SplatBuffer.h"
 #include "transport/Connection.h"
 #include "transport/GateBounds.h"
 #include "transport/PlainSteps.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
 namespace tungsten::path {
 
@@ -16,7 +16,7 @@ using transport::PathState;
 struct LightContext {
     const Scene& scene;
     const transport::BounceLimits& limits;
-    const transport::Sensor& sensor;
+    const transport::TimeSensor& sensor;
     const transport::GateBounds& bounds;
     const Distribution1D& emitters;
     transport::Connector connector;

@@ -21,7 +21,7 @@ constexpr uint64_t PathsPerPoll = 16;
 /// those of 65 536 paths.
 constexpr uint64_t PathsPerBatch = 1024, BatchesPerWave = 64;
 
-/// Of the first surface that mirrors or refracts; none if there is no such.
+/// The first surface that mirrors or refracts; null if there is none.
 const Primitive* firstSpecular(const Scene& scene) {
     for (const Primitive& primitive : scene.primitives)
         for (const BsdfPtr& bsdf : primitive.bsdfs)
@@ -76,7 +76,7 @@ void report(const LightCounters& counters, Statistics& statistics) {
 LightTracer::LightTracer(std::shared_ptr<const Scene> scene, const ObjectReader& settings)
     : scene_(std::move(scene)), limits_(readBounceLimits(settings, *scene_)),
       russianRoulette_(readRussianRoulette(settings, !scene_->transport.gate.steadyState)),
-      sensor_(transport::Sensor::of(*scene_, scene_->transport.gate)),
+      sensor_(transport::TimeSensor::of(*scene_, scene_->transport.gate)),
       emitters_(emitterDistribution(*scene_, [](const Emitter&) { return true; })) {
     readRest(settings, *scene_);
 }
@@ -105,7 +105,7 @@ void LightTracer::plan(SceneFacts& facts, Features& features) const {
                                             : "no light has a surface");
     if (facts.environment && !detectors)
         features.limit("environment in view", "no light path starts on the way from the camera to infinity");
-    if (facts.specularSensorPaths && !detectors)
+    if (facts.specularCameraSubpaths && !detectors)
         features.limit("mirrors and refraction in view",
                        "connections to the camera are straight: what is seen in mirrors or through refraction is "
                        "missing; caustics are found");
@@ -129,7 +129,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
     const LightContext context{*scene_,          limits_, sensor_,   bounds_, emitters_, {*scene_, forwardBoundaries_},
                                russianRoulette_, splits_, pass.watch};
     pass.watch.stage("light paths", paths);
-    const FilmSplats splats(film, scene_->camera.filter, float(1.0 / double(paths)));
+    const SplatBuffer splats(film, scene_->camera.filter, float(1.0 / double(paths)));
     for (uint64_t traced = 0; traced < paths; traced += PathsPerBatch * BatchesPerWave) {
         const uint64_t wave = std::min(paths - traced, PathsPerBatch * BatchesPerWave);
         std::vector<std::vector<Splat>> batches((wave + PathsPerBatch - 1) / PathsPerBatch);
@@ -144,7 +144,7 @@ void LightTracer::renderPass(const PassInfo& pass, Film& film, Statistics& stati
                 traceLightPath(context, Sampler(pass.seed, RandomStream::Photon, sample, path % pixels), batches[b],
                                counters);
             }
-            FilmSplats::sortByRow(batches[b]);
+            SplatBuffer::sortByRow(batches[b]);
             report(counters, statistics);
         });
         splats.add(batches, pass.watch);

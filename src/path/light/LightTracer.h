@@ -19,7 +19,7 @@ class LightTracer : public Integrator {
     std::shared_ptr<const Scene> scene_;
     transport::BounceLimits limits_;
     bool russianRoulette_, forwardBoundaries_ = true, splits_ = false;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     transport::GateBounds bounds_;
     Distribution1D emitters_;
 };

@@ -44,7 +44,7 @@ class DetectorImportance {
 class StepsToDetectors : public transport::PlainLightSteps {
   public:
     explicit StepsToDetectors(const transport::WalkContext& context) : PlainSteps(context) {}
-    /// Of the path, once it is known where it starts.
+    /// Prepares the steps of the path, once it is known where it starts.
     void startAt(const Vec3f& position) {
         const Scene& scene = context().scene;
         const Medium* medium = scene.medium(scene.cameraRegion);

@@ -12,7 +12,7 @@ void add(const GuidedPath& path, const Medium& medium, const darts::ControlVerte
     PathState& state = path.state;
     if (!path.context.forwardBoundaries && !path.counts(1, 1)) return;
     const Vec3f position = state.ray.at(vertex.distance);
-    const auto way = transport::straightWay(position, path.target().vertex.position());
+    const auto way = transport::connectionSegment(position, path.target().vertex.position());
     if (!(vertex.toTarget > 0.0f) || !way) return;
     ++path.counters.controlVertices;
     const Rgb light = path.target().intensity(-way->direction);
@@ -41,9 +41,9 @@ void ControlVertices::sample(const GuidedPath& path, const transport::Ahead& ahe
     if (!path.steps.drawsControlVertices()) return;
     const darts::Guide& guide = path.steps.guideOf(path.state.region);
     const float h = path.steps.heading().h;
-    const auto draw = [&](const darts::Residual& residual) {
+    const auto draw = [&](const darts::TimeBudget& budget) {
         path.state.random.at(path.state.interactions + 1, Draw::FlightConnection);
-        return path.steps.drawConnection(path.state, guide, residual, &h);
+        return path.steps.drawConnection(path.state, guide, budget, &h);
     };
     const auto met =
         path.steps.meetControlVertex({guide, h, path.state.time, path.steps.sharesConnections()}, ahead.reach(), draw);

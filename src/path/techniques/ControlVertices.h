@@ -8,7 +8,7 @@ namespace tungsten::path {
 struct ControlVertices {
     /// Adds the light of the one on the flight at hand, through a medium.
     static void sample(const GuidedPath& path, const transport::Ahead& ahead);
-    /// The same on a camera segment that does not count: time starts at the vertex.
+    /// Samples on a camera segment that does not count: time starts at the vertex.
     static void sampleUntimed(const GuidedPath& path, const transport::Ahead& ahead);
     /// How densely paths are found that have their last vertex in the medium at `distance` along the ray: by control
     /// vertices, and by ordinary ones.

@@ -1,7 +1,7 @@
 #include "path/techniques/EmitterConnections.h"
 
+#include "path/techniques/GlossyVertexConnections.h"
 #include "path/techniques/LightVertexConnections.h"
-#include "path/techniques/ReflectedConnections.h"
 
 #include "transport/Balance.h"
 
@@ -10,7 +10,7 @@ namespace tungsten::path {
 void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
                                    const StepsToEmitter::InMedium& ending) {
     PathState& state = path.state;
-    if (path.steps.residual().exit.sealed) return;
+    if (path.steps.budget().escape.refractedOnly) return;
     const float controlShare = ending.shareOfControl();
     if (controlShare == 1.0f && path.context.bound.oneSpeed()) return; // control vertices find it
     ++path.counters.connections;
@@ -18,7 +18,7 @@ void ConnectionsFromMedia::connect(const GuidedPath& path, const Medium& medium,
     if (!way) return;
     const transport::Vertex vertex(medium, state.ray.origin, state.ray.direction, state.region);
     const auto connection = path.connector().connect(
-        vertex, state.throughput, transport::connectionEnd(*way, path.target()), path.counters.shadowRays);
+        vertex, state.throughput, transport::connectionEndpoint(*way, path.target()), path.counters.shadowRays);
     if (!connection || !path.counts(connection->crossings, 0)) return;
     const float share = (connection->oneSpeed ? 1.0f - controlShare : 1.0f) *
                         ConnectionsFromMedia::share(path, state.ray.origin, vertex.pdf(way->direction));
@@ -39,28 +39,29 @@ void ConnectionsFromSurfaces::connect(const GuidedPath& path, const SurfaceHit& 
     const auto way = path.wayInTime(hit.position, time);
     if (!way) return;
     const transport::Vertex vertex = path.vertexOn(makeInteraction(path.scene(), hit, state.ray.direction));
-    const auto connection =
-        path.connector().connect(vertex, throughput, transport::connectionEnd(*way, target), path.counters.shadowRays);
+    const auto connection = path.connector().connect(vertex, throughput, transport::connectionEndpoint(*way, target),
+                                                     path.counters.shadowRays);
     if (!connection || !path.counts(1 + connection->crossings, 0)) return;
     // Weights by the surface's own density, which, unlike the guided one, is a function of the path alone.
     const float weight = target.shareOfConnection(hit.position, vertex.pdf(way->direction));
     const float share = connection->crossings == 0 ? shareOfWalk(path, vertex, hit.t, *way) : 1.0f;
     LogRatio logRatio = path.steps.logRatioOnSurface();
     if (share < 1.0f)
-        logRatio = {path.logRatioByLightPaths(vertex, share), logRatio.weighed - std::log(std::max(share, 1e-30f))};
+        logRatio = {path.logRatioByLightCaches(vertex, share), logRatio.weighed - std::log(std::max(share, 1e-30f))};
     path.sink.add(connection->throughput * (weight * share), time + connection->time + target.start, *target.emitter,
                   logRatio);
 }
 
 float ConnectionsFromSurfaces::shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
-                                           const transport::Straight& way) {
+                                           const transport::Segment& way) {
     if (path.behind.caches == Caches::None || !holdsLightVertices(vertex.lobes()) || !vertex.reflects(way.direction))
         return 1.0f;
     const Vec3f& direction = path.state.ray.direction;
     const float areaPdf = vertex.areaDensity(path.target().vertex.pdf(-way.direction), way.direction, way.distance);
     float reflected = 0.0f;
-    if (ReflectedConnections::mayFind(path, vertex))
-        reflected = ReflectedConnections::density(path, vertex.pdfReverse(way.direction), {direction, length}, areaPdf);
+    if (GlossyVertexConnections::mayFind(path, vertex))
+        reflected =
+            GlossyVertexConnections::density(path, vertex.pdfReverse(way.direction), {direction, length}, areaPdf);
     return transport::balance(density(path, vertex, length), LightVertexConnections::density(areaPdf), reflected);
 }
 

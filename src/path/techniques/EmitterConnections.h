@@ -26,7 +26,7 @@ struct ConnectionsFromSurfaces {
     /// The part of a connection from the surface at the end of the ray, `length` long, that is not left to light
     /// vertices and reflected light; `way` is the connection.
     [[nodiscard]] static float shareOfWalk(const GuidedPath& path, const transport::Vertex& vertex, float length,
-                                           const transport::Straight& way);
+                                           const transport::Segment& way);
     /// Per area, of the surface point at the end of the ray, `length` long, as the walk's next vertex.
     [[nodiscard]] static float density(const GuidedPath& path, const transport::Vertex& vertex, float length);
 };

@@ -1,6 +1,6 @@
 #include "path/techniques/LightVertexConnections.h"
 
-#include "path/techniques/ReflectedConnections.h"
+#include "path/techniques/GlossyVertexConnections.h"
 
 #include "transport/Balance.h"
 
@@ -12,25 +12,25 @@ void LightVertexConnections::connect(const GuidedPath& path, const transport::Ve
     if (!path.counts(1, 0)) return;
     const auto [low, high] = path.lengthsInGate();
     state.random.at(state.interactions, Draw::LightVertex);
-    const LightVertexCache::Choice choice = cache.choose(here.position(), low, high, state.random.next2D());
+    const LightVertexCache::CandidateSample choice = cache.choose(here.position(), low, high, state.random.next2D());
     if (!choice.vertex) return;
     const LightVertex& light = *choice.vertex;
-    const auto way = transport::straightWay(here.position(), light.vertex.position());
+    const auto way = transport::connectionSegment(here.position(), light.vertex.position());
     if (!way) return;
     const auto& [direction, distance] = *way;
-    const transport::ConnectionEnd end{direction, distance, light.weighedIntensity(-direction) / sqr(distance),
-                                       light.vertex.margin()};
+    const transport::ConnectionEndpoint end{direction, distance, light.weighedIntensity(-direction) / sqr(distance),
+                                            light.vertex.margin()};
     ++path.counters.lightVertices;
     const auto connection = path.connectInRegion(here, end);
     if (!connection) return;
     const float walk = light.vertex.areaDensity(here.pdf(direction), direction, distance);
     float reflected = 0.0f;
-    if (ReflectedConnections::mayFind(path, light.vertex))
-        reflected = ReflectedConnections::density(path, light.vertex.pdf(-direction), *way, light.areaPdf);
+    if (GlossyVertexConnections::mayFind(path, light.vertex))
+        reflected = GlossyVertexConnections::density(path, light.vertex.pdf(-direction), *way, light.areaPdf);
     const float share = transport::balance(density(light.areaPdf), walk, reflected);
     const float ofWalk = transport::balance(walk, density(light.areaPdf), reflected);
     const float plain = walk * path.plainlyPasses(state.region, distance);
-    const LogRatio logRatio{path.logRatioByLightPaths(light.vertex, ofWalk),
+    const LogRatio logRatio{path.logRatioByLightCaches(light.vertex, ofWalk),
                             path.behind.ratios.there + std::log(light.areaPdf / (plain * choice.weight * share))};
     Rgb transmittance(1.0f);
     if (const Medium* beyond = path.scene().medium(light.vertex.regionTowards(-direction, state.region)))

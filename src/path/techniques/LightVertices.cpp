@@ -5,7 +5,7 @@
 namespace tungsten::path {
 
 bool holdsLightVertices(LobeMask lobes) {
-    return (lobes & lobe::Smooth) != 0 && (lobes & lobe::Through) == 0;
+    return (lobes & lobe::Smooth) != 0 && (lobes & lobe::AnyTransmission) == 0;
 }
 
 std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice,
@@ -42,7 +42,7 @@ void LightVertexCache::trace(const Scene& scene, const Emitter& emitter, const E
     });
 }
 
-auto LightVertexCache::choose(const Vec3f& position, float low, float high, const Vec2f& u) const -> Choice {
+auto LightVertexCache::choose(const Vec3f& position, float low, float high, const Vec2f& u) const -> CandidateSample {
     // Rough contributions, beside walks with even directions.
     const auto importance = [](const LightVertex& vertex, const Vec3f& direction, float distance) {
         const float walkPdf = vertex.vertex.areaDensity(0.25f * InvPi, direction, distance);

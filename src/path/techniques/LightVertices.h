@@ -4,13 +4,13 @@
 // 128: a tenth of the variance at equal time.)
 
 #include "path/PathTarget.h"
-#include "path/techniques/ArrivalWindow.h"
+#include "path/techniques/ArrivalCandidates.h"
 
 namespace tungsten::path {
 
 /// The first surface on a ray from an emitter, no boundary between.
 /// Light has come to it through the emitter's region; transmittance is left out of its power.
-struct LightVertex : transport::PathEnd {
+struct LightVertex : transport::SubpathEnd {
     float distance;  ///< from the light
     float areaPdf;   ///< density per area of this point
     float lightPdf;  ///< density per solid angle of the emitter's point, as PathTarget::pdfFrom here; 0: points
@@ -30,16 +30,16 @@ std::optional<LightVertex> traceLightVertex(const Scene& scene, const Emitter& e
 /// Light vertices of one emitter.
 class LightVertexCache {
   public:
-    using Choice = ArrivalWindow<LightVertex>::Choice;
+    using CandidateSample = ArrivalCandidates<LightVertex>::CandidateSample;
 
     /// A candidate whose light, going on straight to `position`, arrives after a length in [low, high).
-    [[nodiscard]] Choice choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
+    [[nodiscard]] CandidateSample choose(const Vec3f& position, float low, float high, const Vec2f& u) const;
 
     void trace(const Scene& scene, const Emitter& emitter, const EmitterChoice& choice, size_t paths,
                const PassInfo& pass);
 
   private:
-    ArrivalWindow<LightVertex> window_;
+    ArrivalCandidates<LightVertex> window_;
 };
 
 /// Density per area at `vertex` of the candidates there.

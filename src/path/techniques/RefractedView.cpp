@@ -4,18 +4,18 @@
 
 namespace tungsten::path {
 
-using transport::Body;
+using transport::BoundedMedium;
 
 namespace {
 
-/// Of one light: each is asked whether a direction meets it.
+/// Most triangles of one light: each is asked whether a direction meets it.
 constexpr size_t MostLampTriangles = 64;
 /// Between a way to the boundary and its normal: a guard, which no way reaches at indices above 1.02.
 constexpr float LeastRefractedCosine = 0.2f;
 
 } // namespace
 
-bool RefractedLamp::isOne(const Emitter& emitter) {
+bool RefractedEmitter::isOne(const Emitter& emitter) {
     const AreaEmitter* area = emitter.surface();
     if (!area || !(area->areaSampler->area() > 0.0f)) return false;
     return std::visit(Overloaded{[](const TriangleMesh& mesh) { return mesh.triangles.size() <= MostLampTriangles; },
@@ -37,8 +37,8 @@ float meetsFront(const TriangleMesh& mesh, const Triangle& triangle, const Vec3f
     return edge2.dot(turned) / determinant;
 }
 
-RefractedView::RefractedView(const Vec3f& vertex, const Body::Face& face, float relativeIndex, float speed,
-                             const RefractedLamp& emitter)
+RefractedView::RefractedView(const Vec3f& vertex, const BoundedMedium::Face& face, float relativeIndex, float speed,
+                             const RefractedEmitter& emitter)
     : position(vertex), normal(face.normal), depth((face.point - vertex).dot(face.normal)), index(relativeIndex),
       speedInside(speed), lamp(emitter) {
     foot = vertex + normal * depth;
@@ -46,13 +46,13 @@ RefractedView::RefractedView(const Vec3f& vertex, const Body::Face& face, float 
     widest = depth * std::sqrt(1.0f / sqr(leastCosine) - 1.0f);
 }
 
-auto RefractedView::aim(const RefractedWay& way, const Vec3f& direction, const Vec3f& outward,
-                        const Vec3f& normalThere) const -> std::optional<Aim> {
+auto RefractedView::aim(const RefractedPath& way, const Vec3f& direction, const Vec3f& outward,
+                        const Vec3f& normalThere) const -> std::optional<RefractedTarget> {
     const float emission = -outward.dot(normalThere);
     if (!(way.cosInside >= leastCosine) || !lamp.area().shinesAt(emission)) return std::nullopt;
     const float area = way.areaPerSolidAngle(index) * way.cosOutside / emission;
-    return Aim{way, direction, way.inside() / speedInside + way.outside() / lamp.speed,
-               area / lamp.area().areaSampler->area()};
+    return RefractedTarget{way, direction, way.inside() / speedInside + way.outside() / lamp.speed,
+                           area / lamp.area().areaSampler->area()};
 }
 
 auto RefractedView::courseTo(const Vec3f& point) const -> std::optional<Course> {
@@ -60,7 +60,7 @@ auto RefractedView::courseTo(const Vec3f& point) const -> std::optional<Course> 
     const float height = offset.dot(normal);
     const Vec3f along = offset - normal * height;
     const float lateral = along.length();
-    const auto way = refractedWay(depth, height, lateral, index);
+    const auto way = refractedPath(depth, height, lateral, index);
     if (!way) return std::nullopt;
     const float sine = std::sqrt(std::max(1.0f - sqr(way->cosInside), 0.0f));
     const Vec3f tangent = lateral > 0.0f ? along / lateral : Vec3f(0.0f);
@@ -73,7 +73,7 @@ std::optional<Vec3f> RefractedView::directionTo(const Vec3f& point) const {
     return course ? std::optional(course->direction) : std::nullopt;
 }
 
-auto RefractedView::towards(const Vec3f& point, const Vec3f& normalThere) const -> std::optional<Aim> {
+auto RefractedView::towards(const Vec3f& point, const Vec3f& normalThere) const -> std::optional<RefractedTarget> {
     const auto course = courseTo(point);
     return course ? aim(course->way, course->direction, course->outward, normalThere) : std::nullopt;
 }

@@ -2,17 +2,17 @@
 // One face of a sealed body, seen from a vertex behind it: the ways through it to an emitter (docs/method.md, section
 // 10.5).
 
-#include "path/techniques/ArrivalWindow.h"
-#include "path/techniques/RefractedWay.h"
+#include "path/techniques/ArrivalCandidates.h"
+#include "path/techniques/RefractedPath.h"
 
-#include "transport/Body.h"
+#include "transport/BoundedMedium.h"
 
 #include "tungsten/geometry/AnalyticShape.h"
 
 namespace tungsten::path {
 
 /// An emitter with an area whose points draw() finds by their directions: no two of one direction send light there.
-struct RefractedLamp {
+struct RefractedEmitter {
     /// A candidate.
     struct Point {
         SurfaceSample at;
@@ -25,7 +25,7 @@ struct RefractedLamp {
     int index;
     float speed; ///< of light about it
     BoundingSphere bounds;
-    ArrivalWindow<Point> points; ///< of the pass
+    ArrivalCandidates<Point> points; ///< of the pass
 
     [[nodiscard]] const AreaEmitter& area() const { return std::get<AreaEmitter>(emitter->model); }
     /// Calls `visit(point, normal)` for all of its points that a ray meets and that send light back along it.
@@ -36,41 +36,41 @@ struct RefractedLamp {
 /// One face of a body from a vertex behind it, towards one emitter: as if nothing else were between them.
 struct RefractedView {
     /// A way to a point of the emitter.
-    struct Aim {
-        RefractedWay way;
+    struct RefractedTarget {
+        RefractedPath way;
         Vec3f direction; ///< at the vertex, unit
         float time;      ///< of flight
         float density;   ///< of directions to points of the emitter that are drawn uniformly, per solid angle
     };
     Vec3f position, foot, normal; ///< foot: the point of the face's plane nearest to the vertex
     float depth, index, speedInside;
-    const RefractedLamp& lamp;
+    const RefractedEmitter& lamp;
     float leastCosine, widest; ///< ways beyond the angle inside are left out; the greatest shift along the plane
 
-    RefractedView(const Vec3f& vertex, const transport::Body::Face& face, float relativeIndex, float speed,
-                  const RefractedLamp& emitter);
-    /// Of the way to a point, whether or not there is light.
+    RefractedView(const Vec3f& vertex, const transport::BoundedMedium::Face& face, float relativeIndex, float speed,
+                  const RefractedEmitter& emitter);
+    /// Direction in which the way to a point starts, whether or not there is light.
     [[nodiscard]] std::optional<Vec3f> directionTo(const Vec3f& point) const;
-    [[nodiscard]] std::optional<Aim> towards(const Vec3f& point, const Vec3f& normalThere) const;
-    /// Of all points that `direction` leads to.
+    [[nodiscard]] std::optional<RefractedTarget> towards(const Vec3f& point, const Vec3f& normalThere) const;
+    /// Visits all points that `direction` leads to.
     template <typename Visit>
     void eachAlong(const Vec3f& direction, Visit&& visit) const;
 
   private:
     struct Course {
-        RefractedWay way;
+        RefractedPath way;
         Vec3f direction, outward; ///< at its start and end, unit
     };
     [[nodiscard]] std::optional<Course> courseTo(const Vec3f& point) const;
-    [[nodiscard]] std::optional<Aim> aim(const RefractedWay& way, const Vec3f& direction, const Vec3f& outward,
-                                         const Vec3f& normalThere) const;
+    [[nodiscard]] std::optional<RefractedTarget> aim(const RefractedPath& way, const Vec3f& direction,
+                                                     const Vec3f& outward, const Vec3f& normalThere) const;
 };
 
 /// The length at which a ray meets a triangle's front, or a negative number.
 float meetsFront(const TriangleMesh& mesh, const Triangle& triangle, const Vec3f& origin, const Vec3f& direction);
 
 template <typename Visit>
-void RefractedLamp::eachOn(const Vec3f& origin, const Vec3f& direction, Visit&& visit) const {
+void RefractedEmitter::eachOn(const Vec3f& origin, const Vec3f& direction, Visit&& visit) const {
     const auto single = [&](const auto& shape, const auto& normalAt) {
         const float t = intersectShape(shape, origin, direction, 0.0f, Infinity);
         if (t > 0.0f) visit(origin + direction * t, normalAt(origin + direction * t));
@@ -95,7 +95,7 @@ void RefractedView::eachAlong(const Vec3f& direction, Visit&& visit) const {
     const float cosine = direction.dot(normal);
     const Vec3f exit = position + direction * (depth / cosine);
     lamp.eachOn(exit, *outward, [&](const Vec3f& point, const Vec3f& normalThere) {
-        const RefractedWay way{depth, (point - exit).dot(normal), cosine, outward->dot(normal)};
+        const RefractedPath way{depth, (point - exit).dot(normal), cosine, outward->dot(normal)};
         if (const auto found = aim(way, direction, *outward, normalThere)) visit(*found);
     });
 }

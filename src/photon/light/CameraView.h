@@ -15,7 +15,7 @@ class CameraView {
   public:
     explicit CameraView(const Camera& camera);
 
-    /// False when no sensor ray comes within `radius` of the point. Margins hold the pixel filter and the aperture.
+    /// False when no camera ray comes within `radius` of the point. Margins hold the pixel filter and the aperture.
     [[nodiscard]] bool sees(const Vec3f& point, float radius) const;
     /// The part of a ray whose points it sees: an interval, as what a pinhole sees is convex. A thin lens: all of it.
     [[nodiscard]] FlightPart seenPart(const Vec3f& origin, const Vec3f& direction, float radius) const;

@@ -15,7 +15,7 @@ using transport::Way;
 
 namespace {
 
-/// Of light that goes everywhere evenly, per solid angle.
+/// Density per solid angle of light that goes everywhere evenly.
 constexpr float InSphere = 0.25f * InvPi;
 
 /// Density per length, for weights, of an ordinary photon at this distance along a flight.
@@ -36,7 +36,7 @@ StepRules rulesOf(const PhotonContext& context) {
 bool DepositVisitor::ahead(PathState& path, auto& steps, const Ahead& ahead) {
     if (trail_) trail_->fly(path, ahead);
     if (context_->storeVolume && ahead.medium && ahead.medium->scatters())
-        std::visit([&](auto& list) { leaveOnFlight(path, steps, ahead, list); }, deposits_->volume);
+        std::visit([&](auto& list) { depositOnFlight(path, steps, ahead, list); }, deposits_->volume);
     return true;
 }
 
@@ -51,12 +51,12 @@ bool DepositVisitor::arrive(PathState& path, auto& steps, const Ahead& ahead, co
     const bool looks = Guided<std::decay_t<decltype(steps)>> && collided;
     if (!looks && !culling_->mayContinue(path.ray.origin, path.time)) return false;
     if (collided && context_->storeVolume)
-        std::visit([&](auto& list) { leaveAtVertex(path, steps, flight, *ahead.medium, list); }, deposits_->volume);
+        std::visit([&](auto& list) { depositAtVertex(path, steps, flight, *ahead.medium, list); }, deposits_->volume);
     return true;
 }
 
 bool DepositVisitor::vertex(PathState& path, auto& steps, const WalkVertex& at) {
-    if (at.surface) leaveOnSurface(path, at);
+    if (at.surface) depositOnSurface(path, at);
     // Without a flight that may leave here nothing else does.
     const bool sends =
         at.surface ? (at.surface->bsdf->lobes() & lobe::Smooth) != 0 : path.flights < at.medium->maxBounces;
@@ -130,9 +130,9 @@ bool DepositVisitor::emitFromPoint(PathState& path, auto& steps, const Emitter& 
     if (context_->storeVolume && context_->recordCounts && guidance_->guide(path.region) && mayGoOn(path))
         withSlices([&](SliceList& slices) {
             Sampler own = records(path, path.interactions, RecordsOf::Light);
-            chain_.leaveLight(chainRules(), emitter, probability, start,
-                              {start.position, Vec3f(0.0f), path.throughput, path.time, Infinity, path.interactions},
-                              path.region.medium, own, slices);
+            chain_.recordLight(chainRules(), emitter, probability, start,
+                               {start.position, Vec3f(0.0f), path.throughput, path.time, Infinity, path.interactions},
+                               path.region.medium, own, slices);
             noteVolume({});
         });
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
@@ -146,7 +146,7 @@ bool DepositVisitor::emitFromPoint(PathState& path, auto& steps, const Emitter& 
         const EmissionDirections own(emitter, start);
         const darts::Vec3 direction = own.sample(u, v);
         if (trail_) trail_->emit(path, emitter, start, darts::to<Vec3f>(direction));
-        path.ray = start.leave(darts::to<Vec3f>(direction));
+        path.ray = start.spawnRay(darts::to<Vec3f>(direction));
         path.throughput =
             path.throughput * emittedIntensity(emitter, start, path.ray.direction) * (1.0f / own.pdf(direction));
     }
@@ -161,16 +161,16 @@ bool DepositVisitor::bears(const Rgb& power) {
     return false;
 }
 
-void DepositVisitor::leaveOnSurface(const PathState& path, const WalkVertex& at) {
+void DepositVisitor::depositOnSurface(const PathState& path, const WalkVertex& at) {
     depositOnSurface(path, *at.surface);
     if (!context_->storeVolume) return;
     withSlices([&](SliceList& slices) {
         Sampler own = records(path, path.interactions, RecordsOf::Surface);
         const Weighed weighed = weightAtVertex(path);
         const Rgb power = path.throughput * weighed.weight;
-        chain_.leaveSurface(chainRules(), *at.surface,
-                            {at.position, at.before, power, path.time, Infinity, path.interactions}, path.region, own,
-                            slices);
+        chain_.recordSurface(chainRules(), *at.surface,
+                             {at.position, at.before, power, path.time, Infinity, path.interactions}, path.region, own,
+                             slices);
         noteVolume(weighed);
     });
 }
@@ -188,21 +188,22 @@ void DepositVisitor::depositOnSurface(const PathState& path, const SurfaceIntera
     };
     const bool connected = context_->connects && connectable_ && receivesConnections(*surface.bsdf);
     if (connected && context_->densityPhotons) deposit(Rgb(0.0f), {});
-    if (connected || foundBySensorPaths(path, surface)) return;
+    if (connected || foundByCameraSubpaths(path, surface)) return;
     const Rgb arriving = path.throughput * (shading / geometric);
     if (bears(arriving)) deposit(arriving, weightAtVertex(path));
 }
 
-bool DepositVisitor::foundBySensorPaths(const PathState& path, const SurfaceInteraction& surface) const {
+bool DepositVisitor::foundByCameraSubpaths(const PathState& path, const SurfaceInteraction& surface) const {
     // But for light that nothing has scattered, by way of mirrors or refraction.
-    return context_->glossySensorPaths && isGlossyOnly(*surface.bsdf) && (path.scattered || connectable_);
+    return context_->glossyCameraSubpaths && isGlossyOnly(*surface.bsdf) && (path.scattered || connectable_);
 }
 
 void DepositVisitor::connectToSurfaces(const PathState& path, const darts::TimeGate& gate, const Vertex& vertex,
                                        float meanScattering, bool light) {
     if (!connections_ || !bears(path.throughput) || !connections_->mayArrive(path.time, gate)) return;
     const Weighed weighed = light ? Weighed{} : weightAtVertex(path);
-    const SendingVertex from{{vertex, path.throughput * weighed.weight}, path.time, path.interactions, meanScattering};
+    const ConnectingVertex from{
+        {vertex, path.throughput * weighed.weight}, path.time, path.interactions, meanScattering};
     if (connections_->knowsLightPerConnection()) {
         Sampler own = path.random.branch(RandomStream::Connection, uint64_t(path.interactions));
         const uint64_t before = counters_->rays;
@@ -216,7 +217,7 @@ void DepositVisitor::connectToSurfaces(const PathState& path, const darts::TimeG
 
 // ---- Points
 
-void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ahead, PointList& points) {
+void DepositVisitor::depositOnFlight(PathState& path, auto& steps, const Ahead& ahead, PointList& points) {
     if constexpr (Guided<std::decay_t<decltype(steps)>>) {
         if (!steps.guidance().drawsControlVertices() || !orderCounts(path, 1)) return;
         const bool shares = steps.guidance().storesPhotons();
@@ -242,8 +243,8 @@ void DepositVisitor::leaveOnFlight(PathState& path, auto& steps, const Ahead& ah
     }
 }
 
-void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& flight, const Medium& medium,
-                                   PointList& points) {
+void DepositVisitor::depositAtVertex(PathState& path, auto& steps, const Flight& flight, const Medium& medium,
+                                     PointList& points) {
     if (!orderCounts(path)) return;
     if constexpr (Guided<std::decay_t<decltype(steps)>>)
         if (steps.guidance().drawsControlVertices() && !steps.guidance().storesPhotons()) return;
@@ -253,7 +254,7 @@ void DepositVisitor::leaveAtVertex(PathState& path, auto& steps, const Flight& f
                 const auto ending = steps.inMedium(flight.distance);
                 return {(1.0f - ending.shareOfControl()) * weigh(ending.logRatio).weight, ending.logRatio};
             }
-            // Ordinary photons share with control vertices where sensor paths can fold.
+            // Ordinary photons share with control vertices where camera subpaths can fold.
             if (!steps.guidance().drawsControlVertices()) return {};
             return {1.0f - transport::balance(steps.controlVertexPdf(flight.distance).value_or(0.0f),
                                               pdfPhoton(medium, flight.distance))};
@@ -285,7 +286,7 @@ void DepositVisitor::store(const ArrivalCulling& culling, Photon photon, PointLi
 
 // ---- Beams
 
-void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, BeamList& beams) {
+void DepositVisitor::depositOnFlight(PathState& path, auto&, const Ahead& ahead, BeamList& beams) {
     if (!bears(path.throughput) || !orderCounts(path, 1)) return;
     const Ray& ray = path.ray;
     float start = 0.0f, end = ahead.reach();
@@ -308,11 +309,11 @@ void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, B
 
 // ---- Slices
 
-FlightChain::Rules DepositVisitor::chainRules() const {
+SliceBuilder::Rules DepositVisitor::chainRules() const {
     return {scene(), *culling_, std::get<Slices>(context_->settings.primitive).classes, context_->recordCounts};
 }
 
-void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, SliceList& slices) {
+void DepositVisitor::depositOnFlight(PathState& path, auto&, const Ahead& ahead, SliceList& slices) {
     Sampler own = records(path, path.interactions, RecordsOf::Flight);
     const Weighed weighed = weightOnFlight(path);
     const Rgb power = path.throughput * weighed.weight;
@@ -321,7 +322,7 @@ void DepositVisitor::leaveOnFlight(PathState& path, auto&, const Ahead& ahead, S
     noteVolume(weighed);
 }
 
-void DepositVisitor::leaveAtVertex(PathState& path, auto&, const Flight&, const Medium&, SliceList& slices) {
+void DepositVisitor::depositAtVertex(PathState& path, auto&, const Flight&, const Medium&, SliceList& slices) {
     Sampler own = records(path, path.interactions, RecordsOf::Vertex);
     const Weighed weighed = weightThere(path);
     const Rgb power = path.throughput * weighed.weight;

@@ -7,8 +7,8 @@
 #include "photon/light/Deposits.h"
 #include "photon/light/PhotonTrail.h"
 #include "photon/light/StepsToCamera.h"
-#include "photon/primitives/sliced/FlightChain.h"
-#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/primitives/sliced/RecordBudget.h"
+#include "photon/primitives/sliced/SliceBuilder.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
 
@@ -43,8 +43,8 @@ struct PhotonContext {
     /// Photons without power where connections bring the light: gathers of the nearest take their radius from how dense
     /// photons are, not from how dense those few are that bring what connections cannot.
     bool densityPhotons = false;
-    bool glossySensorPaths = false;             ///< SensorPathRules::glossy
-    const RecordCounts* recordCounts = nullptr; ///< of paths that draw their records' directions
+    bool glossyCameraSubpaths = false;          ///< CameraSubpathRules::glossy
+    const RecordBudget* recordCounts = nullptr; ///< of paths that draw their records' directions
     transport::StrategyBalance balance{};       ///< of plain and guided paths
     ProgressToken watch{};
 };
@@ -83,14 +83,15 @@ class DepositVisitor : public transport::VisitorBase {
     static constexpr bool Guided = std::is_same_v<Steps, StepsToCamera>;
     using PointList = DepositList<Photon>;
     using BeamList = DepositList<PhotonBeam>;
-    using SliceList = DepositList<CollapsedFlights>;
+    using SliceList = DepositList<SliceRecord>;
 
     [[nodiscard]] const Scene& scene() const { return context_->scene; }
     /// When light that is recorded as it arrives would have left: emission time and a delay that is drawn.
     void startAt(PathState& path, const Emitter& emitter) const;
-    /// By the emitter's own distribution; `probability` is that of its choice.
+    /// Starts the path by the emitter's own distribution; `probability` is that of its choice.
     bool emitFrom(PathState& path, const Emitter& emitter, float probability, const Vec2f& uPosition) const;
-    /// By either's own steps, beside each other or guided alone.
+    /// Starts the path in a direction that the steps draw, if the emitter has several: plain steps beside guided ones,
+    /// or guided ones alone.
     bool emitBySteps(PathState& path, auto& steps, float frames);
     /// From a point of an emitter that shines in more than one direction.
     bool emitFromPoint(PathState& path, auto& steps, const Emitter& emitter, float probability);
@@ -111,7 +112,7 @@ class DepositVisitor : public transport::VisitorBase {
     [[nodiscard]] Weighed weightAtVertex(const PathState& path) {
         return weighs() ? weigh(trail_ ? trail_->atVertex() : path.logRatio) : Weighed{};
     }
-    /// Of the records that have been added last.
+    /// Notes the weights of the records that have been added last.
     void noteVolume(const Weighed& weighed) {
         if (deposits_->weighed) deposits_->weighed->volume.resize(deposits_->volumeRecords(), weighed);
     }
@@ -123,10 +124,10 @@ class DepositVisitor : public transport::VisitorBase {
     bool bears(const Rgb& power);
 
     // Surfaces.
-    void leaveOnSurface(const PathState& path, const transport::WalkVertex& at);
+    void depositOnSurface(const PathState& path, const transport::WalkVertex& at);
     void depositOnSurface(const PathState& path, const SurfaceInteraction& surface);
-    /// Whether sensor paths along its glossy lobes find the light that arrives on `surface`.
-    [[nodiscard]] bool foundBySensorPaths(const PathState& path, const SurfaceInteraction& surface) const;
+    /// Whether camera subpaths along its glossy lobes find the light that arrives on `surface`.
+    [[nodiscard]] bool foundByCameraSubpaths(const PathState& path, const SurfaceInteraction& surface) const;
     /// `light`: the vertex is a light's point, which both strategies choose alike.
     void connectToSurfaces(const PathState& path, const darts::TimeGate& gate, const transport::Vertex& vertex,
                            float meanScattering, bool light = false);
@@ -138,14 +139,14 @@ class DepositVisitor : public transport::VisitorBase {
     }
 
     // What is left for a primitive on a flight, and at a collision; of slices, too, at lights and on surfaces.
-    void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, PointList& points);
-    void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, BeamList& beams);
-    void leaveOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, SliceList& slices);
-    void leaveAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
-                       PointList& points);
-    void leaveAtVertex(PathState&, auto&, const transport::Flight&, const Medium&, BeamList&) {}
-    void leaveAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
-                       SliceList& slices);
+    void depositOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, PointList& points);
+    void depositOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, BeamList& beams);
+    void depositOnFlight(PathState& path, auto& steps, const transport::Ahead& ahead, SliceList& slices);
+    void depositAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
+                         PointList& points);
+    void depositAtVertex(PathState&, auto&, const transport::Flight&, const Medium&, BeamList&) {}
+    void depositAtVertex(PathState& path, auto& steps, const transport::Flight& flight, const Medium& medium,
+                         SliceList& slices);
     /// `weight()`: of its power, asked only if it counts.
     template <typename Weight>
     void store(const ArrivalCulling& culling, Photon photon, PointList& points, Weight&& weight);
@@ -155,7 +156,7 @@ class DepositVisitor : public transport::VisitorBase {
         return path.random.branch(RandomStream::Record,
                                   uint64_t(interactions) * uint64_t(RecordsOf::Count) + uint64_t(left));
     }
-    [[nodiscard]] FlightChain::Rules chainRules() const;
+    [[nodiscard]] SliceBuilder::Rules chainRules() const;
     /// Calls use(slices) if they are the primitive in use.
     template <typename Use>
     void withSlices(Use&& use) {
@@ -172,15 +173,15 @@ class DepositVisitor : public transport::VisitorBase {
     Deposits* deposits_;
     PhotonCounters* counters_;
     transport::BounceLimits limits_;
-    std::vector<PointDraw> draws_; ///< of the vertex at hand
-    FlightChain chain_;            ///< of the flights since the last light or surface, for slices
-    bool connectable_ = false;     ///< the last vertex has no single direction and lies in this region: it connects
+    std::vector<VisiblePointSample> draws_; ///< of the vertex at hand
+    SliceBuilder chain_;                    ///< of the flights since the last light or surface, for slices
+    bool connectable_ = false; ///< the last vertex has no single direction and lies in this region: it connects
 };
 
 /// Traces one light path, plain.
 void tracePlainPhotons(const PhotonContext& context, const Sampler& sampler, Deposits& deposits,
                        PhotonCounters& counters);
-/// The same beside guided ones; `densities` counts what these are asked, `trail` is memory.
+/// Traces plain paths beside guided ones; `densities` counts what these are asked, `trail` is memory.
 void tracePlainBesideGuided(const PhotonContext& context, const PhotonGuidance& guidance,
                             const SurfaceConnections* connections, const Sampler& sampler, PhotonTrail& trail,
                             Deposits& deposits, PhotonCounters& counters, PhotonCounters& densities);

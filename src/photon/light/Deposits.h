@@ -2,7 +2,7 @@
 // What consecutive light paths leave behind, with each path's share.
 
 #include "photon/primitives/VolumePrimitive.h"
-#include "photon/surface/ReceivedLight.h"
+#include "photon/surface/ConnectionRecord.h"
 
 #include "transport/StrategyBalance.h"
 
@@ -16,7 +16,7 @@ struct Weighed {
     float logRatio = 0.0f; ///< log of the density of guided paths over that of plain ones
     transport::Found found = transport::Found::OnWay;
 };
-/// Of pilot paths: one of these for every record, in their order.
+/// What pilot paths note of records: one of these for every record, in their order.
 struct WeighedRecords {
     std::vector<Weighed> volume, surface, received;
 };
@@ -26,7 +26,7 @@ struct Deposits {
 
     DepositList<Photon> surface;
     VolumeDeposits volume;
-    std::vector<ReceivedLight> received;
+    std::vector<ConnectionRecord> received;
     std::vector<float>
         expectedLight; ///< light of each vertex's connections, where nobody knows yet what one is to bring
 

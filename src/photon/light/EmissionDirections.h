@@ -5,7 +5,7 @@
 
 #include "darts/Vec3.h"
 
-#include "transport/Body.h"
+#include "transport/BoundedMedium.h"
 
 #include "tungsten/emitter/Emitter.h"
 
@@ -19,12 +19,12 @@ namespace tungsten::photon {
 class EmissionDirections {
   public:
     EmissionDirections(const Emitter& emitter, const SurfaceSample& start,
-                       std::span<const transport::BodySphere> bodies = {}) {
+                       std::span<const transport::MediumSphere> bodies = {}) {
         const EmissionCone cone = emissionCone(emitter, start);
         axis_ = darts::vec3(cone.axis);
         widest_ = cone.widest;
         cosine_ = cone.cosineWeighted;
-        for (const transport::BodySphere& body : bodies) addCone(start.position, body);
+        for (const transport::MediumSphere& body : bodies) addCone(start.position, body);
         if (!cones_.empty()) share_ = tuning::TowardsBodies;
     }
     [[nodiscard]] darts::Vec3 sample(float u, float v) const {
@@ -57,7 +57,7 @@ class EmissionDirections {
         float widest; ///< largest 1 - cos
     };
 
-    /// Of the cone's half angle.
+    /// Squared sine of the cone's half angle.
     [[nodiscard]] float sineSquared() const { return widest_ * (2.0f - widest_); }
     /// Rounding carries directions across a cone's edge, by as much as it moves their difference from the axis. Beyond
     /// the emitter's own edge nothing is emitted, so that the density there does not matter.
@@ -65,7 +65,7 @@ class EmissionDirections {
         const float edge = widest + Rounding * std::sqrt(widest);
         return h <= edge ? 1.0f / (2.0f * darts::Pi * widest) : 0.0f;
     }
-    void addCone(const Vec3f& position, const transport::BodySphere& body) {
+    void addCone(const Vec3f& position, const transport::MediumSphere& body) {
         const Vec3f offset = body.centre - position;
         const float distance = offset.length();
         if (!(distance > body.radius)) return;

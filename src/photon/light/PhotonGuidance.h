@@ -3,11 +3,11 @@
 
 #include "photon/PhotonPlan.h"
 #include "photon/light/CameraView.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
 #include "darts/Guide.h"
 
-#include "transport/WaysOut.h"
+#include "transport/EscapeModels.h"
 
 #include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
@@ -26,15 +26,15 @@ class PhotonGuidance {
     [[nodiscard]] const darts::Guide* guide(const Region& region) const {
         return region.medium < 0 ? nullptr : guides_[size_t(region.medium)].get();
     }
-    /// What is left of a path at the start of a flight (transport::WaysOut::look) through `region` at `elapsed`, for
-    /// arrival inside `gate`. Adds the rays traced to `rays`.
-    [[nodiscard]] darts::Residual residual(const transport::Start& start, const Region& region, double elapsed,
+    /// What is left of a path at the start of a flight (transport::EscapeModels::choose) through `region` at `elapsed`,
+    /// for arrival inside `gate`. Adds the rays traced to `rays`.
+    [[nodiscard]] darts::TimeBudget budget(const transport::FlightStart& start, const Region& region, double elapsed,
                                            const darts::TimeGate& gate, uint64_t& rays) const;
 
     /// Bodies that light from outside is sent towards.
-    [[nodiscard]] const std::vector<transport::BodySphere>& bodies() const { return bodies_; }
+    [[nodiscard]] const std::vector<transport::MediumSphere>& bodies() const { return bodies_; }
 
-    /// Every sensor path is one straight chain at one speed: control vertices alone are complete.
+    /// Every camera subpath is one straight chain at one speed: control vertices alone are complete.
     [[nodiscard]] bool directView() const { return directView_; }
     /// Flights have control vertices.
     [[nodiscard]] bool drawsControlVertices() const { return drawsControlVertices_; }
@@ -43,11 +43,11 @@ class PhotonGuidance {
     /// Each light path aims at one frame; otherwise at all of them as one gate.
     [[nodiscard]] bool choosesFrames() const { return choosesFrames_; }
     /// Where light paths choose frames: without the first ones, which no light reaches.
-    [[nodiscard]] int darkFrames() const { return darkFrames_; }
+    [[nodiscard]] int emptyFrames() const { return darkFrames_; }
     [[nodiscard]] const darts::FrameSequence& frames() const { return frames_; }
     /// The gate of paths that aim at all frames, with the aperture's slack.
     [[nodiscard]] const darts::TimeGate& gate() const { return gate_; }
-    /// Of directions, in use: one for every medium that has one.
+    /// Number of tables of directions in use: one for every medium that has one.
     [[nodiscard]] uint64_t tables() const;
     /// Aims at this gate from now on (a delta gate's temporal kernel) instead of the scene's.
     void setGate(const TimeGate& gate);
@@ -62,23 +62,24 @@ class PhotonGuidance {
     [[nodiscard]] bool meetsDeltaGate() const { return meetsDeltaGate_; }
     /// The connection that arrives at the delta gate, to be averaged over the kernel; 1 / density is 0 if there is
     /// none.
-    [[nodiscard]] darts::ConnectionSample onDeltaGate(const darts::Residual& residual) const {
+    [[nodiscard]] darts::ConnectionSample onDeltaGate(const darts::TimeBudget& budget) const {
         const double kernel = lengthPerTime() * frames_.width;
-        const float excess = residual.excess - float(0.5 * kernel);
+        const float excess = budget.excess - float(0.5 * kernel);
         return excess > 0.0f ? darts::ConnectionSample{excess, float(kernel)}
-                             : darts::ConnectionSample{residual.excess, 0.0f};
+                             : darts::ConnectionSample{budget.excess, 0.0f};
     }
     [[nodiscard]] const CameraView& view() const { return view_; }
 
   private:
-    /// Of connections by time of arrival: without camera segments residual() has twice the length.
+    /// Length of connections per time of arrival: without camera segments budget() has twice the length.
     [[nodiscard]] double lengthPerTime() const { return unwarped_ ? 2.0 * speed_ : speed_; }
 
     std::vector<std::unique_ptr<darts::Guide>> guides_; ///< by medium
     CameraView view_;
-    std::array<Vec3f, 4> sides_;                        ///< of the view
-    std::unique_ptr<const transport::WaysOut> waysOut_; ///< null: media are taken for infinite, or bounds in time do
-    std::vector<transport::BodySphere> bodies_;
+    std::array<Vec3f, 4> sides_; ///< of the view
+    std::unique_ptr<const transport::EscapeModels>
+        escapeModels_; ///< null: media are taken for infinite, or bounds in time do
+    std::vector<transport::MediumSphere> bodies_;
     int cameraMedium_;
     Vec3f camera_;
     double speed_;
@@ -86,7 +87,7 @@ class PhotonGuidance {
     bool unwarped_, directView_, drawsControlVertices_, storesPhotons_, choosesFrames_, drawsByResponse_,
         meetsDeltaGate_;
     int darkFrames_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     darts::FrameSequence frames_;
     darts::TimeGate gate_;
 };

@@ -111,13 +111,13 @@ void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Stat
 
 PhotonPass::PhotonPass(const Scene& scene, const PhotonSettings& settings, const PhotonPlan& plan,
                        const ProgressToken& watch)
-    : scene_(scene), settings_(settings), culling_(scene, {plan.folds, plan.oneSpeed, plan.highestSpeed}),
+    : scene_(scene), settings_(settings), culling_(scene, {plan.indirectView, plan.oneSpeed, plan.highestSpeed}),
       guidance_(plan.guidance.on ? std::make_unique<PhotonGuidance>(scene, settings.policy, plan, watch) : nullptr),
-      emitters_(powerDistribution(scene, plan.lateEmitters)), storeVolume_(plan.volume.on),
-      storeSurface_(plan.surfacePhotons.on), glossySensorPaths_(plan.glossyPaths.on),
+      emitters_(powerDistribution(scene, plan.excludedEmitters)), storeVolume_(plan.volume.on),
+      storeSurface_(plan.surfacePhotons.on), glossyCameraSubpaths_(plan.glossyPaths.on),
       densityPhotons_(needsPhotonsBesideConnections(scene, plan.glossyPaths.on)), cameraPaths_(plan.cameraPaths) {
     if (!guidance_ || !guidance_->choosesFrames()) return;
-    for (int frame = guidance_->darkFrames(); frame < scene.transport.gate.frames; ++frame)
+    for (int frame = guidance_->emptyFrames(); frame < scene.transport.gate.frames; ++frame)
         frameCullings_.push_back(culling_.ofFrame(frame));
 }
 
@@ -201,7 +201,7 @@ PhotonMaps PhotonPass::trace(const PassInfo& pass, SurfaceConnections* connectio
     context.frameShift = Sampler(pass.seed, RandomStream::Frame, pass.index, 0).next1D();
     context.connects = connections != nullptr;
     context.densityPhotons = densityPhotons_;
-    context.glossySensorPaths = glossySensorPaths_;
+    context.glossyCameraSubpaths = glossyCameraSubpaths_;
     context.recordCounts = counts.get();
 
     PhotonMaps maps = emptyMaps();

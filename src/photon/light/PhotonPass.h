@@ -4,7 +4,7 @@
 #include "photon/PhotonSettings.h"
 #include "photon/light/PhotonGuidance.h"
 #include "photon/primitives/VolumePrimitive.h"
-#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/primitives/sliced/RecordBudget.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
 #include "transport/StrategyBalance.h"
@@ -23,8 +23,8 @@ class PhotonTrail;
 struct PhotonMaps {
     Store<Photon> surface;
     VolumeStore volume;
-    /// What vertices sent to sensor points, by all paths of the pass.
-    std::vector<ReceivedLight> received;
+    /// What vertices sent to visible points, by all paths of the pass.
+    std::vector<ConnectionRecord> received;
     uint64_t paths = 0;
 };
 
@@ -41,7 +41,7 @@ class PhotonPass {
     /// How many light paths are plain and how many guided, from what a few of both bring: before the first pass, by
     /// numbers of its own, so that every part of a render chooses alike. `seen`: what the connections' points are of;
     /// both may be null. Only where plain and guided paths are side by side.
-    void chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const SensorRecord* seen,
+    void chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const CameraRecord* seen,
                      Statistics& statistics);
     [[nodiscard]] bool plainAlone() const { return balance_.guided == 0.0f; }
     /// The passes that follow keep what this gate can see (a delta gate's temporal kernel) instead of the scene's.
@@ -53,7 +53,7 @@ class PhotonPass {
     [[nodiscard]] double passOverhead() const;
 
   private:
-    /// Of its part of a whole pass, and with its kernels.
+    /// Settings for its part of a whole pass, and with its kernels.
     [[nodiscard]] PhotonSettings settingsOf(const PassInfo& pass) const;
     /// What every walk is told; nothing is stored and nothing connected to.
     [[nodiscard]] PhotonContext contextOf(const PassInfo& pass, const PhotonSettings& settings) const;
@@ -67,7 +67,7 @@ class PhotonPass {
     void setLightPerConnection(const PassInfo& pass, const PhotonSettings& settings, SurfaceConnections& connections,
                                Statistics& statistics) const;
     /// Guided slices: how many records a base leaves, from what a few paths find.
-    [[nodiscard]] std::unique_ptr<RecordCounts> recordCounts(const PassInfo& pass, const PhotonSettings& settings,
+    [[nodiscard]] std::unique_ptr<RecordBudget> recordCounts(const PassInfo& pass, const PhotonSettings& settings,
                                                              Statistics& statistics) const;
 
     [[nodiscard]] PhotonMaps emptyMaps() const;
@@ -86,7 +86,7 @@ class PhotonPass {
     std::unique_ptr<PhotonGuidance> guidance_;
     std::vector<ArrivalCulling> frameCullings_; ///< when light paths aim at single frames
     Distribution1D emitters_;                   ///< proportional to power
-    bool storeVolume_, storeSurface_, glossySensorPaths_, densityPhotons_;
+    bool storeVolume_, storeSurface_, glossyCameraSubpaths_, densityPhotons_;
     uint64_t cameraPaths_;               ///< of a sample of a pixel
     transport::StrategyBalance balance_; ///< of plain and guided paths
     double connectionEffort_ = 1.0;      ///< connections of a path to surfaces, over those of the pilot

@@ -20,8 +20,8 @@ using transport::SharePilot;
 
 namespace {
 
-/// Of a pass, that tell what connections and records bring. Variance x CPU of best points, cornell-fog, the same:
-/// 0.0302, 0.0300 and 0.0298 at 32, 256 and 2048. Bench: study cbox-128
+/// Pilot paths of a pass, which tell what connections and records bring. Variance x CPU of best points, cornell-fog,
+/// the same: 0.0302, 0.0300 and 0.0298 at 32, 256 and 2048. Bench: study cbox-128
 constexpr uint64_t PilotPaths = 256;
 
 } // namespace
@@ -64,14 +64,14 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
         lightPerConnection(std::move(expectedLight), connectionEffort_ * tuning::ConnectionsPerPath * double(paths)));
 }
 
-std::unique_ptr<RecordCounts> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
+std::unique_ptr<RecordBudget> PhotonPass::recordCounts(const PassInfo& pass, const PhotonSettings& settings,
                                                        Statistics& statistics) const {
     if (!guidance_ || plainAlone() || !storeVolume_) return nullptr; // paths' own directions do
-    const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordCounts> {
-        if constexpr (!Primitive::CountsRecords)
+    const auto countsOf = [&]<typename Primitive>(const Primitive& primitive) -> std::unique_ptr<RecordBudget> {
+        if constexpr (!Primitive::LimitsRecords)
             return nullptr;
         else {
-            auto counts = std::make_unique<RecordCounts>(scene_, culling_.gate());
+            auto counts = std::make_unique<RecordBudget>(scene_, culling_.gate());
             const uint64_t paths = std::clamp<uint64_t>(settings.photonCount / 64, 16, PilotPaths);
             PhotonContext context = contextOf(pass, settings);
             context.storeVolume = true;
@@ -94,12 +94,12 @@ double cost(const PhotonCounters& counters, const tuning::Costs::Walk& each) {
            each.controlVertex * double(counters.controlVertices);
 }
 
-/// Of a record of the primitive in use.
+/// Cost of a record of the primitive in use, in nanoseconds.
 double recordCost(const VolumePrimitive& primitive) {
     return std::visit(
         [](const auto& p) {
             return p.AtVertices      ? tuning::Nanoseconds.point
-                   : p.CountsRecords ? tuning::Nanoseconds.slice
+                   : p.LimitsRecords ? tuning::Nanoseconds.slice
                                      : tuning::Nanoseconds.beam;
         },
         primitive);
@@ -121,7 +121,7 @@ struct PhotonPilot {
     /// Connections that would be best, over those that the pilot made: their variance is as 1 / n, their cost as n.
     [[nodiscard]] double effort(const transport::StrategyBalance& balance) const {
         // How bright slices are is known up to a factor.
-        if (std::holds_alternative<DepositList<CollapsedFlights>>(traced.deposits.volume)) return 1.0;
+        if (std::holds_alternative<DepositList<SliceRecord>>(traced.deposits.volume)) return 1.0;
         const double variance = connected.variance(balance), cost = connections.mean(balance);
         if (!(variance > 0.0) || !(cost > 0.0)) return 1.0;
         return std::clamp(std::sqrt(variance * costs.mean(balance) / std::max(rest.variance(balance) * cost, 1e-300)),
@@ -150,7 +150,7 @@ struct PhotonPilot {
 };
 
 /// Adds what one path has left to the pilot.
-void addRecords(PhotonPilot& pilot, const RecordImportance& importance, const Deposits& left, const SensorRecord* seen,
+void addRecords(PhotonPilot& pilot, const RecordImportance& importance, const Deposits& left, const CameraRecord* seen,
                 transport::Strategy strategy, const transport::StrategyBalance& balance) {
     const auto add = [&](const Contribution& contribution, const Weighed& weighed, bool isConnected = false) {
         const float own = contribution.value / balance.weight(strategy, weighed.logRatio);
@@ -172,7 +172,7 @@ void addRecords(PhotonPilot& pilot, const RecordImportance& importance, const De
 
 } // namespace
 
-void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const SensorRecord* seen,
+void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* connections, const CameraRecord* seen,
                              Statistics& statistics) {
     const std::optional<float> asked = settings_.policy.plainShare;
     if (asked && *asked == 1.0f) {
@@ -189,11 +189,11 @@ void PhotonPass::chooseShare(const ProgressToken& watch, SurfaceConnections* con
     PhotonContext context = contextOf(pass, settings_);
     context.connects = connections != nullptr;
     context.densityPhotons = false; // they bring nothing
-    context.glossySensorPaths = glossySensorPaths_;
+    context.glossyCameraSubpaths = glossyCameraSubpaths_;
     context.recordCounts = counts.get();
     context.storeVolume = storeVolume_;
     context.storeSurface = storeSurface_;
-    const RecordImportance importance(scene_, settings_, transport::Sensor::of(scene_, culling_.gate()));
+    const RecordImportance importance(scene_, settings_, transport::TimeSensor::of(scene_, culling_.gate()));
     PhotonPilot pilot(settings_.primitive);
     TracedPaths& traced = pilot.traced;
     PhotonTrail trail;

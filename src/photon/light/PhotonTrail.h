@@ -29,13 +29,13 @@ class PhotonTrail {
     }
     void leave(const transport::Way& way) { record_.leave(way); }
 
-    /// Of the way up to the flight at hand, its direction included.
+    /// Logarithm of density ratios of the way up to the flight at hand, its direction included.
     [[nodiscard]] float onFlight();
-    /// Of the way up to the flight's end.
+    /// The same logarithm up to the flight's end.
     [[nodiscard]] float there();
-    /// Of photons at its end, in a medium: guided paths leave control vertices, too.
+    /// Logarithm for photons at its end, in a medium: guided paths leave control vertices, too.
     [[nodiscard]] float inMedium();
-    /// Of what is left at the flight's end by paths that have not ended there.
+    /// Logarithm for what is left at the flight's end by paths that have not ended there.
     [[nodiscard]] float atVertex();
 
   private:

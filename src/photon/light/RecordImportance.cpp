@@ -1,7 +1,7 @@
 #include "photon/light/RecordImportance.h"
 
 #include "photon/Tuning.h"
-#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/primitives/sliced/RecordBudget.h"
 
 namespace tungsten::photon {
 
@@ -11,7 +11,8 @@ constexpr float OffSurface = 1e-4f; ///< of the distance to the camera: rays tha
 
 } // namespace
 
-RecordImportance::RecordImportance(const Scene& scene, const PhotonSettings& settings, const transport::Sensor& sensor)
+RecordImportance::RecordImportance(const Scene& scene, const PhotonSettings& settings,
+                                   const transport::TimeSensor& sensor)
     : scene_(scene), sensor_(sensor), frame_(scene.camera.toWorld.rotation()),
       radius_(settings.volumeRadius < 1e20f ? settings.volumeRadius : 0.0f),
       surfaceRadius_(settings.gatherRadius < 1e20f ? settings.gatherRadius : 0.0f),
@@ -40,7 +41,7 @@ auto RecordImportance::segmentToCamera(Ray ray, float reach, Region region) cons
             segment.transmittance *= meanComponent(medium->transmittance(length));
         segment.time += double(length / region.speed);
         if (!hit) return segment;
-        if ((scene_.bsdfOf(*hit).lobes() & lobe::Through) == 0) return std::nullopt;
+        if ((scene_.bsdfOf(*hit).lobes() & lobe::AnyTransmission) == 0) return std::nullopt;
         region = regionBeyond(makeInteraction(scene_, *hit, ray.direction), ray.direction, region);
         ray = hit->rest(ray);
         left -= length;
@@ -96,7 +97,7 @@ auto RecordImportance::of(const PhotonBeam& beam) const -> Contributions {
     return parts;
 }
 
-auto RecordImportance::of(const CollapsedFlights& flights) const -> Contributions {
+auto RecordImportance::of(const SliceRecord& flights) const -> Contributions {
     const double soonest = std::max(sensor_.gate.start, flights.time);
     // They show in much of the image: all of a path may meet.
     return {Contribution{float(std::exp(std::clamp(logSliceLight(scene_, flights, soonest), -60.0, 60.0))), 0}};
@@ -108,7 +109,7 @@ Contribution RecordImportance::onSurface(const Photon& photon) const {
               photon.time, scene_.cameraRegion, meanComponent(photon.power) * InvPi, Pi * sqr(surfaceRadius_));
 }
 
-Contribution RecordImportance::ofConnection(const ReceivedLight& light, const SensorPoint& point) const {
+Contribution RecordImportance::ofConnection(const ConnectionRecord& light, const VisiblePoint& point) const {
     // Neighbours share what arrives.
     constexpr float Sharing = Pi * tuning::SharedPixels * tuning::SharedPixels;
     return {meanComponent(light.light * point.throughput) / std::sqrt(Sharing),

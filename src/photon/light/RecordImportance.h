@@ -2,9 +2,9 @@
 // What records of light paths bring to the image, about: what a pilot judges plain and guided paths by.
 
 #include "photon/PhotonSettings.h"
-#include "photon/surface/ReceivedLight.h"
-#include "photon/view/SensorRecord.h"
-#include "transport/Sensor.h"
+#include "photon/surface/ConnectionRecord.h"
+#include "photon/view/CameraRecord.h"
+#include "transport/TimeSensor.h"
 
 namespace tungsten::photon {
 
@@ -19,20 +19,20 @@ struct Contribution {
 /// refraction: images by shares that are chosen by it are right all the same.
 class RecordImportance {
   public:
-    RecordImportance(const Scene& scene, const PhotonSettings& settings, const transport::Sensor& sensor);
+    RecordImportance(const Scene& scene, const PhotonSettings& settings, const transport::TimeSensor& sensor);
 
     static constexpr size_t Parts = 4; ///< of a beam
     using Contributions = std::array<Contribution, Parts>;
 
     [[nodiscard]] Contributions of(const Photon& photon) const;
     [[nodiscard]] Contributions of(const PhotonBeam& beam) const;
-    [[nodiscard]] Contributions of(const CollapsedFlights& flights) const;
+    [[nodiscard]] Contributions of(const SliceRecord& flights) const;
     [[nodiscard]] Contribution onSurface(const Photon& photon) const;
-    [[nodiscard]] Contribution ofConnection(const ReceivedLight& light, const SensorPoint& point) const;
+    [[nodiscard]] Contribution ofConnection(const ConnectionRecord& light, const VisiblePoint& point) const;
 
   private:
-    /// Of light that leaves a point towards the camera; `power` in that direction per solid angle. It covers an area
-    /// across the view.
+    /// Contribution of light that leaves a point towards the camera; `power` in that direction per solid angle. It
+    /// covers an area across the view.
     [[nodiscard]] Contribution at(const Vec3f& position, double time, const Region& region, float power,
                                   float area) const;
     struct Segment {
@@ -45,7 +45,7 @@ class RecordImportance {
     [[nodiscard]] Vec3f toCamera(const Vec3f& position) const;
 
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     Vec3f camera_{0.0f};
     Frame frame_;
     float radius_;        ///< of the volume kernel; 0: unknown

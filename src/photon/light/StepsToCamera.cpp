@@ -14,15 +14,15 @@ using Event = Flight::Event;
 
 // ---- Looking
 
-bool StepsToCamera::lookFrom(const PathState& path, const transport::Start& start) {
-    setTimeBudget(guidance_->residual(start, path.region, path.time, gate_, context_.counters.rays));
-    return residual().alive();
+bool StepsToCamera::setTimeBudgetFrom(const PathState& path, const transport::FlightStart& start) {
+    setTimeBudgetAndModel(guidance_->budget(start, path.region, path.time, gate_, context_.counters.rays));
+    return budget().alive();
 }
 
 bool StepsToCamera::canArrive(PathState& path, const WalkVertex& vertex) {
     if (rules_.balance.endsGuided(path.logRatio)) return false;
     forget();
-    return vertex.surface || lookFrom(path, {vertex.position});
+    return vertex.surface || setTimeBudgetFrom(path, {vertex.position});
 }
 
 // ---- Flights
@@ -32,9 +32,9 @@ Ahead StepsToCamera::ahead(PathState& path, const std::optional<SurfaceHit>* kno
     guide_ = guidance_->guide(path.region);
     if (guide_) {
         if (!transport::BounceLimits::fly(path.flights, *medium_)) return {};
-        if (!hasLooked()) {
+        if (!hasTimeBudget()) {
             // After a surface.
-            if (!lookFrom(path, transport::Start::along(path.ray))) return {};
+            if (!setTimeBudgetFrom(path, transport::FlightStart::along(path.ray))) return {};
             if (known)
                 path.logRatio += logOfQuotient(survival(path, *guide_));
             else if (!passesRoulette(path, *guide_))
@@ -97,7 +97,7 @@ Flight StepsToCamera::flight(PathState& path, const Ahead& ahead) {
 auto StepsToCamera::inMedium(float distance) const -> InMedium {
     if (!guide_) return {};
     InMedium ending{distances_->pdf(distance)};
-    const darts::Residual before = darts::Guide::beforeSurface(residual(), heading_.h, reach_);
+    const darts::TimeBudget before = darts::Guide::beforeSurface(budget(), heading_.h, reach_);
     if (rules_.storesVertices && guidance_->drawsControlVertices() && before.alive())
         ending.control = guide_->pdfControlVertex(before, heading_.h, distance, guidance_->response(start_.time));
     ending.logRatio = start_.logRatio + logOfQuotient(ending.own + ending.control, plain().pdf(distance));
@@ -145,7 +145,7 @@ std::optional<darts::DirectionSample> StepsToCamera::draw(PathState& path, const
                                                           const Scatterer& scatterer) {
     if (guide.settings().lengthFirst) {
         path.random.at(path.interactions, Draw::Connection);
-        const darts::ConnectionSample connection = drawConnection(path, guide, residual());
+        const darts::ConnectionSample connection = drawConnection(path, guide, budget());
         connect(connection);
         // A density of 0: the response is over, or the delta gate, but surfaces may still be seen in its kernel.
         if (!(connection.inversePdf > 0.0f) && !guidance_->meetsDeltaGate()) return std::nullopt;
@@ -165,7 +165,7 @@ std::optional<Way> StepsToCamera::emit(PathState& path, const Emitter& emitter, 
     Vec3f direction;
     float inversePdf = 0.0f;
     if (guide) {
-        if (!lookFrom(path, {start.position, start.margin()})) return std::nullopt;
+        if (!setTimeBudgetFrom(path, {start.position, start.margin()})) return std::nullopt;
         const auto drawn = draw(path, *guide, directions);
         if (!drawn) return std::nullopt;
         direction = darts::to<Vec3f>(drawn->direction);
@@ -179,7 +179,7 @@ std::optional<Way> StepsToCamera::emit(PathState& path, const Emitter& emitter, 
     }
     const float own = EmissionDirections(emitter, start).pdf(darts::vec3(direction));
     if (hasDensities()) path.logRatio -= logOfQuotient(own * inversePdf);
-    const Ray ray = start.leave(direction);
+    const Ray ray = start.spawnRay(direction);
     return Way{ray, path.region, emittedIntensity(emitter, start, ray.direction) * inversePdf, own};
 }
 
@@ -187,7 +187,7 @@ bool StepsToCamera::emitAlong(PathState& path, const Emitter& emitter, const Sur
                               const Vec3f& direction) {
     const darts::Guide* guide = guideOfEmission(path.region);
     const EmissionDirections directions = emission(emitter, start, guide != nullptr);
-    if (guide && !lookFrom(path, {start.position, start.margin()})) return false;
+    if (guide && !setTimeBudgetFrom(path, {start.position, start.margin()})) return false;
     const darts::Vec3 along = darts::vec3(direction);
     path.logRatio += logOfQuotient(guide ? pdf(*guide, directions, direction) : directions.pdf(along),
                                    EmissionDirections(emitter, start).pdf(along));
@@ -216,15 +216,15 @@ void StepsToCamera::leaveAlong(PathState& path, const WalkVertex& vertex, const 
 // ---- Control vertices
 
 darts::ConnectionSample StepsToCamera::drawConnection(PathState& path, const darts::Guide& guide,
-                                                      const darts::Residual& residual) const {
-    if (guidance_->meetsDeltaGate() && rules_.storesVertices) return guidance_->onDeltaGate(residual);
-    return guide.sampleConnection(residual, path.random.next1D(), guidance_->response(path.time));
+                                                      const darts::TimeBudget& budget) const {
+    if (guidance_->meetsDeltaGate() && rules_.storesVertices) return guidance_->onDeltaGate(budget);
+    return guide.sampleConnection(budget, path.random.next1D(), guidance_->response(path.time));
 }
 
 auto StepsToCamera::controlVertex(PathState& path, const Ahead& ahead, bool shares) -> std::optional<OnWay> {
-    const auto draw = [&](const darts::Residual& residual) {
+    const auto draw = [&](const darts::TimeBudget& budget) {
         path.random.at(path.interactions + 1, Draw::FlightConnection);
-        return drawConnection(path, *guide_, residual);
+        return drawConnection(path, *guide_, budget);
     };
     return meetControlVertex({*guide_, heading_.h, path.time, shares}, ahead.reach(), draw);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Steps of a light path that is aimed at the camera inside the time gate: guided distances and directions,
-// roulette and splitting by usefulness (He et al. 2024 and its successor presets; docs/method.md, sections 3 to 6).
+// roulette and splitting by expected contribution (He et al. 2024 and its successor presets; docs/method.md, sections 3
+// to 6).
 
 #include "photon/light/EmissionDirections.h"
 #include "photon/light/PhotonGuidance.h"
@@ -39,8 +40,8 @@ class StepsToCamera : public transport::GuidedSteps {
     /// From a point of a light that shines in more than a single direction; none if nothing can be in time.
     std::optional<transport::Way> emit(transport::PathState& path, const Emitter& emitter, const SurfaceSample& start);
 
-    // The same steps asked of a plain path (PhotonTrail): where it went, and how densely guided ones would have. `path`
-    // has the throughput that a guided path would have there. All add to the path's logRatio, and draw nothing.
+    // These answer for a plain path (PhotonTrail) how densely guided ones would have gone where it went. `path` has the
+    // throughput that a guided path would have there. All add to the path's logRatio, and draw nothing.
     /// emit(), in the direction that the plain path took. False if guided ones do not start.
     bool emitAlong(transport::PathState& path, const Emitter& emitter, const SurfaceSample& start,
                    const Vec3f& direction);
@@ -51,12 +52,12 @@ class StepsToCamera : public transport::GuidedSteps {
     void leaveAlong(transport::PathState& path, const transport::WalkVertex& vertex, const transport::Way& way);
     [[nodiscard]] bool hasDensities() const { return rules_.balance.both(); }
 
-    // Of the flight at hand.
+    // The flight at hand:
     [[nodiscard]] const darts::Guide& guide() const { return *guide_; } ///< through a medium that scatters
     /// `shares`: ordinary photons share with control vertices.
     [[nodiscard]] std::optional<OnWay> controlVertex(transport::PathState& path, const transport::Ahead& ahead,
                                                      bool shares);
-    /// Of photons at this distance: of vertices, and of control vertices.
+    /// Densities of photons at this distance: of vertices, and of control vertices.
     [[nodiscard]] InMedium inMedium(float distance) const;
     /// Logarithm of the density of guided paths over that of the plain one, up to the end of its flight.
     [[nodiscard]] float logRatioThere(const transport::Flight& flight) const;
@@ -66,7 +67,7 @@ class StepsToCamera : public transport::GuidedSteps {
 
   private:
     /// False if nothing can be in time.
-    bool lookFrom(const transport::PathState& path, const transport::Start& start);
+    bool setTimeBudgetFrom(const transport::PathState& path, const transport::FlightStart& start);
     bool passesRoulette(transport::PathState& path, const darts::Guide& guide);
     [[nodiscard]] float survival(const transport::PathState& path, const darts::Guide& guide) {
         return GuidedSteps::survival(guide, path.region.medium, meanComponent(path.throughput));
@@ -75,11 +76,11 @@ class StepsToCamera : public transport::GuidedSteps {
     [[nodiscard]] const darts::Guide* guideOfEmission(const Region& region) const;
     [[nodiscard]] EmissionDirections emission(const Emitter& emitter, const SurfaceSample& start, bool guided) const {
         // What is guided aims at the camera itself.
-        return {emitter, start, guided ? std::span<const transport::BodySphere>() : guidance_->bodies()};
+        return {emitter, start, guided ? std::span<const transport::MediumSphere>() : guidance_->bodies()};
     }
-    /// Of a connection from a vertex with this residual.
+    /// Draws the length of a connection from a vertex with this time budget.
     darts::ConnectionSample drawConnection(transport::PathState& path, const darts::Guide& guide,
-                                           const darts::Residual& residual) const;
+                                           const darts::TimeBudget& budget) const;
     /// The direction of the straight way ahead, and before it the length of the connection, where settings say so.
     template <typename Scatterer>
     std::optional<darts::DirectionSample> draw(transport::PathState& path, const darts::Guide& guide,
@@ -87,7 +88,7 @@ class StepsToCamera : public transport::GuidedSteps {
     /// Per solid angle, of directions that are drawn first.
     template <typename Scatterer>
     [[nodiscard]] float pdf(const darts::Guide& guide, const Scatterer& scatterer, const Vec3f& direction) const {
-        return guide.pdfDirection(residual(), {}, darts::vec3(direction), scatterer);
+        return guide.pdfDirection(budget(), {}, darts::vec3(direction), scatterer);
     }
     /// The flight at hand as plain paths have it.
     [[nodiscard]] transport::PlainFlight plain() const { return {medium_, reach_, start_.channels}; }

@@ -9,7 +9,7 @@ namespace tungsten::photon {
 struct TracedPaths {
     explicit TracedPaths(const VolumePrimitive& primitive) : deposits(primitive) {}
     Deposits deposits;
-    /// By whose work it was: of plain paths, of what guided steps are asked about them, of guided paths.
+    /// Counts by whose work it was: of plain paths, of what guided steps are asked about them, of guided paths.
     PhotonCounters plain, densities, guided;
 
     [[nodiscard]] uint64_t rays() const { return plain.rays + densities.rays + guided.rays; }

@@ -16,7 +16,7 @@ struct KernelEdge {
     [[nodiscard]] bool holds(const Vec3f& offset) const { return normal.dot(offset) < reach; }
 };
 
-/// Of the nearest surface, and of one that is as near on the other side.
+/// Edges at the nearest surface, and at one that is as near on the other side.
 struct KernelEdges {
     KernelEdge nearest, opposite;
 };

@@ -33,7 +33,8 @@ class NearSurfaces {
     [[nodiscard]] bool sees(const Vec3f& position, const Vec3f& offset, float radius) const;
 
   private:
-    /// Of a kernel's radius: a surface that a ray meets before is the one that its start lies on, moved by rounding.
+    /// Least length, relative to a kernel's radius: a surface that a ray meets before is the one that its start lies
+    /// on, moved by rounding.
     static constexpr float LeastLength = 1e-3f;
 
     NearSurfaces(const SceneGeometry& geometry, float size, float radius, float reachInRadii);

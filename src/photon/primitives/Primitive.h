@@ -16,7 +16,7 @@ class ProgressToken;
 namespace tungsten::photon {
 
 struct PhotonSettings;
-struct SensorRecord;
-using SensorRecords = std::vector<const SensorRecord*>; ///< of several samples of a pass
+struct CameraRecord;
+using CameraRecords = std::vector<const CameraRecord*>; ///< of several samples of a pass
 
 } // namespace tungsten::photon

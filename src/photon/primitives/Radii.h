@@ -2,7 +2,7 @@
 // Kernel radii of a primitive's records, and where surfaces end their kernels.
 
 #include "photon/primitives/KernelEdge.h"
-#include "photon/store/FoldedSelection.h"
+#include "photon/store/RedirectedSelection.h"
 
 namespace tungsten::photon {
 
@@ -24,21 +24,22 @@ class Radii {
     void scale(float factor) {
         for (float& radius : radii_) radius *= factor;
     }
-    /// Of the records that chooseEvenly chooses.
+    /// Radii of the records that chooseSystematically chooses.
     [[nodiscard]] Radii chosen(double share, float u) const {
         Radii part;
         if (single()) part.radii_ = radii_;
         const size_t records = single() ? edges_.size() : radii_.size();
-        chooseEvenly(records, share, u, [&](size_t i) { part.append(*this, i); });
+        chooseSystematically(records, share, u, [&](size_t i) { part.append(*this, i); });
         return part;
     }
-    /// Of the records dealt into `count` hands.
-    [[nodiscard]] std::vector<Radii> dealt(size_t count) const {
-        std::vector<Radii> hands(count);
-        const auto radii = single() ? std::vector<std::vector<float>>(count, radii_) : photon::dealt(radii_, count);
-        const auto edges = photon::dealt(edges_, count);
-        for (size_t k = 0; k < count; ++k) hands[k] = {radii[k], edges[k]};
-        return hands;
+    /// Radii of the records of each of `count` interleaved parts.
+    [[nodiscard]] std::vector<Radii> partitioned(size_t count) const {
+        std::vector<Radii> sets(count);
+        const auto radii =
+            single() ? std::vector<std::vector<float>>(count, radii_) : photon::partitioned(radii_, count);
+        const auto edges = photon::partitioned(edges_, count);
+        for (size_t k = 0; k < count; ++k) sets[k] = {radii[k], edges[k]};
+        return sets;
     }
     /// Adds what `other` has for a record; one radius for all stays one.
     void append(const Radii& other, size_t record) {

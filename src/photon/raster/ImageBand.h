@@ -2,7 +2,7 @@
 // A few rows of the image that one task draws: the recorded rays, a register at a time, and what they have gathered.
 
 #include "photon/raster/Registers.h"
-#include "photon/view/SensorRecord.h"
+#include "photon/view/CameraRecord.h"
 
 #include "tungsten/film/Film.h"
 
@@ -10,16 +10,18 @@
 
 namespace tungsten::photon {
 
-/// One piece of the band's rays. Rays without it end at 0.
-struct BandPiece {
+/// One segment of the band's rays. Rays without it end at 0.
+struct BandSegment {
     size_t number; ///< in the record
     std::vector<float> start, end;
-    float leastStart = 0.0f, mostStart = 0.0f;   ///< of the rays that have this piece
+    float leastStart = 0.0f, mostStart = 0.0f;   ///< of the rays that have this segment
     bool mixed = false;                          ///< rays differ in medium or interactions
-    int medium = -1, interactions = 0;           ///< of the first ray that has this piece, if any
+    int medium = -1, interactions = 0;           ///< of the first ray that has this segment, if any
     std::vector<float> media, interactionCounts; ///< of every ray, if mixed
     std::array<std::vector<float>, 3> sums;      ///< by channel, frame by frame, without the rays' throughput
-    std::vector<std::vector<Vec3d>> settled;     ///< as many frames: what was drawn before; empty until something was
+    /// By frame: sums, in double, of all records but those drawn last (at most MostInFloats); empty while there are
+    /// none.
+    std::vector<std::vector<Vec3d>> settled;
 
     /// Adds weight times power at pixels `first`...
     void add(size_t first, const Batch& weight, int channel, float power) {
@@ -43,12 +45,12 @@ class ImageBand {
     static size_t count(int imageHeight) { return size_t((imageHeight + Rows - 1) / Rows); }
 
     /// `frames`: how many have sums at a time.
-    ImageBand(const SensorRecord& record, size_t number, int frames = 1);
+    ImageBand(const CameraRecord& record, size_t number, int frames = 1);
 
     [[nodiscard]] size_t at(int column, int row) const { return size_t(row - firstRow) * stride + size_t(column); }
     /// Where the sums of a frame begin.
     [[nodiscard]] size_t sumsOf(int frame) const { return placeOf(frame) * x.size(); }
-    [[nodiscard]] const SensorRecord& record() const { return record_; }
+    [[nodiscard]] const CameraRecord& record() const { return record_; }
     /// After each photon, beam or slice, which add at most once to every pixel: floats sum a few of them.
     void countDrawn(int frame = 0) {
         if (++drawn_[placeOf(frame)] == MostInFloats) settle(frame);
@@ -59,12 +61,12 @@ class ImageBand {
     int firstRow, lastRow; ///< inclusive
     size_t stride;
     std::vector<float> x, y, z; ///< unit directions
-    std::vector<BandPiece> pieces;
+    std::vector<BandSegment> segments;
 
   private:
     template <typename T>
     std::vector<float> rowsOf(const std::vector<T>& image, float beyond = 0.0f) const;
-    void addPiece(size_t number);
+    void addSegment(size_t number);
     [[nodiscard]] size_t placeOf(int frame) const { return frames_ > 1 ? size_t(frame) : 0; }
     /// A frame's sums of floats into those of doubles.
     void settle(int frame);
@@ -72,7 +74,7 @@ class ImageBand {
     /// Equal numbers, the worst case: sums of 128 floats are off by 2e-6. 2e5 at a time were by 3e-3.
     static constexpr int MostInFloats = 128;
 
-    const SensorRecord& record_;
+    const CameraRecord& record_;
     int frames_;
     std::vector<int> drawn_; ///< by frame, since it settled
 };

@@ -42,7 +42,7 @@ class ImageFootprint {
     }
     /// Pixels whose rays can meet the hull of these points; none if there are none.
     [[nodiscard]] std::optional<PixelArea> aroundHull(std::span<const Vec3f> points) const;
-    /// The same with the image's outline.
+    /// Pixels whose rays can meet a sphere, with the image's outline.
     [[nodiscard]] std::optional<ImageDisc> disc(const Vec3f& point, float radius) const;
     /// Columns [left[i], right[i]] of row firstRow + i whose pixels can have rays through the sphere; none if right <
     /// left.
@@ -63,7 +63,7 @@ class ImageFootprint {
     /// First and last row or column with rays beyond or before a coordinate of the image.
     [[nodiscard]] int firstPixel(float from, int size) const;
     [[nodiscard]] int lastPixel(float to, int size) const;
-    /// Of rays within `radius`, sideways against forward; none where they have no bounds.
+    /// Slopes of rays within `radius`, sideways against forward; none where they have no bounds.
     [[nodiscard]] static std::optional<Slopes> slopes(float sideways, float forward, float radius);
 
     Frame frame_;

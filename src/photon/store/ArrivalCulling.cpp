@@ -21,14 +21,14 @@ double distanceOfLength(const Vec3d& position, const Vec3d& direction, const Vec
 
 } // namespace
 
-ArrivalCulling::ArrivalCulling(const Scene& scene, const SensorPaths& paths)
-    : sensor_(transport::Sensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
+ArrivalCulling::ArrivalCulling(const Scene& scene, const CameraSubpaths& paths)
+    : sensor_(transport::TimeSensor::of(scene, scene.transport.gate)), unwarped_(scene.transport.cameraUnwarped),
       highestSpeed_(double(paths.highestSpeed)) {
     setGate(scene.transport.gate);
     const Vec3f position = scene.camera.position();
     camera_ = Vec3d(position.x, position.y, position.z);
     straightTimesKnown_ = !sensor_.gate.steadyState && scene.camera.hasSinglePosition() && paths.oneSpeed;
-    directView_ = straightTimesKnown_ && !paths.fold;
+    directView_ = straightTimesKnown_ && !paths.redirected;
     slack_ = double(scene.camera.aperture());
     if (scene.camera.hasParallelRays()) slack_ = std::numeric_limits<double>::infinity();
 }

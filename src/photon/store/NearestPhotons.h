@@ -16,7 +16,7 @@ class NearestPhotons {
     struct Neighbour {
         float squaredDistance;
         uint32_t index;
-        /// By distance, ties by index: the choice of the k nearest is unique.
+        /// Neighbours are ordered by distance, ties by index: the choice of the k nearest is unique.
         friend auto operator<=>(const Neighbour&, const Neighbour&) = default;
     };
     /// The at most `count` nearest photons within `radius` (inclusive), sorted by index so that sums have one order.

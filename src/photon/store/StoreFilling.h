@@ -1,7 +1,7 @@
 #pragma once
 // Whole light paths into a store of limited room.
 
-#include "photon/store/FoldedSelection.h"
+#include "photon/store/RedirectedSelection.h"
 #include "photon/store/Store.h"
 
 #include "tungsten/core/Random.h"
@@ -27,7 +27,7 @@ void appendPaths(Store<Record>& store, const DepositList<Record>& deposits, uint
         } else {
             if (count > capacity) {
                 const double share = double(capacity) / double(count);
-                auto thinned = chosenEvenly(std::vector<Record>(start, end), share, sampler.next1D());
+                auto thinned = systematicSubset(std::vector<Record>(start, end), share, sampler.next1D());
                 thinned.resize(std::min<size_t>(thinned.size(), capacity)); // rounding
                 records.insert(records.end(), thinned.begin(), thinned.end());
             } else {

@@ -9,7 +9,7 @@ namespace tungsten::photon {
 
 namespace {
 
-float meanIntensity(const SendingVertex& from) {
+float meanIntensity(const ConnectingVertex& from) {
     return meanComponent(from.power) * from.meanScattering;
 }
 
@@ -22,16 +22,17 @@ Rgb scatteringHere(const transport::Vertex& vertex, const Vec3f& direction) {
 
 } // namespace
 
-SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                                       const PassInfo& pass, const Spread& spread, bool forwardBoundaries)
+SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::TimeSensor& sensor,
+                                       const CameraRecord& record, const PassInfo& pass, const ConnectionBlur& spread,
+                                       bool forwardBoundaries)
     : scene_(scene), sensor_(sensor), connector_(scene, forwardBoundaries), points_(record.points),
       speed_(double(scene.cameraRegion.speed)) {
     if (points_.empty()) return;
     const double pixelArea =
         4.0 / (double(record.width) * double(record.width)); // at the distance where the image is 2 wide
     const double plane = scene.camera.fieldOfView()->planeDistance;
-    std::vector<ClusterPoint> points;
-    for (const SensorPoint& point : points_) {
+    std::vector<VisibleClusterPoint> points;
+    for (const VisiblePoint& point : points_) {
         const double length = point.time * speed_;
         const double cosine = std::max(std::abs(double(point.direction.dot(point.hit.ng))), 0.05);
         const double area = length * length * pixelArea / (cosine * plane * plane);
@@ -39,11 +40,12 @@ SurfaceConnections::SurfaceConnections(const Scene& scene, const transport::Sens
         points.push_back(
             {point.hit.position, point.hit.ng, scene.transport.cameraUnwarped ? 0.0f : float(length), spread_.back()});
     }
-    clusters_ = std::make_unique<SensorClusters>(points, Sampler(pass.seed, RandomStream::Resample, pass.index, 0));
+    clusters_ =
+        std::make_unique<VisiblePointClusters>(points, Sampler(pass.seed, RandomStream::Resample, pass.index, 0));
     perKept_ = float(double(points_.size()) / double(clusters_->order().size()));
 }
 
-SurfaceConnections::Ranges SurfaceConnections::openRanges(const SendingVertex& from,
+SurfaceConnections::Ranges SurfaceConnections::openRanges(const ConnectingVertex& from,
                                                           const darts::TimeGate& gate) const {
     Ranges ranges;
     const double low = speed_ * (gate.begin - from.time), high = speed_ * (gate.end - from.time);
@@ -65,14 +67,14 @@ SurfaceConnections::Ranges SurfaceConnections::openRanges(const SendingVertex& f
     return ranges;
 }
 
-float SurfaceConnections::expectedLight(const SendingVertex& from, const darts::TimeGate& gate) const {
+float SurfaceConnections::expectedLight(const ConnectingVertex& from, const darts::TimeGate& gate) const {
     const Ranges ranges = openRanges(from, gate);
     if (ranges.count == 0) return 0.0f;
     return meanIntensity(from) * clusters_->weight({from.vertex.position(), {ranges.list.data(), ranges.count}});
 }
 
-void SurfaceConnections::find(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
-                              std::vector<PointDraw>& draws) const {
+void SurfaceConnections::find(const ConnectingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
+                              std::vector<VisiblePointSample>& draws) const {
     draws.clear();
     const Ranges ranges = openRanges(from, gate);
     const float each = meanIntensity(from);
@@ -81,23 +83,24 @@ void SurfaceConnections::find(const SendingVertex& from, const darts::TimeGate& 
                     draws);
 }
 
-void SurfaceConnections::connect(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
-                                 std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received,
+void SurfaceConnections::connect(const ConnectingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
+                                 std::vector<VisiblePointSample>& draws, std::vector<ConnectionRecord>& received,
                                  uint64_t& rays) const {
     find(from, gate, sampler, draws);
     const bool onSurface = from.vertex.margin().onSurface();
     const auto scattering = [&](const Vec3f& direction) { return scatteringHere(from.vertex, direction); };
-    for (const PointDraw& draw : draws) {
+    for (const VisiblePointSample& draw : draws) {
         if (onSurface && isBlack(scattering(draw.direction))) continue; // not on this side
-        const SpreadLight seen = spreadAt(draw);
+        const RegularisedConnection seen = spreadAt(draw);
         const Rgb light = from.power * seen.light(scattering) * (draw.inverseExpectation * perKept_);
         if (!isBlack(light)) receive(from, gate, draw, {draw.point, 0, 0.0f, seen.from, light}, received, rays);
     }
 }
 
-void SurfaceConnections::receive(const SendingVertex& from, const darts::TimeGate& gate, const PointDraw& draw,
-                                 ReceivedLight light, std::vector<ReceivedLight>& received, uint64_t& rays) const {
-    const SensorPoint& point = points_[draw.point];
+void SurfaceConnections::receive(const ConnectingVertex& from, const darts::TimeGate& gate,
+                                 const VisiblePointSample& draw, ConnectionRecord light,
+                                 std::vector<ConnectionRecord>& received, uint64_t& rays) const {
+    const VisiblePoint& point = points_[draw.point];
     const transport::Vertex at = point.vertex(scene_);
     const SurfaceInteraction& surface = *at.surface();
     const SurfaceMargin margin = from.vertex.margin();
@@ -110,7 +113,7 @@ void SurfaceConnections::receive(const SendingVertex& from, const darts::TimeGat
     if (!surface.consistent(toVertex, scene_.transport.consistencyChecks) ||
         ((surface.bsdf->lobes() & lobe::Transmissive) == 0 && surface.frame.toLocal(toVertex).z * surface.wi.z <= 0.0f))
         return;
-    Ray ray = margin.leave(from.vertex.position(), draw.direction);
+    Ray ray = margin.spawnRay(from.vertex.position(), draw.direction);
     ray.tMax = point.hit.margin().before(draw.direction, draw.distance);
     const Visibility visibility = connector_.visibility(ray, draw.distance, from.vertex.region(), rays);
     if (isBlack(visibility.transmittance)) return;

@@ -3,58 +3,59 @@
 // just in time, vertices look for surface points that the camera sees at the right time.
 
 #include "photon/Tuning.h"
-#include "photon/surface/ReceivedLight.h"
-#include "photon/surface/SensorClusters.h"
-#include "photon/surface/SpreadLight.h"
-#include "photon/view/SensorRecord.h"
+#include "photon/surface/ConnectionRecord.h"
+#include "photon/surface/RegularisedConnection.h"
+#include "photon/surface/VisiblePointClusters.h"
+#include "photon/view/CameraRecord.h"
 #include "transport/Connection.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
-#include "darts/ResidualRange.h"
+#include "darts/TimeBudget.h"
 
 #include <array>
 
 namespace tungsten::photon {
 
-/// A vertex of a light path that is connected to sensor points.
-struct SendingVertex : transport::PathEnd {
+/// A vertex of a light path that is connected to visible points.
+struct ConnectingVertex : transport::SubpathEnd {
     double time;
     int bounce;           ///< interactions up to and including the vertex
     float meanScattering; ///< above 0: over the directions into which it scatters, or of the intensity
 };
 
-/// How far light from close by is spread about sensor points (SpreadLight.h): `pixels` square roots of the area that
-/// a pixel covers on the surface, `most` (a length) at most.
-struct Spread {
+/// How far light from close by is spread about visible points (RegularisedConnection.h): `pixels` square roots of the
+/// area that a pixel covers on the surface, `most` (a length) at most.
+struct ConnectionBlur {
     float pixels, most;
 
     /// Shrinks from pass to pass as `factor` (of gather radii) does.
-    static Spread of(float gatherRadius, float factor) {
+    static ConnectionBlur of(float gatherRadius, float factor) {
         return {tuning::SpreadPixels * factor, gatherRadius * factor};
     }
 };
 
-/// Each vertex looks for sensor points that its light reaches inside its gate and connects to so many that every
+/// Each vertex looks for visible points that its light reaches inside its gate and connects to so many that every
 /// connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
 /// Such connections have a weak singularity where vertex and point are closer than points are to each other: light from
-/// close by is spread over the surface about the point (SpreadLight.h), a blur that shrinks with gather radii.
+/// close by is spread over the surface about the point (RegularisedConnection.h), a blur that shrinks with gather
+/// radii.
 class SurfaceConnections {
   public:
     /// `sensor` has the pass's gate.
-    SurfaceConnections(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                       const PassInfo& pass, const Spread& spread, bool forwardBoundaries);
+    SurfaceConnections(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecord& record,
+                       const PassInfo& pass, const ConnectionBlur& spread, bool forwardBoundaries);
 
     [[nodiscard]] size_t points() const { return points_.size(); }
     /// False where nothing that leaves a vertex at this time can.
     [[nodiscard]] bool mayArrive(double time, const darts::TimeGate& gate) const {
         return !points_.empty() && time < gate.end;
     }
-    /// Appends what a vertex sends to sensor points. Adds the rays traced to `rays`.
-    void connect(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
-                 std::vector<PointDraw>& draws, std::vector<ReceivedLight>& received, uint64_t& rays) const;
+    /// Appends what a vertex sends to visible points. Adds the rays traced to `rays`.
+    void connect(const ConnectingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
+                 std::vector<VisiblePointSample>& draws, std::vector<ConnectionRecord>& received, uint64_t& rays) const;
     /// About what connect() would bring in all.
-    [[nodiscard]] float expectedLight(const SendingVertex& from, const darts::TimeGate& gate) const;
+    [[nodiscard]] float expectedLight(const ConnectingVertex& from, const darts::TimeGate& gate) const;
     /// About what each connection is to bring; 0: nobody knows, vertices connect a few times each. Needed before
     /// connect().
     void setLightPerConnection(float light) { lightPerConnection_ = light; }
@@ -68,25 +69,25 @@ class SurfaceConnections {
         size_t count = 0;
     };
     /// When flights from the vertex end in time, as lengths; a little wide.
-    [[nodiscard]] Ranges openRanges(const SendingVertex& from, const darts::TimeGate& gate) const;
-    void find(const SendingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
-              std::vector<PointDraw>& draws) const;
-    [[nodiscard]] SpreadLight spreadAt(const PointDraw& draw) const {
-        return spreadLight(-draw.direction * draw.distance, points_[draw.point].hit.ng, spread_[draw.point]);
+    [[nodiscard]] Ranges openRanges(const ConnectingVertex& from, const darts::TimeGate& gate) const;
+    void find(const ConnectingVertex& from, const darts::TimeGate& gate, Sampler& sampler,
+              std::vector<VisiblePointSample>& draws) const;
+    [[nodiscard]] RegularisedConnection spreadAt(const VisiblePointSample& draw) const {
+        return regularisedConnection(-draw.direction * draw.distance, points_[draw.point].hit.ng, spread_[draw.point]);
     }
     /// If it does, in time and not occluded: `light` lacks frame, transmittance and the sensor's weight.
-    void receive(const SendingVertex& from, const darts::TimeGate& gate, const PointDraw& draw, ReceivedLight light,
-                 std::vector<ReceivedLight>& received, uint64_t& rays) const;
+    void receive(const ConnectingVertex& from, const darts::TimeGate& gate, const VisiblePointSample& draw,
+                 ConnectionRecord light, std::vector<ConnectionRecord>& received, uint64_t& rays) const;
 
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     transport::Connector connector_;
-    const std::vector<SensorPoint>& points_;
+    const std::vector<VisiblePoint>& points_;
     double speed_;
     float perKept_ = 0.0f;
     std::vector<float> spread_; ///< of points
     std::optional<float> lightPerConnection_;
-    std::unique_ptr<SensorClusters> clusters_;
+    std::unique_ptr<VisiblePointClusters> clusters_;
 };
 
 /// What each connection is to bring, so that vertices of which so much light is expected connect `wanted` times in all,

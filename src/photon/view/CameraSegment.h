@@ -1,5 +1,5 @@
 #pragma once
-// What a sensor path looks volumes up along.
+// What a camera subpath looks volumes up along.
 
 #include "tungsten/core/Types.h"
 

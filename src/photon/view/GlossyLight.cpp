@@ -19,9 +19,9 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
             bool glossy = false;
             const Ray ray = scene.camera.generateRay({x, y}, Vec2f(0.5f), Vec2f(0.5f));
             // The last surface of a straight path counts.
-            const SurfaceLook look{
-                [&](const SensorState&, const SurfaceInteraction& surface) { glossy = isGlossyOnly(*surface.bsdf); }};
-            followSensorPath(scene, ray, {false, false}, sampler, look);
+            const SurfaceVisitor visitor{
+                [&](const CameraSubpath&, const SurfaceInteraction& surface) { glossy = isGlossyOnly(*surface.bsdf); }};
+            followCameraSubpath(scene, ray, {false, false}, sampler, visitor);
             centres[size_t(y) * size_t(width) + size_t(x)] = glossy;
         }
     });
@@ -38,7 +38,7 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
 GlossyLight::GlossyLight(const Scene& scene, const SceneFacts& facts)
     : scene_(scene), lights_(scene, facts), oversampled_(pixelsNearGlossy(scene)) {}
 
-std::optional<ArrivedLight> GlossyLight::connect(const transport::Sensor& sensor, const SensorState& state,
+std::optional<ArrivedLight> GlossyLight::connect(const transport::TimeSensor& sensor, const CameraSubpath& state,
                                                  const SurfaceInteraction& surface, Sampler& sampler,
                                                  uint64_t& rays) const {
     const auto light = lights_.connect(sensor, state, surface, sampler, rays);
@@ -49,7 +49,7 @@ std::optional<ArrivedLight> GlossyLight::connect(const transport::Sensor& sensor
     return ArrivedLight{light->arrived.radiance * weight, light->arrived.time};
 }
 
-float GlossyLight::emissionWeight(const SensorState& state, const SurfaceInteraction& light) const {
+float GlossyLight::emissionWeight(const CameraSubpath& state, const SurfaceInteraction& light) const {
     if (!(state.glossyPdf > 0.0f)) return 0.0f;
     const int index = light.primitive->emitter;
     const float lightPdf =

@@ -8,7 +8,7 @@ LightConnector::LightConnector(const Scene& scene, const SceneFacts& facts)
     : scene_(scene), lights_(scene, facts.excludedEmitters),
       connector_(scene, facts.forwardBoundaries || facts.everything), bounds_(scene.transport.gate, facts) {}
 
-std::optional<LightConnection> LightConnector::connect(const transport::Sensor& sensor, const SensorState& state,
+std::optional<LightConnection> LightConnector::connect(const transport::TimeSensor& sensor, const CameraSubpath& state,
                                                        const SurfaceInteraction& surface, Sampler& sampler,
                                                        uint64_t& rays) const {
     const auto choice = lights_.sample(sampler.next1D());
@@ -22,7 +22,7 @@ std::optional<LightConnection> LightConnector::connect(const transport::Sensor& 
         emitter.emissionTime + sensor.delays.sample(emitter, sampler) + (settings.cameraUnwarped ? 0.0 : cameraTime);
     if (!bounds_.during(sensor.gate).mayArrive(start, double(direct->distance))) return std::nullopt;
     const transport::Vertex vertex(scene_, surface, state.ray.direction, TransportMode::Radiance, state.region);
-    const auto connection = connector_.connect(vertex, state.throughput, transport::connectionEnd(*direct), rays);
+    const auto connection = connector_.connect(vertex, state.throughput, transport::connectionEndpoint(*direct), rays);
     if (!connection) return std::nullopt;
     if (!transport::BounceLimits(settings).renders(state.interactions + 1 + connection->crossings)) return std::nullopt;
     return LightConnection{&emitter,

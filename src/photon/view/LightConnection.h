@@ -1,10 +1,10 @@
 #pragma once
-// Surface points of sensor paths, connected to points of lights.
+// Surface points of camera subpaths, connected to points of lights.
 
-#include "photon/view/SensorPath.h"
+#include "photon/view/CameraSubpath.h"
 #include "transport/Connection.h"
 #include "transport/GateBounds.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
 #include "tungsten/emitter/Emitter.h"
 #include "tungsten/scene/LightChoice.h"
@@ -29,9 +29,9 @@ class LightConnector {
 
     /// `state` is the path up to the surface. None when nothing arrives, or outside the sensor's gate. Adds the rays
     /// traced to `rays`.
-    [[nodiscard]] std::optional<LightConnection> connect(const transport::Sensor& sensor, const SensorState& state,
-                                                         const SurfaceInteraction& surface, Sampler& sampler,
-                                                         uint64_t& rays) const;
+    [[nodiscard]] std::optional<LightConnection> connect(const transport::TimeSensor& sensor,
+                                                         const CameraSubpath& state, const SurfaceInteraction& surface,
+                                                         Sampler& sampler, uint64_t& rays) const;
     [[nodiscard]] const LightChoice& lights() const { return lights_; }
 
   private:

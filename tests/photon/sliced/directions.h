@@ -14,7 +14,7 @@ Vector<Real> unit(double x, double y, double z) {
     return {Real(d.x), Real(d.y), Real(d.z)};
 }
 template <typename Real>
-SightLine<Real> alongZ(bool warped) {
+CameraRay<Real> alongZ(bool warped) {
     return {Vector<Real>(0), Vector<Real>(0, 0, 1), 0, std::numeric_limits<Real>::infinity(), warped};
 }
 template <typename Real>

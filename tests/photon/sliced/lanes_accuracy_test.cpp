@@ -23,7 +23,7 @@ float laneOf(const Batch& batch) {
 
 /// A record in isotropic grey fog and a register of equal rays.
 struct LaneMeeting {
-    CollapsedFlights flights{};
+    SliceRecord flights{};
     LaneRays rays;
     LaneRecord record{};
     float sigma;
@@ -57,7 +57,7 @@ void compare(const MeetingFlights<float, K>& met, const LaneMeeting& at, LaneErr
     const auto exact = met.point(determinant);
     Exact sum = 0;
     for (const Exact& length : exact) sum += length;
-    Kernel(at.flights).meet(at.record, at.rays, [&](int, const LaneReach& reach) {
+    Kernel(at.flights).intersect(at.record, at.rays, [&](int, const LaneHit& reach) {
         if (!xsimd::any(reach.met)) return;
         const Exact scale = met.size / determinant;
         for (size_t k = 0; k < K; ++k) errors.lengths.add(double(laneOf(reach.lengths[k])), exact[k], scale);
@@ -104,7 +104,7 @@ void compareChord(const MeetingFlights<float, K>& met, const LaneMeeting& at, co
     const Exact rate = at.sigma * (q + 1), length = end - start;
     const Exact mean = abs(rate * length) < 1e-20 ? length : Exact(-expm1(-rate * length) / rate);
     const Exact value = exp(-at.sigma * (p + (q + 1) * start)) * mean / (4 * ExactPi * determinant);
-    Kernel(at.flights).meet(at.record, at.rays, [&](int, const LaneReach& reach) {
+    Kernel(at.flights).intersect(at.record, at.rays, [&](int, const LaneHit& reach) {
         const Exact loss = met.size / (determinant * length);
         integral.add(double(laneOf(reach.weight(at.sigma, Batch(0.0f)))), value, value * (1 + loss) / determinant);
     });
@@ -143,11 +143,11 @@ TEST(LanesAccuracy, SharesOfVolumes) {
         const Exact ball = sigma * sigma * exp(-sigma * (exact[0] + exact[1])) * exact[2] * exact[2] * perLength,
                     volume = Exact(0.3f) * determinant;
         float alone = 0.0f;
-        VolumeSliceLanes(at.flights).meet(at.record, at.rays, [&](int, const LaneReach& reach) {
+        VolumeSliceLanes(at.flights).intersect(at.record, at.rays, [&](int, const LaneHit& reach) {
             alone = laneOf(reach.factor);
         });
         at.flights.shared = true;
-        VolumeSliceLanes(at.flights).meet(at.record, at.rays, [&](int, const LaneReach& reach) {
+        VolumeSliceLanes(at.flights).intersect(at.record, at.rays, [&](int, const LaneHit& reach) {
             if (!xsimd::any(reach.met)) return;
             share.add(double(laneOf(reach.factor)) / double(alone), volume / (volume + ball),
                       (1 + met.size / exact[2]) / determinant);
@@ -173,7 +173,7 @@ TEST(LanesAccuracy, Balls) {
         const Exact S(length), excess = (S - from) / S, half = sqrt(abs(S * S - h * h)), isotropic = 4 * ExactPi;
         // Across, rays that are far off know their distance badly.
         const Exact size = sqrt(squared), conditioned = (1 + size / h) / excess;
-        BallSliceLanes().meet(at.record, at.rays, [&](int, const LaneReach& reach) {
+        BallSliceLanes().intersect(at.record, at.rays, [&](int, const LaneHit& reach) {
             const float along = laneOf(reach.alongRay);
             const Exact t = one.warped     ? Exact((S * S - squared) / (2 * (S - foot)))
                             : along > foot ? Exact(foot + half)
@@ -186,7 +186,7 @@ TEST(LanesAccuracy, Balls) {
         });
         const float late = length * float(1.0 + logUniform(s, 1e-2, 1.0));
         const LaneMeeting gated(one, length, late - length);
-        BallGateLanes().meet(gated.record, gated.rays, [&](int, const LaneReach& reach) {
+        BallGateLanes().intersect(gated.record, gated.rays, [&](int, const LaneHit& reach) {
             const Exact along(laneOf(reach.alongRay)), reached = sqrt(h * h + (along - foot) * (along - foot));
             // Drawn with u = 0.25 + 2^-17; one interval or two.
             const auto turn = [&](const Exact& r) { return Exact((r * r - squared) / (2 * (r - foot))); };

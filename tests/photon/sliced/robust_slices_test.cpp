@@ -72,10 +72,10 @@ TEST(ChordLanes, ReachHasAWeightForEveryRandomNumber) {
     chord.start = Batch::load_aligned(starts);
     chord.end = Batch::load_aligned(ends);
     for (const float u : {0.0f, 0x1p-24f, 0.5f, 1.0f - 0x1p-24f}) {
-        const LaneReach reach = chord.reach(record, chord.holds(), Batch(1.0f), Batch(u));
+        const LaneHit hit = chord.hit(record, chord.holds(), Batch(1.0f), Batch(u));
         alignas(64) float factor[Lanes], along[Lanes];
-        reach.factor.store_aligned(factor);
-        reach.alongRay.store_aligned(along);
+        hit.factor.store_aligned(factor);
+        hit.alongRay.store_aligned(along);
         EXPECT_TRUE(std::isfinite(factor[0])) << u;
         EXPECT_GE(factor[0], 0.0f) << u;
         EXPECT_GE(along[0], 0.0f) << u;

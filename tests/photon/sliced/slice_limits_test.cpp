@@ -4,10 +4,10 @@
 #include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
-#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/balls/VolumeBallMis.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
-#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/primitives/sliced/RecordBudget.h"
 #include "photon/primitives/sliced/SliceKind.h"
 #include "photon/sliced/box_of_fog.h"
 
@@ -149,13 +149,13 @@ struct Skipped {
     const char* name;
     bool warped;
     double factor;
-    std::function<double(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least)> weight;
+    std::function<double(const std::array<Vec3d, 4>& w, const CameraRay<double>& sight, double least)> weight;
 };
 class SkippedLight : public testing::TestWithParam<Skipped> {};
 
 TEST_P(SkippedLight, FallsWithTheLeastDeterminant) {
     const Skipped& c = GetParam();
-    const SightLine<double> sight{{1.0, 0.0, -1.0}, {0.0, 0.0, 1.0}, 0.0, 10.0, c.warped};
+    const CameraRay<double> sight{{1.0, 0.0, -1.0}, {0.0, 0.0, 1.0}, 0.0, 10.0, c.warped};
     std::mt19937 engine(7);
     std::uniform_real_distribution<float> uniform;
     double all = 0.0;
@@ -182,15 +182,15 @@ TEST_P(SkippedLight, FallsWithTheLeastDeterminant) {
 }
 
 constexpr Coefficients<double> LimitsFog{0.5, 0.6};
-double planeWeight(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least) {
+double planeWeight(const std::array<Vec3d, 4>& w, const CameraRay<double>& sight, double least) {
     const auto met = crossPlane<double>(Vec3d(0.0), {w[0], w[1]}, sight, least);
     return met ? met->weight(LimitsFog) : 0.0;
 }
-double volumeWeight(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least) {
+double volumeWeight(const std::array<Vec3d, 4>& w, const CameraRay<double>& sight, double least) {
     const auto met = sliceVolume<double>(Vec3d(0.0), {w[0], w[1], w[2]}, sight, 3.0, least);
     return met ? met->weight(LimitsFog) : 0.0;
 }
-double hypervolumeWeight(const std::array<Vec3d, 4>& w, const SightLine<double>& sight, double least) {
+double hypervolumeWeight(const std::array<Vec3d, 4>& w, const CameraRay<double>& sight, double least) {
     const auto chord = sliceHypervolume<double>(Vec3d(0.0), w, sight, 3.0, least);
     return chord ? chordWeight(*chord, LimitsFog) : 0.0;
 }
@@ -222,15 +222,15 @@ TEST(ClosedBox, KeepsItsLightOverThousandsOfBounces) {
 }
 
 /// A ball on a light brings what a ball does that the light's whole power collides in.
-TEST(RecordCounts, CountsTheLightOfLights) {
+TEST(RecordBudget, CountsTheLightOfLights) {
     const test::SceneFile file(test::configurationA(3, false));
     const auto loaded = loadScene(file.path(), {});
     const Scene& scene = *loaded.scene;
-    CollapsedFlights scattered{}, light{};
+    SliceRecord scattered{}, light{};
     scattered.emitter = -1;
     scattered.power = emitterPower(scene.emitters[0]);
     light.power = Rgb(1.0f);
-    RecordCounts counts(scene, scene.transport.gate);
+    RecordBudget counts(scene, scene.transport.gate);
     counts.measure(std::array{scattered, light}, {});
     EXPECT_NEAR(counts.expected(light), counts.expected(scattered), 1e-5);
     EXPECT_NEAR(counts.expected(scattered), 1.0, 1e-5);

@@ -1,8 +1,8 @@
 // Slices drawn into the image against slices gathered ray by ray; edges where their linear systems degenerate.
 
 #include "photon/Tuning.h"
-#include "photon/primitives/sliced/FrameShares.h"
-#include "photon/primitives/sliced/RecordCounts.h"
+#include "photon/primitives/sliced/FrameRoulette.h"
+#include "photon/primitives/sliced/RecordBudget.h"
 #include "photon/primitives/sliced/SliceGather.h"
 #include "photon/primitives/sliced/SliceSplat.h"
 
@@ -51,17 +51,17 @@ Scene fogAtGate(const SplatCase& c) {
     scene.camera.toWorld = {frame.s, frame.t, frame.n, Vec3f(1.0f, 2.0f, 3.0f)};
     return scene;
 }
-transport::Sensor sensorOf(const Scene& scene) {
+transport::TimeSensor sensorOf(const Scene& scene) {
     if (!scene.transport.gate.delta) return scene.transport.gate;
     const auto speed = double(scene.cameraRegion.speed);
     return TimeGate{false, false, scene.transport.gate.start - 0.05 / speed, 0.1 / speed, 1};
 }
 
-std::vector<CollapsedFlights> randomRecords(const Scene& scene, int count) {
+std::vector<SliceRecord> randomRecords(const Scene& scene, int count) {
     Sampler sampler(3, RandomStream::Test, 0, 0);
-    std::vector<CollapsedFlights> records;
+    std::vector<SliceRecord> records;
     for (int i = 0; i < count; ++i) {
-        CollapsedFlights r{};
+        SliceRecord r{};
         r.shape = FlightShape(i % 5);
         r.time = double(2.0f * sampler.next1D() / scene.cameraRegion.speed);
         r.base = scene.camera.position() + warp::squareToSphere(sampler.next2D()) * (2.5f * sampler.next1D());
@@ -84,13 +84,13 @@ std::vector<CollapsedFlights> randomRecords(const Scene& scene, int count) {
     return records;
 }
 
-SensorRecord randomView(const Scene& scene) {
+CameraRecord randomView(const Scene& scene) {
     Sampler sampler(4, RandomStream::Test, 0, 0);
-    SensorRecord record;
+    CameraRecord record;
     record.width = scene.camera.resolution.x;
     record.height = scene.camera.resolution.y;
     record.origin = scene.camera.position();
-    record.pieces.resize(2);
+    record.mediumSegments.resize(2);
     for (int y = 0; y < record.height; ++y)
         for (int x = 0; x < record.width; ++x) {
             const Ray ray = scene.camera.generateRay({x, y}, sampler.next2D(), sampler.next2D());
@@ -99,7 +99,7 @@ SensorRecord randomView(const Scene& scene) {
             record.z.push_back(ray.direction.z);
             if (!scene.camera.hasSinglePosition()) record.origins.push_back(ray.origin);
             float start = 0.0f;
-            for (StraightPiece& piece : record.pieces) {
+            for (MediumSegment& piece : record.mediumSegments) {
                 const float end = start + sampler.next1D();
                 piece.start.push_back(start);
                 piece.end.push_back(sampler.next1D() < 0.2f ? 0.0f : end);
@@ -113,13 +113,14 @@ SensorRecord randomView(const Scene& scene) {
 }
 
 /// Every piece of every ray by SliceGather; every frame.
-std::vector<FrameSums> gatheredByFrame(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                                       const std::vector<CollapsedFlights>& records, float radius) {
+std::vector<FrameSums> gatheredByFrame(const Scene& scene, const transport::TimeSensor& sensor,
+                                       const CameraRecord& record, const std::vector<SliceRecord>& records,
+                                       float radius) {
     const SliceGather gather(scene, sensor, records, radius);
     const auto frames = size_t(sensor.gate.frames);
     std::vector<FrameSums> image(record.x.size(), FrameSums(frames, Vec3d(0.0)));
     for (size_t pixel = 0; pixel < image.size(); ++pixel)
-        for (const StraightPiece& piece : record.pieces) {
+        for (const MediumSegment& piece : record.mediumSegments) {
             if (!(piece.end[pixel] > piece.start[pixel])) continue;
             const Vec3f direction(record.x[pixel], record.y[pixel], record.z[pixel]);
             const Vec3f origin = record.origins.empty() ? record.origin : record.origins[pixel];
@@ -137,11 +138,11 @@ std::vector<FrameSums> gatheredByFrame(const Scene& scene, const transport::Sens
 }
 
 /// With the records that each frame draws.
-std::vector<FrameSums> gathered(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                                const std::vector<CollapsedFlights>& records, float radius) {
+std::vector<FrameSums> gathered(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecord& record,
+                                const std::vector<SliceRecord>& records, float radius) {
     auto image = gatheredByFrame(scene, sensor, record, records, radius);
     if (sensor.gate.frames == 1) return image;
-    const FrameShares shares(scene, sensor.gate, records);
+    const FrameRoulette shares(scene, sensor.gate, records);
     for (int frame = 0; frame < sensor.gate.frames; ++frame) {
         auto drawn = records;
         for (size_t i = 0; i < records.size(); ++i)
@@ -157,8 +158,8 @@ class SliceSplat : public testing::TestWithParam<SplatCase> {};
 TEST_P(SliceSplat, BringsWhatGathersBring) {
     const Scene scene = fogAtGate(GetParam());
     const auto records = randomRecords(scene, 1500);
-    const SensorRecord view = randomView(scene);
-    const transport::Sensor sensor = sensorOf(scene);
+    const CameraRecord view = randomView(scene);
+    const transport::TimeSensor sensor = sensorOf(scene);
     constexpr float Radius = 0.05f;
     const auto expected = gathered(scene, sensor, view, records, Radius);
     Film film(view.width, view.height, sensor.gate.frames);
@@ -197,10 +198,10 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 /// Alike records, the older ones much darker: drawn at random, and right on average.
-TEST(FrameShares, MakeUpForWhatTheyLeaveOut) {
+TEST(FrameRoulette, MakeUpForWhatTheyLeaveOut) {
     const Scene scene = fogAtGate({"", true, false, 8});
     constexpr size_t Count = 20000;
-    std::vector<CollapsedFlights> records(Count);
+    std::vector<SliceRecord> records(Count);
     Sampler sampler(5, RandomStream::Test, 0, 0);
     for (size_t i = 0; i < Count; ++i) {
         records[i].shape = FlightShape::Volume;
@@ -208,7 +209,7 @@ TEST(FrameShares, MakeUpForWhatTheyLeaveOut) {
         records[i].power = Rgb(1.0f);
         records[i].random = {uint16_t(sampler.nextBits()), uint16_t(sampler.nextBits())};
     }
-    const FrameShares shares(scene, scene.transport.gate, records);
+    const FrameRoulette shares(scene, scene.transport.gate, records);
     for (size_t frame = 0; frame < 8; ++frame)
         for (const size_t first : {size_t(0), size_t(1)}) {
             double sum = 0.0, squares = 0.0, drawn = 0.0;
@@ -230,14 +231,14 @@ TEST(FrameShares, MakeUpForWhatTheyLeaveOut) {
 
 /// By guesses as far apart as can be, of what is left of a very long way in dense fog: any that can arrive is drawn now
 /// and then, and right on average.
-TEST(FrameShares, LeaveNothingOut) {
+TEST(FrameRoulette, LeaveNothingOut) {
     Scene scene = fogAtGate({"", false, false, 8});
     for (const float speed : {1.0f, 1000.0f}) { // ways of a float's range of optical depths, and far beyond
         for (Medium& medium : scene.media) medium.speedOfLight = speed;
         constexpr size_t Count = 20000;
-        std::vector<CollapsedFlights> records(Count);
+        std::vector<SliceRecord> records(Count);
         Sampler sampler(8, RandomStream::Test, 0, 0);
-        for (CollapsedFlights& record : records) {
+        for (SliceRecord& record : records) {
             record.shape = FlightShape::Volume;
             record.emitter = -1;
             record.time = -200.0 * double(sampler.next1D());
@@ -245,7 +246,7 @@ TEST(FrameShares, LeaveNothingOut) {
             record.power = Rgb(1.0f);
             record.random = {uint16_t(sampler.nextBits()), uint16_t(sampler.nextBits())};
         }
-        const FrameShares shares(scene, scene.transport.gate, records);
+        const FrameRoulette shares(scene, scene.transport.gate, records);
         for (size_t frame = 0; frame < 8; ++frame) {
             double sum = 0.0, squares = 0.0, most = 0.0;
             for (size_t i = 0; i < Count; ++i) {
@@ -261,17 +262,17 @@ TEST(FrameShares, LeaveNothingOut) {
 }
 
 /// As many records as their light calls for, also where all of it is below any float.
-TEST(RecordCounts, TellFarRecordsApart) {
+TEST(RecordBudget, TellFarRecordsApart) {
     Scene scene = fogAtGate({"", false, false, 1});
     for (Medium& medium : scene.media) medium.speedOfLight = 1.0f;
-    std::vector<CollapsedFlights> records(2);
-    for (CollapsedFlights& record : records) {
+    std::vector<SliceRecord> records(2);
+    for (SliceRecord& record : records) {
         record.shape = FlightShape::Volume;
         record.emitter = -1;
         record.power = Rgb(1.0f);
         record.time = -1e4;
     }
-    RecordCounts counts(scene, scene.transport.gate);
+    RecordBudget counts(scene, scene.transport.gate);
     records[1].power = Rgb(3.0f);
     counts.measure(records, {});
     EXPECT_NEAR(counts.expected(records[0]), 0.5f, 1e-4f);
@@ -293,12 +294,12 @@ TEST(SliceGather, EndsFirstFlightsAtWalls) {
         "integrator": {"type": "progressive_transient_photon_map", "start_time": 0, "transient_time_width": 6, "frame_num": 1}})");
     const LoadedScene loaded = loadScene(file.path(), {});
     const Scene& scene = *loaded.scene;
-    const transport::Sensor sensor(scene.transport.gate);
+    const transport::TimeSensor sensor(scene.transport.gate);
     for (const FlightShape shape : {FlightShape::Plane, FlightShape::Volume, FlightShape::Hypervolume})
         for (const float reach : {Infinity, 0.0f}) {
             Sampler sampler(6, RandomStream::Test, 0, 0);
-            std::vector<CollapsedFlights> records(2000);
-            for (CollapsedFlights& r : records) {
+            std::vector<SliceRecord> records(2000);
+            for (SliceRecord& r : records) {
                 r.shape = shape;
                 r.emitter = -1;
                 r.base = Vec3f(0.0f, 0.0f, 1.5f) + warp::squareToSphere(sampler.next2D());
@@ -321,11 +322,11 @@ TEST(SliceEdges, EverythingStaysFinite) {
     for (const bool unwarped : {false, true})
         for (const bool delta : {false, true}) {
             const Scene scene = fogAtGate({"", unwarped, false, delta ? 0 : 4});
-            const transport::Sensor sensor = sensorOf(scene);
+            const transport::TimeSensor sensor = sensorOf(scene);
             auto records = randomRecords(scene, 3000);
             const Vec3f eye = scene.camera.position(), axis = scene.camera.forward();
             for (size_t i = 0; i < records.size(); ++i) {
-                CollapsedFlights& r = records[i];
+                SliceRecord& r = records[i];
                 if (i % 6 == 0) r.directions[1] = r.directions[0];
                 if (i % 6 == 1) r.directions = {axis, axis, axis, axis};
                 if (i % 6 == 2) r.directions = {-axis, -axis, r.directions[2], -axis};

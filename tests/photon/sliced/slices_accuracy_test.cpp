@@ -3,7 +3,7 @@
 
 #include "photon/sliced/exact_slices.h"
 
-#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/balls/VolumeBallMis.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
 #include "photon/primitives/sliced/ShortFlights.h"
@@ -16,7 +16,7 @@ using test::LargestError;
 using test::logUniform;
 
 template <size_t K>
-SightLine<double> sightOf(const MeetingFlights<double, K>& met) {
+CameraRay<double> sightOf(const MeetingFlights<double, K>& met) {
     return {met.toOrigin, met.ray, 0.0, std::numeric_limits<double>::infinity(), met.warped};
 }
 template <size_t K>
@@ -130,7 +130,7 @@ TEST(SlicesAccuracy, ChordsOfVolumesAndHypervolumes) {
 struct ExactBall {
     Exact foot = 0, fromRay, fromOrigin;
 
-    ExactBall(const Vec3d& centre, const SightLine<double>& sight) {
+    ExactBall(const Vec3d& centre, const CameraRay<double>& sight) {
         const Vec3d offset = centre - sight.origin;
         Exact squared = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -177,7 +177,7 @@ TEST(SlicesAccuracy, Balls) {
         const auto slice = sliceBall<double>(centre, sight, length);
         const Exact S(length), D = exact.fromOrigin, h = exact.fromRay, excess = (S - from) / S;
         for (int r = 0; r < slice.count; ++r) {
-            const auto& reach = slice.reaches[size_t(r)];
+            const auto& reach = slice.hits[size_t(r)];
             const Exact half = exact.halfChord(S);
             const Exact t = one.warped                    ? exact.turn(S)
                             : reach.alongRay > exact.foot ? Exact(exact.foot + half)
@@ -265,7 +265,7 @@ TEST(SlicesAccuracy, SharesAndShortFlights) {
         const Exact perLength = met.warped ? Exact(squared / 2) : Exact(abs(along));
         const Exact exact = Exact(0.3) * determinant / (Exact(0.02) * Exact(met.size) * met.size * perLength);
         ratio.add(path.ratio(met.ray, met.warped), exact, exact / determinant + exact / perLength);
-        CollapsedFlights flights{};
+        SliceRecord flights{};
         flights.shortFlights = true;
         flights.random = {uint16_t(i * 41), uint16_t(i * 977)};
         const auto drawn = flightEnds(flights, fog);

@@ -3,7 +3,7 @@
 #include "photon/sliced/directions.h"
 
 #include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/balls/VolumeBallMis.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
 #include "photon/primitives/volumes/VolumeSlice.h"
@@ -33,7 +33,7 @@ struct RandomGeometry {
         return w;
     }
     /// Its direction is near the base's, or primitives are rarely met.
-    SightLine<double> sight(const Vec3d& base, bool warped) {
+    CameraRay<double> sight(const Vec3d& base, bool warped) {
         const Vec3d origin(next(-1, 1), next(-1, 1), next(-1, 1));
         const Vec3d towards = (base + direction() * 0.5 - origin).normalized();
         return {origin, towards, 0, std::numeric_limits<double>::infinity(), warped};
@@ -136,8 +136,7 @@ TEST(Balls, GatesIntegrateSlices) {
         constexpr int Slices = 200000;
         for (int i = 0; i < Slices; ++i) {
             const auto slice = sliceBall<double>(Centre, sight, gate.least + gate.width() * (i + 0.5) / Slices);
-            for (int r = 0; r < slice.count; ++r)
-                sliced += slice.reaches[size_t(r)].weight(Fog) * gate.width() / Slices;
+            for (int r = 0; r < slice.count; ++r) sliced += slice.hits[size_t(r)].weight(Fog) * gate.width() / Slices;
         }
         EXPECT_NEAR(sliced, exact, 0.05 * exact);
     }
@@ -152,7 +151,7 @@ TEST(Balls, JacobiansAreDerivatives) {
         const double residual = random.next(1, 6);
         const auto slice = sliceBall<double>(Centre, sight, residual);
         for (int i = 0; i < slice.count; ++i) {
-            const auto& reach = slice.reaches[size_t(i)];
+            const auto& reach = slice.hits[size_t(i)];
             const auto lengthAt = [&](double t) { return (sight.at(t) - Centre).length() + sight.warp() * t; };
             const double step = 1e-5,
                          slope = (lengthAt(reach.alongRay + step) - lengthAt(reach.alongRay - step)) / (2 * step);

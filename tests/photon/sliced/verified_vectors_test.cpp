@@ -3,7 +3,7 @@
 #include "photon/sliced/directions.h"
 
 #include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/balls/VolumeOrBall.h"
+#include "photon/primitives/balls/VolumeBallMis.h"
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
 #include "photon/primitives/volumes/VolumeSlice.h"
@@ -42,7 +42,7 @@ TYPED_TEST(VerifiedVectors, VolumeSlices) {
         this->expectNear(slice->jacobian, expected[warped][4]);
         this->expectNear(volumeJacobian(w, sight.direction, warped), expected[warped][4]);
         // Beyond the ray's end, before its start.
-        SightLine<Real> part = sight;
+        CameraRay<Real> part = sight;
         part.end = Real(1.9);
         EXPECT_FALSE(sliceVolume<Real>(Base<Real>, w, part, warped ? 5 : 3));
         part = sight;
@@ -75,7 +75,7 @@ TYPED_TEST(VerifiedVectors, BallsAndTheirShareWithVolumes) {
         const auto balls = sliceBall<Real>(Base<Real> + w[0] * t[0] + w[1] * t[1], sight, residual);
         bool found = false;
         for (int i = 0; i < balls.count; ++i) {
-            const BallReach<Real>& reach = balls.reaches[size_t(i)];
+            const BallHit<Real>& reach = balls.hits[size_t(i)];
             if (std::abs(double(reach.alongRay - slice->alongRay)) > 1e-4) continue;
             found = true;
             this->expectNear(reach.jacobian, jacobians[warped]);
@@ -87,19 +87,19 @@ TYPED_TEST(VerifiedVectors, BallsAndTheirShareWithVolumes) {
         const SharedPath<Real> path{w, t[2], Real(0.25 / M_PI), pdfs};
         const Real ratio = path.ratio(sight.direction, warped);
         EXPECT_NEAR(double(ratio) / ratios[warped], 1.0, 2.0 * Tolerance<Real>);
-        this->expectNear(volumeShare(ratio) + ballShare(ratio), 1.0);
+        this->expectNear(volumeWeight(ratio) + ballWeight(ratio), 1.0);
     }
     const Vector<Real> centre(Real(0.7), Real(-0.4), Real(1.5));
     const auto ellipsoid = sliceBall<Real>(centre, alongZ<Real>(true), Real(3.1));
     ASSERT_EQ(ellipsoid.count, 1);
-    this->expectNear(ellipsoid.reaches[0].alongRay, 2.096875);
-    this->expectNear(ellipsoid.reaches[0].length, 1.003125);
-    this->expectNear(ellipsoid.reaches[0].jacobian, 1.605);
+    this->expectNear(ellipsoid.hits[0].alongRay, 2.096875);
+    this->expectNear(ellipsoid.hits[0].length, 1.003125);
+    this->expectNear(ellipsoid.hits[0].jacobian, 1.605);
     const auto sphere = sliceBall<Real>(centre, alongZ<Real>(false), Real(1.2));
     ASSERT_EQ(sphere.count, 2);
-    this->expectNear(sphere.reaches[0].alongRay, 0.6111805583);
-    this->expectNear(sphere.reaches[1].alongRay, 2.3888194417);
-    for (const auto& reach : sphere.reaches) this->expectNear(reach.jacobian, 1.0665833301);
+    this->expectNear(sphere.hits[0].alongRay, 0.6111805583);
+    this->expectNear(sphere.hits[1].alongRay, 2.3888194417);
+    for (const auto& reach : sphere.hits) this->expectNear(reach.jacobian, 1.0665833301);
 }
 
 TYPED_TEST(VerifiedVectors, Plane) {

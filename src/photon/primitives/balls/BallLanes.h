@@ -16,17 +16,17 @@ inline Batch leavingBall(const LaneRecord& record, const Lanes3& last) {
 }
 
 /// What a ball counts of a path that volumes make too, (16): `scattered` at its centre into the last flight.
-inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const Lanes3& last, const Batch& length,
-                       const Batch& scattered) {
+inline Batch ballWeight(const LaneRecord& record, const LaneRays& rays, const Lanes3& last, const Batch& length,
+                        const Batch& scattered) {
     const auto& w = record.flights->directions;
     const Batch volume = scattered * volumeJacobian(Lanes3(w[0]), Lanes3(w[1]), last, rays.direction, record.warped);
     const Batch ball = record.pdfs * length * length * lengthPerLength(last, rays.direction, record.warped);
     return shareOf(ball, volume);
 }
-/// The same inside a gate.
-inline Batch ballShare(const LaneRecord& record, const LaneRays& rays, const BallGateView& lit,
-                       const SharedPathLanes& path, const Batch& scattered) {
-    if (!record.weighsPlaces()) return ballShare(record, rays, path.last, path.t3, scattered);
+/// The ball's weight inside a gate.
+inline Batch ballWeight(const LaneRecord& record, const LaneRays& rays, const BallGateView& lit,
+                        const SharedPathLanes& path, const Batch& scattered) {
+    if (!record.weighsPlaces()) return ballWeight(record, rays, path.last, path.t3, scattered);
     const float before = record.flights->lengths[0] + record.flights->lengths[1];
     const Batch soon = record.times.start(0) - rays.lag + before, late = record.times.start(1) - rays.lag + before;
     return ballShareInGate(lit, Batch(record.pdfs), scattered * placedByVolume(record, rays, path, soon, late));
@@ -37,7 +37,7 @@ class BallSliceLanes {
   public:
     /// emit(frame, reach)
     template <typename Emit>
-    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+    void intersect(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         const BallViewLanes view(rays);
         const FrameRange range = view.frames(record, rays);
         for (int frame = range.first; frame <= range.last; ++frame) {
@@ -46,7 +46,7 @@ class BallSliceLanes {
             const auto add = [&](const Batch& length, const Batch& along, const Batch& jacobian) {
                 const LaneMask met = rays.seen && jacobian > 0.0f && along >= rays.start && along < rays.end;
                 if (xsimd::any(met))
-                    emit(frame, LaneReach{met, along, length + along, factor(record, rays, length, along, jacobian)});
+                    emit(frame, LaneHit{met, along, length + along, factor(record, rays, length, along, jacobian)});
             };
             if (record.warped) {
                 const Batch beyond = xsimd::max(s - view.foot, Batch(1e-30f)), h = view.distanceFromRay;
@@ -68,7 +68,7 @@ class BallSliceLanes {
         const Lanes3 last = (rays.toOrigin + c * along) * (1.0f / length);
         const Batch first = leavingBall(record, last);
         const Batch weight = first * record.towardsCamera(last, rays) / jacobian;
-        return record.flights->shared ? weight * ballShare(record, rays, last, length, first) : weight;
+        return record.flights->shared ? weight * ballWeight(record, rays, last, length, first) : weight;
     }
 };
 
@@ -77,7 +77,7 @@ class BallGateLanes {
   public:
     /// emit(frame, reach)
     template <typename Emit>
-    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+    void intersect(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         const BallViewLanes view(rays);
         const FrameRange range = view.frames(record, rays);
         for (int frame = range.first; frame <= range.last; ++frame) {
@@ -107,9 +107,9 @@ class BallGateLanes {
         if (record.flights->shared) {
             const auto& before = record.flights->lengths;
             const SharedPathLanes path{last, Batch(before[0]), Batch(before[1]), length, along};
-            factor *= ballShare(record, rays, lit, path, scattered);
+            factor *= ballWeight(record, rays, lit, path, scattered);
         }
-        emit(frame, LaneReach{met && length >= record.flights->reach, along, length + along, factor});
+        emit(frame, LaneHit{met && length >= record.flights->reach, along, length + along, factor});
     }
 };
 

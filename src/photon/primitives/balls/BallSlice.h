@@ -8,7 +8,7 @@ namespace tungsten::photon {
 
 /// The last flight, from a ball's centre to the camera ray.
 template <typename Real>
-struct BallReach {
+struct BallHit {
     Real length, alongRay;
     Real jacobian; ///< of a slice: t^2 |w . c + warp|
 
@@ -26,7 +26,7 @@ struct BallView {
     Real distanceFromRay; ///< of the centre
     Real distanceFromOrigin;
 
-    BallView(const Vector<Real>& centre, const SightLine<Real>& sight)
+    BallView(const Vector<Real>& centre, const CameraRay<Real>& sight)
         : offset(centre - sight.origin), toFoot(offset.dot(sight.direction)),
           distanceFromRay(offset.cross(sight.direction).length()), distanceFromOrigin(offset.length()) {}
 
@@ -53,17 +53,17 @@ struct BallView {
 /// At most two reaches.
 template <typename Real>
 struct BallSlice {
-    std::array<BallReach<Real>, 2> reaches{};
+    std::array<BallHit<Real>, 2> hits{};
     int count = 0;
 };
 
 /// `residual` as for volumes.
 template <typename Real>
-BallSlice<Real> sliceBall(const Vector<Real>& centre, const SightLine<Real>& sight, Real residual) {
+BallSlice<Real> sliceBall(const Vector<Real>& centre, const CameraRay<Real>& sight, Real residual) {
     const BallView<Real> view(centre, sight);
     BallSlice<Real> slice;
     const auto add = [&](Real length, Real t, Real jacobian) {
-        if (jacobian > 0 && sight.holds(t)) slice.reaches[size_t(slice.count++)] = {length, t, jacobian};
+        if (jacobian > 0 && sight.holds(t)) slice.hits[size_t(slice.count++)] = {length, t, jacobian};
     };
     if (sight.warped) {
         const Real beyond = view.beyondFoot(residual), h = view.distanceFromRay;
@@ -86,7 +86,7 @@ struct BallGate {
 
     [[nodiscard]] Real angles() const { return angle[0] + angle[1]; }
     /// Equiangular: density along the ray distanceFromRay / (angles() t^2), t from the centre. u in [0, 1).
-    [[nodiscard]] BallReach<Real> sample(Real u) const {
+    [[nodiscard]] BallHit<Real> sample(Real u) const {
         Real turned = u * angles();
         const size_t chosen = turned < angle[0] ? 0 : 1;
         if (chosen == 1) turned -= angle[0];
@@ -95,7 +95,7 @@ struct BallGate {
         return {std::hypot(h, ahead), view.toFoot + ahead, 0};
     }
     /// (13) without power, both phase functions and the gate's width, at a sample: sigma_s E T angles / h.
-    [[nodiscard]] Real weight(const BallReach<Real>& reach, const Coefficients<Real>& medium, Real before = 0,
+    [[nodiscard]] Real weight(const BallHit<Real>& reach, const Coefficients<Real>& medium, Real before = 0,
                               bool longFlights = true) const {
         return medium.sigmaS * angles() / view.distanceFromRay *
                std::exp(-medium.sigmaT * ((longFlights ? reach.length : 0) + reach.alongRay - before));
@@ -103,7 +103,7 @@ struct BallGate {
 };
 
 template <typename Real>
-BallGate<Real> gateBall(const Vector<Real>& centre, const SightLine<Real>& sight, const ResidualGate<Real>& gate) {
+BallGate<Real> gateBall(const Vector<Real>& centre, const CameraRay<Real>& sight, const ResidualGate<Real>& gate) {
     BallGate<Real> lit{BallView<Real>(centre, sight)};
     const BallView<Real>& view = lit.view;
     const Real h = view.distanceFromRay;

@@ -12,7 +12,7 @@ namespace {
 struct BeamQuery {
     embree::Context context;
     const Scene* scene;
-    const transport::Sensor* sensor;
+    const transport::TimeSensor* sensor;
     const PhotonBeam* beams;
     const EmbreeBeams::Piece* pieces;
     const CameraSegment* segment;
@@ -72,7 +72,7 @@ void evaluate(BeamQuery& query, uint32_t index) {
 
 } // namespace
 
-BeamGather::BeamGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<PhotonBeam>& beams,
+BeamGather::BeamGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<PhotonBeam>& beams,
                        const Radii& radius, bool fewRays)
     : scene_(scene), sensor_(sensor), beams_(beams), radii_(radius), structure_(beams, radius, fewRays) {}
 

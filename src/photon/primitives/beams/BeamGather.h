@@ -51,7 +51,7 @@ class BeamGather {
   public:
     /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
     /// `fewRays`: few segments will be asked for.
-    BeamGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<PhotonBeam>& beams,
+    BeamGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<PhotonBeam>& beams,
                const Radii& radius, bool fewRays = false);
 
     /// Adds the sum over the beams near the segment of power sigma_s f_p T(s + t_c) / (2 radius sin), weighed by the
@@ -60,7 +60,7 @@ class BeamGather {
 
   private:
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     const std::vector<PhotonBeam>& beams_;
     Radii radii_;
     EmbreeBeams structure_;

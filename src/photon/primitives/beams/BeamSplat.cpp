@@ -40,7 +40,7 @@ struct Ribbon {
 
 class BeamSplatter {
   public:
-    BeamSplatter(const Scene& scene, const transport::Sensor& sensor, double scale, Film& film)
+    BeamSplatter(const Scene& scene, const transport::TimeSensor& sensor, double scale, Film& film)
         : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), footprint_(scene.camera),
           scale_(float(scale)), film_(film), speed_(double(scene.cameraRegion.speed)),
           timeless_(sensor.gate.steadyState), oneFrame_(timeless_ || (sensor.gate.frames == 1 && !sensor.response)) {}
@@ -92,9 +92,10 @@ class BeamSplatter {
             int left = ribbon.area.left, right = ribbon.area.right;
             if (!ribbon.surrounds)
                 for (const ImageHalfPlane& side : ribbon.sides) footprint_.narrow(side, y, left, right);
-            for (BandPiece& piece : band.pieces)
-                if (piece.mixed || (piece.medium == ribbon.medium && rendered(piece.interactions + ribbon.bounce + 1)))
-                    gathered += drawRow(ribbon, piece, band, y, left, right);
+            for (BandSegment& segment : band.segments)
+                if (segment.mixed ||
+                    (segment.medium == ribbon.medium && rendered(segment.interactions + ribbon.bounce + 1)))
+                    gathered += drawRow(ribbon, segment, band, y, left, right);
         }
         return gathered;
     }
@@ -112,29 +113,30 @@ class BeamSplatter {
     };
 
     /// Into the band's sums, or pixel by pixel into the film.
-    uint64_t drawRow(const Ribbon& ribbon, BandPiece& piece, const ImageBand& band, int y, int left, int right) const {
+    uint64_t drawRow(const Ribbon& ribbon, BandSegment& segment, const ImageBand& band, int y, int left,
+                     int right) const {
         uint64_t gathered = 0;
         Approaches found;
         for (int x = left; x <= right; x += Lanes) {
             const size_t i = band.at(x, y);
-            if (!approach(ribbon, band, piece, i, found)) continue;
+            if (!approach(ribbon, band, segment, i, found)) continue;
             if (ribbon.simple && oneFrame_) {
-                gathered += collect(ribbon, found, piece, i);
+                gathered += collect(ribbon, found, segment, i);
                 continue;
             }
             for (int lane = 0; lane < Lanes; ++lane)
                 if (found.weight[lane] > 0.0f)
-                    gathered += add(ribbon, band.record(), piece.number, y, x + lane, found, lane);
+                    gathered += add(ribbon, band.record(), segment.number, y, x + lane, found, lane);
         }
         return gathered;
     }
     /// From pixel `first` of the band on. Beams of cornell-fog take 22 % more CPU time lane by lane.
-    uint64_t collect(const Ribbon& ribbon, const Approaches& found, BandPiece& piece, size_t first) const {
+    uint64_t collect(const Ribbon& ribbon, const Approaches& found, BandSegment& segment, size_t first) const {
         auto weight = Batch::load_aligned(found.weight);
         auto inside = weight > 0.0f;
-        if (piece.mixed) {
+        if (segment.mixed) {
             const auto [least, most] = transport::BounceLimits(scene_.transport).remaining(ribbon.bounce + 1);
-            inside = piece.select(inside, first, ribbon.medium, least, most);
+            inside = segment.select(inside, first, ribbon.medium, least, most);
         }
         if (!timeless_) {
             Batch length = Batch::load_aligned(found.alongBeam);
@@ -142,15 +144,15 @@ class BeamSplatter {
             inside = inside && length >= ribbon.shortest && length < ribbon.longest;
         }
         weight = xsimd::select(inside, weight, Batch(0.0f));
-        for (int k = 0; k < 3; ++k) piece.add(first, weight, k, ribbon.power[k]);
+        for (int k = 0; k < 3; ++k) segment.add(first, weight, k, ribbon.power[k]);
         return uint64_t(darts::lanes::sum(xsimd::select(inside, Batch(1.0f), Batch(0.0f))));
     }
 
     /// False if no ray meets the ribbon.
-    bool approach(const Ribbon& r, const ImageBand& band, const BandPiece& piece, size_t first,
+    bool approach(const Ribbon& r, const ImageBand& band, const BandSegment& segment, size_t first,
                   Approaches& found) const {
         const auto load = [first](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + first); };
-        const Batch dx = load(band.x), dy = load(band.y), dz = load(band.z), start = load(piece.start);
+        const Batch dx = load(band.x), dy = load(band.y), dz = load(band.z), start = load(segment.start);
         const Vec3f &w = r.direction, &a = r.foot, &n = r.normal;
         const Batch cosine = dx * w.x + dy * w.y + dz * w.z;
         const Batch px = dx - cosine * w.x, py = dy - cosine * w.y, pz = dz - cosine * w.z;
@@ -159,7 +161,7 @@ class BeamSplatter {
         const Batch t = (dx * a.x + dy * a.y + dz * a.z) * inverse, s = cosine * t;
         const Batch across = dx * n.x + dy * n.y + dz * n.z, squaredDistance = across * across * inverse;
         auto inside = squaredSine > LeastSine * LeastSine && squaredDistance < r.radius * r.radius && s >= r.low &&
-                      s < r.high && t > start && t <= load(piece.end);
+                      s < r.high && t > start && t <= load(segment.end);
         if (!xsimd::any(inside)) return false;
         Batch weight = xsimd::sqrt(inverse);
         if (r.ends) inside = inside && withinEdges(r, dx, dy, dz, s, across, weight);
@@ -195,12 +197,12 @@ class BeamSplatter {
     [[nodiscard]] bool rendered(int interactions) const {
         return transport::BounceLimits(scene_.transport).renders(interactions);
     }
-    uint64_t add(const Ribbon& ribbon, const SensorRecord& record, size_t number, int y, int x, const Approaches& found,
+    uint64_t add(const Ribbon& ribbon, const CameraRecord& record, size_t number, int y, int x, const Approaches& found,
                  int lane) const {
-        const StraightPiece& piece = record.pieces[number];
+        const MediumSegment& segment = record.mediumSegments[number];
         const size_t pixel = size_t(y) * size_t(record.width) + size_t(x);
-        if (piece.medium[pixel] != ribbon.medium) return 0;
-        if (!rendered(int(piece.interactions[pixel]) + ribbon.bounce + 1)) return 0;
+        if (segment.medium[pixel] != ribbon.medium) return 0;
+        if (!rendered(int(segment.interactions[pixel]) + ribbon.bounce + 1)) return 0;
         float weight = found.weight[lane];
         int frame = 0;
         if (!timeless_) {
@@ -210,13 +212,13 @@ class BeamSplatter {
             if (frame < 0) return 0;
             weight *= sensor_.weight(arrival);
         }
-        Rgb radiance = ribbon.power * piece.throughput[pixel] * weight;
+        Rgb radiance = ribbon.power * segment.throughput[pixel] * weight;
         if (!ribbon.simple) {
             const Medium& medium = scene_.media[size_t(ribbon.medium)];
             const Vec3f back(-record.x[pixel], -record.y[pixel], -record.z[pixel]);
             radiance = radiance *
                        medium.transmittance(ribbon.fromBase + found.alongBeam[lane] + found.alongRay[lane] -
-                                            piece.start[pixel]) *
+                                            segment.start[pixel]) *
                        medium.phase.eval(ribbon.direction, back);
         }
         film_.add(frame, x, y, radiance);
@@ -224,7 +226,7 @@ class BeamSplatter {
     }
 
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     Vec3f origin_;
     ImageFootprint footprint_;
     float scale_;
@@ -235,7 +237,7 @@ class BeamSplatter {
 
 } // namespace
 
-uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+uint64_t splatBeams(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                     const std::vector<PhotonBeam>& beams, const Radii& radii, double scale, Film& film,
                     const ProgressToken& watch) {
     const BeamSplatter splatter(scene, sensor, scale, film);
@@ -257,7 +259,7 @@ uint64_t splatBeams(const Scene& scene, const transport::Sensor& sensor, const S
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
         const auto& drawn = byBand[number];
         if (drawn.empty()) return;
-        for (const SensorRecord* record : records) {
+        for (const CameraRecord* record : records) {
             ImageBand band(*record, number);
             for (size_t i = 0; i < drawn.size(); ++i) {
                 watch.advanceWithin(64, i);

@@ -46,9 +46,9 @@ Selection<PhotonBeam> Beams::straight(const Scene& scene, const ArrivalCulling& 
     return seen;
 }
 
-double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii) {
+double Beams::redirectedShare(const std::vector<PhotonBeam>& beams, const Radii& radii) {
     constexpr double MeanSine = 0.25 * double(Pi);
-    FoldedMeeting meeting;
+    ExpectedHits meeting;
     for (size_t i = 0; i < beams.size(); ++i) {
         const PhotonBeam& beam = beams[i];
         const float radius = radii[i];
@@ -59,7 +59,7 @@ double Beams::foldedShare(const std::vector<PhotonBeam>& beams, const Radii& rad
     return meeting.share();
 }
 
-uint64_t Beams::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+uint64_t Beams::splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                       const Selection<PhotonBeam>& beams, double scale, Film& film, const ProgressToken& watch) {
     return splatBeams(scene, sensor, records, beams.records, beams.radii, scale, film, watch);
 }

@@ -8,7 +8,7 @@ namespace tungsten::photon {
 
 class BeamGather;
 
-/// As Points; one radius for all.
+/// Photon beams as a volume primitive; the concept in Primitive.h documents the members. All beams have one radius.
 struct Beams {
     using Record = PhotonBeam;
     using Gather = BeamGather;
@@ -17,7 +17,7 @@ struct Beams {
     static constexpr bool AtVertices = false;
     static constexpr bool ManyFrames = false;
     static constexpr bool NeedsPlace = true;
-    static constexpr bool CountsRecords = false;
+    static constexpr bool LimitsRecords = false;
     static constexpr bool SplatsOften = true;
     static constexpr const char* Effect = "photon beams";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type is beams";
@@ -36,8 +36,8 @@ struct Beams {
     static void endAtSurfaces(const KernelEnds& ends, std::vector<PhotonBeam>& beams, Radii& radii);
     static Selection<PhotonBeam> straight(const Scene& scene, const ArrivalCulling& culling,
                                           const std::vector<PhotonBeam>& beams, const Radii& radii);
-    static double foldedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
-    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+    static double redirectedShare(const std::vector<PhotonBeam>& beams, const Radii& radii);
+    static uint64_t splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                           const Selection<PhotonBeam>& beams, double scale, Film& film, const ProgressToken& watch);
 };
 

@@ -87,7 +87,7 @@ class BeamCutter {
             if (edge->exists()) edge->reach += edge->normal.dot(at(middle) - beam_.base);
         parts_->push_back(part);
     }
-    /// Of the part's ribbon, seen from anywhere.
+    /// Whether no surface hides a random point of the part's ribbon, turned at random about the beam.
     [[nodiscard]] bool seesRandomPoint(const BeamPart& part) {
         const float along = part.start + random_.next1D() * (part.end - part.start);
         const float angle = 2.0f * Pi * random_.next1D();
@@ -107,7 +107,7 @@ class BeamCutter {
     size_t first_ = 0; ///< of the beam's own
 };
 
-/// Of consecutive beams.
+/// Parts of consecutive beams.
 struct CutBlock {
     std::vector<BeamPart> parts;
     std::vector<uint32_t> ends; ///< of the parts of each beam

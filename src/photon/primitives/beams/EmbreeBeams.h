@@ -27,7 +27,7 @@ class EmbreeBeams {
     EmbreeBeams(const EmbreeBeams&) = delete;
     EmbreeBeams& operator=(const EmbreeBeams&) = delete;
     [[nodiscard]] RTCScene scene() const { return scene_; }
-    /// By Embree's primitive index.
+    /// Parts of the beams, by Embree's primitive index.
     [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
 
     [[nodiscard]] float largestRadius() const { return largestRadius_; }

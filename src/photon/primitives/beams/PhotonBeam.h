@@ -23,11 +23,11 @@ static_assert(sizeof(PhotonBeam) == 56, "millions are stored: no padding");
 /// Beyond it nothing of a flight shows in a float.
 float visibleReach(const Medium& medium);
 
-/// The part of a flight that sensor paths can see inside the gate, if there is one. `flight` runs from tStart to tEnd,
-/// the next surface (Infinity if there is none).
+/// The part of a flight that camera subpaths can see inside the gate, if there is one. `flight` runs from tStart to
+/// tEnd, the next surface (Infinity if there is none).
 std::optional<PhotonBeam> clippedBeam(const ArrivalCulling& culling, const Medium& medium, PhotonBeam flight);
 
-/// The part of a beam that sensor paths without mirror or refraction can see inside the gate, if there is one; needs
+/// The part of a beam that camera subpaths without mirror or refraction can see inside the gate, if there is one; needs
 /// culling.straightTimesKnown().
 std::optional<PhotonBeam> straightPart(const Scene& scene, const ArrivalCulling& culling, PhotonBeam beam);
 

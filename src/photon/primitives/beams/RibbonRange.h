@@ -24,8 +24,8 @@ struct RibbonRange {
     [[nodiscard]] float width() const { return high - low; }
 
   private:
-    /// By a plane at `height` from the beam. A beam that leaves a plane behind before the curved surface itself counts
-    /// as lying on it.
+    /// Cuts the range by a plane at `height` from the beam. A beam that leaves a plane behind before the curved surface
+    /// itself counts as lying on it.
     void cut(float height, float slope) {
         const float end = std::max(height, 0.0f) / std::max(std::abs(slope), 1e-6f);
         if (slope > 0.0f)

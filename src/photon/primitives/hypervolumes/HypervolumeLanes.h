@@ -8,13 +8,13 @@ namespace tungsten::photon {
 /// At one path length, or a random one of each frame.
 class HypervolumeLanes {
   public:
-    explicit HypervolumeLanes(const CollapsedFlights& flights)
+    explicit HypervolumeLanes(const SliceRecord& flights)
         : edges_(edge(flights, 0), edge(flights, 1), edge(flights, 2)) {
         for (size_t i = 0; i < 3; ++i) perResidual_[i] = -flights.directions[3].dot(edges_.rows[i]);
     }
     /// emit(frame, reach)
     template <typename Emit>
-    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+    void intersect(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         if (!usable()) return;
         const Vec3f& last = record.flights->directions[3];
         const Lanes3 change = rays.direction + Lanes3(last * record.warp());
@@ -36,17 +36,17 @@ class HypervolumeLanes {
             chord.end = rays.end;
             chord.keepFlights(record.reach);
             const LaneMask met = rays.seen && chord.holds();
-            if (xsimd::any(met)) emit(frame, chord.reach(record, met, factor, record.random(1, rays, frame)));
+            if (xsimd::any(met)) emit(frame, chord.hit(record, met, factor, record.random(1, rays, frame)));
         }
     }
 
   private:
     /// Beyond the last direction.
-    [[nodiscard]] static Vec3d edge(const CollapsedFlights& flights, size_t i) {
+    [[nodiscard]] static Vec3d edge(const SliceRecord& flights, size_t i) {
         return Vec3d(flights.directions[i]) - Vec3d(flights.directions[3]);
     }
     [[nodiscard]] bool usable() const { return edges_.determinant > LeastLaneDeterminant; }
-    DualTriple edges_;
+    ReciprocalBasis3 edges_;
     std::array<float, 3> perResidual_{};
 };
 

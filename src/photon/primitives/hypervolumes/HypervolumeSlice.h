@@ -19,7 +19,7 @@ Real hypervolumeJacobian(const std::array<Vector<Real>, 4>& w) {
 /// The part of the ray where paths of the length `residual` (as for volumes) meet it.
 template <typename Real>
 std::optional<HypervolumeChord<Real>> sliceHypervolume(const Vector<Real>& base, const std::array<Vector<Real>, 4>& w,
-                                                       const SightLine<Real>& sight, Real residual,
+                                                       const CameraRay<Real>& sight, Real residual,
                                                        Real least = LeastDeterminant<Real>) {
     if (!(residual > 0)) return std::nullopt;
     const LinearSystem<Real> system(w[0] - w[3], w[1] - w[3], w[2] - w[3]);

@@ -1,7 +1,7 @@
 #pragma once
 // Where a camera ray crosses a photon plane (docs/photon-primitives.md, section 2.3).
 
-#include "photon/primitives/sliced/SightLine.h"
+#include "photon/primitives/sliced/CameraRay.h"
 
 #include <optional>
 
@@ -26,7 +26,7 @@ struct PlaneCrossing {
 /// None where the plane is seen edge on to `least`, or the ray passes beside it.
 template <typename Real>
 std::optional<PlaneCrossing<Real>> crossPlane(const Vector<Real>& base, const std::array<Vector<Real>, 2>& directions,
-                                              const SightLine<Real>& sight, Real least = LeastDeterminant<Real>) {
+                                              const CameraRay<Real>& sight, Real least = LeastDeterminant<Real>) {
     const LinearSystem<Real> system(directions[0], directions[1], -sight.direction);
     const Real jacobian = std::abs(system.determinant());
     if (!(jacobian > least)) return std::nullopt;

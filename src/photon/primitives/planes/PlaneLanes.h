@@ -7,10 +7,10 @@ namespace tungsten::photon {
 
 class PlaneLanes {
   public:
-    explicit PlaneLanes(const CollapsedFlights& flights) : edges_(flights.directions[0], flights.directions[1]) {}
+    explicit PlaneLanes(const SliceRecord& flights) : edges_(flights.directions[0], flights.directions[1]) {}
     /// emit(frame, reach)
     template <typename Emit>
-    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+    void intersect(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         const Batch across = rays.direction.dot(edges_.normal), jacobian = xsimd::abs(across);
         const Batch t = -(rays.toOrigin.dot(edges_.normal) / across);
         const Lanes3 p = rays.toOrigin + rays.direction * t;
@@ -19,11 +19,11 @@ class PlaneLanes {
                              t2 >= 0.0f && t >= rays.start && t < rays.end;
         if (!xsimd::any(met)) return;
         const Batch arrival = t1 + t2 + record.warp() * t + rays.lag;
-        LaneReach reach{met,
-                        t,
-                        t1 + t2 + t,
-                        record.towardsCamera(Lanes3(record.flights->directions[1]), rays) / jacobian,
-                        {t1, t2}};
+        LaneHit reach{met,
+                      t,
+                      t1 + t2 + t,
+                      record.towardsCamera(Lanes3(record.flights->directions[1]), rays) / jacobian,
+                      {t1, t2}};
         const FrameRange range = framesOf(record.times, met, arrival, arrival);
         for (int frame = range.first; frame <= range.last; ++frame) {
             if (record.times.factor(frame) == 0.0f) continue;
@@ -33,7 +33,7 @@ class PlaneLanes {
     }
 
   private:
-    DualPair edges_;
+    ReciprocalBasis2 edges_;
 };
 
 } // namespace tungsten::photon

@@ -14,7 +14,7 @@ namespace {
 struct PointQuery {
     embree::Context context;
     const Scene* scene;
-    const transport::Sensor* sensor;
+    const transport::TimeSensor* sensor;
     const std::vector<Photon>* photons;
     const std::vector<float>* squaredRadii;
     const std::vector<KernelEdges>* edges;
@@ -72,7 +72,7 @@ float usualDistance(const std::vector<Photon>& photons) {
 
 } // namespace
 
-PointGather::PointGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<Photon>& photons,
+PointGather::PointGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<Photon>& photons,
                          const Radii& radii, bool)
     : scene_(scene), sensor_(sensor), photons_(photons), edges_(radii.edges()) {
     std::vector<PointWithRadius> points;

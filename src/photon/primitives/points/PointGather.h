@@ -5,7 +5,7 @@
 #include "photon/store/EmbreePoints.h"
 #include "photon/store/Store.h"
 #include "photon/view/CameraSegment.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
 #include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
@@ -25,7 +25,7 @@ class PointGather {
   public:
     /// `photons` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box. Few
     /// rays or many need the same structure.
-    PointGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<Photon>& photons,
+    PointGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<Photon>& photons,
                 const Radii& radii, bool fewRays = false);
 
     /// Adds sum of power K f_p T, weighed by the sensor, over the photons near the segment to the frames they fall in.
@@ -34,7 +34,7 @@ class PointGather {
 
   private:
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     const std::vector<Photon>& photons_;
     std::vector<float> squaredRadii_;
     std::vector<KernelEdges> edges_; ///< by photon, or none

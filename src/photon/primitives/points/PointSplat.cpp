@@ -36,21 +36,21 @@ struct alignas(64) Disc {
 };
 
 /// A register of rays near a disc.
-struct Meeting {
+struct DiscHit {
     Batch dx, dy, dz, start;
     Batch t;    ///< along the rays
     Batch part; ///< 1 - squared distance over squared radius
     Batch::batch_bool_type inside;
 
-    Meeting(const Disc& disc, const BandPiece& piece, const ImageBand& band, size_t i)
+    DiscHit(const Disc& disc, const BandSegment& segment, const ImageBand& band, size_t i)
         : dx(Batch::load_unaligned(band.x.data() + i)), dy(Batch::load_unaligned(band.y.data() + i)),
-          dz(Batch::load_unaligned(band.z.data() + i)), start(Batch::load_unaligned(piece.start.data() + i)) {
+          dz(Batch::load_unaligned(band.z.data() + i)), start(Batch::load_unaligned(segment.start.data() + i)) {
         const Vec3f& o = disc.offset;
         t = dx * o.x + dy * o.y + dz * o.z;
         // Distance by the part of the offset across the ray: no difference of squares.
         const Batch px = o.x - dx * t, py = o.y - dy * t, pz = o.z - dz * t;
         part = 1.0f - (px * px + py * py + pz * pz) * disc.inverseSquaredRadius;
-        inside = part > 0.0f && t > start && t <= Batch::load_unaligned(piece.end.data() + i);
+        inside = part > 0.0f && t > start && t <= Batch::load_unaligned(segment.end.data() + i);
         if (!disc.edge.exists()) return;
         const Vec3f& n = disc.edge.normal;
         inside = inside && px * n.x + py * n.y + pz * n.z > -disc.edge.reach;
@@ -59,7 +59,7 @@ struct Meeting {
 
 class PointSplatter {
   public:
-    PointSplatter(const Scene& scene, const transport::Sensor& sensor, double scale)
+    PointSplatter(const Scene& scene, const transport::TimeSensor& sensor, double scale)
         : scene_(scene), sensor_(sensor), origin_(scene.camera.position()), scale_(float(scale)),
           footprint_(scene.camera), media_(scene.media.begin(), scene.media.end()) {}
 
@@ -95,15 +95,15 @@ class PointSplatter {
         const auto [left, right] = footprint_.columns(disc.image, top);
         const auto [least, most] = transport::BounceLimits(scene_.transport).remaining(disc.bounce);
         Batch gathered(0.0f);
-        for (BandPiece& piece : band.pieces) {
-            if (!piece.mixed &&
-                (piece.medium != disc.medium || piece.interactions < least || piece.interactions > most))
+        for (BandSegment& segment : band.segments) {
+            if (!segment.mixed &&
+                (segment.medium != disc.medium || segment.interactions < least || segment.interactions > most))
                 continue;
-            const auto even = piece.mixed ? std::nullopt : evenTerms(disc, piece);
+            const auto even = segment.mixed ? std::nullopt : evenTerms(disc, segment);
             for (int row = top; row <= bottom; ++row) {
                 const size_t first = band.at(left[row - top], row), end = band.at(right[row - top], row) + 1;
-                gathered += even ? drawEvenly(disc, *even, piece, band, first, end)
-                                 : drawRow(disc, piece, band, first, end, least, most);
+                gathered += even ? drawEvenly(disc, *even, segment, band, first, end)
+                                 : drawRow(disc, segment, band, first, end, least, most);
             }
         }
         return uint64_t(darts::lanes::sum(gathered));
@@ -125,57 +125,57 @@ class PointSplatter {
     };
     /// If the medium is grey and isotropic and the rays that meet the disc have so even exponents that a cubic about
     /// their middle is exact to rounding. Discs of some 8 pixels take 7 % longer without, small ones as long.
-    [[nodiscard]] std::optional<EvenTerms> evenTerms(const Disc& disc, const BandPiece& piece) const {
+    [[nodiscard]] std::optional<EvenTerms> evenTerms(const Disc& disc, const BandSegment& segment) const {
         constexpr float MostDifference = 0.03f;
-        const MediumTerms& medium = media_[size_t(piece.medium)];
+        const MediumTerms& medium = media_[size_t(segment.medium)];
         if (!medium.grey || !medium.isotropic) return std::nullopt;
         const float squared = disc.offset.length2(), farthest = std::sqrt(squared),
                     nearest = std::sqrt(std::max(squared - 1.0f / disc.inverseSquaredRadius, 0.0f));
-        const float low = (piece.leastStart - farthest) * medium.sigmaT.x,
-                    high = (piece.mostStart - nearest) * medium.sigmaT.x;
+        const float low = (segment.leastStart - farthest) * medium.sigmaT.x,
+                    high = (segment.mostStart - nearest) * medium.sigmaT.x;
         if (!(high - low < 2.0f * MostDifference)) return std::nullopt;
         const float middle = 0.5f * (low + high);
         return EvenTerms{medium.sigmaT.x, middle, disc.power * (0.25f * InvPi * std::exp(middle))};
     }
 
-    /// Of the rays at [first, end); returns how many gather the photon, lane by lane.
-    static Batch drawEvenly(const Disc& disc, const EvenTerms& terms, BandPiece& piece, const ImageBand& band,
+    /// Draws a disc at the rays [first, end); returns how many gather the photon, lane by lane.
+    static Batch drawEvenly(const Disc& disc, const EvenTerms& terms, BandSegment& segment, const ImageBand& band,
                             size_t first, size_t end) {
         Batch gathered(0.0f);
         for (size_t i = first; i < end; i += size_t(Lanes)) {
-            const Meeting met(disc, piece, band, i);
+            const DiscHit met(disc, segment, band, i);
             if (!xsimd::any(met.inside)) continue;
             gathered += select(met.inside, Batch(1.0f), Batch(0.0f));
             const Batch e = (met.start - met.t) * terms.sigmaT - terms.middle;
             const Batch transmittance = 1.0f + e * (1.0f + e * (0.5f + e * (1.0f / 6.0f)));
             const Batch weight = select(met.inside, met.part * met.part * transmittance, Batch(0.0f));
-            for (int k = 0; k < 3; ++k) piece.add(i, weight, k, terms.power[k]);
+            for (int k = 0; k < 3; ++k) segment.add(i, weight, k, terms.power[k]);
         }
         return gathered;
     }
 
-    /// The same for any medium.
-    Batch drawRow(const Disc& disc, BandPiece& piece, const ImageBand& band, size_t first, size_t end, int least,
+    /// Draws a row of the disc in any medium.
+    Batch drawRow(const Disc& disc, BandSegment& segment, const ImageBand& band, size_t first, size_t end, int least,
                   int most) const {
         const MediumTerms& medium = media_[size_t(disc.medium)];
         Batch gathered(0.0f);
         for (size_t i = first; i < end; i += size_t(Lanes)) {
-            const Meeting met(disc, piece, band, i);
-            const auto inside = piece.mixed ? piece.select(met.inside, i, disc.medium, least, most) : met.inside;
+            const DiscHit met(disc, segment, band, i);
+            const auto inside = segment.mixed ? segment.select(met.inside, i, disc.medium, least, most) : met.inside;
             if (!xsimd::any(inside)) continue;
             gathered += select(inside, Batch(1.0f), Batch(0.0f));
             const Batch value = met.part * met.part * phase(medium, disc.direction, met), length = met.start - met.t;
             Batch weight = select(inside, value * exp(length * medium.sigmaT.x), Batch(0.0f));
             for (int k = 0; k < 3; ++k) {
                 if (k > 0 && !medium.grey) weight = select(inside, value * exp(length * medium.sigmaT[k]), Batch(0.0f));
-                piece.add(i, weight, k, disc.power[k]);
+                segment.add(i, weight, k, disc.power[k]);
             }
         }
         return gathered;
     }
 
     /// Between the photon's direction and the way back along the rays.
-    static Batch phase(const MediumTerms& medium, const Vec3f& w, const Meeting& met) {
+    static Batch phase(const MediumTerms& medium, const Vec3f& w, const DiscHit& met) {
         if (medium.isotropic) return Batch(0.25f * InvPi);
         return std::visit(
             Overloaded{[](const Isotropic&) { return Batch(0.25f * InvPi); },
@@ -188,7 +188,7 @@ class PointSplatter {
     }
 
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     Vec3f origin_;
     float scale_;
     ImageFootprint footprint_;
@@ -223,7 +223,7 @@ std::vector<std::vector<uint32_t>> discsByBand(const std::vector<Disc>& discs, c
 
 } // namespace
 
-uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+uint64_t splatPhotons(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
                       const ProgressToken& watch) {
     const PointSplatter splatter(scene, sensor, scale);
@@ -239,7 +239,7 @@ uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const
         const auto& drawn = byBand[number];
         if (drawn.empty()) return;
         uint64_t gathered = 0;
-        for (const SensorRecord* record : records) {
+        for (const CameraRecord* record : records) {
             ImageBand band(*record, number);
             for (size_t i = 0; i < drawn.size(); ++i) {
                 watch.advanceWithin(64, i);

@@ -3,8 +3,8 @@
 
 #include "photon/primitives/Radii.h"
 #include "photon/store/Store.h"
-#include "photon/view/SensorRecord.h"
-#include "transport/Sensor.h"
+#include "photon/view/CameraRecord.h"
+#include "transport/TimeSensor.h"
 
 #include "tungsten/film/Film.h"
 
@@ -14,7 +14,7 @@ namespace tungsten::photon {
 /// photon visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons and
 /// a traversal per ray (benchmarks/micro, gather). Returns the number of photons gathered, one per pixel and photon.
 /// `sensor` has the pass's gate.
-uint64_t splatPhotons(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+uint64_t splatPhotons(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                       const std::vector<Photon>& photons, const Radii& radii, double scale, Film& film,
                       const ProgressToken& watch = {});
 

@@ -51,8 +51,8 @@ Selection<Photon> Points::straight(const Scene&, const ArrivalCulling& culling, 
     return seen;
 }
 
-double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radii) {
-    FoldedMeeting meeting;
+double Points::redirectedShare(const std::vector<Photon>& photons, const Radii& radii) {
+    ExpectedHits meeting;
     for (size_t i = 0; i < photons.size(); ++i) {
         meeting.include(photons[i].position, radii[i]);
         meeting.addArea(double(Pi * radii[i] * radii[i]));
@@ -60,7 +60,7 @@ double Points::foldedShare(const std::vector<Photon>& photons, const Radii& radi
     return meeting.share();
 }
 
-uint64_t Points::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+uint64_t Points::splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                        const Selection<Photon>& photons, double scale, Film& film, const ProgressToken& watch) {
     return splatPhotons(scene, sensor, records, photons.records, photons.radii, scale, film, watch);
 }

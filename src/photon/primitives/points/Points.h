@@ -17,38 +17,38 @@ struct Points {
     static constexpr bool AtVertices = true;      ///< records are vertices, so that control vertices can be
     static constexpr bool ManyFrames = false;     ///< a record shows in one frame, or a few
     static constexpr bool NeedsPlace = true;      ///< to aim guided paths at, also where the camera's time is left out
-    static constexpr bool CountsRecords = false;  ///< guided paths thin them by how many they expect (RecordCounts)
+    static constexpr bool LimitsRecords = false;  ///< guided paths thin them by how many they expect (RecordBudget)
     static constexpr bool SplatsOften = true;     ///< a few camera paths a pixel cost little beside light paths
     static constexpr const char* Effect = "volume photon points";
     static constexpr const char* Reason = "a medium scatters";
     static constexpr const char* Stored = "stored volume photons"; ///< counters
     static constexpr const char* Gathered = "gathered photons";
 
-    /// From sensor rays that a record can show on. Any, where radii follow the density: they are known when the store
+    /// From camera rays that a record can show on. Any, where radii follow the density: they are known when the store
     /// is full, and what is stored makes the density.
     static float reach(const KernelSettings& settings);
     /// Fields that it alone has a use for, when all others are read.
     static void read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings);
     /// Why guided light paths are no use to it in this scene; empty where they are.
     static std::string guidanceObstacle(const Scene&, bool /*speedsDiffer*/) { return {}; }
-    /// Along sensor rays that are straight, at one speed and from one point, or at one speed or where speeds do not
+    /// Along camera rays that are straight, at one speed and from one point, or at one speed or where speeds do not
     /// matter.
     static bool splats(bool straightRays, bool /*oneTime*/) { return straightRays; }
     /// In a pass whose delta gate's kernel is so much narrower than the first one's.
     static void narrow(float /*factor*/) {}
-    /// Of a pass, where that of the first is 1.
+    /// Kernel width of a pass, where that of the first is 1.
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
                        uint32_t step, const ProgressToken& watch);
     /// Ends kernels at surfaces: records and radii become those of the ended kernels.
     static NearSurfaces nearSurfaces(const KernelSettings& settings, const Scene& scene);
     static void endAtSurfaces(const KernelEnds& ends, std::vector<Photon>& photons, Radii& radii);
-    /// What straight sensor paths see inside the gate; needs culling.straightTimesKnown().
+    /// What straight camera subpaths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<Photon>& photons, const Radii& radii);
-    /// The part that folded rays need where straight ones have theirs splatted (FoldedMeeting).
-    static double foldedShare(const std::vector<Photon>& photons, const Radii& radii);
-    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
+    /// The part that redirected rays need where straight ones have theirs splatted (ExpectedHits).
+    static double redirectedShare(const std::vector<Photon>& photons, const Radii& radii);
+    static uint64_t splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
                           const Selection<Photon>& photons, double scale, Film& film, const ProgressToken& watch);
 };
 

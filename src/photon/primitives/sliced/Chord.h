@@ -2,7 +2,7 @@
 // Where a camera ray can meet a primitive of K collapsed flights when one unknown is left: all lengths are linear in
 // the distance along the ray (docs/photon-primitives.md, eq. 10 and 15).
 
-#include "photon/primitives/sliced/SightLine.h"
+#include "photon/primitives/sliced/CameraRay.h"
 
 namespace tungsten::photon {
 

@@ -40,18 +40,18 @@ struct ChordLanes {
     }
     /// With t the distance along the ray: (10) and (15) for long flights, or at a point drawn by their integrand.
     /// `factor`: without lengths.
-    [[nodiscard]] LaneReach reach(const LaneRecord& record, const LaneMask& met, const Batch& factor,
-                                  const Batch& u) const {
+    [[nodiscard]] LaneHit hit(const LaneRecord& record, const LaneMask& met, const Batch& factor,
+                              const Batch& u) const {
         const Batch first = xsimd::select(met, start, Batch(0.0f)), last = xsimd::select(met, end, Batch(0.0f));
         const Batch rise = slopeSum() + 1.0f, fall = xsimd::abs(rise), chord = last - first;
         const LaneMask falls = rise >= 0.0f;
         Batch t = xsimd::select(falls, first, last);
-        LaneReach reach{met, t, offsetSum() + rise * t, factor};
+        LaneHit hit{met, t, offsetSum() + rise * t, factor};
         if (!record.drawsPoints) {
-            reach.integrated = true;
-            reach.chord = chord;
-            reach.fall = fall;
-            return reach;
+            hit.integrated = true;
+            hit.chord = chord;
+            hit.fall = fall;
+            return hit;
         }
         const Batch sigma(meanComponent(record.sigmaT)), z = sigma * fall * chord;
         const Batch v = xsimd::select(falls, u, 1.0f - u); // from the bright end, as drawn from the start
@@ -60,11 +60,11 @@ struct ChordLanes {
         const Batch exact = -xsimd::log(left) / xsimd::max(sigma * fall, Batch(1e-30f));
         const Batch along = xsimd::min(xsimd::select(z < 1e-3f, v * chord, exact), chord);
         t = xsimd::select(falls, first + along, last - along);
-        reach.alongRay = t;
-        reach.length = offsetSum() + rise * t;
-        reach.factor = factor * chord * meanOfFall(z) / left;
-        for (size_t i = 0; i < K; ++i) reach.lengths[i] = xsimd::max(length(i, t), Batch(0.0f));
-        return reach;
+        hit.alongRay = t;
+        hit.length = offsetSum() + rise * t;
+        hit.factor = factor * chord * meanOfFall(z) / left;
+        for (size_t i = 0; i < K; ++i) hit.lengths[i] = xsimd::max(length(i, t), Batch(0.0f));
+        return hit;
     }
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 // An Embree structure over records of collapsed flights, owned: boxes about what they can reach.
 
-#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/primitives/sliced/SliceRecord.h"
 #include "photon/view/CameraSegment.h"
 
 #include "tungsten/geometry/Embree.h"

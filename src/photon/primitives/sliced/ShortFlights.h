@@ -2,7 +2,7 @@
 // Short primitives: collapsed flights that end at random lengths, in place of a transmittance
 // (docs/photon-primitives.md, section 2).
 
-#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/primitives/sliced/SliceRecord.h"
 
 #include "tungsten/medium/Medium.h"
 
@@ -11,7 +11,7 @@ namespace tungsten::photon {
 /// Lengths at which a record's flights end, by the mean coefficient; infinite for long ones. They are drawn by the
 /// record's own number: a flight's end need not be where the light path's was, as nothing else of the record depends on
 /// it, and ghosts have none.
-inline std::array<double, 4> flightEnds(const CollapsedFlights& flights, const Medium& medium) {
+inline std::array<double, 4> flightEnds(const SliceRecord& flights, const Medium& medium) {
     std::array<double, 4> ends;
     ends.fill(std::numeric_limits<double>::infinity());
     if (!flights.shortFlights) return ends;
@@ -29,7 +29,7 @@ inline std::array<double, 4> flightEnds(const CollapsedFlights& flights, const M
 
 /// What short flights of these lengths are weighed by besides their transmittance: 1 / P(none has ended), or 0 where
 /// one has; 1 for long ones.
-inline double unended(const CollapsedFlights& flights, const Medium& medium, const double* lengths, int count) {
+inline double unended(const SliceRecord& flights, const Medium& medium, const double* lengths, int count) {
     if (!flights.shortFlights) return 1.0;
     const std::array<double, 4> ends = flightEnds(flights, medium);
     double sum = 0.0;

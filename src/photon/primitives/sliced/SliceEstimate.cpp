@@ -2,8 +2,8 @@
 
 #include "photon/primitives/hypervolumes/HypervolumeSlice.h"
 #include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/RaySliceQuery.h"
 #include "photon/primitives/sliced/ShortFlights.h"
-#include "photon/primitives/sliced/SliceMeeting.h"
 #include "photon/primitives/volumes/VolumeSlice.h"
 
 namespace tungsten::photon {
@@ -19,23 +19,23 @@ std::array<double, K> first(const std::array<double, 4>& all) {
 
 } // namespace
 
-SliceEstimate::SliceEstimate(const Scene& scene, const transport::Sensor& sensor)
+SliceEstimate::SliceEstimate(const Scene& scene, const transport::TimeSensor& sensor)
     : scene_(scene), sensor_(sensor), warped_(!scene.transport.cameraUnwarped), occluders_(!scene.primitives.empty()) {}
 
-bool SliceEstimate::add(const CollapsedFlights& flights, const CameraSegment& segment, FrameSums& sums) const {
+bool SliceEstimate::add(const SliceRecord& flights, const CameraSegment& segment, FrameSums& sums) const {
     const TransportSettings& transport = scene_.transport;
     if (flights.medium != segment.medium) return false;
     const int interactions = segment.interactions + flights.bounce + flights.flights();
     if (interactions < transport.minBounces || interactions >= transport.maxBounces) return false;
-    const SightLine<double> sight{inDouble(segment.origin), inDouble(segment.direction), 0.0, double(segment.length),
+    const CameraRay<double> sight{inDouble(segment.origin), inDouble(segment.direction), 0.0, double(segment.length),
                                   warped_};
-    const SliceMeeting m{flights,
-                         segment,
-                         scene_.media[size_t(segment.medium)],
-                         sight,
-                         inDouble(flights.base),
-                         1.0 / segment.inverseSpeed,
-                         flights.time + (warped_ ? segment.time : 0.0)};
+    const RaySliceQuery m{flights,
+                          segment,
+                          scene_.media[size_t(segment.medium)],
+                          sight,
+                          inDouble(flights.base),
+                          1.0 / segment.inverseSpeed,
+                          flights.time + (warped_ ? segment.time : 0.0)};
     switch (flights.shape) {
     case FlightShape::Plane:
         return addPlane(m, sums);
@@ -59,7 +59,7 @@ bool SliceEstimate::deposit(const Vec3d& value, const Rgb& power, double factor,
     return true;
 }
 
-bool SliceEstimate::unoccluded(const CollapsedFlights& flights, const double* lengths, int count) const {
+bool SliceEstimate::unoccluded(const SliceRecord& flights, const double* lengths, int count) const {
     if (!occluders_) return true;
     if (lengths[0] >= double(flights.reach)) return false;
     Vec3d point = inDouble(flights.base) + inDouble(flights.directions[0]) * lengths[0];
@@ -71,7 +71,7 @@ bool SliceEstimate::unoccluded(const CollapsedFlights& flights, const double* le
     return true;
 }
 
-bool SliceEstimate::addPlane(const SliceMeeting& m, FrameSums& sums) const {
+bool SliceEstimate::addPlane(const RaySliceQuery& m, FrameSums& sums) const {
     const auto met = crossPlane(m.base, m.directions<2>(), m.sight);
     if (!met) return false;
     int frame = 0;
@@ -88,13 +88,13 @@ bool SliceEstimate::addPlane(const SliceMeeting& m, FrameSums& sums) const {
     return deposit(value, m.flights.power, factor, frame, sums);
 }
 
-bool SliceEstimate::addVolume(const SliceMeeting& m, FrameSums& sums) const {
+bool SliceEstimate::addVolume(const RaySliceQuery& m, FrameSums& sums) const {
     if (!scene_.transport.gate.delta) return addVolumeChord(m, sums);
     return eachSlice(m,
                      [&](int frame, double time, double width) { return addVolumeSlice(m, frame, time, width, sums); });
 }
 
-bool SliceEstimate::addVolumeChord(const SliceMeeting& m, FrameSums& sums) const {
+bool SliceEstimate::addVolumeChord(const RaySliceQuery& m, FrameSums& sums) const {
     auto whole = volumeChord(m.base, m.directions<3>(), m.sight);
     if (!whole) return false;
     if (m.flights.shortFlights) whole->keepFlights(first<3>(flightEnds(m.flights, m.medium)));
@@ -115,18 +115,18 @@ bool SliceEstimate::addVolumeChord(const SliceMeeting& m, FrameSums& sums) const
     return any;
 }
 
-SharedPath<double> SliceEstimate::sharedPath(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+SharedPath<double> SliceEstimate::sharedPath(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                                              const std::array<double, 3>& lengths) const {
     const double pdfs = double(pdfFlight(m.medium, float(lengths[0]))) * double(pdfFlight(m.medium, float(lengths[1])));
     return {w, lengths[2], double(m.medium.phase.pdf(inFloat(w[1]), inFloat(w[2]))), pdfs};
 }
 
-double SliceEstimate::ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+double SliceEstimate::ratio(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                             const std::array<double, 3>& lengths) const {
     return sharedPath(m, w, lengths).ratio(m.sight.direction, warped_);
 }
 
-double SliceEstimate::ratioInGate(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+double SliceEstimate::ratioInGate(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                                   const std::array<double, 3>& lengths, double alongRay) const {
     if (sensor_.gate.frames > 1) return ratio(m, w, lengths);
     // A ball's base is where its last flight begins.
@@ -139,7 +139,7 @@ double SliceEstimate::ratioInGate(const SliceMeeting& m, const std::array<Vec3d,
 }
 
 template <size_t K>
-bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
+bool SliceEstimate::addChord(const RaySliceQuery& m, const Chord<double, K>& chord, int frame, double u, double factor,
                              const ArrivalLine* arrival, FrameSums& sums) const {
     if (chord.empty()) return false;
     const double mean = double(meanComponent(m.medium.sigmaT())), ended = m.flights.shortFlights ? mean : 0.0;
@@ -158,7 +158,7 @@ bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chor
         for (size_t i = 0; i < K; ++i) lengths[i] = std::max(chord.length(i, t), 0.0);
         if (!unoccluded(m.flights, lengths.data(), int(K))) return false;
         if constexpr (K == 3) {
-            if (m.flights.shared) factor *= volumeShare(ratioInGate(m, m.directions<3>(), lengths, t));
+            if (m.flights.shared) factor *= volumeWeight(ratioInGate(m, m.directions<3>(), lengths, t));
         }
         if (arrival) factor *= double(sensor_.weight(arrival->offset + arrival->slope * t));
         if (!m.medium.isGrey()) {
@@ -173,19 +173,21 @@ bool SliceEstimate::addChord(const SliceMeeting& m, const Chord<double, K>& chor
     return deposit(value, m.flights.power, factor, frame, sums);
 }
 
-bool SliceEstimate::addVolumeSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
+bool SliceEstimate::addVolumeSlice(const RaySliceQuery& m, int frame, double time, double width,
+                                   FrameSums& sums) const {
     const auto w = m.directions<3>();
     const auto slice = sliceVolume(m.base, w, m.sight, m.residual(time));
     if (!slice) return false;
     double factor = unended(m.flights, m.medium, slice->lengths.data(), 3);
     if (!(factor > 0.0) || !unoccluded(m.flights, slice->lengths.data(), 3)) return false;
     factor *= m.phase(m.flights.directions[2]) * m.speed * width;
-    if (m.flights.shared) factor *= volumeShare(ratio(m, w, slice->lengths));
+    if (m.flights.shared) factor *= volumeWeight(ratio(m, w, slice->lengths));
     const Vec3d value = m.perChannel([&](const auto& medium) { return slice->weight(medium); });
     return deposit(value, m.flights.power, factor, frame, sums);
 }
 
-bool SliceEstimate::addHypervolume(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const {
+bool SliceEstimate::addHypervolume(const RaySliceQuery& m, int frame, double time, double width,
+                                   FrameSums& sums) const {
     auto chord = sliceHypervolume(m.base, m.directions<4>(), m.sight, m.residual(time));
     if (!chord) return false;
     if (m.flights.shortFlights) chord->keepFlights(flightEnds(m.flights, m.medium));

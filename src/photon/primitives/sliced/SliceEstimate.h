@@ -1,9 +1,9 @@
 #pragma once
 // What one record of collapsed flights brings to one camera segment.
 
-#include "photon/primitives/balls/VolumeOrBall.h"
-#include "photon/primitives/sliced/SliceMeeting.h"
-#include "transport/Sensor.h"
+#include "photon/primitives/balls/VolumeBallMis.h"
+#include "photon/primitives/sliced/RaySliceQuery.h"
+#include "transport/TimeSensor.h"
 
 #include "tungsten/scene/Scene.h"
 
@@ -14,15 +14,15 @@ namespace tungsten::photon {
 /// those of the gate itself; only planes see it through the sensor's temporal kernel.
 class SliceEstimate {
   public:
-    SliceEstimate(const Scene& scene, const transport::Sensor& sensor);
+    SliceEstimate(const Scene& scene, const transport::TimeSensor& sensor);
 
     /// Returns whether it added anything.
-    bool add(const CollapsedFlights& flights, const CameraSegment& segment, FrameSums& sums) const;
+    bool add(const SliceRecord& flights, const CameraSegment& segment, FrameSums& sums) const;
 
     /// Nothing lies on the first `count` flights of these lengths.
-    [[nodiscard]] bool unoccluded(const CollapsedFlights& flights, const double* lengths, int count) const;
+    [[nodiscard]] bool unoccluded(const SliceRecord& flights, const double* lengths, int count) const;
     /// Nothing lies between a ball's centre and this point.
-    [[nodiscard]] bool unoccluded(const CollapsedFlights& ball, const Vec3f& end) const;
+    [[nodiscard]] bool unoccluded(const SliceRecord& ball, const Vec3f& end) const;
 
   private:
     /// Time of arrival along a ray.
@@ -30,36 +30,38 @@ class SliceEstimate {
         double offset, slope;
     };
 
-    bool addPlane(const SliceMeeting& m, FrameSums& sums) const;
-    bool addVolume(const SliceMeeting& m, FrameSums& sums) const;
-    bool addVolumeChord(const SliceMeeting& m, FrameSums& sums) const;
-    bool addVolumeSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
-    bool addHypervolume(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
-    bool addBall(const SliceMeeting& m, FrameSums& sums) const;
-    bool addBallSlice(const SliceMeeting& m, int frame, double time, double width, FrameSums& sums) const;
-    bool addBallGate(const SliceMeeting& m, int frame, FrameSums& sums) const;
+    bool addPlane(const RaySliceQuery& m, FrameSums& sums) const;
+    bool addVolume(const RaySliceQuery& m, FrameSums& sums) const;
+    bool addVolumeChord(const RaySliceQuery& m, FrameSums& sums) const;
+    bool addVolumeSlice(const RaySliceQuery& m, int frame, double time, double width, FrameSums& sums) const;
+    bool addHypervolume(const RaySliceQuery& m, int frame, double time, double width, FrameSums& sums) const;
+    bool addBall(const RaySliceQuery& m, FrameSums& sums) const;
+    bool addBallSlice(const RaySliceQuery& m, int frame, double time, double width, FrameSums& sums) const;
+    bool addBallGate(const RaySliceQuery& m, int frame, FrameSums& sums) const;
     /// Where something may be in the way, weigh times (`arrival`; may be null) or share the path: at a point drawn by
     /// the integrand.
     template <size_t K>
-    bool addChord(const SliceMeeting& m, const Chord<double, K>& chord, int frame, double u, double factor,
+    bool addChord(const RaySliceQuery& m, const Chord<double, K>& chord, int frame, double u, double factor,
                   const ArrivalLine* arrival, FrameSums& sums) const;
-    [[nodiscard]] SharedPath<double> sharedPath(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+    [[nodiscard]] SharedPath<double> sharedPath(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                                                 const std::array<double, 3>& lengths) const;
     /// (16) of a path that balls and volumes share, of a given length.
-    [[nodiscard]] double ratio(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+    [[nodiscard]] double ratio(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                                const std::array<double, 3>& lengths) const;
-    /// The same inside a gate, where both draw a point of the ray. Frames of a sequence are narrow: (16), for which
+    /// The ratio inside a gate, where both draw a point of the ray. Frames of a sequence are narrow: (16), for which
     /// both draw alike, takes a little more than half the time there.
-    [[nodiscard]] double ratioInGate(const SliceMeeting& m, const std::array<Vec3d, 3>& w,
+    [[nodiscard]] double ratioInGate(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                                      const std::array<double, 3>& lengths, double alongRay) const;
-    /// Of a ball that shares its paths: ratio(directions, lengths) of the path that ends with this flight.
+    /// MIS weight of a ball whose paths volumes make too: ratio(directions, lengths) is that of the path that ends with
+    /// this flight.
     template <typename Ratio>
-    [[nodiscard]] double ballShareOf(const SliceMeeting& m, const Vec3d& last, double length, const Ratio& ratio) const;
+    [[nodiscard]] double ballShareOf(const RaySliceQuery& m, const Vec3d& last, double length,
+                                     const Ratio& ratio) const;
     /// Power that leaves a ball's centre along `last`, per steradian; 0 where something is in the way.
-    [[nodiscard]] Rgb leavingBall(const SliceMeeting& m, const BallReach<double>& reach, const Vec3f& last) const;
+    [[nodiscard]] Rgb leavingBall(const RaySliceQuery& m, const BallHit<double>& hit, const Vec3f& last) const;
     /// At the delta gate, or at a random time of every frame: slice(frame, time, width).
     template <typename Slice>
-    bool eachSlice(const SliceMeeting& m, const Slice& slice) const {
+    bool eachSlice(const RaySliceQuery& m, const Slice& slice) const {
         const TimeGate& gate = sensor_.gate;
         if (scene_.transport.gate.delta) return slice(0, scene_.transport.gate.start, gate.frameWidth);
         bool any = false;
@@ -72,7 +74,7 @@ class SliceEstimate {
     static bool deposit(const Vec3d& value, const Rgb& power, double factor, int frame, FrameSums& sums);
 
     const Scene& scene_;
-    transport::Sensor sensor_;
+    transport::TimeSensor sensor_;
     bool warped_, occluders_;
 };
 

@@ -1,18 +1,17 @@
 #include "photon/primitives/sliced/SliceFootprints.h"
 
 #include "photon/primitives/beams/PhotonBeam.h"
-#include "photon/primitives/sliced/SightLine.h"
+#include "photon/primitives/sliced/CameraRay.h"
 
 namespace tungsten::photon {
 
-SliceFootprints::SliceFootprints(const Scene& scene, const transport::Sensor& sensor, double scale)
+SliceFootprints::SliceFootprints(const Scene& scene, const transport::TimeSensor& sensor, double scale)
     : scene_(scene), gate_(sensor.gate), scale_(scale), warped_(!scene.transport.cameraUnwarped),
       delta_(scene.transport.gate.delta), weighed_(sensor.response != nullptr) {
     if (scene.camera.hasSinglePosition()) footprint_.emplace(scene.camera);
 }
 
-std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& flights,
-                                                   std::span<const float> shares) const {
+std::optional<ImageSlice> SliceFootprints::prepare(const SliceRecord& flights, std::span<const float> shares) const {
     const Medium& medium = scene_.media[size_t(flights.medium)];
     const auto speed = double(medium.speedOfLight);
     const bool far = farAway(flights, speed);
@@ -27,7 +26,7 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
     const bool ball = flights.shape == FlightShape::Ball, occluders = !scene_.primitives.empty();
     const auto& w = flights.directions;
     const auto light =
-        flights.emitter >= 0 ? evenIntensity(scene_.emitters[size_t(flights.emitter)]) : std::optional<Rgb>();
+        flights.emitter >= 0 ? isotropicIntensity(scene_.emitters[size_t(flights.emitter)]) : std::optional<Rgb>();
     LaneRecord record{&flights,
                       times,
                       medium.sigmaT(),
@@ -51,8 +50,8 @@ std::optional<ImageSlice> SliceFootprints::prepare(const CollapsedFlights& fligh
     return s;
 }
 
-bool SliceFootprints::farAway(const CollapsedFlights& flights, double speed) const {
-    // Of the distance floats lose 1e-7: a hundred-thousandth of what is left, a thousandth of a frame.
+bool SliceFootprints::farAway(const SliceRecord& flights, double speed) const {
+    // Floats lose 1e-7 of the distance: a hundred-thousandth of what is left, a thousandth of a frame.
     constexpr double MostOfLeft = 32.0, MostOfFrame = 1e4;
     const auto distance = double((scene_.camera.position() - flights.base).length());
     if (gate_.steadyState) return distance > MostOfLeft * double(visibleReach(scene_.media[size_t(flights.medium)]));
@@ -60,19 +59,19 @@ bool SliceFootprints::farAway(const CollapsedFlights& flights, double speed) con
     return distance > std::min(MostOfLeft * left, MostOfFrame * gate_.frameWidth * speed);
 }
 
-bool SliceFootprints::atLengths(const CollapsedFlights& flights) const {
+bool SliceFootprints::atLengths(const SliceRecord& flights) const {
     if (flights.shape == FlightShape::Hypervolume) return true;
     return delta_ && !flights.blurredInTime();
 }
 
-LaneTimes SliceFootprints::timesOf(const CollapsedFlights& flights, double speed, double common) const {
+LaneTimes SliceFootprints::timesOf(const SliceRecord& flights, double speed, double common) const {
     if (gate_.steadyState) return {0.0f, std::numeric_limits<float>::max(), 1};
     if (delta_ && !flights.blurredInTime())
         return {float((scene_.transport.gate.start - flights.time) * speed - common), 0.0f, 1};
     return {float((gate_.start - flights.time) * speed - common), float(gate_.frameWidth * speed), gate_.frames};
 }
 
-SliceKernel SliceFootprints::kernelOf(const CollapsedFlights& flights) const {
+SliceKernel SliceFootprints::kernelOf(const SliceRecord& flights) const {
     if (flights.shape == FlightShape::Plane) return PlaneLanes(flights);
     if (flights.shape == FlightShape::Hypervolume) return HypervolumeLanes(flights);
     if (flights.shape == FlightShape::Volume)
@@ -80,7 +79,7 @@ SliceKernel SliceFootprints::kernelOf(const CollapsedFlights& flights) const {
     return atLengths(flights) ? SliceKernel(BallSliceLanes()) : SliceKernel(BallGateLanes());
 }
 
-std::optional<PixelArea> SliceFootprints::areaOf(const CollapsedFlights& flights, float length) const {
+std::optional<PixelArea> SliceFootprints::areaOf(const SliceRecord& flights, float length) const {
     const Vec2i resolution = scene_.camera.resolution;
     const PixelArea all{0, resolution.x - 1, 0, resolution.y - 1};
     if (!footprint_) return all;

@@ -6,7 +6,7 @@
 #include "photon/primitives/planes/PlaneLanes.h"
 #include "photon/primitives/volumes/VolumeLanes.h"
 #include "photon/raster/ImageFootprint.h"
-#include "transport/Sensor.h"
+#include "transport/TimeSensor.h"
 
 #include "tungsten/scene/Scene.h"
 
@@ -14,7 +14,7 @@
 
 namespace tungsten::photon {
 
-/// What a register of rays meets of a record: meet(record, rays, emit).
+/// What a register of rays meets of a record: intersect(record, rays, emit).
 using SliceKernel =
     std::variant<PlaneLanes, VolumeSliceLanes, VolumeChordLanes, HypervolumeLanes, BallSliceLanes, BallGateLanes>;
 
@@ -31,20 +31,19 @@ struct ImageSlice {
 class SliceFootprints {
   public:
     /// `sensor`: with the pass's gate; `scale`: on every power.
-    SliceFootprints(const Scene& scene, const transport::Sensor& sensor, double scale);
+    SliceFootprints(const Scene& scene, const transport::TimeSensor& sensor, double scale);
 
-    /// None if no ray can meet it in time. `shares`: by frame (FrameShares).
-    [[nodiscard]] std::optional<ImageSlice> prepare(const CollapsedFlights& flights,
-                                                    std::span<const float> shares) const;
+    /// None if no ray can meet it in time. `shares`: by frame (FrameRoulette).
+    [[nodiscard]] std::optional<ImageSlice> prepare(const SliceRecord& flights, std::span<const float> shares) const;
 
   private:
     /// The camera is so far that its distance would take digits from what counts.
-    [[nodiscard]] bool farAway(const CollapsedFlights& flights, double speed) const;
+    [[nodiscard]] bool farAway(const SliceRecord& flights, double speed) const;
     /// The gate is met at one length of each frame, or at the delta gate; otherwise inside frames.
-    [[nodiscard]] bool atLengths(const CollapsedFlights& flights) const;
-    [[nodiscard]] LaneTimes timesOf(const CollapsedFlights& flights, double speed, double common) const;
-    [[nodiscard]] SliceKernel kernelOf(const CollapsedFlights& flights) const;
-    [[nodiscard]] std::optional<PixelArea> areaOf(const CollapsedFlights& flights, float length) const;
+    [[nodiscard]] bool atLengths(const SliceRecord& flights) const;
+    [[nodiscard]] LaneTimes timesOf(const SliceRecord& flights, double speed, double common) const;
+    [[nodiscard]] SliceKernel kernelOf(const SliceRecord& flights) const;
+    [[nodiscard]] std::optional<PixelArea> areaOf(const SliceRecord& flights, float length) const;
 
     const Scene& scene_;
     TimeGate gate_;

@@ -7,7 +7,7 @@ namespace tungsten::photon {
 namespace {
 
 /// What flights that end can reach: a parallelepiped's box.
-EmbreeSlices::Box reachedByShort(const CollapsedFlights& flights, const std::array<double, 4>& ends, float length) {
+EmbreeSlices::Box reachedByShort(const SliceRecord& flights, const std::array<double, 4>& ends, float length) {
     EmbreeSlices::Box box{flights.base, flights.base};
     for (int i = 0; i < flights.flights(); ++i) {
         const Vec3f flight = flights.directions[size_t(i)] * std::min(float(ends[size_t(i)]), length);
@@ -17,7 +17,7 @@ EmbreeSlices::Box reachedByShort(const CollapsedFlights& flights, const std::arr
 }
 
 /// Everything that flights of this total length from the base can reach: the hull of their ends, or a sphere.
-EmbreeSlices::Box reached(const CollapsedFlights& flights, const Medium& medium, float length) {
+EmbreeSlices::Box reached(const SliceRecord& flights, const Medium& medium, float length) {
     const std::array<double, 4> ends = flightEnds(flights, medium);
     if (flights.shape == FlightShape::Ball) length = std::min(length, float(ends[0]));
     EmbreeSlices::Box box{flights.base, flights.base};
@@ -46,9 +46,9 @@ EmbreeSlices::Box reached(const CollapsedFlights& flights, const Medium& medium,
 
 } // namespace
 
-std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<CollapsedFlights>& records) {
+std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<SliceRecord>& records) {
     std::vector<PhotonBeam> beams;
-    for (const CollapsedFlights& flights : records)
+    for (const SliceRecord& flights : records)
         if (flights.shape == FlightShape::Beam)
             beams.push_back({flights.time, flights.base, flights.directions[0], flights.power, flights.lengths[0],
                              std::min(flights.reach, visibleReach(scene.media[size_t(flights.medium)])), flights.bounce,
@@ -56,12 +56,12 @@ std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<Collaps
     return beams;
 }
 
-SliceGather::SliceGather(const Scene& scene, const transport::Sensor& sensor,
-                         const std::vector<CollapsedFlights>& records, const Radii& radius, bool fewRays)
+SliceGather::SliceGather(const Scene& scene, const transport::TimeSensor& sensor,
+                         const std::vector<SliceRecord>& records, const Radii& radius, bool fewRays)
     : estimate_(scene, sensor), beams_(beamsAmong(scene, records)) {
     std::vector<EmbreeSlices::Box> boxes;
     const TimeGate& gate = sensor.gate;
-    for (const CollapsedFlights& flights : records) {
+    for (const SliceRecord& flights : records) {
         const Medium& medium = scene.media[size_t(flights.medium)];
         if (flights.shape == FlightShape::Beam) continue;
         const double left = gate.steadyState ? std::numeric_limits<double>::infinity()
@@ -78,17 +78,17 @@ SliceGather::SliceGather(const Scene& scene, const transport::Sensor& sensor,
 uint64_t SliceGather::gather(const CameraSegment& segment, FrameSums& sums) const {
     uint64_t gathered = beamGather_ ? beamGather_->gather(segment, sums) : 0;
     if (!structure_) return gathered;
-    struct Meeting {
+    struct GatherQuery {
         const SliceGather& gather;
         const CameraSegment& segment;
         FrameSums& sums;
         uint64_t& gathered;
-    } meeting{*this, segment, sums, gathered};
+    } query{*this, segment, sums, gathered};
     const auto meet = [](void* user, uint32_t index) {
-        const Meeting& m = *static_cast<Meeting*>(user);
+        const GatherQuery& m = *static_cast<GatherQuery*>(user);
         if (m.gather.estimate_.add(*m.gather.slices_[index], m.segment, m.sums)) ++m.gathered;
     };
-    structure_->query(segment, meet, &meeting);
+    structure_->query(segment, meet, &query);
     return gathered;
 }
 

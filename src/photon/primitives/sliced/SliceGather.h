@@ -10,12 +10,12 @@
 namespace tungsten::photon {
 
 /// The beams among the records.
-std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<CollapsedFlights>& records);
+std::vector<PhotonBeam> beamsAmong(const Scene& scene, const std::vector<SliceRecord>& records);
 
 class SliceGather {
   public:
     /// `records` must stay alive; `radius`: of beams. As BeamGather.
-    SliceGather(const Scene& scene, const transport::Sensor& sensor, const std::vector<CollapsedFlights>& records,
+    SliceGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<SliceRecord>& records,
                 const Radii& radius, bool fewRays = false);
 
     /// Adds what the records bring to the segment, times the gate's width; returns how many brought something.
@@ -23,7 +23,7 @@ class SliceGather {
 
   private:
     SliceEstimate estimate_;
-    std::vector<const CollapsedFlights*> slices_; ///< all but beams
+    std::vector<const SliceRecord*> slices_; ///< all but beams
     std::vector<PhotonBeam> beams_;
     std::unique_ptr<EmbreeSlices> structure_;
     std::unique_ptr<BeamGather> beamGather_;

@@ -2,7 +2,7 @@
 // Which primitive makes which paths, by the chain index m: medium scatterings since the last surface or light, the one
 // on the camera ray included (docs/photon-primitives.md, section 3).
 
-#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/primitives/sliced/SliceRecord.h"
 
 namespace tungsten::photon {
 
@@ -28,19 +28,20 @@ constexpr const SliceName& sliceName(SliceKind kind) {
 struct SliceClasses {
     enum class Bases : uint8_t { None, First, All };
 
-    bool lights = false;              ///< m = 1: balls on lights that shine in more than one direction
-    bool beams = false;               ///< m = 1: elsewhere
-    std::array<Bases, 5> flights{};   ///< by number of flights, 2 to 4: First: m is that number, All: or more
+    bool lights = false; ///< m = 1: balls on lights that shine in more than one direction
+    bool beams = false;  ///< m = 1 after a surface or a laser: photon beams
+    /// Which chain indices the records of k = 2 to 4 flights make: None, First: m = k, All: m >= k.
+    std::array<Bases, 5> flights{};
     int firstBall = 0, lastBall = -1; ///< medium vertices of the chain with a ball: m = vertex + 1
     float share = 1.0f;        ///< of what is not a beam that is left, at random; its power makes up for the rest
-    float sharedShare = 1.0f;  ///< the same of paths that balls and volumes share
+    float sharedShare = 1.0f;  ///< likewise, of paths that balls and volumes both make
     bool shared = false;       ///< m >= 3: balls and volumes together
     bool shortFlights = false; ///< flights end at random lengths
     /// Last flights of what single balls make at a delta gate: beams up to this length, balls beyond it; after surfaces
     /// that scatter evenly too. 0: balls alone, and beams alone after surfaces.
     float shortBeams = 0.0f;
 
-    [[nodiscard]] float shareOf(const CollapsedFlights& record) const { return record.shared ? sharedShare : share; }
+    [[nodiscard]] float shareOf(const SliceRecord& record) const { return record.shared ? sharedShare : share; }
     /// A vertex of a chain has a ball that volumes do not share.
     [[nodiscard]] bool hasSingleBall(int vertex) const {
         return vertex >= firstBall && vertex <= lastBall && !(shared && vertex >= 2);

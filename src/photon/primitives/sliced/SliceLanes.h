@@ -1,7 +1,7 @@
 #pragma once
 // A register of camera rays and what a sliced primitive brings to it: what the primitives' kernels in floats share.
 
-#include "photon/primitives/sliced/CollapsedFlights.h"
+#include "photon/primitives/sliced/SliceRecord.h"
 #include "photon/raster/Registers.h"
 
 #include <span>
@@ -38,10 +38,10 @@ inline Batch henyeyGreenstein(float g, const Lanes3& before, const Lanes3& after
 
 /// For p = x a + y b: x = p . first, y = p . second. Found in double, once for each record: cross products of nearly
 /// parallel directions keep few digits of a float.
-struct DualPair {
+struct ReciprocalBasis2 {
     Vec3f normal, first{0.0f}, second{0.0f};
 
-    DualPair(const Vec3f& a, const Vec3f& b) {
+    ReciprocalBasis2(const Vec3f& a, const Vec3f& b) {
         const Vec3d u(a), v(b), across = u.cross(v);
         normal = Vec3f(across);
         const double square = across.length2();
@@ -51,12 +51,12 @@ struct DualPair {
     }
 };
 
-/// For p = x a + y b + z c: x = p . rows[0] and so on. In double, as DualPair.
-struct DualTriple {
+/// For p = x a + y b + z c: x = p . rows[0] and so on. In double, as ReciprocalBasis2.
+struct ReciprocalBasis3 {
     std::array<Vec3f, 3> rows{};
     float determinant; ///< |a b c|
 
-    DualTriple(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    ReciprocalBasis3(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
         const std::array<Vec3d, 3> across{b.cross(c), c.cross(a), a.cross(b)};
         const double whole = a.dot(across[0]);
         determinant = float(std::abs(whole));
@@ -72,7 +72,7 @@ inline constexpr float LeastLaneDeterminant = 1e-4f;
 struct LaneTimes {
     float first = 0.0f, width = 0.0f; ///< start and length of frame 0; width 0: at one length
     int frames = 1;
-    std::span<const float> shares{}; ///< factors on the power, by frame (FrameShares)
+    std::span<const float> shares{}; ///< factors on the power, by frame (FrameRoulette)
 
     [[nodiscard]] float factor(int frame) const { return shares.empty() ? 1.0f : shares[size_t(frame)]; }
     [[nodiscard]] float start(int frame) const { return first + float(frame) * width; }
@@ -88,7 +88,7 @@ struct LaneRays {
     /// less the length that LaneTimes lack. 0 where the ray's length does not count.
     Batch lag = Batch(0.0f);
 
-    /// The same rays from their points next to the base, when they come from far away: what is small beside the
+    /// These rays, started at their points next to the base when they come from far away: what is small beside the
     /// distance of the camera would be lost in it. `common`: that of the base, which LaneTimes lack.
     [[nodiscard]] LaneRays fromFeet(float common, bool warped) const {
         const Batch foot = -toOrigin.dot(direction);
@@ -96,7 +96,7 @@ struct LaneRays {
         if (warped) rays.lag = foot - common;
         return rays;
     }
-    /// Of the base from the ray's line.
+    /// Distance of the base from the ray's line.
     [[nodiscard]] Batch distance() const {
         const Lanes3 off = toOrigin.cross(direction);
         return xsimd::sqrt(off.dot(off));
@@ -107,13 +107,13 @@ struct LaneRays {
         const Batch way = xsimd::sqrt(h * h + ahead * ahead);
         return foot + xsimd::select(ahead < 0.0f, h * h / (way - ahead), way + ahead);
     }
-    /// The same in LaneTimes.
+    /// The least length to the ray, as LaneTimes count it.
     [[nodiscard]] Batch soonest(bool warped) const { return warped ? leastWay() + lag : distance(); }
 };
 
 /// A record for registers of rays, in a medium with Henyey-Greenstein scattering.
 struct LaneRecord {
-    const CollapsedFlights* flights;
+    const SliceRecord* flights;
     LaneTimes times;
     Rgb sigmaT;
     bool grey;
@@ -133,7 +133,7 @@ struct LaneRecord {
         return far ? asCast.fromFeet(common, warped) : asCast;
     }
     [[nodiscard]] bool weighsPlaces() const { return times.frames == 1 && times.width > 0.0f; }
-    /// In [0, 1): SliceMeeting::random.
+    /// In [0, 1): RaySliceQuery::random.
     [[nodiscard]] Batch random(size_t which, const LaneRays& rays, int frame) const {
         const Batch u = rays.rotation + float(flights->randomNumber(which) + frameRotation(frame));
         return xsimd::min(u - xsimd::floor(u), Batch(0x1.fffffep-1f));
@@ -163,7 +163,7 @@ inline Batch meanOfFall(const Batch& z) {
 }
 
 /// What a register of rays meets of a record: a point of each ray, or a chord that is integrated over.
-struct LaneReach {
+struct LaneHit {
     LaneMask met;
     Batch alongRay;                 ///< the point, or the chord's end where light is brightest
     Batch length;                   ///< of the flights and the ray up to there: they let e^{-sigma_t length} through

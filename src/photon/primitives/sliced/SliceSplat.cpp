@@ -2,10 +2,10 @@
 
 #include "photon/Tuning.h"
 #include "photon/primitives/beams/BeamSplat.h"
-#include "photon/primitives/sliced/FrameShares.h"
-#include "photon/primitives/sliced/SliceDoses.h"
+#include "photon/primitives/sliced/FrameRoulette.h"
 #include "photon/primitives/sliced/SliceFootprints.h"
 #include "photon/primitives/sliced/SliceGather.h"
+#include "photon/primitives/sliced/SystematicShadowRays.h"
 #include "photon/raster/ImageBand.h"
 
 #include <tbb/parallel_for.h>
@@ -18,7 +18,7 @@ namespace {
 struct BandRays {
     std::vector<float> x, y, z;           ///< origins; empty: all the record's
     std::vector<float> rotation;          ///< of random numbers
-    SliceDoses doses;                     ///< with occluders
+    SystematicShadowRays doses;           ///< with occluders
     std::vector<const ImageSlice*> drawn; ///< the last one that was drawn into each frame
 };
 
@@ -28,19 +28,19 @@ constexpr size_t PilotStep = 8;
 /// Functions return how many records rays met, and may run in many threads, one a band.
 class SliceSplatter {
   public:
-    SliceSplatter(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record, double scale,
+    SliceSplatter(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecord& record, double scale,
                   Film& film)
         : scene_(scene), sensor_(sensor), record_(record), estimate_(scene, sensor), scale_(scale), film_(film),
           occluders_(!scene.primitives.empty()) {}
 
     uint64_t draw(const ImageSlice& slice, ImageBand& band, BandRays& rays) const {
-        const auto shows = [&](const BandPiece& piece) { return piece.mixed || shownIn(slice, piece); };
-        if (std::none_of(band.pieces.begin(), band.pieces.end(), shows)) return 0;
+        const auto shows = [&](const BandSegment& segment) { return segment.mixed || shownIn(slice, segment); };
+        if (std::none_of(band.segments.begin(), band.segments.end(), shows)) return 0;
         if (!slice.inLanes) return drawRays(slice, band);
         uint64_t gathered = 0;
         const auto drawBy = [&](const auto& kernel) {
-            for (BandPiece& piece : band.pieces)
-                if (shows(piece)) gathered += drawLanes(kernel, slice, band, piece, rays);
+            for (BandSegment& segment : band.segments)
+                if (shows(segment)) gathered += drawLanes(kernel, slice, band, segment, rays);
         };
         std::visit(drawBy, slice.kernel);
         return gathered;
@@ -52,25 +52,25 @@ class SliceSplatter {
         for (int y = band.firstRow; y <= band.lastRow; ++y)
             for (int x = 0; x < record_.width; ++x) {
                 const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
-                for (const StraightPiece& piece : record_.pieces) {
-                    if (!(piece.end[pixel] > piece.start[pixel])) continue;
+                for (const MediumSegment& segment : record_.mediumSegments) {
+                    if (!(segment.end[pixel] > segment.start[pixel])) continue;
                     std::fill(sums.begin(), sums.end(), Vec3d(0.0));
-                    gathered += beams.gather(segmentOf(piece, pixel), sums);
-                    addToFilm(sums, piece.throughput[pixel], x, y);
+                    gathered += beams.gather(segmentOf(segment, pixel), sums);
+                    addToFilm(sums, segment.throughput[pixel], x, y);
                 }
             }
         return gathered;
     }
-    /// By a pilot over a part of what is to be drawn.
+    /// Finds the doses by a pilot over a part of what is to be drawn.
     void findDoses(const std::vector<std::optional<ImageSlice>>& slices, const std::vector<uint32_t>& drawn,
                    ImageBand& band, BandRays& rays) const {
         if (!occluders_ || drawn.empty()) return;
         rays.doses.reserve(band.x.size());
         for (size_t k = 0; k < drawn.size(); k += PilotStep)
             if (slices[drawn[k]]->inLanes) draw(*slices[drawn[k]], band, rays);
-        const CollapsedFlights& first = *slices[drawn.front()]->record.flights;
+        const SliceRecord& first = *slices[drawn.front()]->record.flights;
         Sampler sampler(first.random[0], RandomStream::Folded, first.random[1], drawn.size());
-        rays.doses.begin(1.0f / float(PilotStep), tuning::DosesPerRay, sampler);
+        rays.doses.begin(1.0f / float(PilotStep), tuning::ShadowRaysPerRay, sampler);
     }
     [[nodiscard]] BandRays originsOf(const ImageBand& band) const {
         BandRays rays;
@@ -92,55 +92,55 @@ class SliceSplatter {
     }
 
   private:
-    /// Of a piece that all rays share.
-    [[nodiscard]] bool shownIn(const ImageSlice& slice, const BandPiece& piece) const {
-        const int sum = piece.interactions + slice.record.flights->bounce + slice.record.flights->flights();
-        return piece.medium == slice.record.flights->medium && sum >= scene_.transport.minBounces &&
+    /// Whether a slice shows in a segment that all rays share.
+    [[nodiscard]] bool shownIn(const ImageSlice& slice, const BandSegment& segment) const {
+        const int sum = segment.interactions + slice.record.flights->bounce + slice.record.flights->flights();
+        return segment.medium == slice.record.flights->medium && sum >= scene_.transport.minBounces &&
                sum < scene_.transport.maxBounces;
     }
 
     // A register of rays after the other.
     template <typename Kernel>
-    uint64_t drawLanes(const Kernel& kernel, const ImageSlice& slice, ImageBand& band, BandPiece& piece,
+    uint64_t drawLanes(const Kernel& kernel, const ImageSlice& slice, ImageBand& band, BandSegment& segment,
                        BandRays& rays) const {
         uint64_t gathered = 0;
         for (int y = std::max(slice.area.top, band.firstRow); y <= std::min(slice.area.bottom, band.lastRow); ++y)
             for (int x = slice.area.left; x <= slice.area.right; x += Lanes) {
                 const size_t i = band.at(x, y);
-                const LaneRays lanes = raysOf(slice, band, piece, rays, i);
-                kernel.meet(slice.record, lanes, [&](int frame, const LaneReach& reach) {
+                const LaneRays lanes = raysOf(slice, band, segment, rays, i);
+                kernel.intersect(slice.record, lanes, [&](int frame, const LaneHit& hit) {
                     if (std::exchange(rays.drawn[size_t(frame)], &slice) != &slice) band.countDrawn(frame);
-                    gathered += collect(slice, lanes, reach, piece, frame, band.sumsOf(frame), rays, i);
+                    gathered += collect(slice, lanes, hit, segment, frame, band.sumsOf(frame), rays, i);
                 });
             }
         return gathered;
     }
-    [[nodiscard]] LaneRays raysOf(const ImageSlice& slice, const ImageBand& band, const BandPiece& piece,
+    [[nodiscard]] LaneRays raysOf(const ImageSlice& slice, const ImageBand& band, const BandSegment& segment,
                                   const BandRays& rays, size_t i) const {
         constexpr float Far = 1e18f; // products with it are finite
         const auto load = [i](const std::vector<float>& v) { return Batch::load_unaligned(v.data() + i); };
-        const CollapsedFlights& flights = *slice.record.flights;
+        const SliceRecord& flights = *slice.record.flights;
         const Vec3f &o = record_.origin, &b = flights.base;
         const Lanes3 toOrigin =
             rays.x.empty() ? Lanes3(o - b) : Lanes3(load(rays.x) - b.x, load(rays.y) - b.y, load(rays.z) - b.z);
-        const Batch start = load(piece.start), end = xsimd::min(load(piece.end), Batch(Far));
+        const Batch start = load(segment.start), end = xsimd::min(load(segment.end), Batch(Far));
         LaneMask seen = start < end;
         const int before = flights.bounce + flights.flights();
-        if (piece.mixed)
-            seen = piece.select(seen, i, flights.medium, scene_.transport.minBounces - before,
-                                scene_.transport.maxBounces - 1 - before);
+        if (segment.mixed)
+            seen = segment.select(seen, i, flights.medium, scene_.transport.minBounces - before,
+                                  scene_.transport.maxBounces - 1 - before);
         const LaneRays asCast{toOrigin,           {load(band.x), load(band.y), load(band.z)}, start, end, seen,
                               load(rays.rotation)};
         return slice.record.placed(asCast);
     }
 
-    /// Into the band's sums. The throughput holds the way to the piece.
-    uint64_t collect(const ImageSlice& slice, const LaneRays& lanes, const LaneReach& reach, BandPiece& piece,
+    /// Into the band's sums. The throughput holds the way to the segment.
+    uint64_t collect(const ImageSlice& slice, const LaneRays& lanes, const LaneHit& hit, BandSegment& segment,
                      int frame, size_t sums, BandRays& rays, size_t i) const {
         const LaneRecord& record = slice.record;
         const Rgb power = slice.power * record.times.factor(frame);
         const auto channel = [&](int k) {
-            return xsimd::select(reach.met, reach.weight(record.sigmaT[k], lanes.start), Batch(0.0f));
+            return xsimd::select(hit.met, hit.weight(record.sigmaT[k], lanes.start), Batch(0.0f));
         };
         std::array<Batch, 3> weights;
         weights.fill(channel(0));
@@ -149,12 +149,12 @@ class SliceSplatter {
         if (occluders_) {
             Batch brightness(0.0f);
             for (int k = 0; k < 3; ++k) brightness += weights[size_t(k)] * (power[k] / 3.0f);
-            const Batch factor = rays.doses.tested(estimate_, record, lanes, reach, brightness, i);
+            const Batch factor = rays.doses.tested(estimate_, record, lanes, hit, brightness, i);
             if (!xsimd::any(factor > 0.0f)) return 0;
             for (Batch& weight : weights) weight *= factor;
         }
-        for (int k = 0; k < 3; ++k) piece.add(sums + i, weights[size_t(k)], k, power[k]);
-        return uint64_t(darts::lanes::sum(xsimd::select(reach.met, Batch(1.0f), Batch(0.0f))));
+        for (int k = 0; k < 3; ++k) segment.add(sums + i, weights[size_t(k)], k, power[k]);
+        return uint64_t(darts::lanes::sum(xsimd::select(hit.met, Batch(1.0f), Batch(0.0f))));
     }
 
     // Ray by ray.
@@ -169,13 +169,14 @@ class SliceSplatter {
         FrameSums sums(size_t(sensor_.gate.frames));
         for (; x <= last; ++x) {
             const size_t pixel = size_t(y) * size_t(record_.width) + size_t(x);
-            for (const StraightPiece& piece : record_.pieces) {
-                if (!(piece.end[pixel] > piece.start[pixel]) || piece.medium[pixel] != slice.record.flights->medium)
+            for (const MediumSegment& segment : record_.mediumSegments) {
+                if (!(segment.end[pixel] > segment.start[pixel]) ||
+                    segment.medium[pixel] != slice.record.flights->medium)
                     continue;
                 std::fill(sums.begin(), sums.end(), Vec3d(0.0));
-                if (!estimate_.add(*slice.record.flights, segmentOf(piece, pixel), sums)) continue;
+                if (!estimate_.add(*slice.record.flights, segmentOf(segment, pixel), sums)) continue;
                 ++gathered;
-                addToFilm(sums, piece.throughput[pixel], x, y);
+                addToFilm(sums, segment.throughput[pixel], x, y);
             }
         }
         return gathered;
@@ -188,26 +189,26 @@ class SliceSplatter {
         }
     }
 
-    [[nodiscard]] CameraSegment segmentOf(const StraightPiece& piece, size_t pixel) const {
+    [[nodiscard]] CameraSegment segmentOf(const MediumSegment& segment, size_t pixel) const {
         const Vec3f direction(record_.x[pixel], record_.y[pixel], record_.z[pixel]);
         const Vec3f origin = record_.origins.empty() ? record_.origin : record_.origins[pixel];
-        const float start = piece.start[pixel];
-        const double inverseSpeed = 1.0 / double(scene_.media[size_t(piece.medium[pixel])].speedOfLight);
-        return {origin + direction * start,   direction,    piece.end[pixel] - start,
-                double(start) * inverseSpeed, inverseSpeed, piece.interactions[pixel],
-                piece.medium[pixel]};
+        const float start = segment.start[pixel];
+        const double inverseSpeed = 1.0 / double(scene_.media[size_t(segment.medium[pixel])].speedOfLight);
+        return {origin + direction * start,   direction,    segment.end[pixel] - start,
+                double(start) * inverseSpeed, inverseSpeed, segment.interactions[pixel],
+                segment.medium[pixel]};
     }
 
     const Scene& scene_;
-    transport::Sensor sensor_;
-    const SensorRecord& record_;
+    transport::TimeSensor sensor_;
+    const CameraRecord& record_;
     SliceEstimate estimate_;
     double scale_;
     Film& film_;
     bool occluders_;
 };
 
-/// Of the media that scatter and the camera's region: what splatBeams needs.
+/// Whether the media that scatter and the camera's region have one speed: what splatBeams needs.
 bool oneSpeed(const Scene& scene) {
     return std::all_of(scene.media.begin(), scene.media.end(), [&](const Medium& medium) {
         return !medium.scatters() || medium.speedOfLight == scene.cameraRegion.speed;
@@ -216,9 +217,9 @@ bool oneSpeed(const Scene& scene) {
 
 using SliceList = std::vector<std::optional<ImageSlice>>;
 
-/// As the image shows them; none where it does not, and of beams.
-SliceList prepared(const SliceFootprints& footprints, const std::vector<CollapsedFlights>& records,
-                   const FrameShares& shares, const ProgressToken& watch) {
+/// Slices as the image shows them; none where it does not show one, and none of beams.
+SliceList prepared(const SliceFootprints& footprints, const std::vector<SliceRecord>& records,
+                   const FrameRoulette& shares, const ProgressToken& watch) {
     SliceList slices(records.size());
     tbb::parallel_for(size_t(0), slices.size(), [&](size_t i) {
         watch.advanceWithin(256, i);
@@ -240,11 +241,11 @@ std::vector<std::vector<uint32_t>> byBand(const SliceList& slices, size_t bands)
 
 } // namespace
 
-uint64_t splatSlices(const Scene& scene, const transport::Sensor& sensor, const SensorRecord& record,
-                     const std::vector<CollapsedFlights>& records, const Radii& radius, double scale, Film& film,
+uint64_t splatSlices(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecord& record,
+                     const std::vector<SliceRecord>& records, const Radii& radius, double scale, Film& film,
                      const ProgressToken& watch) {
     const SliceSplatter splatter(scene, sensor, record, scale, film);
-    const FrameShares shares(scene, sensor.gate, records, watch);
+    const FrameRoulette shares(scene, sensor.gate, records, watch);
     const SliceList slices = prepared(SliceFootprints(scene, sensor, scale), records, shares, watch);
     const size_t bands = ImageBand::count(record.height);
     const std::vector<std::vector<uint32_t>> drawnIn = byBand(slices, bands);

@@ -49,17 +49,16 @@ double Slices::kernelWidth(const KernelSettings& settings, bool deltaGate, uint3
     return flightRadiusFactor(settings, deltaGate, step);
 }
 
-Radii Slices::radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>&, uint32_t step,
+Radii Slices::radii(const KernelSettings& settings, bool deltaGate, const std::vector<SliceRecord>&, uint32_t step,
                     const ProgressToken&) {
-    // Of the beams among them.
+    // Radius of the beams among them.
     return settings.volumeRadius * float(flightRadiusFactor(settings, deltaGate, step));
 }
 
-uint64_t Slices::splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                       const Selection<CollapsedFlights>& slices, double scale, Film& film,
-                       const ProgressToken& watch) {
+uint64_t Slices::splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
+                       const Selection<SliceRecord>& slices, double scale, Film& film, const ProgressToken& watch) {
     uint64_t met = 0;
-    for (const SensorRecord* record : records)
+    for (const CameraRecord* record : records)
         met += splatSlices(scene, sensor, *record, slices.records, slices.radii, scale, film, watch);
     return met;
 }

@@ -13,13 +13,13 @@ namespace tungsten::photon {
 class SliceGather;
 
 struct Slices {
-    using Record = CollapsedFlights;
+    using Record = SliceRecord;
     using Gather = SliceGather;
     static constexpr size_t PartsAtSurfaces = 0; ///< that kernels near them become: slices have no kernels
     static constexpr bool AtVertices = false;
     static constexpr bool ManyFrames = true;
     static constexpr bool NeedsPlace = false;
-    static constexpr bool CountsRecords = true;
+    static constexpr bool LimitsRecords = true;
     static constexpr bool SplatsOften = false;
     static constexpr const char* Effect = "sliced primitives";
     static constexpr const char* Reason = "a medium scatters, volume_photon_type asks for it";
@@ -35,8 +35,8 @@ struct Slices {
     static std::string guidanceObstacle(const Scene& scene, bool speedsDiffer);
     /// Any camera.
     [[nodiscard]] bool splats(bool /*straightRays*/, bool oneTime) const { return !classes.shortFlights && oneTime; }
-    /// As the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both: time is
-    /// best spent in proportion to the square roots of the variances.
+    /// Narrows as the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both:
+    /// time is best spent in proportion to the square roots of the variances.
     void narrow(float factor) {
         classes.shortBeams *= factor;
         if (!classes.beams || classes.share >= 1.0f) return;
@@ -44,20 +44,19 @@ struct Slices {
         classes.sharedShare *= factor;
     }
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
-    static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<CollapsedFlights>& records,
+    static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<SliceRecord>& records,
                        uint32_t step, const ProgressToken& watch);
     /// Slices have no kernels.
     static NearSurfaces nearSurfaces(const KernelSettings&, const Scene& scene) { return {scene, Infinity, 1.0f}; }
-    static void endAtSurfaces(const KernelEnds&, const std::vector<CollapsedFlights>&, const Radii&) {}
+    static void endAtSurfaces(const KernelEnds&, const std::vector<SliceRecord>&, const Radii&) {}
     /// All.
-    static std::optional<Selection<CollapsedFlights>> straight(const Scene&, const ArrivalCulling&,
-                                                               const std::vector<CollapsedFlights>&, const Radii&) {
+    static std::optional<Selection<SliceRecord>> straight(const Scene&, const ArrivalCulling&,
+                                                          const std::vector<SliceRecord>&, const Radii&) {
         return std::nullopt;
     }
-    static double foldedShare(const std::vector<CollapsedFlights>&, const Radii&) { return 1.0; }
-    static uint64_t splat(const Scene& scene, const transport::Sensor& sensor, const SensorRecords& records,
-                          const Selection<CollapsedFlights>& slices, double scale, Film& film,
-                          const ProgressToken& watch);
+    static double redirectedShare(const std::vector<SliceRecord>&, const Radii&) { return 1.0; }
+    static uint64_t splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
+                          const Selection<SliceRecord>& slices, double scale, Film& film, const ProgressToken& watch);
 };
 
 /// Light that is seen scattering once after a surface or a light of a single direction: slices leave it to beams.

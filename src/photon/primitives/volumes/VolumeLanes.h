@@ -6,33 +6,33 @@
 namespace tungsten::photon {
 
 /// What a volume counts of a path that balls make too, (16): of this Jacobian, at flights of these lengths.
-inline Batch volumeShare(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian, const Batch& t1,
-                         const Batch& t2, const Batch& t3) {
+inline Batch volumeWeight(const LaneRecord& record, const LaneRays& rays, const Batch& jacobian, const Batch& t1,
+                          const Batch& t2, const Batch& t3) {
     const Lanes3 last(record.flights->directions[2]);
     return shareOf(record.phasePdf * jacobian,
                    flightPdfs(record, t1, t2) * t3 * t3 * lengthPerLength(last, rays.direction, record.warped));
 }
-/// The same inside a gate.
-inline Batch volumeShareInGate(const LaneRecord& record, const LaneRays& rays, const LaneReach& reach) {
-    const auto& [t1, t2, t3, none] = reach.lengths;
+/// The volume's weight inside a gate.
+inline Batch volumeWeightInGate(const LaneRecord& record, const LaneRays& rays, const LaneHit& hit) {
+    const auto& [t1, t2, t3, none] = hit.lengths;
     const auto& w = record.flights->directions;
     const Batch soon = record.times.start(0) - rays.lag, late = record.times.start(1) - rays.lag, before = t1 + t2;
     LaneRays fromCentre = rays;
     fromCentre.toOrigin = rays.toOrigin - (Lanes3(w[0]) * t1 + Lanes3(w[1]) * t2);
     const BallGateView lit(fromCentre, soon - before, late - before, record.warped);
     const Batch volume =
-        record.phasePdf * placedByVolume(record, rays, {Lanes3(w[2]), t1, t2, t3, reach.alongRay}, soon, late);
+        record.phasePdf * placedByVolume(record, rays, {Lanes3(w[2]), t1, t2, t3, hit.alongRay}, soon, late);
     return 1.0f - ballShareInGate(lit, flightPdfs(record, t1, t2), volume);
 }
 
 /// At one path length, or a random one of each frame. For one ray all four lengths are linear in the path length.
 class VolumeSliceLanes {
   public:
-    explicit VolumeSliceLanes(const CollapsedFlights& flights)
+    explicit VolumeSliceLanes(const SliceRecord& flights)
         : edges_(flights.directions[0] - flights.directions[2], flights.directions[1] - flights.directions[2]) {}
     /// emit(frame, reach)
     template <typename Emit>
-    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+    void intersect(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         const Line line = record.warped ? warpedLine(record, rays) : unwarpedLine(record, rays);
         const LaneMask seen = rays.seen && line.jacobian > LeastLaneDeterminant;
         if (!xsimd::any(seen)) return;
@@ -47,7 +47,7 @@ class VolumeSliceLanes {
             if (!xsimd::any(met)) continue;
             if (record.warped) met = met && closes(record, rays, {t1, t2, t3}, along);
             emit(frame,
-                 LaneReach{
+                 LaneHit{
                      met, along, t1 + t2 + t3 + along, factor(record, rays, line.jacobian, t1, t2, t3), {t1, t2, t3}});
         }
     }
@@ -112,20 +112,20 @@ class VolumeSliceLanes {
                                       const Batch& t1, const Batch& t2, const Batch& t3) {
         const Lanes3 last(record.flights->directions[2]);
         const Batch weight = record.towardsCamera(last, rays) / jacobian;
-        return record.flights->shared ? weight * volumeShare(record, rays, jacobian, t1, t2, t3) : weight;
+        return record.flights->shared ? weight * volumeWeight(record, rays, jacobian, t1, t2, t3) : weight;
     }
 
-    DualPair edges_; ///< of the unwarped triangle, per unit of path length
+    ReciprocalBasis2 edges_; ///< of the unwarped triangle, per unit of path length
 };
 
 /// Inside each frame.
 class VolumeChordLanes {
   public:
-    explicit VolumeChordLanes(const CollapsedFlights& flights)
+    explicit VolumeChordLanes(const SliceRecord& flights)
         : edges_(Vec3d(flights.directions[0]), Vec3d(flights.directions[1]), Vec3d(flights.directions[2])) {}
     /// emit(frame, reach)
     template <typename Emit>
-    void meet(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
+    void intersect(const LaneRecord& record, const LaneRays& rays, Emit&& emit) const {
         if (!usable()) return;
         ChordLanes<3> chord{{}, {}, rays.start, rays.end};
         for (size_t i = 0; i < 3; ++i) {
@@ -148,19 +148,19 @@ class VolumeChordLanes {
             part.keep(p, q, record.times.start(frame) - rays.lag, record.times.start(frame + 1) - rays.lag);
             const LaneMask here = met && part.holds();
             if (!xsimd::any(here)) continue;
-            LaneReach reach = part.reach(record, here, factor, record.random(0, rays, frame));
+            LaneHit hit = part.hit(record, here, factor, record.random(0, rays, frame));
             if (record.flights->shared) {
-                const auto& [t1, t2, t3, none] = reach.lengths;
-                reach.factor *= record.weighsPlaces() ? volumeShareInGate(record, rays, reach)
-                                                      : volumeShare(record, rays, slices, t1, t2, t3);
+                const auto& [t1, t2, t3, none] = hit.lengths;
+                hit.factor *= record.weighsPlaces() ? volumeWeightInGate(record, rays, hit)
+                                                    : volumeWeight(record, rays, slices, t1, t2, t3);
             }
-            emit(frame, reach);
+            emit(frame, hit);
         }
     }
 
   private:
     [[nodiscard]] bool usable() const { return edges_.determinant > LeastLaneDeterminant; }
-    DualTriple edges_;
+    ReciprocalBasis3 edges_;
 };
 
 } // namespace tungsten::photon

@@ -33,7 +33,7 @@ Real volumeJacobian(const std::array<Vector<Real>, 3>& w, const Vector<Real>& ra
 /// is at most `least`, or the ray passes beside the slice.
 template <typename Real>
 std::optional<VolumeSlice<Real>> sliceVolume(const Vector<Real>& base, const std::array<Vector<Real>, 3>& w,
-                                             const SightLine<Real>& sight, Real residual,
+                                             const CameraRay<Real>& sight, Real residual,
                                              Real least = LeastDeterminant<Real>) {
     if (!(residual > 0)) return std::nullopt;
     const Vector<Real>& c = sight.direction;
@@ -66,7 +66,7 @@ using VolumeChord = Chord<Real, 3>;
 /// The part of the ray inside the volume, for any time; its jacobian is |w1 w2 w3|.
 template <typename Real>
 std::optional<VolumeChord<Real>> volumeChord(const Vector<Real>& base, const std::array<Vector<Real>, 3>& w,
-                                             const SightLine<Real>& sight, Real least = LeastDeterminant<Real>) {
+                                             const CameraRay<Real>& sight, Real least = LeastDeterminant<Real>) {
     const LinearSystem<Real> system(w[0], w[1], w[2]);
     const Real jacobian = std::abs(system.determinant());
     if (!(jacobian > least)) return std::nullopt;
