@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """What operations of paths and light paths cost: the tables `Nanoseconds` of src/path/Tuning.h and src/photon/Tuning.h, which pilots weigh
-plain and guided paths by, fitted anew.
+plain and guided paths by, and with --method passes `PassNanoseconds`, by which a pilot weighs volume primitives, fitted anew.
 
-usage: costs.py TUNGSTEN SCENE.json... [--method paths|points|beams|mis_volumes_balls] [--seconds 2]
+usage: costs.py TUNGSTEN SCENE.json... [--method paths|points|beams|mis_volumes_balls|passes] [--seconds 2]
 
 Every scene is rendered at a plain_share of 1, 0.5 and 0; CPU seconds are fitted by what counters say, least squares of relative errors, no cost
 below 0. Give many scenes that differ: what always comes together (a vertex and its ray) is told apart by nothing else."""
@@ -20,13 +20,18 @@ WALK = [("vertex", ["medium events", "surface events"]), ("ray", ["rays", "shado
 PATHS = [*WALK, ("connection", ["connections"]), ("density", ["vertices with densities of guided paths"])]
 PHOTONS = [("path", ["photons"]), *WALK, ("connection", ["surface connections"]), ("record", ["stored volume photons"]),
            ("density", ["flights with densities of guided paths"])]
+WALKS_OF_PASSES = [("path", ["photons"]), ("ray", ["rays"]), ("mediumEvent", ["medium events"]), ("surfaceEvent", ["surface events"]),
+                   ("controlVertex", ["control vertices"]), ("connection", ["surface connections"]),
+                   ("density", ["flights with densities of guided paths"])]
+#: Of a primitive: counters of what is stored and gathered, and whether each record is splatted to all of the image.
+PRIMITIVES = {"points": ("stored volume photons", "gathered photons", False), "beams": ("photon beams", "gathered beams", False),
+              "mis_volumes_balls": ("sliced primitives", "gathered slices", True)}
 
 
-def rendered(args, scene, share):
-    """Counters and CPU seconds of a render, if one pass ended."""
-    paths = args.method == "paths"
-    settings = {"type": "transient_path_tracer"} if paths else {"type": "progressive_transient_photon_map", "volume_photon_type": args.method}
-    settings["darts"] = json.dumps({"preset": "best", "plain_share": share})
+def rendered(args, scene, method, darts):
+    """Counters, CPU seconds of passes, and pixels of a render, if one pass ended."""
+    settings = {"type": "transient_path_tracer"} if method == "paths" else {"type": "progressive_transient_photon_map", "volume_photon_type": method}
+    settings["darts"] = json.dumps(darts)
     with tempfile.TemporaryDirectory() as folder:
         command = [args.tungsten, "--quiet", "-t", "1", "-d", folder, "--no-frames", "-e", "film.npz", "--allow-outside", "--spp", "100000000",
                    "--timeout", f"{args.seconds}s", scene]
@@ -36,7 +41,7 @@ def rendered(args, scene, share):
             return None  # not one pass ended in time
         with np.load(os.path.join(folder, "film.npz")) as film:
             statistics = json.loads(bytes(film["metadata.json"]))["statistics"]
-    return statistics["counters"], statistics["process CPU seconds"]
+    return statistics["counters"], statistics["stages"]["passes"]["CPU seconds"], statistics["width"] * statistics["height"]
 
 
 def fitted(rows, seconds):
@@ -51,21 +56,44 @@ def fitted(rows, seconds):
     return {}
 
 
+def fit_passes(args):
+    """All primitives at once, as their walks cost alike: each has columns of its own for records."""
+    names = [name for name, _ in WALKS_OF_PASSES]
+    names += [f"{method}.{what}" for method in PRIMITIVES for what in ("stored", "perPixel", "splatted", "gathered")]
+    rows, seconds = [], []
+    for scene in args.scenes:
+        for place, (method, (stored, gathered, everywhere)) in enumerate(PRIMITIVES.items()):
+            found = rendered(args, scene, method, "best")
+            if not found:
+                continue
+            counters, cpu, pixels = found
+            records, splatted = counters.get(stored, 0), counters.get("splatted records", 0)
+            own = np.zeros(4 * len(PRIMITIVES))
+            own[4 * place: 4 * place + 4] = [records, records * pixels if everywhere and splatted else 0, 0 if everywhere else splatted,
+                                             counters.get(gathered, 0) - splatted]
+            rows.append([sum(counters.get(name, 0) for name in added) for _, added in WALKS_OF_PASSES] + list(own))
+            seconds.append(cpu)
+    costs = fitted(rows, seconds)
+    print(", ".join(f"{names[i]} {1e9 * cost:.3g}" for i, cost in costs.items()) + " ns")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tungsten")
     parser.add_argument("scenes", nargs="+")
-    parser.add_argument("--method", choices=["paths", "points", "beams", "mis_volumes_balls"], default="paths")
+    parser.add_argument("--method", choices=["paths", "points", "beams", "mis_volumes_balls", "passes"], default="paths")
     parser.add_argument("--seconds", type=float, default=2.0)
     args = parser.parse_args()
+    if args.method == "passes":
+        return fit_passes(args)
     table = PATHS if args.method == "paths" else PHOTONS
     for share, walks in ((1, "plain"), (0, "guided"), (0.5, "both")):
         rows, seconds = [], []
         for scene in args.scenes:
-            found = rendered(args, scene, share)
+            found = rendered(args, scene, args.method, {"preset": "best", "plain_share": share})
             if not found:
                 continue
-            counters, cpu = found
+            counters, cpu, _ = found
             rows.append([sum(counters.get(name, 0) for name in added) for _, added in table])
             seconds.append(cpu)
         costs = fitted(rows, seconds)

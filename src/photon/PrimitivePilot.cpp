@@ -45,11 +45,11 @@ double pixelsOf(const Scene& scene) {
 double costOf(const Statistics& counted, const VolumePrimitive& primitive, double pixels, double ratio) {
     const auto& costs = tuning::PassNanoseconds;
     const auto count = [&](const std::string& counter) { return double(counted.counter(counter)); };
-    const double walks = costs.path * count("photons") + costs.ray * count("rays") +
-                         costs.mediumEvent * count("medium events") + costs.surfaceEvent * count("surface events") +
-                         costs.controlVertex * count(counter::ControlVertices) +
-                         costs.connection * count(counter::SurfaceConnections) +
-                         costs.density * count("flights with densities of guided paths");
+    const double walks =
+        costs.path * count(counter::Photons) + costs.ray * count(counter::Rays) +
+        costs.mediumEvent * count(counter::MediumEvents) + costs.surfaceEvent * count(counter::SurfaceEvents) +
+        costs.controlVertex * count(counter::ControlVertices) + costs.connection * count(counter::SurfaceConnections) +
+        costs.density * count(counter::FlightDensities);
     const auto ofRecords = [&]<typename Primitive>(const Primitive& p) {
         const tuning::PassCosts::Record& record = Primitive::AtVertices      ? costs.point
                                                   : Primitive::LimitsRecords ? costs.slice

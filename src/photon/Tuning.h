@@ -112,7 +112,8 @@ struct PassCosts {
     double path, ray, mediumEvent, surfaceEvent, controlVertex, connection, density;
     Record point, beam, slice;
 };
-/// Fitted to CPU seconds and counters of 350 renders of 43 scenes, 24 to 200 pixels wide: benchmarks/costs.py passes.
+/// Fitted to CPU seconds and counters of 350 renders of 43 scenes, 24 to 200 pixels wide: benchmarks/costs.py --method
+/// passes.
 inline constexpr PassCosts PassNanoseconds{.path = 210.0,
                                            .ray = 180.0,
                                            .mediumEvent = 60.0,

@@ -55,11 +55,11 @@ struct StepCounters {
 };
 
 inline void reportSteps(const StepCounters& counters, Statistics& statistics) {
-    statistics.add("medium events", counters.mediumEvents);
+    statistics.add(counter::MediumEvents, counters.mediumEvents);
     statistics.add("scatterings with preferred directions", counters.anisotropicEvents);
     statistics.add("scatterings in coloured media", counters.colouredEvents);
     statistics.add("flights through absorbing media", counters.absorbing);
-    statistics.add("surface events", counters.surfaceEvents);
+    statistics.add(counter::SurfaceEvents, counters.surfaceEvents);
     statistics.add("surface scatterings", counters.scattered);
     statistics.add("mirror reflections", counters.mirrored);
     statistics.add("refractions", counters.refracted);

@@ -44,6 +44,11 @@ inline constexpr FeatureName LightCut{"late light cut by max_bounces"};
 
 namespace counter {
 inline constexpr CounterName NonFiniteSamples{"non-finite samples"};
+inline constexpr CounterName Photons{"photons"}; ///< light paths
+inline constexpr CounterName Rays{"rays"};
+inline constexpr CounterName MediumEvents{"medium events"};
+inline constexpr CounterName SurfaceEvents{"surface events"};
+inline constexpr CounterName FlightDensities{"flights with densities of guided paths"};
 inline constexpr CounterName ShadowRays{"shadow rays"};
 inline constexpr CounterName LightPaths{"light paths"};
 inline constexpr CounterName PilotPaths{"pilot paths"};

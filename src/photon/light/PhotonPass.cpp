@@ -92,13 +92,13 @@ void report(const TracedPaths& traced, Statistics& statistics) {
         statistics.add("volume deposits", counters->volumeDeposits);
         statistics.add("volume deposits that may count", counters->countingDeposits);
     }
-    statistics.add("rays", traced.rays());
-    statistics.add("flights with densities of guided paths", traced.densities.densities);
+    statistics.add(counter::Rays, traced.rays());
+    statistics.add(counter::FlightDensities, traced.densities.densities);
 }
 
 void reportStored(const PhotonMaps& maps, const VolumePrimitive& primitive, Statistics& statistics) {
     statistics.add(counter::SurfaceConnections, maps.received.size());
-    statistics.add("photons", maps.paths);
+    statistics.add(counter::Photons, maps.paths);
     statistics.add(counter::StoredSurfacePhotons, maps.surface.records.size());
     forEachPrimitive(primitive, [&](const auto& p) {
         using Record = typename std::decay_t<decltype(p)>::Record;

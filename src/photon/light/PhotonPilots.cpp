@@ -35,7 +35,7 @@ Deposits PhotonPass::tracePilots(const PhotonContext& context, const PassInfo& p
         const Sampler sampler(pass.seed, RandomStream::Pilot, pass.index, path);
         tracePath(path, context, sampler, nullptr, trail, pilot);
     }
-    statistics.add("rays", pilot.rays());
+    statistics.add(counter::Rays, pilot.rays());
     return std::move(pilot.deposits);
 }
 
@@ -58,7 +58,7 @@ void PhotonPass::setLightPerConnection(const PassInfo& pass, const PhotonSetting
     for (const TracedPaths& pilot : pilots) {
         expectedLight.insert(expectedLight.end(), pilot.deposits.expectedLight.begin(),
                              pilot.deposits.expectedLight.end());
-        statistics.add("rays", pilot.rays());
+        statistics.add(counter::Rays, pilot.rays());
     }
     connections.setLightPerConnection(
         lightPerConnection(std::move(expectedLight), connectionEffort_ * tuning::ConnectionsPerPath * double(paths)));

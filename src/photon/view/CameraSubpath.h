@@ -128,7 +128,7 @@ CameraSubpathCounters followCameraSubpath(const Scene& scene, const Ray& ray, co
 }
 
 inline void report(const CameraSubpathCounters& steps, Statistics& statistics) {
-    statistics.add("rays", steps.rays);
+    statistics.add(counter::Rays, steps.rays);
     statistics.add(counter::GlossyCameraReflections, steps.glossy);
     transport::reportSteps(steps, statistics);
 }
