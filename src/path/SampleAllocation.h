@@ -28,9 +28,9 @@ class SampleAllocation {
     [[nodiscard]] Vec2i pixelOf(size_t block, float u, float v) const;
     /// What two independent paths of a pixel differ by, half of the squares summed over frames, and what they cost.
     void tell(size_t block, double variance, double cost);
-    /// Makes the densities of what was told. They must prove themselves: densities by one half of the pairs are judged
-    /// by the other half, over neighbourhoods of different width, and those with the least variance x cost are taken;
-    /// even ones where none is better.
+    /// Makes the densities of what was told. They must prove themselves: densities by either half of the pairs are
+    /// judged by the other half, over neighbourhoods of different width, and those whose larger variance x cost is
+    /// least are taken; even ones where none saves a fifth.
     void choose();
 
     /// Samples [first, first + count) of a pixel in a pass that has samples [first, first + count) of an even image.
