@@ -110,6 +110,30 @@ TEST(PrimitivePilot, RendersAsTheChosenPrimitive) {
         for (int x = 0; x < 16; ++x) EXPECT_EQ(films[0].mean(0).at(x, y), films[1].mean(0).at(x, y)) << x << ' ' << y;
 }
 
+/// Rays that look for records find an empty store, as in a room with haze so thin that few paths scatter in it.
+TEST(PrimitivePilot, GathersFromEmptyStores) {
+    const Loaded loaded = load("1e-6", {"camera.type=thinlens", "camera.aperture_size=0.1", "camera.focus_distance=4"});
+    for (const VolumePrimitive& primitive : {VolumePrimitive(Points{}), VolumePrimitive(Beams{})}) {
+        PhotonSettings settings = loaded.settings;
+        settings.primitive = primitive;
+        settings.alternatives = {primitive};
+        settings.photonCount = 1;
+        PhotonIntegrator integrator(loaded.scene, settings);
+        SceneFacts facts = analyseScene(*loaded.scene);
+        Features features;
+        integrator.plan(facts, features);
+        Statistics statistics;
+        integrator.prepare(facts, {}, statistics);
+        Film film(16, 16, 1);
+        for (uint64_t seed = 0; seed < 4; ++seed) {
+            film.beginPass();
+            integrator.renderPass({.seed = seed}, film, statistics);
+            film.endPass(1.0);
+        }
+        EXPECT_TRUE(std::isfinite(meanValue(film)));
+    }
+}
+
 /// Also where nothing arrives at all, and nothing can be told.
 TEST(PrimitivePilot, EndsWhereAllIsBlack) {
     const MeasuredPrimitive dark =

@@ -19,6 +19,10 @@ void photonBounds(const RTCBoundsFunctionArguments* arguments) {
 
 EmbreePoints::EmbreePoints(const std::vector<PointWithRadius>& discs)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    if (discs.empty()) { // Embree has no buffers of nothing
+        rtcCommitScene(scene_);
+        return;
+    }
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_DISC_POINT);
     static_assert(sizeof(PointWithRadius) == 16);
     for (const PointWithRadius& disc : discs) largestRadius_ = std::max(largestRadius_, disc.radius);

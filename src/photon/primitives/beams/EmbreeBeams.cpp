@@ -26,6 +26,10 @@ Element* newBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, s
 EmbreeBeams::EmbreeBeams(const std::vector<PhotonBeam>& beams, const Radii& radii, bool fewRays)
     : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     cut(beams, radii, fewRays ? 1.0f : tuning::MostPieces);
+    if (pieces_.empty()) { // Embree has no buffers of nothing
+        rtcCommitScene(scene_);
+        return;
+    }
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE);
     auto* vertices = newBuffer<CurveVertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * pieces_.size());
     auto* firstVertices = newBuffer<uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, pieces_.size());
