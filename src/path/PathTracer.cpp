@@ -20,6 +20,7 @@ namespace tungsten::path {
 namespace {
 
 constexpr size_t TileSide = 8;
+constexpr double PilotFrame = 10.0;       ///< nanoseconds for each frame of a path in that pilot
 constexpr uint32_t MostSampleRounds = 64; ///< pairs of a block of pixels in a pilot of samples
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
@@ -283,7 +284,7 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
         }
         const double own = costs(counters).sum() + tuning::Nanoseconds.sample;
         allocation.tell(block, variance, own);
-        cost += own;
+        cost += own + 2.0 * PilotFrame * double(frames);
     };
     watch.stage("pilot of samples", MostSampleRounds);
     withPaths(watch, [&](const auto& trace) {

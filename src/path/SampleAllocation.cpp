@@ -1,5 +1,7 @@
 #include "path/SampleAllocation.h"
 
+#include "path/Tuning.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,12 +11,6 @@ namespace {
 
 /// Blocks along a side of an image, at most.
 constexpr int MostBlocks = 32;
-/// Pairs that tell the variance of a block, with those of blocks about it: few follow what an image has, many what
-/// noise leaves.
-constexpr std::array<double, 3> NeighbouringPairs{64.0, 256.0, 1024.0};
-/// Variance x cost over that of even samples, below which densities are taken: verdicts of few bright paths are off by
-/// so much. Variance x CPU of slow-nested-glass and plastic-floor-fogcube of what promised less: 1.28 and 1.19.
-constexpr double WorthIt = 0.8;
 /// Bit of sample numbers that no other pass uses, for passes of too few samples to be shared out.
 constexpr uint32_t EvenSamples = 1u << 31;
 
@@ -110,8 +106,9 @@ void SampleAllocation::choose() {
         }
         return evenVariance > 0.0 ? variance * cost / (evenVariance * evenCost) : 1.0;
     };
-    double least = WorthIt;
-    for (const double pairs : NeighbouringPairs) {
+    double least = tuning::WorthSharing;
+    // Few pairs follow what an image has, many what noise leaves.
+    for (const double pairs : {64.0, 256.0, 1024.0}) {
         // Both halves must agree: a single bright path makes one of them promise much.
         const double cost = std::max(predicted(densitiesBy(halves_[0], 0.5 * pairs), halves_[1]),
                                      predicted(densitiesBy(halves_[1], 0.5 * pairs), halves_[0]));

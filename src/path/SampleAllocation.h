@@ -15,7 +15,8 @@ namespace tungsten::path {
 class SampleAllocation {
   public:
     /// No pixel gets less than this part of its even share: its variance is at most the inverse times that of even
-    /// samples, whatever the pilot has missed. Of so many samples a pixel a pass has at least one.
+    /// samples, whatever the pilot has missed. Passes of fewer samples a pixel than FewestSamples stay even, since some
+    /// pixels would have none.
     static constexpr float Least = 0.25f, Most = 4.0f;
     static constexpr uint32_t FewestSamples = 4;
 

@@ -40,7 +40,7 @@ void PhotonPlan::describeKernels(const Scene& scene, const PhotonSettings& setti
                       : settings.boundaryKernels
                           ? "what they would spread beyond, where nothing gathers it, stays before"
                           : "boundary_kernels is off: they reach beyond, where nothing gathers them",
-                      {"integrator.boundary_kernels"});
+                      {"integrator.boundary_kernels"}, {counter::EndedKernels});
     if (!any || (points && !settings.fixedVolumeRadius)) return;
     float densest = 0.0f;
     for (const Medium& medium : scene.media)

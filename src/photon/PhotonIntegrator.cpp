@@ -147,11 +147,15 @@ void PhotonIntegrator::gatherVolume(VolumeStore&& maps, const PassInfo& pass, Ga
         if (store.records.empty()) return;
         Radii radii = primitive.radii(settings_, scene_->transport.gate.delta, store.records, step(pass), pass.watch);
         const auto endKernels = [this, random = Sampler(pass.seed, RandomStream::Folded, pass.index, 2),
-                                 watch = pass.watch](Selection<typename Primitive::Record>& seen, bool splatted) {
+                                 watch = pass.watch,
+                                 &statistics](Selection<typename Primitive::Record>& seen, bool splatted) {
             if (!nearSurfaces_) return;
             KernelEnds ends{*scene_, *nearSurfaces_, random, std::nullopt, watch};
             if (splatted) ends.view.emplace(scene_->camera);
             Primitive::endAtSurfaces(ends, seen.records, seen.radii);
+            statistics.add(counter::EndedKernels,
+                           uint64_t(std::ranges::count_if(
+                               seen.radii.edges(), [](const KernelEdges& edges) { return edges.nearest.exists(); })));
         };
         structures.volume.template emplace<VolumeGather<Primitive>>(*scene_, structures.sensor, photonPass_->culling(),
                                                                     std::move(store), std::move(radii), endKernels,

@@ -10,7 +10,7 @@ namespace {
 constexpr double MostPhotons = 1e9;
 constexpr float Unbounded = 1e30f;
 
-/// None: the scene leaves the choice to its plan.
+/// None: the scene leaves the choice to a pilot.
 std::optional<VolumePrimitive> readPrimitive(const ObjectReader& block) {
     constexpr Meaning meaning{"none", "what the light that scatters in media is stored as; auto: as suits the scene"};
     std::vector<NamedPrimitive> primitives;

@@ -8,30 +8,24 @@
 #include "tungsten/film/FilmErrors.h"
 #include "tungsten/integrator/Names.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tungsten::photon {
 
 namespace {
 
-/// Pixels of the pilots' image, at most: enough for kernels and paths of light to look as they will.
-constexpr double MostPixels = 4096.0;
-/// Light paths of a pilot's pass.
-constexpr double PathsOfPass = 256.0;
-/// Passes of each primitive: all have the first number of them, those that are not far worse twice as many, and so on.
-constexpr uint32_t LeastPasses = 16, MostPasses = 512, SlicePasses = 1024;
-constexpr double FarWorse = 8.0, LeastEffective = 6.0;
-/// Radii shrink from pass to pass: those of this one stand for all.
-constexpr double MiddlePass = 15.0;
-/// Nanoseconds of all passes, about.
-constexpr double MostCost = transport::tuning::MostPilotCost;
+/// Pixels of the pilots' image, at most, over all frames, and of each frame at least: enough for kernels and paths of
+/// light to look as they will.
+constexpr double MostPixels = 4096.0, LeastPixels = 256.0;
 
 /// The scene as seen in a smaller image, over the same geometry.
 std::shared_ptr<const Scene> smallScene(const Scene& scene) {
     auto small = std::make_shared<Scene>(scene);
     if (small->camera.detectors()) return small;
     Vec2i& size = small->camera.resolution;
-    const double part = std::sqrt(MostPixels / (double(size.x) * double(size.y)));
+    const double most = std::max(MostPixels / double(scene.transport.gate.frames), LeastPixels);
+    const double part = std::sqrt(most / (double(size.x) * double(size.y)));
     if (part >= 1.0) return small;
     size = {std::max(int(double(size.x) * part), 1), std::max(int(double(size.y) * part), 1)};
     return small;
@@ -55,7 +49,7 @@ double costOf(const Statistics& counted, const VolumePrimitive& primitive, doubl
                                                   : Primitive::LimitsRecords ? costs.slice
                                                                              : costs.beam;
         const double stored = count(p.Stored), splatted = count(counter::SplattedRecords);
-        return record.stored * stored +
+        return record.stored * stored + record.ended * count(counter::EndedKernels) +
                ratio * ((splatted > 0.0 ? record.perPixel * pixels * stored : 0.0) + record.splatted * splatted +
                         record.gathered * (count(p.Gathered) - splatted));
     };
@@ -72,26 +66,22 @@ class Pilot {
         Statistics unreported;
         integrator_.prepare(facts, watch, unreported);
         pass_.watch = watch;
-        pass_.share = std::min(1.0, PathsOfPass / double(settings.photonCount));
+        pass_.share = std::min(1.0, tuning::PathsOfPass / double(settings.photonCount));
+        // Variances are as the inverse of the number of light paths, but where kernels narrow the more there are: then
+        // a ray meets as many as their cube root.
+        const bool follow = std::visit([&](const auto& p) { return p.radiiFollowRecords(settings); }, primitive_);
+        ofWholePass_ = follow ? std::cbrt(pass_.share) : pass_.share;
     }
     void render(uint32_t passes) {
         if (film_.passes() == 0) renderPass(pass_.share * 1e-6, camera_);
         while (film_.passes() < passes) {
             renderPass(pass_.share, counted_);
-            const double before = double(film_.passes()) * meanValue(film_);
             film_.endPass(1.0);
-            const double own = double(film_.passes()) * meanValue(film_) - before;
-            squares_ += own * own;
         }
     }
     [[nodiscard]] const VolumePrimitive& primitive() const { return primitive_; }
     [[nodiscard]] uint32_t passes() const { return film_.passes(); }
     [[nodiscard]] double cost() const { return costOf(counted_, primitive_, pixels(), 1.0); }
-    /// Passes of one brightness that would vary as these do in their mean: few, where most light came with a few.
-    [[nodiscard]] double effectivePasses() const {
-        const double sum = double(film_.passes()) * meanValue(film_);
-        return squares_ > 0.0 ? sum * sum / squares_ : 0.0;
-    }
     [[nodiscard]] double mean() const { return meanValue(film_); }
     /// Variance times cost of a whole pass in an image of so many times the pixels. `brightest`: the largest mean of
     /// the primitives; what this one has not seen of it in n passes comes at most once in n, with a variance of n times
@@ -103,7 +93,7 @@ class Pilot {
         // A pass without light paths costs what camera paths do.
         const double camera = costOf(camera_, primitive_, pixels(), 1.0);
         const double lightPaths = std::max(costOf(counted_, primitive_, pixels(), pixelRatio) / passes - camera, 0.0);
-        return variance * (lightPaths + pixelRatio * camera * pass_.share);
+        return variance * ofWholePass_ * (lightPaths / pass_.share + pixelRatio * camera);
     }
 
   private:
@@ -114,13 +104,13 @@ class Pilot {
     PhotonIntegrator integrator_;
     Film film_;
     PassInfo pass_;
-    double squares_ = 0.0;        ///< of the passes' means
+    double ofWholePass_ = 1.0;    ///< its variance over that of a pass here
     Statistics counted_, camera_; ///< of all passes; of one that has hardly any light paths
 
     void renderPass(double share, Statistics& counted) {
         PassInfo pass = pass_;
         pass.share = share;
-        pass.index = progressive_ ? uint32_t(std::min(std::round(MiddlePass / share), 4e9)) : 0;
+        pass.index = progressive_ ? uint32_t(std::min(std::round(tuning::MiddlePass / share), 4e9)) : 0;
         pass.firstSample = film_.passes();
         pass.seed = transport::PilotKey + film_.passes();
         film_.beginPass();
@@ -135,7 +125,8 @@ class Comparison {
         : best_(pilots.front()->primitive()), pilots_(std::move(pilots)), pixelRatio_(pixelRatio) {}
 
     [[nodiscard]] bool undecided() const {
-        return pilots_.size() > 1 && next_ <= MostPasses && cost_ < (slicesAhead_ ? 2.0 : 1.0) * MostCost;
+        return pilots_.size() > 1 && next_ <= tuning::MostPasses &&
+               cost_ < (slicesAhead_ ? tuning::SliceCost : 1.0) * double(transport::tuning::MostPilotCost);
     }
     /// Renders as many passes of each again as there are, and drops what is far worse.
     void render() {
@@ -149,18 +140,20 @@ class Comparison {
         const auto error = [&](const auto& pilot) { return pilot->error(pixelRatio_, brightest); };
         std::stable_sort(pilots_.begin(), pilots_.end(),
                          [&](const auto& a, const auto& b) { return error(a) < error(b); });
-        // Variances of so many passes are known to about this factor.
-        const double least = error(pilots_.front()), most = (1.0 + FarWorse / std::sqrt(double(next_))) * least;
         // What slices contribute has no bound. Were their variance to grow with the number of passes, as it does with
-        // the heaviest tails, they would be ahead of kernels until so many.
+        // the heaviest tails, they would be ahead of kernels until so many: till then kernels compete by themselves.
         const auto kernel =
             std::find_if(pilots_.begin(), pilots_.end(), [](const auto& pilot) { return isKernel(*pilot); });
-        const bool ahead = kernel == pilots_.end() || double(next_) * error(*kernel) > SlicePasses * least;
+        const double least = error(pilots_.front());
+        const bool proven = kernel == pilots_.end() || double(next_) * error(*kernel) > tuning::SlicePasses * least;
+        const double leastOfKernels = proven ? least : error(*kernel);
         slicesAhead_ = !isKernel(*pilots_.front());
-        best_ = (ahead ? pilots_.front() : *kernel)->primitive();
-        if (pilots_.front()->effectivePasses() >= LeastEffective && std::isfinite(most))
+        best_ = (slicesAhead_ && !proven ? *kernel : pilots_.front())->primitive();
+        // Variances of so many passes are known to about this factor.
+        const double factor = 1.0 + tuning::FarWorse / std::sqrt(double(next_));
+        if (std::isfinite(least))
             std::erase_if(pilots_, [&](const auto& pilot) {
-                if (error(pilot) <= most || (!ahead && isKernel(*pilot))) return false;
+                if (error(pilot) <= factor * (isKernel(*pilot) ? leastOfKernels : least)) return false;
                 dropped_ += pilot->passes();
                 return true;
             });
@@ -180,8 +173,8 @@ class Comparison {
     std::vector<std::unique_ptr<Pilot>> pilots_;
     double pixelRatio_, cost_ = 0.0;
     bool slicesAhead_ = false;
-    uint32_t next_ = LeastPasses; ///< passes of each
-    uint64_t dropped_ = 0;        ///< passes of those that are no longer in the running
+    uint32_t next_ = tuning::LeastPasses; ///< passes of each
+    uint64_t dropped_ = 0;                ///< passes of those that are no longer in the running
 };
 
 std::string typeOf(const VolumePrimitive& primitive) {
@@ -208,7 +201,6 @@ MeasuredPrimitive measurePrimitives(const std::shared_ptr<const Scene>& scene, c
         one.primitive = primitive;
         pilots.push_back(std::make_unique<Pilot>(small, one, facts, watch));
     }
-    MeasuredPrimitive measured{settings.alternatives.front(), "", 0};
     Comparison comparison(std::move(pilots), pixelsOf(*scene) / pixelsOf(*small));
     while (comparison.undecided()) comparison.render();
     return {comparison.best(),

@@ -13,7 +13,7 @@ namespace tungsten::photon {
 
 struct MeasuredPrimitive {
     VolumePrimitive primitive;
-    std::string reason; ///< with the ratio to the next best
+    std::string reason;
     uint64_t passes = 0;
 };
 

@@ -107,28 +107,41 @@ inline constexpr Costs Nanoseconds{.plain = {115.0, 120.0, 100.0, 0.0},
 /// What whole passes cost in nanoseconds, as the pilot of volume primitives counts them: by path, ray and so on.
 struct PassCosts {
     struct Record {
-        double stored, perPixel, splatted, gathered; ///< perPixel: of each in an image that it is splatted to all of
+        double stored, ended;                ///< ended: kernels at surfaces
+        double perPixel, splatted, gathered; ///< perPixel: of each in an image that it is splatted to all of
     };
     double path, ray, mediumEvent, surfaceEvent, controlVertex, connection, density;
     Record point, beam, slice;
 };
-/// Fitted to CPU seconds and counters of 350 renders of 43 scenes, 24 to 200 pixels wide: benchmarks/costs.py --method
-/// passes.
-inline constexpr PassCosts PassNanoseconds{.path = 210.0,
-                                           .ray = 180.0,
-                                           .mediumEvent = 60.0,
-                                           .surfaceEvent = 300.0,
-                                           .controlVertex = 220.0,
-                                           .connection = 220.0,
-                                           .density = 3600.0,
-                                           .point = {400.0, 0.0, 3.0, 100.0},
-                                           .beam = {750.0, 0.0, 20.0, 240.0},
-                                           .slice = {1300.0, 0.9, 0.0, 400.0}};
+/// Fitted to CPU seconds and counters of three primitives in 39 scenes: benchmarks/costs.py --method passes.
+inline constexpr PassCosts PassNanoseconds{.path = 180.0,
+                                           .ray = 140.0,
+                                           .mediumEvent = 100.0,
+                                           .surfaceEvent = 390.0,
+                                           .controlVertex = 260.0,
+                                           .connection = 730.0,
+                                           .density = 11500.0,
+                                           .point = {20.0, 410.0, 0.0, 43.0, 1.0},
+                                           .beam = {390.0, 780.0, 0.0, 50.0, 50.0},
+                                           .slice = {1700.0, 0.0, 0.55, 0.0, 320.0}};
 /// How many times as often as the pilot's paths those of a render may connect to surfaces: as their part of the
 /// variance and of the cost asks for. Neighbours share light the more the fewer connections there are, so that the
 /// model of one over their number is a rough one. Variance x CPU of cbox at 128 x 128, points and beams, at most 1 and
 /// 4: 0.092 and 0.136, 0.108 and 0.064. Bench: study cbox-128
 inline constexpr double LeastEffort = 1.0 / 16.0, MostEffort = 2.0;
+
+// --- The volume primitive that is measured
+// -----------------------------------------------------------------------------
+
+/// Light paths of a pilot's pass, and the pass whose radii stand for all. What is worse than the best by 1 + FarWorse /
+/// sqrt(passes) is dropped. The pilot has the budget of that of shares, SliceCost times as much where slices are ahead
+/// and have yet to prove it. By measured errors of 37 scenes, the choice over the better of points and beams: 1.09,
+/// without its worst scene 1.04. Bench: study unseen
+inline constexpr double PathsOfPass = 256.0, MiddlePass = 15.0, FarWorse = 8.0, SliceCost = 6.0;
+/// Passes of each primitive at least, and at most; passes until which slices must be ahead of kernels, were their
+/// variance to grow in proportion. In fewer passes they look up to 100 times better than they are (thin-sheet). Bench:
+/// study unseen
+inline constexpr uint32_t LeastPasses = 16, MostPasses = 512, SlicePasses = 1024;
 
 // --- Connections to surfaces -----------------------------------------------------------------------------------------
 
@@ -156,6 +169,13 @@ inline constexpr float SharedPixels = 2.5f;
 /// 0.0075. Points, whose noise grows as the square, had 1.25 times the error at 0.5: they keep theirs. Bench:
 /// benchmarks/kernels/means.py
 inline constexpr float WidthAtSurfaces = 0.5f;
+
+/// Cells that keep what surfaces are about them: their edge in radii of kernels, and how many there are across a scene
+/// at least; beams near a surface are cut into parts of so many radii at most. CPU time over that without ended
+/// kernels, cells of 3 and of 6 radii: mirror box, beams 1.34 and 1.42, points 1.16 and 1.17; room of thin fog, beams
+/// 1.71 and 1.81. Parts of 4, 8 and 16 radii there: CPU time 1.65, 1.70 and 1.68, variance 1.005, 1.009 and 1.020.
+/// Bench: benchmarks/kernels/cost.py
+inline constexpr float CellInRadii = 3.0f, LeastCellsAcross = 32.0f, NearPartInRadii = 8.0f;
 
 // --- Bias ------------------------------------------------------------------------------------------------------------
 

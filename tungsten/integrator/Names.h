@@ -65,6 +65,7 @@ inline constexpr CounterName RefractiveConnections{"refractive connections"};
 inline constexpr CounterName StoredSurfacePhotons{"stored surface photons"};
 inline constexpr CounterName GatheredOnSurfaces{"photons gathered on surfaces"};
 inline constexpr CounterName SplattedRecords{"splatted records"};
+inline constexpr CounterName EndedKernels{"kernels ended at surfaces"};
 inline constexpr CounterName GatheredRecords{"gathered records"};
 inline constexpr CounterName GlossyCameraReflections{"glossy camera reflections"};
 inline constexpr CounterName PlainBesideGuided{"plain light paths beside guided ones"};

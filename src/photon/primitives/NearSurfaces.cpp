@@ -1,17 +1,14 @@
 #include "photon/primitives/NearSurfaces.h"
 
+#include "photon/Tuning.h"
+
 namespace tungsten::photon {
 
 namespace {
 
-/// Size of cells, in radii of kernels, and how many there are across a scene, at least. No image depends on them much:
-/// CPU time over that without ended kernels at 3 and 6 radii: mirror box, beams 1.34 and 1.42, points 1.16 and 1.17;
-/// room of thin fog, beams 1.71 and 1.81 (benchmarks/kernels/cost.py).
-constexpr float CellInRadii = 3.0f, LeastCellsAcross = 32.0f;
-
 float largestCell(const SceneGeometry& geometry) {
     const float across = (geometry.boundsMax() - geometry.boundsMin()).length();
-    return across > 0.0f && across < Infinity ? across / LeastCellsAcross : 1.0f;
+    return across > 0.0f && across < Infinity ? across / tuning::LeastCellsAcross : 1.0f;
 }
 
 KernelEdge edgeTowards(const std::optional<Vec3d>& surface) {
@@ -23,7 +20,7 @@ KernelEdge edgeTowards(const std::optional<Vec3d>& surface) {
 } // namespace
 
 NearSurfaces::NearSurfaces(const Scene& scene, float radius, float reachInRadii)
-    : NearSurfaces(*scene.geometry, std::min(CellInRadii * radius, largestCell(*scene.geometry)), radius,
+    : NearSurfaces(*scene.geometry, std::min(tuning::CellInRadii * radius, largestCell(*scene.geometry)), radius,
                    reachInRadii) {}
 
 NearSurfaces::NearSurfaces(const SceneGeometry& geometry, float size, float radius, float reachInRadii)

@@ -28,6 +28,7 @@ struct Beams {
     static void read(const ObjectReader& block, const Scene& scene, PhotonSettings& settings);
     static std::string guidanceObstacle(const Scene&, bool /*speedsDiffer*/) { return {}; }
     static bool splats(bool straightRays, bool /*oneTime*/) { return straightRays; }
+    static bool radiiFollowRecords(const KernelSettings&) { return false; }
     static void narrow(float /*factor*/) {}
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<PhotonBeam>& beams,

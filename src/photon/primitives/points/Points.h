@@ -34,6 +34,8 @@ struct Points {
     /// Along camera rays that are straight, at one speed and from one point, or at one speed or where speeds do not
     /// matter.
     static bool splats(bool straightRays, bool /*oneTime*/) { return straightRays; }
+    /// Radii follow the records' density: as the inverse cube root of the number of light paths.
+    static bool radiiFollowRecords(const KernelSettings& settings) { return !settings.fixedVolumeRadius; }
     /// In a pass whose delta gate's kernel is so much narrower than the first one's.
     static void narrow(float /*factor*/) {}
     /// Kernel width of a pass, where that of the first is 1.

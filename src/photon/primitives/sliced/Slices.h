@@ -35,6 +35,7 @@ struct Slices {
     static std::string guidanceObstacle(const Scene& scene, bool speedsDiffer);
     /// Any camera.
     [[nodiscard]] bool splats(bool /*straightRays*/, bool oneTime) const { return !classes.shortFlights && oneTime; }
+    static bool radiiFollowRecords(const KernelSettings&) { return false; }
     /// Narrows as the temporal kernel and the beams' radius do. The variance of beams grows as the inverse of both:
     /// time is best spent in proportion to the square roots of the variances.
     void narrow(float factor) {
