@@ -37,8 +37,7 @@ inline constexpr Costs Nanoseconds{.plain = {95.0, 110.0, 20.0, 0.0},
                                    .trail = 80.0,
                                    .density = 550.0};
 
-// --- Samples of a pixel
-// ------------------------------------------------------------------------------------------------
+// --- Samples of a pixel ----------------------------------------------------------------------------------------------
 
 /// Variance x cost over that of even samples, as a pilot predicts it, below which pixels get samples as they vary:
 /// verdicts of few bright paths are off by so much. Variance x CPU of slow-nested-glass and plastic-floor-fogcube with
@@ -53,7 +52,7 @@ inline constexpr size_t FewestPaths = 4096, MostPaths = 32768;
 /// Candidates of a vertex among light vertices, and among ends of reflected light. Bench: study cbox-128
 inline constexpr size_t Candidates = 64;
 
-// --- Light through walls that refract -----------------------------------------------------------------------------
+// --- Light through walls that refract --------------------------------------------------------------------------------
 
 /// Most candidates in time whose ways are worked out. (Three bodies of milk, with 64: 1.3 times the variance x CPU.)
 /// Bench: study bodies

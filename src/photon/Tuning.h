@@ -130,8 +130,7 @@ inline constexpr PassCosts PassNanoseconds{.path = 180.0,
 /// 4: 0.092 and 0.136, 0.108 and 0.064. Bench: study cbox-128
 inline constexpr double LeastEffort = 1.0 / 16.0, MostEffort = 2.0;
 
-// --- The volume primitive that is measured
-// -----------------------------------------------------------------------------
+// --- The volume primitive that is measured ---------------------------------------------------------------------------
 
 /// Light paths of a pilot's pass, and the pass whose radii stand for all. What is worse than the best by 1 + FarWorse /
 /// sqrt(passes) is dropped. The pilot has the budget of that of shares, SliceCost times as much where slices are ahead

@@ -297,7 +297,7 @@ FAULTS = [
     ("src/path/PathVisitor.cpp", "limits().renders(path.interactions + connection->crossings + target.interactions)", "limits().renders(path.interactions + connection->crossings)",
      [("path_tests", "Bounces.WhatALaser*")]),  # min_bounces and max_bounces do not count a laser's own path
     # src/path
-    ("src/path/PathTracer.cpp", "const auto sample = uint32_t(pass.firstSample + s);", "const auto sample = uint32_t(s);",
+    ("src/path/PathTracer.cpp", "const uint32_t sample = samples.first + s;", "const uint32_t sample = s;",
      [("path_tests", "SpecularTime.GlassBallDelaysAndEchoes")]),  # every pass repeats the first one's random numbers: more samples bring nothing
     ("src/path/PathTarget.cpp", "path.throughput = path.throughput / scatters;", "path.throughput = path.throughput * scatters;",
      [("path_tests", "TargetChoice.LasersBecomeVirtualSourcesWhereTheyAreScattered")]),  # lasers on plastic: what it scatters is four times too dark
