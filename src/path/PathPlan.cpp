@@ -43,10 +43,16 @@ Decision refractedOf(const Scene& scene, const PathSettings& settings, const Sce
                      "surface is outside"};
 }
 
-Decision allocationOf(const Scene& scene, const PathSettings& settings) {
-    const bool on = settings.policy.allocatesSamples() && !scene.camera.detectors();
-    return {on, on ? "more samples where paths vary more for what they cost"
-                   : "the preset or adaptive_samples gives pixels and detectors alike"};
+/// What a pilot of camera paths may choose.
+Decision adaptiveOf(const Scene& scene, bool wanted, const std::string& does) {
+    const bool on = wanted && !scene.camera.detectors();
+    return {on,
+            on ? does : "the preset, its own option, detectors, or guided paths that have no plain ones beside them"};
+}
+
+/// Plain paths may be taken alone.
+bool mayBePlain(const PathSettings& settings, const PathPlan& plan) {
+    return (plan.balance.on || !plan.guidance.on) && settings.policy.plainShare.value_or(1.0f) == 1.0f;
 }
 
 Decision firstScatteringOf(const Scene& scene, const SceneFacts& facts, bool lasers) {
@@ -83,7 +89,10 @@ PathPlan PathPlan::of(const Scene& scene, const PathSettings& settings, const Sc
     plan.edaTable = transport::tablesOf(scene, settings.policy, darts::Mode::Path, facts, plan.guidance.on);
     plan.balance =
         transport::balanceOf(scene, settings.policy, darts::Mode::Path, plan.guidance, !scene.transport.gate.delta);
-    plan.allocation = allocationOf(scene, settings);
+    plan.allocation =
+        adaptiveOf(scene, settings.policy.allocatesSamples(), "more samples where paths vary more for what they cost");
+    plan.weightWindows = adaptiveOf(scene, settings.policy.usesWeightWindows() && mayBePlain(settings, plan),
+                                    "plain paths alone split and end by what those of a pilot found");
     plan.refracted = refractedOf(scene, settings, facts);
     plan.lightVertices = lightVerticesOf(plan, scene, settings, facts);
     plan.reflectedLight.on = plan.lightVertices.on && LightCaches::reflectedIn(scene);
@@ -129,6 +138,7 @@ void PathPlan::describe(const Scene& scene, const PathSettings& settings, const 
     add("guided paths", guidance, {"integrator.darts"}, {counter::ControlVertices});
     add("plain paths beside them", balance, {"integrator.darts"}, {counter::PilotPaths});
     add("adaptive samples", allocation, {"integrator.darts"}, {"pilot samples"});
+    add("weight windows", weightWindows, {"integrator.darts"}, {counter::WindowPilotPaths});
     add("refractive connections", refracted, {"integrator.darts"}, {counter::RefractiveConnections});
     add("EDA table", edaTable, {"integrator.darts"}, {counter::DirectionTables});
     if (guidance.on) transport::EscapeModels::plan(scene, settings.policy, features);

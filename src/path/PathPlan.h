@@ -21,6 +21,7 @@ struct PathPlan {
     Decision guidance;              ///< walks aim at emitters inside the gate
     Decision balance;               ///< beside plain ones
     Decision allocation;            ///< pixels get samples as their paths vary and cost
+    Decision weightWindows;         ///< plain paths split and end by what those of a pilot found
     Decision lightVertices;         ///< walks connect to surface points that light reaches first
     Decision reflectedLight;        ///< and to where glossy surfaces throw light
     Decision refracted;             ///< plain walks aim at emitters through the walls of sealed bodies

@@ -22,6 +22,7 @@ namespace {
 constexpr size_t TileSide = 8;
 constexpr double PilotFrame = 10.0;       ///< nanoseconds for each frame of a path in that pilot
 constexpr uint32_t MostSampleRounds = 64; ///< pairs of a block of pixels in a pilot of samples
+constexpr double PilotPart = 0.35;        ///< of the cost of a pilot of shares: those of samples and of windows
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -79,19 +80,18 @@ void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, St
     lights_.emplace(*scene_, facts.excludedEmitters);
     using Emitters = TargetChoice::Emitters;
     const bool beside = plan_.balance.on && settings_.policy.plainShare != 0.0f;
-    targets_.emplace(*scene_, plan_.guidance.on ? Emitters::All : Emitters::SingleDirections, facts.excludedEmitters,
-                     beside);
+    if (plan_.guidance.on) targets_.emplace(*scene_, Emitters::All, facts.excludedEmitters, beside);
+    sources_.emplace(*scene_, Emitters::SingleDirections, facts.excludedEmitters);
     if (plan_.detectorLight.on) detectorLight_.emplace(*scene_, facts, settings_.limits);
     if (plan_.refracted.on) {
         const StageTimer timer(statistics, "refractive connections");
         refracted_.emplace().prepare(*scene_, facts.excludedEmitters, watch);
     }
     if (plan_.guidance.on) prepareGuides(facts, watch, statistics);
-    if (plan_.allocation.on) allocateSamples(watch, statistics);
+    if (plan_.allocation.on || plan_.weightWindows.on) allocateSamples(watch, statistics);
 }
 
 void PathTracer::prepareGuides(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
-    using Emitters = TargetChoice::Emitters;
     const StageTimer timer(statistics, "guide preparation");
     guides_ = PathGuides::of(*scene_, settings_.policy.sampling, facts, watch);
     if (plan_.edaTable.on) statistics.add(counter::DirectionTables, uint64_t(guides_.tables()));
@@ -100,13 +100,10 @@ void PathTracer::prepareGuides(const SceneFacts& facts, const ProgressToken& wat
                                 : transport::TimeWindows(sensor_.arrivals);
     if (plan_.lightVertices.on) lightCaches_.prepare(*scene_, *targets_, watch, statistics);
     if (plan_.balance.on) chooseShare(watch, statistics);
-    // Plain paths connect to the virtual sources of lasers alone.
-    if (balance_.guided == 0.0f) targets_.emplace(*scene_, Emitters::SingleDirections, facts.excludedEmitters);
 }
 
 void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statistics) {
-    const bool guides = plan_.guidance.on && balance_.guided > 0.0f;
-    const bool lightVertices = guides && plan_.lightVertices.on;
+    const bool lightVertices = guides() && plan_.lightVertices.on;
     if (lightVertices) {
         const StageTimer timer(statistics, "light paths");
         const Vec2i resolution = scene_->camera.resolution;
@@ -122,12 +119,10 @@ void PathTracer::renderPass(const PassInfo& pass, Film& film, Statistics& statis
 
 template <typename Use>
 void PathTracer::withPaths(const ProgressToken& watch, const Use& use) const {
-    if (plan_.guidance.on && balance_.guided > 0.0f)
+    if (guides())
         withGuidedPaths(watch, use);
-    else if (plan_.timeResolved)
-        plan_.media ? withPlainPaths<true, true>(watch, use) : withPlainPaths<true, false>(watch, use);
     else
-        plan_.media ? withPlainPaths<false, true>(watch, use) : withPlainPaths<false, false>(watch, use);
+        withPlainPaths(plainContext(watch), use);
 }
 
 void PathTracer::addDetectorLight(int column, float u, PixelAccumulator& sink, const ProgressToken& watch,
@@ -140,7 +135,7 @@ void PathTracer::addDetectorLight(int column, float u, PixelAccumulator& sink, c
     detectorLight_->sample(size_t(column), sampler, watch, counters.shadowRays, put);
     if (!plan_.lasers) return;
     Sampler light = sampler.branch(RandomStream::Target, 0);
-    const auto source = targets_->sample(u, light, watch, counters);
+    const auto source = targets().sample(u, light, watch, counters);
     if (!source || source->index >= 0) return;
     if (settings_.limits.orderCounts(source->mediumScatters))
         detectorLight_->connect(size_t(column), *source, *source->emitter, source->start, source->interactions, light,
@@ -157,7 +152,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
         const uint64_t pixel = size_t(y) * width + size_t(x);
         // Consecutive samples of a pixel take the targets in turn, and strategies, as far as their shares allow.
         Sampler turns(pass.seed, RandomStream::Emitter, 0, pixel);
-        const float rotation = targets_->several() ? turns.next1D() : 0.0f;
+        const float rotation = targets().several() ? turns.next1D() : 0.0f;
         const double turn = balance_.both() || (windows_ && windows_->several()) ? turns.nextDouble() : 0.0;
         for (uint32_t s = 0; s < samples.count; ++s) {
             // Keyed by the absolute sample: but for light vertices, each pass's own, samples do not depend on how they
@@ -166,7 +161,7 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             Sampler sampler(pass.seed, RandomStream::Camera, sample, pixel);
             const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
             const Ray ray = camera.generateRay({x, y}, uFilter, uLens);
-            float u = targets_->several() ? radicalInverse(sample) + rotation : 0.0f;
+            float u = targets().several() ? radicalInverse(sample) + rotation : 0.0f;
             u -= u >= 1.0f ? 1.0f : 0.0f;
             pass.watch.advanceWithin(SamplesPerPoll, s + 1);
             const double place = turn + GoldenRatio * double(sample);
@@ -184,22 +179,32 @@ void PathTracer::renderTiles(const PassInfo& pass, Film& film, Statistics& stati
             pass.watch.advance(tile.cols().size());
         }
         for (const PathCounters& of : {counters.plain, counters.densities, counters.guided}) report(of, statistics);
+        if (weightWindows_.any()) statistics.add("camera paths with weight windows", counters.plain.paths);
         statistics.add("counted nanoseconds of camera paths", uint64_t(costs(counters).sum()));
     });
 }
 
-template <bool TimeResolved, bool Media, typename Use>
-void PathTracer::withPlainPaths(const ProgressToken& watch, const Use& use) const {
-    const PathContext context = plainContext(watch);
-    const bool lasers = plan_.lasers && targets_->any();
-    use([&](const Ray& ray, PixelAccumulator& sink, StrategyCounters& counters, Sampler& sampler, float u, float) {
-        std::optional<PathTarget> source;
-        if (lasers) {
-            Sampler light = sampler.branch(RandomStream::Target, 0);
-            source = targets_->sample(u, light, watch, counters.plain);
-        }
-        tracePath<TimeResolved, Media>(context, sink, counters.plain, sampler, source ? &*source : nullptr, ray);
-    });
+template <typename Use>
+void PathTracer::withPlainPaths(const PathContext& context, const Use& use) const {
+    const auto with = [&](auto trace) {
+        use([&, trace](const Ray& ray, PixelAccumulator& sink, StrategyCounters& counters, Sampler& sampler, float u,
+                       float) { (this->*trace)(context, ray, sink, counters.plain, sampler, u); });
+    };
+    if (plan_.timeResolved)
+        with(plan_.media ? &PathTracer::tracePlain<true, true> : &PathTracer::tracePlain<true, false>);
+    else
+        with(plan_.media ? &PathTracer::tracePlain<false, true> : &PathTracer::tracePlain<false, false>);
+}
+
+template <bool TimeResolved, bool Media>
+void PathTracer::tracePlain(const PathContext& context, const Ray& ray, PixelAccumulator& sink, PathCounters& counters,
+                            Sampler& sampler, float u) const {
+    std::optional<PathTarget> source;
+    if (plan_.lasers && sources_->any()) {
+        Sampler light = sampler.branch(RandomStream::Target, 0);
+        source = sources_->sample(u, light, context.watch, counters);
+    }
+    tracePath<TimeResolved, Media>(context, sink, counters, sampler, source ? &*source : nullptr, ray);
 }
 
 GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
@@ -217,7 +222,14 @@ GuidedContext PathTracer::guidedContext(const ProgressToken& watch) const {
 }
 
 PathContext PathTracer::plainContext(const ProgressToken& watch) const {
-    return {*scene_, settings_, *lights_, *bound_, refracted_ ? &*refracted_ : nullptr, plan_.forwardBoundaries, watch};
+    return {*scene_,
+            settings_,
+            *lights_,
+            *bound_,
+            refracted_ ? &*refracted_ : nullptr,
+            plan_.forwardBoundaries,
+            watch,
+            weightWindows_.any() ? &weightWindows_ : nullptr};
 }
 
 template <typename Use>
@@ -245,14 +257,78 @@ void PathTracer::withGuidedPaths(const ProgressToken& watch, const Use& use) con
     use(trace);
 }
 
+WeightWindows PathTracer::learnWindows(const ProgressToken& watch, Statistics& statistics) const {
+    const StageTimer timer(statistics, "pilot of weight windows");
+    constexpr uint64_t Key = transport::PilotKey;
+    const Vec2i size = scene_->camera.resolution;
+    WeightWindows windows(*scene_, sensor_.gate.steadyState ? double(Infinity) : sensor_.arrivals.end());
+    PathContext context = plainContext(watch);
+    StrategyCounters counters;
+    Sampler places(Key, RandomStream::Pilot, 2, 0);
+    uint32_t traced = 0;
+    const auto tracePair = [&](const auto& trace) {
+        const Vec2i pixel{std::min(int(places.next1D() * float(size.x)), size.x - 1),
+                          std::min(int(places.next1D() * float(size.y)), size.y - 1)};
+        std::array<WeightWindows::Record, 2> pair{WeightWindows::Record{windows}, WeightWindows::Record{windows}};
+        for (WeightWindows::Record& record : pair) {
+            Sampler sampler(Key, RandomStream::Camera, traced++, 1);
+            const Vec2f uFilter = sampler.next2D(), uLens = sampler.next2D();
+            const Ray ray = scene_->camera.generateRay(pixel, uFilter, uLens);
+            PixelAccumulator sink(record.pilot, sensor_, counters.plain);
+            context.record = &record;
+            trace(ray, sink, counters, sampler, places.next1D(), 0.0f);
+        }
+        windows.learn(pair);
+    };
+    watch.stage("pilot of weight windows", transport::tuning::MostPilotPaths);
+    withPlainPaths(context, [&](const auto& trace) {
+        while (traced < transport::tuning::MostPilotPaths &&
+               costs(counters).sum() < PilotPart * double(transport::tuning::MostPilotCost)) {
+            tracePair(trace);
+            watch.advance(2);
+        }
+    });
+    windows.finish();
+    statistics.add(counter::WindowPilotPaths, traced);
+    return windows;
+}
+
 void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statistics) {
+    const PassInfo pass{.seed = transport::PilotKey, .watch = watch};
+    if (plan_.lightVertices.on && guides()) {
+        Statistics ignored;
+        lightCaches_.trace(*scene_, *targets_, tuning::FewestPaths, pass, ignored);
+    }
+    if (refracted_) refracted_->trace(pass);
+    const auto worth = [&](const SampleAllocation& allocation) {
+        return plan_.allocation.on ? allocation.varianceTimesCost() : allocation.varianceTimesCostOfEven();
+    };
+    if (plan_.weightWindows.on) {
+        if (WeightWindows windows = learnWindows(watch, statistics); windows.any()) {
+            const StrategyBalance chosen = std::exchange(balance_, {1.0f, 0.0f});
+            SampleAllocation plain = measureSamples(watch, statistics);
+            weightWindows_ = std::move(windows);
+            SampleAllocation windowed = measureSamples(watch, statistics);
+            // Few bright paths have most of a variance: windows must be better by two standard errors.
+            const double doubt = 2.0 * std::hypot(plain.relativeError(), windowed.relativeError());
+            if (worth(windowed) * gainOfBalance_ * (1.0 + doubt) < worth(plain)) {
+                if (plan_.allocation.on) allocation_ = std::move(windowed);
+                return;
+            }
+            weightWindows_ = {};
+            balance_ = chosen;
+            if (!guides()) {
+                if (plan_.allocation.on) allocation_ = std::move(plain);
+                return;
+            }
+        }
+    }
+    if (plan_.allocation.on) allocation_ = measureSamples(watch, statistics);
+}
+
+SampleAllocation PathTracer::measureSamples(const ProgressToken& watch, Statistics& statistics) const {
     const StageTimer timer(statistics, "pilot of samples");
     constexpr uint64_t Key = transport::PilotKey;
-    if (plan_.lightVertices.on && balance_.guided > 0.0f) {
-        Statistics ignored;
-        lightCaches_.trace(*scene_, *targets_, tuning::FewestPaths, PassInfo{.seed = Key, .watch = watch}, ignored);
-    }
-    if (refracted_) refracted_->trace({.seed = Key, .watch = watch});
     const int frames = sensor_.gate.frames;
     SampleAllocation allocation(scene_->camera.resolution);
     Film probe(1, 1, frames, {.moments = false});
@@ -288,8 +364,8 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
     };
     watch.stage("pilot of samples", MostSampleRounds);
     withPaths(watch, [&](const auto& trace) {
-        for (uint32_t round = 0; round < MostSampleRounds && cost < 0.5 * double(transport::tuning::MostPilotCost);
-             ++round) {
+        for (uint32_t round = 0;
+             round < MostSampleRounds && cost < PilotPart * double(transport::tuning::MostPilotCost); ++round) {
             for (size_t block = 0; block < allocation.blocks(); ++block) {
                 watch.advanceWithin(SamplesPerPoll, block + 1);
                 tracePair(trace, block);
@@ -298,8 +374,8 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
         }
     });
     allocation.choose();
-    allocation_ = std::move(allocation);
     statistics.add("pilot samples", traced);
+    return allocation;
 }
 
 double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk& each) const {
@@ -380,8 +456,13 @@ void PathTracer::chooseShare(const ProgressToken& watch, Statistics& statistics)
             pilot.effective(Strategy::Guided) >= 10.0 * transport::tuning::LeastEffective)
             break;
     }
+    const auto score = [&](double plainTime) {
+        const StrategyBalance balance = costs.ofTime(plainTime);
+        return pilot.variance(balance) * costs.mean(balance);
+    };
     const double time = asked ? double(*asked) : pilot.choose(costs);
     balance_ = costs.ofTime(time);
+    gainOfBalance_ = time < 1.0 ? score(1.0) / score(time) : 1.0;
     statistics.add(counter::PilotPaths, traced);
     statistics.add("plain camera paths, in thousandths", uint64_t(std::lround(1000.0 * double(balance_.plain))));
 }

@@ -30,14 +30,23 @@ class PathTracer : public Integrator {
 
   private:
     void prepareGuides(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics);
-    /// Measures how much pixels vary, by pairs of paths.
+    [[nodiscard]] bool guides() const { return plan_.guidance.on && balance_.guided > 0.0f; }
+    /// Points that the paths of the pass aim at.
+    [[nodiscard]] const TargetChoice& targets() const { return guides() ? *targets_ : *sources_; }
+    /// Measures how much pixels vary, by pairs of paths as they are now.
+    [[nodiscard]] SampleAllocation measureSamples(const ProgressToken& watch, Statistics& statistics) const;
+    /// Shares samples out, and takes plain paths with weight windows where they are worth more than what was chosen.
     void allocateSamples(const ProgressToken& watch, Statistics& statistics);
+    [[nodiscard]] WeightWindows learnWindows(const ProgressToken& watch, Statistics& statistics) const;
     /// use(trace) of the paths that the plan and the shares ask for: trace(ray, sink, counters, sampler, u, strategy)
     /// traces one; u chooses among targets, and strategy, uniform too, among strategies.
     template <typename Use>
     void withPaths(const ProgressToken& watch, const Use& use) const;
-    template <bool TimeResolved, bool Media, typename Use>
-    void withPlainPaths(const ProgressToken& watch, const Use& use) const;
+    template <typename Use>
+    void withPlainPaths(const PathContext& context, const Use& use) const;
+    template <bool TimeResolved, bool Media>
+    void tracePlain(const PathContext& context, const Ray& ray, PixelAccumulator& sink, PathCounters& counters,
+                    Sampler& sampler, float u) const;
     template <typename Use>
     void withGuidedPaths(const ProgressToken& watch, const Use& use) const;
     [[nodiscard]] GuidedContext guidedContext(const ProgressToken& watch) const;
@@ -61,13 +70,15 @@ class PathTracer : public Integrator {
     transport::TimeSensor sensor_;
     std::optional<LightChoice> lights_; ///< from prepare() on
     PathPlan plan_;
-    std::optional<TargetChoice>
-        targets_; ///< of guided paths; in plain ones, of light that starts in a single direction
+    std::optional<TargetChoice> targets_; ///< of guided paths
+    std::optional<TargetChoice> sources_; ///< of plain ones: of light that starts in a single direction
     std::optional<ArrivalBound> bound_;
     std::optional<transport::TimeWindows> windows_; ///< that guided paths aim at
     PathGuides guides_;
     StrategyBalance balance_;
+    double gainOfBalance_ = 1.0; ///< variance x cost of plain paths alone over that at this balance, by the pilot
     SampleAllocation allocation_;
+    WeightWindows weightWindows_;                                 ///< of plain paths alone
     std::unique_ptr<const transport::EscapeModels> escapeModels_; ///< null: media are taken for infinite
     LightCaches lightCaches_;                                     ///< of the pass
     std::optional<RefractiveConnections> refracted_;              ///< of plain paths in sealed scenes

@@ -218,6 +218,7 @@ void PathVisitor<TimeResolved, Beside>::aimThroughWall(const PathState& path, co
     const float share = transport::balance(density, phase * exits);
     aimed.visitor.aimedAt_ = drawn->emitter;
     aimed.steps.lobes = lobe::SpecularTransmission;
+    if constexpr (requires { aimed.steps.stopRecording(); }) aimed.steps.stopRecording();
     if (aimed.arrive(ahead, {Flight::Event::Surface, reach,
                              medium.transmittance(reach) * (phase * drawn->weight * share / density)}))
         aimed.run();
@@ -236,12 +237,13 @@ void tracePath(const PathContext& context, PixelAccumulator& sink, PathCounters&
                const PathTarget* source, const Ray& ray) {
     const Scene& scene = context.scene;
     ++counters.paths;
-    using Steps = transport::PlainSteps<transport::PlainOptions{.media = Media, .timed = TimeResolved}>;
+    using Steps = WindowedSteps<transport::PlainOptions{.media = Media, .timed = TimeResolved}>;
     transport::Walk walk{
         PathState{
             .random = sampler, .ray = ray, .region = scene.cameraRegion, .timed = !scene.transport.cameraUnwarped},
-        Steps({scene, counters, context.watch}), PathVisitor<TimeResolved>(context, sink, counters, source)};
-    walk.steps.roulette = context.settings.russianRoulette;
+        Steps({scene, counters, context.watch}, context.windows, context.record),
+        PathVisitor<TimeResolved>(context, sink, counters, source)};
+    walk.steps.roulette = context.settings.russianRoulette && !context.windows;
     walk.run();
 }
 

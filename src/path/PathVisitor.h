@@ -6,6 +6,7 @@
 #include "path/PathTarget.h"
 #include "path/PixelAccumulator.h"
 #include "path/PlainTrail.h"
+#include "path/WeightWindows.h"
 #include "path/techniques/RefractiveConnections.h"
 
 #include "transport/PlainSteps.h"
@@ -23,6 +24,8 @@ struct PathContext {
     const RefractiveConnections* refracted; ///< of scenes whose bodies are all sealed, or null
     bool forwardBoundaries;                 ///< connections must look through index-matched surfaces
     const ProgressToken& watch;
+    const WeightWindows* windows = nullptr;  ///< null: paths go on as they are
+    WeightWindows::Record* record = nullptr; ///< of a path of a pilot
 };
 
 /// What weighs a plain path's contributions beside guided ones: nothing, where all paths are plain.

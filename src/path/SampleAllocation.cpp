@@ -33,6 +33,7 @@ void SampleAllocation::tell(size_t block, double variance, double cost) {
     if (!std::isfinite(variance)) return;
     Block& told = halves_[halves_[0][block].pairs > halves_[1][block].pairs ? 1 : 0][block];
     told.variance += variance;
+    squares_ += variance * variance;
     told.cost += cost;
     told.pairs += 1.0;
 }
@@ -114,8 +115,27 @@ void SampleAllocation::choose() {
                                      predicted(densitiesBy(halves_[1], 0.5 * pairs), halves_[0]));
         if (cost >= least) continue;
         least = cost;
+        part_ = cost;
         densities_ = densitiesBy(all, pairs);
     }
+}
+
+SampleAllocation::Block SampleAllocation::total() const {
+    Block all;
+    for (const Blocks& half : halves_)
+        for (const Block& block : half)
+            all = {all.variance + block.variance, all.cost + block.cost, all.pairs + block.pairs};
+    return all;
+}
+
+double SampleAllocation::varianceTimesCostOfEven() const {
+    const Block all = total();
+    return all.pairs > 0.0 ? all.variance / all.pairs * (all.cost / all.pairs) : 0.0;
+}
+
+double SampleAllocation::relativeError() const {
+    const double variance = total().variance;
+    return variance > 0.0 ? std::sqrt(squares_) / variance : Infinity;
 }
 
 auto SampleAllocation::of(int x, int y, uint64_t first, uint32_t count) const -> Samples {

@@ -34,6 +34,12 @@ class SampleAllocation {
     /// least are taken; even ones where none saves a fifth.
     void choose();
 
+    /// Variance of the image times its cost as the pairs have it, up to a factor, with samples shared out or even; and
+    /// the relative standard error of the variance of even ones.
+    [[nodiscard]] double varianceTimesCost() const { return part_ * varianceTimesCostOfEven(); }
+    [[nodiscard]] double varianceTimesCostOfEven() const;
+    [[nodiscard]] double relativeError() const;
+
     /// Samples [first, first + count) of a pixel in a pass that has samples [first, first + count) of an even image.
     struct Samples {
         uint32_t first, count;
@@ -47,13 +53,16 @@ class SampleAllocation {
     using Blocks = std::vector<Block>;
     using Densities = std::vector<float>;
 
+    [[nodiscard]] Block total() const;
     /// Means of each block's neighbourhood, so wide that so many pairs are in it.
     [[nodiscard]] Blocks smoothed(const Blocks& told, double pairs) const;
     [[nodiscard]] Densities densitiesBy(const Blocks& told, double pairs) const;
 
     Vec2i resolution_{0, 0}, grid_{0, 0};
     std::array<Blocks, 2> halves_;
-    Densities densities_; ///< by block; empty: even
+    Densities densities_;  ///< by block; empty: even
+    double part_ = 1.0;    ///< variance x cost over that of even samples
+    double squares_ = 0.0; ///< of the variances that were told
 };
 
 } // namespace tungsten::path

@@ -15,7 +15,7 @@ struct Policy {
     darts::SamplingOptions sampling;
     DirectView directView = DirectView::Auto; ///< of photon maps
     std::optional<float> plainShare;          ///< of the time; none: by a pilot
-    std::optional<bool> surfaceConnections, glossyCameraSubpaths, singleFrames, bodies, adaptiveSamples;
+    std::optional<bool> surfaceConnections, glossyCameraSubpaths, singleFrames, bodies, adaptiveSamples, weightWindows;
 
     [[nodiscard]] bool guides() const { return sampling.on; }
     /// Light paths also connect their vertices to visible surfaces, camera paths theirs to surfaces that light reaches
@@ -28,6 +28,8 @@ struct Policy {
     [[nodiscard]] bool aimsAtSingleFrames() const { return singleFrames.value_or(sampling.published); }
     /// Pixels of paths get more samples where they vary more.
     [[nodiscard]] bool allocatesSamples() const { return guides() && adaptiveSamples.value_or(!sampling.published); }
+    /// Plain paths of a path tracer may split and end by what those of a pilot found.
+    [[nodiscard]] bool usesWeightWindows() const { return guides() && weightWindows.value_or(!sampling.published); }
     /// Bodies of media end where their boundaries are, for sampling too; otherwise every medium is taken for infinite.
     [[nodiscard]] bool followsBodies() const { return guides() && bodies.value_or(!sampling.published); }
 };
@@ -64,6 +66,8 @@ Policy readPolicy(const Block& block) {
                  "photon maps: a light path aims at one frame of a sequence, not at all as one gate", WithPublished);
         policy.adaptiveSamples =
             flag(object, "adaptive_samples", "paths: more samples of pixels that vary more", WithBest);
+        policy.weightWindows =
+            flag(object, "weight_windows", "paths: plain ones split and end by what those of a pilot found", WithBest);
         policy.bodies = flag(object, "bodies", "media end at their boundaries for sampling too", WithBest);
     });
     return policy;

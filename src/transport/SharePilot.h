@@ -38,6 +38,9 @@ class SharePilot {
     void tell(float value, int frame, LogRatio logRatio, Found found) {
         found_.push_back({value, logRatio, frame, found});
     }
+    /// What has been found so far: how many contributions, and one of them.
+    [[nodiscard]] size_t contributions() const { return found_.size(); }
+    [[nodiscard]] float value(size_t contribution) const { return found_[contribution].value; }
 
     /// How many contributions of their mean would have the same spread, of all that one strategy, or both together,
     /// found.

@@ -869,4 +869,16 @@ FAULTS = [
      [("session_tests", "CostPilot.LongPassesAreCutAndTakenToWholeOnes")]),  # --plan-cost: cut passes pass for whole ones
     ("tungsten/session/CostPilot.cpp", "const double other = squared * double(i) / Powers;", "const double other = squared;",
      [("session_tests", "CostPilot.BiasMayFallMoreSlowlyThanTheSquareOfTheWidth")]),  # --plan-cost: bias falls with the square of the width
+    ("src/path/WeightWindows.cpp", "later / double(vertex.throughput)", "later * double(vertex.throughput)",
+     [("path_tests", "WindowedPaths.KeepTheMeanAndLessenTheError")]),
+    ("src/path/WeightWindows.cpp", "value = std::max(splits ? at.squares - mean : at.squares, 0.0)", "value = std::max(at.squares, 0.0)",
+     [("path_tests", "WeightWindows.FactorsAreRootsOfVarianceOverCost")]),
+    ("src/path/WeightWindows.h", "path.throughput = path.throughput / survival;", "",
+     [("path_tests", "WeightWindows.ImagesDoNotDependOnThem")]),
+    ("src/path/SampleAllocation.cpp", "std::sqrt(block.variance / block.cost)", "std::sqrt(block.variance * block.cost)",
+     [("path_tests", "SampleAllocation.IsNeymans")]),
+    ("src/path/SampleAllocation.cpp", "double(first + count) * density", "double(first) * density + count",
+     [("path_tests", "SampleAllocation.LeavesNoGapsBetweenPasses")]),
+    ("src/photon/PrimitivePilot.cpp", "best_ = (slicesAhead_ && !proven ? *kernel : pilots_.front())->primitive();", "best_ = pilots_.back()->primitive();",
+     [("photon_tests", "PrimitivePilot.ChoosesByVarianceAndCost")]),
 ]

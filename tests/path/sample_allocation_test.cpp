@@ -140,7 +140,8 @@ Rendered render(const std::string& darts, uint32_t passes) {
 }
 
 TEST(AllocatedSamples, KeepMeansAndLessenTheError) {
-    constexpr const char *Uniform = R"({"preset": "best", "adaptive_samples": false})", *Best = R"("best")";
+    constexpr const char *Uniform = R"({"preset": "best", "weight_windows": false, "adaptive_samples": false})",
+                         *Best = R"({"preset": "best", "weight_windows": false})";
     const Rendered even = render(Uniform, 64), allocated = render(Best, 64);
     EXPECT_EQ(even.pilot, 0u);
     EXPECT_GT(allocated.pilot, 0u);

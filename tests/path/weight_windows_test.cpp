@@ -1,0 +1,173 @@
+// Splitting and roulette of plain paths: the factors that are learned, and that no image depends on them.
+
+#include "path/PathTracer.h"
+#include "path/WeightWindows.h"
+
+#include "guided_setup.h"
+
+#include "tungsten/film/FilmErrors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tungsten::path {
+namespace {
+
+/// A ball of fog with a lamp beside it, and a gate about this time: at 8 most light has left it.
+std::string fogBall(const std::string& time) {
+    return R"({
+        "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 3, "sigma_a": 0.3}],
+        "camera": {"type": "pinhole", "fov": 30, "resolution": 6, "reconstruction_filter": "box",
+                   "transform": {"position": [0, 0, -4]}},
+        "primitives": [
+            {"type": "sphere", "int_medium": "fog", "bsdf": {"type": "forward"}},
+            {"type": "sphere", "emission": 10, "bsdf": {"type": "lambert", "albedo": 0.5},
+             "transform": {"position": [1.2, 0.6, -0.5], "scale": 0.2}}],
+        "integrator": {"type": "path_tracer", "max_bounces": 64, "transient_time_width": 1,
+                       "transient_time_center": )" +
+           time + "}}";
+}
+
+/// A vertex in a medium.
+struct Place {
+    transport::PathState path;
+    transport::WalkVertex vertex;
+
+    Place(const Medium& fog, float x, double time)
+        : path{.random = Sampler(1, RandomStream::Camera, 0, 0), .time = time},
+          vertex{&fog, nullptr, Vec3f(x, 0.0f, 0.0f), Vec3f(0.0f, 0.0f, 1.0f), {}} {}
+};
+
+struct Learned {
+    GuidedSetup setup{fogBall("5.5")};
+    const Medium& fog = setup.scene.media[0];
+    Place start{fog, 0.0f, 1.0}, much{fog, 0.9f, 3.0}, little{fog, -0.9f, 3.0};
+    WeightWindows windows{setup.scene, 8.0};
+
+    /// Half of the paths go from `start` to `much`, where every other one finds 4, the others to `little`, where every
+    /// other one finds 1.
+    void learn(int pairs) {
+        Sampler numbers(7, RandomStream::Pilot, 0, 0);
+        for (int i = 0; i < pairs; ++i) {
+            std::array<WeightWindows::Record, 2> pair{WeightWindows::Record{windows}, WeightWindows::Record{windows}};
+            for (WeightWindows::Record& record : pair) {
+                record.pilot.begin(Strategy::Plain);
+                record.add(start.path, start.vertex);
+                const bool lucky = numbers.next1D() < 0.5f;
+                const Place& next = lucky ? much : little;
+                record.add(next.path, next.vertex);
+                if (numbers.next1D() < 0.5f) record.pilot.tell(lucky ? 4.0f : 1.0f, 0, 0.0f, Found::Aside);
+            }
+            windows.learn(pair);
+        }
+        windows.finish();
+    }
+    [[nodiscard]] WeightWindows::Factors at(const Place& place) const {
+        return windows.factors(place.path, place.vertex);
+    }
+};
+
+TEST(WeightWindows, FactorsAreRootsOfVarianceOverCost) {
+    Learned learned;
+    learned.learn(40000);
+    ASSERT_TRUE(learned.windows.any());
+    // Of what paths find: variance 17/4 - 25/16 for two vertices; then 8 - 4 and 1/2 - 1/4, squares of 8 and 1/2, for one.
+    const double start = std::sqrt((17.0 / 4.0 - 25.0 / 16.0) / 2.0);
+    EXPECT_NEAR(learned.at(learned.much).split, 2.0 / start, 0.03);
+    EXPECT_NEAR(learned.at(learned.much).survival, std::sqrt(8.0) / start, 0.03);
+    EXPECT_NEAR(learned.at(learned.little).split, 0.5 / start, 0.03);
+    EXPECT_NEAR(learned.at(learned.little).survival, std::sqrt(0.5) / start, 0.03);
+    EXPECT_NEAR(learned.at(learned.start).split, 1.0, 0.03);
+    const WeightWindows::Factors elsewhere = learned.at(Place(learned.fog, 0.3f, 7.0));
+    EXPECT_EQ(elsewhere.split, 1.0f) << "where no path came";
+    EXPECT_EQ(elsewhere.survival, 1.0f);
+}
+
+TEST(WeightWindows, AreNoneWhereLittleIsFound) {
+    Learned learned;
+    learned.learn(8);
+    EXPECT_FALSE(learned.windows.any());
+}
+
+struct PixelMean {
+    double value, error;
+};
+/// Of many plain paths, by whatever windows.
+PixelMean meanOf(const GuidedSetup& setup, const WeightWindows* windows) {
+    constexpr uint32_t Passes = 300, Paths = 400;
+    PathContext context = setup.plain();
+    context.windows = windows;
+    PathCounters counters;
+    Film film(1, 1, 1);
+    uint32_t traced = 0;
+    for (uint32_t pass = 0; pass < Passes; ++pass) {
+        film.beginPass();
+        {
+            PixelAccumulator sink(film, setup.sensor, 0, 0, Paths, counters);
+            for (uint32_t i = 0; i < Paths; ++i, ++traced) {
+                Sampler sampler(3, RandomStream::Camera, traced, 0);
+                const Ray ray = setup.scene.camera.generateRay({3, 3}, sampler.next2D(), sampler.next2D());
+                tracePath<true, true>(context, sink, counters, sampler, nullptr, ray);
+            }
+        }
+        film.endPass(double(Paths));
+    }
+    return {meanValue(film), relativeStandardError(film) * meanValue(film)};
+}
+
+/// Windows that were learned from what no path finds: the left is worth much, the right nothing, and all is late.
+TEST(WeightWindows, ImagesDoNotDependOnThem) {
+    Learned wrong;
+    wrong.learn(40000);
+    const PixelMean plain = meanOf(wrong.setup, nullptr), windowed = meanOf(wrong.setup, &wrong.windows);
+    EXPECT_LT(plain.error, 0.02 * plain.value);
+    EXPECT_NEAR(windowed.value, plain.value, 4.5 * std::hypot(plain.error, windowed.error));
+    EXPECT_NE(windowed.value, plain.value) << "they were used";
+}
+
+struct WindowedRender {
+    Film film;
+    uint64_t windowed, pilot;
+};
+WindowedRender renderWith(const std::string& darts) {
+    const test::SceneFile file(fogBall("8"));
+    const LoadedScene loaded = loadScene(file.path(), {{}, {"integrator.darts=" + darts}});
+    PathTracer tracer(loaded.scene, loaded.integratorSettings);
+    SceneFacts facts = analyseScene(*loaded.scene);
+    Features features;
+    tracer.plan(facts, features);
+    Film film(6, 6, 1);
+    Statistics statistics;
+    tracer.prepare(facts, {}, statistics);
+    for (uint32_t pass = 0; pass < 100; ++pass) {
+        film.beginPass();
+        tracer.renderPass({.index = pass, .firstSample = 16 * pass, .samples = 16, .seed = 5}, film,
+                          statistics);
+        film.endPass(16.0);
+    }
+    return {std::move(film), statistics.counter("camera paths with weight windows"),
+            statistics.counter("pilot paths of weight windows")};
+}
+
+TEST(WindowedPaths, KeepTheMeanAndLessenTheError) {
+    constexpr const char *Best = R"({"preset": "best", "adaptive_samples": false})",
+                         *Without = R"({"preset": "best", "adaptive_samples": false, "weight_windows": false})";
+    const WindowedRender with = renderWith(Best), without = renderWith(Without), plain = renderWith(R"("off")");
+    EXPECT_GT(with.windowed, 0u);
+    EXPECT_EQ(without.pilot, 0u);
+    EXPECT_EQ(plain.pilot, 0u);
+    const double mean = meanValue(plain.film);
+    const auto errorOf = [&](const WindowedRender& of) { return relativeStandardError(of.film) * meanValue(of.film) / 6.0; };
+    EXPECT_NEAR(meanValue(with.film), mean, 4.5 * std::hypot(errorOf(with), errorOf(plain)));
+    EXPECT_LT(errorOf(with), 0.9 * errorOf(plain));
+}
+
+TEST(WindowedPaths, AreNotTakenBesideGuidedOnes) {
+    const WindowedRender beside = renderWith(R"({"preset": "best", "plain_share": 0.5})");
+    EXPECT_EQ(beside.pilot, 0u);
+    EXPECT_EQ(renderWith(R"("published")").pilot, 0u);
+}
+
+} // namespace
+} // namespace tungsten::path
