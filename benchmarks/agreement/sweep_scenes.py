@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from sweep_copies import scaled
-from sweep_vocabulary import (SweepScene, at, body, camera, facing, frames, gate, lambert, lamp, looking, medium,
-                              room, steady)
+from darts_bench.sweep_copies import scaled
+from darts_bench.scene_words import (SweepScene, at, body, camera, facing, frames, gate, lambert, lamp, looking, medium,
+                                     room, steady)
 
 FAST = ("spot-outside", "lamp-in-body", "orthographic-haze", "mixed-and-alpha", "zero-channels", "slow-and-fast")
 KEPT = "camera paths keep the light that fog sends to visible surfaces, photons do not; so has the format"

@@ -1,7 +1,7 @@
 """Scenes for sliced primitives: what they are made for, and what they could get wrong, each at a box and a delta gate, with
 and without the camera's leg."""
 
-from sweep_vocabulary import SweepScene, at, body, camera, facing, frames, gate, lambert, lamp, medium, steady
+from darts_bench.scene_words import SweepScene, at, body, camera, facing, frames, gate, lambert, lamp, medium, steady
 
 SLICE_FAST = ("matched-box-warped-delta", "occluders-unwarped-box")
 DELTA_WIDTH = 0.1       # of the references' gates about a delta gate, and of its temporal kernel

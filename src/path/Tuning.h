@@ -1,7 +1,7 @@
 #pragma once
 // Constants of path tracing that were tuned by measurement. To see what one brings, change
 // it, build, and compare before and after by the bench named:
-//   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
+//   study NAME        benchmarks/bench.py study NAME
 //   infinite_medium   build/bin/infinite_medium
 //   micro             build/bin/micro
 
@@ -29,7 +29,7 @@ struct Costs {
     double trail;    ///< to keep a vertex of a plain path
     double density;  ///< of guided paths, at a vertex of a plain one
 };
-/// Fitted to CPU seconds and counters of 15 scenes: benchmarks/costs.py paths.
+/// Fitted to CPU seconds and counters of 15 scenes: benchmarks/bench.py costs.
 inline constexpr Costs Nanoseconds{.plain = {95.0, 110.0, 20.0, 0.0},
                                    .guided = {290.0, 210.0, 115.0, 400.0},
                                    .sample = 250.0,

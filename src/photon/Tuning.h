@@ -1,7 +1,7 @@
 #pragma once
 // Constants of photon maps that were tuned by measurement. To see what one brings, change
 // it, build, and compare before and after by the bench named:
-//   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
+//   study NAME        benchmarks/bench.py study NAME
 //   infinite_medium   build/bin/infinite_medium
 //   micro             build/bin/micro
 
@@ -71,7 +71,7 @@ inline constexpr float MostPerBase = 8.0f, LeastPerBase = 0.03f;
 /// x CPU seconds, mean over 50 frames, without and with: fogged-box 0.69, 0.60, warped volumes 0.66, 0.54,
 /// simple-volumetric 0.070, 0.053; but the warped film's darkest tenth 0.08, 0.36. This part of the choice is even over
 /// all records that can arrive, so that none weighs more than the inverse; costs 2 % of the time of such films of
-/// fogged-box. Bench: benchmarks/study/studies/liu-stages.py
+/// fogged-box. Bench: study liu-stages
 inline constexpr float EvenInFrames = 0.1f;
 
 /// Shadow rays for what a ray gathers of slices behind occluders: each stands for a dose of light, so many to a ray.
@@ -93,7 +93,7 @@ struct Costs {
     double density;            ///< of guided paths, for a flight of a plain one
     double pixel;              ///< a path of a pixel in a pass
 };
-/// Fitted to CPU seconds and counters of 37 scenes: benchmarks/costs.py points (beams, mis_volumes_balls).
+/// Fitted to CPU seconds and counters of 37 scenes: benchmarks/bench.py costs --method points (beams, mis_volumes_balls).
 inline constexpr Costs Nanoseconds{.plain = {115.0, 120.0, 100.0, 0.0},
                                    .guided = {50.0, 200.0, 200.0, 500.0},
                                    .connection = 200.0,
@@ -113,7 +113,7 @@ struct PassCosts {
     double path, ray, mediumEvent, surfaceEvent, controlVertex, connection, density;
     Record point, beam, slice;
 };
-/// Fitted to CPU seconds and counters of three primitives in 39 scenes: benchmarks/costs.py --method passes.
+/// Fitted to CPU seconds and counters of three primitives in 39 scenes: benchmarks/bench.py costs --method passes.
 inline constexpr PassCosts PassNanoseconds{.path = 180.0,
                                            .ray = 140.0,
                                            .mediumEvent = 100.0,
@@ -166,14 +166,14 @@ inline constexpr float SharedPixels = 2.5f;
 /// seconds, error^2 at 1 and at 0.5: ball of 12 a unit 0.296, 0.129 (off by 16 and 10 %), of a late lamp 0.045, 0.013
 /// (3 and 2 %), small balls 0.090, 0.096, cylinder 0.036, 0.052, fast body 0.0038, 0.0026, touching cubes 0.0061,
 /// 0.0075. Points, whose noise grows as the square, had 1.25 times the error at 0.5: they keep theirs. Bench:
-/// benchmarks/kernels/means.py
+/// benchmarks/bench.py kernels means
 inline constexpr float WidthAtSurfaces = 0.5f;
 
 /// Cells that keep what surfaces are about them: their edge in radii of kernels, and how many there are across a scene
 /// at least; beams near a surface are cut into parts of so many radii at most. CPU time over that without ended
 /// kernels, cells of 3 and of 6 radii: mirror box, beams 1.34 and 1.42, points 1.16 and 1.17; room of thin fog, beams
 /// 1.71 and 1.81. Parts of 4, 8 and 16 radii there: CPU time 1.65, 1.70 and 1.68, variance 1.005, 1.009 and 1.020.
-/// Bench: benchmarks/kernels/cost.py
+/// Bench: benchmarks/bench.py kernels cost
 inline constexpr float CellInRadii = 3.0f, LeastCellsAcross = 32.0f, NearPartInRadii = 8.0f;
 
 // --- Bias ------------------------------------------------------------------------------------------------------------
@@ -181,7 +181,7 @@ inline constexpr float CellInRadii = 3.0f, LeastCellsAcross = 32.0f, NearPartInR
 /// Width of the kernels that the bias is estimated with, of those that the image is made with. Narrower ones need no
 /// photons but the pass's, and tell more where what they blur has edges: a slab seen from outside, estimate over true
 /// bias 0.60 at 0.71 and 0.52 at 0.8, where the estimate's noise was taken off differently. Bench:
-/// benchmarks/study/studies/bias.py
+/// study bias
 inline constexpr float NarrowKernel = 0.70710678f;
 
 // --- Stores and structures -------------------------------------------------------------------------------------------

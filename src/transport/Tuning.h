@@ -1,7 +1,7 @@
 #pragma once
 // Constants that integrators share and that were tuned by measurement. To see what one brings, change it,
 // build, and compare before and after by the bench named:
-//   study NAME        benchmarks/study/study.py benchmarks/study/studies/NAME.json
+//   study NAME        benchmarks/bench.py study NAME
 //   infinite_medium   build/bin/infinite_medium
 //   micro             build/bin/micro
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The sweep of small scenes (benchmarks/agreement/sweep.py): its comparisons on synthetic means, its copies, and its scenes in the
+"""The sweep of small scenes (benchmarks/bench.py sweep): its comparisons on synthetic means, its copies, and its scenes in the
 built renderer, named by the environment's TUNGSTEN."""
 
 import csv
@@ -15,16 +15,15 @@ import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
-sys.path.insert(0, str(PROJECT / "benchmarks/agreement"))
+sys.path.insert(0, str(PROJECT / "benchmarks"))
 
-from sweep import Renderer, compare_scene, methods_of, scene_json  # noqa: E402
-from sweep_copies import moved, scaled  # noqa: E402
-from sweep_measures import BLOCKS, Samples, compare, compare_pairs, means, normal_sigmas, without_kernel  # noqa: E402
-from sweep_methods import METHODS, SLICE_METHODS  # noqa: E402
-from sweep_report import report, tables  # noqa: E402
-from sweep_scenes import FAST, all_scenes  # noqa: E402
-from sweep_slices import SLICE_FAST, slice_scenes  # noqa: E402
-from sweep_vocabulary import write_assets  # noqa: E402
+from agreement.sweep_scenes import FAST, all_scenes  # noqa: E402
+from agreement.sweep_slices import SLICE_FAST, slice_scenes  # noqa: E402
+from darts_bench.measures import BLOCKS, Samples, compare, compare_pairs, means, normal_sigmas, without_kernel  # noqa: E402
+from darts_bench.scene_words import write_assets  # noqa: E402
+from darts_bench.sweep import METHODS, SLICE_METHODS, Renderer, compare_scene, methods_of, scene_json  # noqa: E402
+from darts_bench.sweep_copies import moved, scaled  # noqa: E402
+from darts_bench.sweep_report import report, tables  # noqa: E402
 
 COUNT = 3 + 3 * BLOCKS * BLOCKS  # means of an image of one frame
 

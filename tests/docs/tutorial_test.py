@@ -17,7 +17,7 @@ from extract_snippets import SNIPPET
 PROJECT = Path(__file__).resolve().parents[2]
 FOLDER = Path(sys.argv[1])
 NAMES = {"tungsten": [os.environ["TUNGSTEN"]],
-         "study": [sys.executable, str(PROJECT / "benchmarks/study/study.py")]}
+         "study": [sys.executable, str(PROJECT / "benchmarks/bench.py"), "study"]}
 
 
 def run(words):

@@ -32,8 +32,8 @@ from pathlib import Path
 import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(PROJECT / "benchmarks/agreement"))
-from sweep_vocabulary import at, body, camera, facing, frames, gate, lambert, lamp, looking, medium, room, steady, write_assets  # noqa: E402
+sys.path.insert(0, str(PROJECT / "benchmarks"))
+from darts_bench.scene_words import at, body, camera, facing, frames, gate, lambert, lamp, looking, medium, room, steady, write_assets  # noqa: E402
 
 SECONDS, REFUSED = 120, "refused"  # a render that takes longer counts as one without end
 OPTIONS = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-ffp-contract=off",

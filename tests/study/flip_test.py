@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks/study"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
-from flip import PIXELS_PER_DEGREE, flip, from_opponent, opponent  # noqa: E402
+from darts_bench.flip import PIXELS_PER_DEGREE, flip, from_opponent, opponent  # noqa: E402
 
 SIZE = 48
 

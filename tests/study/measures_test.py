@@ -14,11 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks/study"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
-import images  # noqa: E402
-import measures  # noqa: E402
-import references  # noqa: E402
+from darts_bench import images, measures  # noqa: E402
+from darts_bench.study_runs import average  # noqa: E402
 
 SIZE, BLOCK, SEEDS, STUDIES = 48, 8, 3, 1500
 PIXEL_NOISE, SHARED_NOISE, REFERENCE_NOISE = 0.5, 0.2, 0.3  # absolute; shared: one value for each 4x4 pixels
@@ -114,14 +113,15 @@ class Measures(unittest.TestCase):
         """References made of renders whose neighbouring pixels vary together, as those of photons do."""
         studies, seeds = SyntheticStudies(0.1, 19), 4
         known = (PIXEL_NOISE**2 / BLOCK**2 + SHARED_NOISE**2 / (BLOCK / 4) ** 2) / seeds
-        found = [references.average([np.repeat(studies.render()[..., None], 3, axis=2) for _ in range(seeds)], BLOCK)[1]
+        found = [average([np.repeat(studies.render()[..., None], 3, axis=2) for _ in range(seeds)], BLOCK)[1]
                  for _ in range(300)]
         self.assert_mean(found, known, "block variance")
 
     def test_differences_from_the_reference(self):
         reference = np.full((SIZE, SIZE), 2.0)
         image = reference + 0.1
-        self.assertAlmostEqual(measures.relmse99(image, reference), 0.0025)
+        colour, exact = (np.repeat(grey[..., None], 3, axis=2) for grey in (image, reference))
+        self.assertAlmostEqual(measures.relmse99(colour, measures.Truth(exact)), 0.0025)
         self.assertAlmostEqual(measures.median_error(image, reference), 0.05)
         image[0, 0] = 1e6
         self.assertAlmostEqual(measures.median_error(image, reference), 0.05, msg="a firefly does not move it")

@@ -18,11 +18,11 @@ import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
-sys.path.insert(0, str(PROJECT / "benchmarks/study"))
+sys.path.insert(0, str(PROJECT / "benchmarks"))
 
-from film_code import encode  # noqa: E402
-from images import read_exr  # noqa: E402
-from page import template, trace_points, write_html  # noqa: E402
+from darts_bench.film_code import encode  # noqa: E402
+from darts_bench.images import read_exr  # noqa: E402
+from darts_bench.page import template, trace_points, write_html  # noqa: E402
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FRAMES, WIDTH, HEIGHT = 4, 30, 20

@@ -10,14 +10,14 @@ from types import SimpleNamespace
 
 import numpy as np
 
-STUDY = Path(__file__).resolve().parents[2] / "benchmarks/study"
-sys.path.insert(0, str(STUDY))
+BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+sys.path.insert(0, str(BENCHMARKS))
 
-from errors import Truth, parts  # noqa: E402
+from darts_bench.measures import Truth, parts  # noqa: E402
 
 
 def program(name):
-    spec = importlib.util.spec_from_file_location(name.replace("-", "_"), STUDY / f"studies/{name}.py")
+    spec = importlib.util.spec_from_file_location(name.replace("-", "_"), BENCHMARKS / f"study/studies/{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

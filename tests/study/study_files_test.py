@@ -9,13 +9,13 @@ import unittest
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[2]
-STUDY = PROJECT / "benchmarks/study/study.py"
-sys.path.insert(0, str(STUDY.parent))
+sys.path.insert(0, str(PROJECT / "benchmarks"))
 
-from results import Summary  # noqa: E402
-from runs import plan  # noqa: E402
-from study_file import Method, PublishedFigures, Scene, Study, StudyError, load_study, require_references  # noqa: E402
-from tables import baseline_of, left_out_table, overview_table  # noqa: E402
+from darts_bench.results import Summary  # noqa: E402
+from darts_bench.run import BenchError  # noqa: E402
+from darts_bench.study_file import Method, PublishedFigures, Scene, Study, load_study, require_references  # noqa: E402
+from darts_bench.study_runs import plan  # noqa: E402
+from darts_bench.tables import baseline_of, left_out_table, overview_table  # noqa: E402
 
 
 class Summaries(unittest.TestCase):
@@ -93,7 +93,7 @@ class StudyFiles(unittest.TestCase):
         table = left_out_table(loaded, {})
         self.assertIn("| m | b | nothing to see |", table)
         study["scenes"][1]["skip"] = {"z": "nothing to see"}
-        with self.assertRaisesRegex(StudyError, "skips 'z', which is not compared"):
+        with self.assertRaisesRegex(BenchError, "skips 'z', which is not compared"):
             self.load(study)
 
     def test_mistakes_are_named(self):
@@ -101,12 +101,12 @@ class StudyFiles(unittest.TestCase):
                                 ({"seeds": 0}, "'seeds' is a whole number"), ({"baseline": "z"}, "baseline 'z'"),
                                 ({"methods": [{"name": "m"}, {"name": "m"}]}, "same name"), ({"seconds": -1}, "positive"),
                                 ({"methods": [{"name": "m", "scenes": ["c"]}]}, "not compared")):
-            with self.assertRaisesRegex(StudyError, message):
+            with self.assertRaisesRegex(BenchError, message):
                 self.load(self.study(**change))
 
     def test_text_is_utf8_with_or_without_a_mark(self):
         self.assertEqual(len(self.load(self.study(), "utf-8-sig").methods), 3)
-        with self.assertRaisesRegex(StudyError, "study.json: not text in UTF-8"):
+        with self.assertRaisesRegex(BenchError, "study.json: not text in UTF-8"):
             self.load(self.study(), "utf-16")
 
     def test_missing_references_are_named(self):
@@ -117,13 +117,13 @@ class StudyFiles(unittest.TestCase):
             return dataclasses.replace(study, scenes=scenes)
 
         require_references(seen(Path(__file__)))
-        with self.assertRaisesRegex(StudyError, "no reference reference/none.exr; benchmarks/study/references.sh"):
+        with self.assertRaisesRegex(BenchError, "no reference reference/none.exr; benchmarks/study/references.sh"):
             require_references(seen(Path("reference/none.exr")))
 
     def test_studies_that_ship(self):
         """Those of scenes by others only where these are."""
         others = (PROJECT / "../shared/scenes").is_dir()
-        for file in sorted((STUDY.parent / "studies").glob("*.json")):
+        for file in sorted((PROJECT / "benchmarks/study/studies").glob("*.json")):
             if not others and ("../shared" in (text := file.read_text()) or '"include"' in text):
                 continue
             study = load_study(file, PROJECT)

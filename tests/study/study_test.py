@@ -15,15 +15,15 @@ from pathlib import Path
 import numpy as np
 
 PROJECT = Path(__file__).resolve().parents[2]
-STUDY = PROJECT / "benchmarks/study/study.py"
+BENCH = PROJECT / "benchmarks/bench.py"
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
-sys.path[:0] = [str(STUDY.parent), str(PROJECT / "tests/support")]
+sys.path[:0] = [str(BENCH.parent), str(PROJECT / "tests/support")]
 
-import measures  # noqa: E402
-from images import read_exr, read_pfm  # noqa: E402
-from runs import call  # noqa: E402
+from darts_bench import measures  # noqa: E402
+from darts_bench.images import read_exr, read_pfm  # noqa: E402
+from darts_bench.run import call  # noqa: E402
+from darts_bench.study_file import load_study  # noqa: E402
 from study_command import study as study_command  # noqa: E402
-from study_file import load_study  # noqa: E402
 
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
 SIZE = 32
@@ -56,7 +56,7 @@ class TinyStudy(unittest.TestCase):
             "definitions": {"methods": [{"name": "delta", "may_refuse": ["integrator.delta_time_gate"],
                                          "set": ["integrator.type=path_tracer", "integrator.delta_time_gate=true"]}]}}
         cls.write()
-        cls.first = subprocess.run([sys.executable, STUDY, *cls.arguments()], capture_output=True, text=True)
+        cls.first = subprocess.run([sys.executable, BENCH, "study", *cls.arguments()], capture_output=True, text=True)
         cls.report, cls.page = ((cls.folder / f"work/report.{kind}").read_text() for kind in ("md", "html"))
 
     @classmethod
@@ -192,7 +192,7 @@ class TinyStudy(unittest.TestCase):
         code, text = call("new", scene)
         self.assertEqual(code, 0, text)
         self.assertIn("references", text)
-        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "0.4"]
+        file, options = self.folder / "room-study.json", ["--work", self.folder / "room-work", "--seconds", "1.5"]
         self.assertEqual(call(file, "check")[0], 1)
         self.assertEqual(call(file, "references", *options, "--seeds", "2")[0], 0)
         self.assertEqual(call(file, "check")[0], 0)
@@ -204,7 +204,7 @@ class TinyStudy(unittest.TestCase):
 
     def test_interrupted_runs_leave_no_result(self):
         work = self.folder / "interrupted"
-        process = subprocess.Popen([sys.executable, STUDY, self.folder / "tiny.json", "--seconds", "600", "--methods", "points",
+        process = subprocess.Popen([sys.executable, BENCH, "study", self.folder / "tiny.json", "--seconds", "600", "--methods", "points",
                                     "--work", work, "--tungsten", TUNGSTEN],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         while not list(work.glob("runs/fog/points/*.partial")) and process.poll() is None:

@@ -16,7 +16,7 @@ sys.path.insert(0, str(PROJECT / "tests/support"))
 
 from study_command import study  # noqa: E402
 
-STUDY = PROJECT / "benchmarks/study/study.py"
+BENCH = PROJECT / "benchmarks/bench.py"
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
 # As sbatch does it: reads the script's directives, starts each task of an array, prints the job's number. It waits for them.
@@ -58,7 +58,7 @@ class Submit(unittest.TestCase):
     def call(self, *options, code=0):
         arguments = [self.folder / "tiny.json", *options, "--work", self.work, "--tungsten", TUNGSTEN]
         if "--workers" in options:  # they inherit what this process writes to
-            result = subprocess.run([sys.executable, STUDY, *map(str, arguments)], capture_output=True, text=True)
+            result = subprocess.run([sys.executable, BENCH, "study", *map(str, arguments)], capture_output=True, text=True)
         else:
             result = study(*arguments)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)

@@ -1,4 +1,4 @@
-"""The study's command (benchmarks/study/study.py) without a process of its own: loading numpy and matplotlib takes longer than what
+"""The study's command (benchmarks/bench.py study) without a process of its own: loading numpy and matplotlib takes longer than what
 most calls do."""
 
 import contextlib
@@ -7,9 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks/study"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "benchmarks"))
 
-from study import main  # noqa: E402
+from bench import main  # noqa: E402
 
 
 def study(*arguments):
@@ -18,7 +18,7 @@ def study(*arguments):
     out, error = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
         try:
-            code = main(arguments)
+            code = main(["study", *arguments])
         except SystemExit as stop:
             code = stop.code
     return subprocess.CompletedProcess(arguments, code, out.getvalue(), error.getvalue())

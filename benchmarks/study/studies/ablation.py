@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 
-from bench import PRIMITIVES, Bench, Scene, panels, plain_log
-from errors import Truth, mse, parts
+from darts_bench.measures import Truth, mse, parts
+from darts_bench.plots import panels, plain_log
+from darts_bench.program import PRIMITIVES, Bench, Scene
 
 TITLE = "Ablation: the parts of the sampling, with the same photons and radii"
 DARTS = "integrator.darts="

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from bench import Bench, Scene, panels
-from measures import grey
+from darts_bench.measures import grey
+from darts_bench.plots import panels
+from darts_bench.program import Bench, Scene
 
 TITLE = "Does `--plan-cost` tell what an error costs?"
 # Small passes: every method has many of them in little time.

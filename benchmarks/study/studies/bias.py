@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from bench import PATHS, ROOT, Bench, Scene, method
+from darts_bench.program import PATHS, Bench, Scene, method
+from darts_bench.run import PROJECT
 
 TITLE = "Does a render know what its kernels leave?"
 METHODS = ["plain points", "best points", "plain beams", "best beams"]
@@ -15,7 +16,7 @@ def scenes(bench):
     """Scene, radii, methods: plain sampling of the slab has a noise above 50 %."""
     side = bench.short(48, 16)
     found = [(Scene.own("cornell-fog", side), [0.1, 0.2], METHODS)]
-    slab = ROOT / "benchmarks/study/scenes/dense-cube-10.json"
+    slab = PROJECT / "benchmarks/study/scenes/dense-cube-10.json"
     return found if bench.quick else [*found, (Scene("slab", slab, (side, side), ("media.milk.sigma_s=1",)), [0.08, 0.16], ["best points", "best beams"])]
 
 

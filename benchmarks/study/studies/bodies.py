@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from bench import Bench, Scene, method, panels, table
-from errors import Truth, mse
-from measures import grey, picture_difference
+from darts_bench.measures import Truth, grey, mse, picture_difference
+from darts_bench.plots import panels
+from darts_bench.program import Bench, Scene, method
+from darts_bench.tables import table
 
 TITLE = "Bodies that end: plain and best sampling"
 PRIMITIVES = ["points", "beams", "paths"]

@@ -2,8 +2,10 @@
 
 import numpy as np
 
-from bench import Bench, Scene, method, panels, table
-from errors import Truth, mse, parts, slope
+from darts_bench.measures import Truth, mse, parts, slope
+from darts_bench.plots import panels
+from darts_bench.program import Bench, Scene, method
+from darts_bench.tables import table
 
 TITLE = "Convergence: errors against passes, beside theory"
 # Of scenes/pulse-in-fog.json.

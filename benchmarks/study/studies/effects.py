@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from bench import PATHS, Bench, Scene, panels, plain_log
-from study_file import StudyError
+from darts_bench.plots import panels, plain_log
+from darts_bench.program import PATHS, Bench, Scene
+from darts_bench.run import BenchError
 
 TITLE = "What effects cost"
 REPEATS = 6
@@ -129,7 +130,7 @@ def run(bench: Bench):
     for i, (effect, scene, own, *_) in enumerate(chosen):
         pair = found[i, "on"], found[i, "off"]
         if [is_on(one[0], effect) for one in pair] != [True, False]:
-            raise StudyError(f"{scene}: {effect} is not on in the one render and off in the other")
+            raise BenchError(f"{scene}: {effect} is not on in the one render and off in the other")
         row, point = row_of(effect, scene, own, pair)
         rows.append(row)
         points.append(point)

@@ -1,7 +1,9 @@
 """Error against processor time: points, beams and paths, plain, published and best, against long path-traced references."""
 
-from bench import Bench, Scene, look, method, panels, table
-from errors import Truth, band, curve, parts
+from darts_bench.measures import Truth, band, curve, parts
+from darts_bench.plots import look, panels
+from darts_bench.program import Bench, Scene, method
+from darts_bench.tables import table
 
 TITLE = "Error against processor time"
 METHODS = ["plain points", "published points", "best points", "plain beams", "best beams", "plain paths", "best paths"]

@@ -1,10 +1,9 @@
 """Pictures of the scenes that ship: docs/gallery.md and its pictures."""
 
-import shutil
-
 from PIL import Image
 
-from bench import ROOT, Bench, Scene
+from darts_bench.program import Bench, Scene
+from darts_bench.run import PROJECT
 
 TITLE = "Gallery"
 # Passes (10 to 30 CPU seconds each), and what is seen.
@@ -33,11 +32,11 @@ def strip(folder, frames):
 
 
 def run(bench: Bench):
-    page = (bench.work if bench.quick else ROOT / "docs") / f"{bench.name}.md"
+    page = (bench.work if bench.quick else PROJECT / "docs") / f"{bench.name}.md"
     folder = page.parent / "gallery"
     folder.mkdir(parents=True, exist_ok=True)
     text = ["# Gallery", "The scenes of `data/scenes`, each with the command that makes its picture in 10 to 30 seconds of one "
-            "core (`--spp` the number of passes). `benchmarks/study/study.py gallery` makes this page."]
+            "core (`--spp` the number of passes). `benchmarks/bench.py study gallery` makes this page."]
     for name, (passes, line) in SCENES.items():
         scene = Scene.own(name, 0)
         passes = bench.short(passes, 1)
@@ -45,7 +44,7 @@ def run(bench: Bench):
         frames = sorted(made.glob("image_*.png"), key=lambda file: int(file.stem.split("_")[1]))
         picture = strip(made, range(0, len(frames), 3)[:8]) if frames else Image.open(made / "image.png").convert("RGB")
         picture.save(folder / f"{name}.jpg", quality=88)
-        command = f"build/bin/tungsten -s 1 --spp {passes} -o {name}.png -e {name}.exr {scene.file.relative_to(ROOT)}"
+        command = f"build/bin/tungsten -s 1 --spp {passes} -o {name}.png -e {name}.exr {scene.file.relative_to(PROJECT)}"
         text += [f"## {name}", line, f"![{name}](gallery/{name}.jpg)", f"```sh\n{command}\n```"]
     page.write_text("\n\n".join(text) + "\n")
     print(page)

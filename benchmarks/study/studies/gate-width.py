@@ -1,7 +1,7 @@
 """Methods from nearly a single moment to nearly the steady state: six widths of the time gate."""
 
-from bench import Bench, Scene
-from sweeps import study
+from darts_bench.program import Bench, Scene
+from darts_bench.properties import study
 
 TITLE = "From a moment to the steady state"
 

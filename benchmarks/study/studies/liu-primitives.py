@@ -6,10 +6,10 @@ import subprocess
 
 import numpy as np
 
-from bench import MAP, PRESETS, Bench, Scene, method, panels, plt
-from errors import Truth, parts
-from images import tone_map
-from measures import grey
+from darts_bench.images import tone_map
+from darts_bench.measures import Truth, grey, parts
+from darts_bench.plots import panels, plt
+from darts_bench.program import MAP, PRESETS, Bench, Scene, method
 
 TITLE = "Liu et al.'s primitives beside points, beams and paths"
 SLICES = ["planes", "volumes", "balls", "mis_volumes_balls", "hypervolumes"]

@@ -1,6 +1,6 @@
 """Memory and CPU time by stage of sliced primitives in the scenes of data/scenes."""
 
-from bench import MAP, Bench, Scene
+from darts_bench.program import MAP, Bench, Scene
 
 TITLE = "Sliced primitives: memory and time by stage"
 TYPES = ["planes", "volumes", "balls", "mis_volumes_balls", "hypervolumes"]

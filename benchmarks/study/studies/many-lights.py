@@ -4,7 +4,9 @@ import json
 
 import numpy as np
 
-from bench import PATHS, Bench, Scene, look, panels, table
+from darts_bench.plots import look, panels
+from darts_bench.program import PATHS, Bench, Scene
+from darts_bench.tables import table
 
 TITLE = "Many lights: light vertices of guided paths"
 CASES = {"with light vertices": "best", "without": '{"preset":"best","surface_connections":false}'}

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from bench import Bench, Scene, method, table
+from darts_bench.program import Bench, Scene, method
+from darts_bench.tables import table
 
 TITLE = "How often a render is further off than it promised"
 TARGET = 0.4

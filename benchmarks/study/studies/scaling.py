@@ -4,7 +4,9 @@ import json
 
 import numpy as np
 
-from bench import Bench, Scene, look, method, panels, plain_log, table
+from darts_bench.plots import look, panels, plain_log
+from darts_bench.program import Bench, Scene, method
+from darts_bench.tables import table
 
 TITLE = "Time and memory against the size of a scene and its image"
 METHODS = ["plain points", "best points", "plain beams", "best paths"]

@@ -1,7 +1,7 @@
 """Methods from nearly clear to dense fog: six scattering coefficients."""
 
-from bench import Bench, Scene
-from sweeps import study
+from darts_bench.program import Bench, Scene
+from darts_bench.properties import study
 
 TITLE = "From thin to dense fog"
 

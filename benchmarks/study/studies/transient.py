@@ -2,8 +2,10 @@
 
 import numpy as np
 
-from bench import Bench, Scene, look, method, panels, table
-from measures import grey
+from darts_bench.measures import grey
+from darts_bench.plots import look, panels
+from darts_bench.program import Bench, Scene, method
+from darts_bench.tables import table
 
 TITLE = "The arrival histogram of a patch"
 METHODS = ["plain points", "best points", "best beams", "plain paths", "best paths"]

@@ -4,8 +4,11 @@ import math
 
 import numpy as np
 
-from bench import ROOT, Bench, Scene, method, panels, table
-from errors import Truth, mse
+from darts_bench.measures import Truth, mse
+from darts_bench.plots import panels
+from darts_bench.program import Bench, Scene, method
+from darts_bench.run import PROJECT
+from darts_bench.tables import table
 
 TITLE = "Twelve scenes that nobody tuned on"
 PRIMITIVES = ["paths", "points", "beams"]
@@ -13,7 +16,7 @@ AUTO = "integrator.volume_photon_type=auto"
 
 
 def scenes():
-    return [f"unseen/{file.stem}" for file in sorted((ROOT / "benchmarks/study/scenes/unseen").glob("*.json"))]
+    return [f"unseen/{file.stem}" for file in sorted((PROJECT / "benchmarks/study/scenes/unseen").glob("*.json"))]
 
 
 class Cost:

@@ -1,0 +1,1 @@
+build/bin/tungsten -t 1 --resolution 320x240 -s 1 --quiet --spp 1000000000 --timeout 10h --set renderer.spp_step=1 --set renderer.enable_resume_render=false --set integrator.type=progressive_transient_photon_map --set integrator.volume_photon_type=points --set integrator.darts=off data/scenes/two-peaks/scene.json
