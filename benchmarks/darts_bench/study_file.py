@@ -238,16 +238,8 @@ def _methods(study, known, scenes, where):
 
 def missing_references(study):
     """Messages about scenes whose reference is not there. Not needed to list a study."""
-    messages = []
-    for scene in study.scenes:
-        own = ""
-        if scene.reference_by:
-            own = "; the action 'references' renders it"
-        elif scene.reference.parent.name == "reference" and scene.reference.suffix == ".exr":
-            own = "; benchmarks/study/references.sh renders it"
-        if not scene.reference.is_file():
-            messages.append(f"scene '{scene.name}': there is no reference {scene.reference}{own}")
-    return messages
+    return [f"scene '{scene.name}': there is no reference {scene.reference}" + ("; the action 'references' renders it" if scene.reference_by else "")
+            for scene in study.scenes if not scene.reference.is_file()]
 
 
 def require_references(study):
