@@ -87,6 +87,7 @@ class Parts:
     mean_error: float
     cpu: float
     passes: float
+    told: float  # standard error by the renders' own account: rms of those that know theirs
     costs: list  # by seed: MSE x CPU seconds, above zero
 
     @property
@@ -98,6 +99,12 @@ class Parts:
     def certain_cost(self):
         """The same of the variance, and of the bias where it is beyond doubt: the noise of a reference does not enter it."""
         return (self.variance + (self.bias if self.bias > self.doubt else 0.0)) * self.cpu
+
+
+def own_error(renders, at=-1):
+    """Relative standard error by the renders' own account, rms over those that know theirs."""
+    known = [error for render in renders if np.isfinite(error := render.standard_errors[at])]
+    return float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
 
 
 def parts(renders, truth, at=-1):
@@ -114,7 +121,7 @@ def parts(renders, truth, at=-1):
                  bias=mse(means, truth) - variance / len(images), doubt=float(doubt), median=float(np.median(np.sqrt(np.maximum(squares, 0.0)))),
                  flip=float(np.mean(looks)), mean=float(np.mean(ratios)), mean_error=standard_error(ratios), cpu=float(np.mean(cpu)),
                  passes=float(np.mean([render.passes[at] for render in renders])),
-                 costs=[max(square, 1e-12) * seconds for square, seconds in zip(squares, cpu)])
+                 told=own_error(renders, at), costs=[max(square, 1e-12) * seconds for square, seconds in zip(squares, cpu)])
 
 
 def curve(render, truth):

@@ -68,6 +68,16 @@ def in_rows(panel, names, label):
     panel.set_xlabel(label, fontsize=9)
 
 
+def ranges(panel, found, label, colours=COLOURS):
+    """Rows of {name: {series: (value, least, largest)}}: a dot in each row and a bar beside it, by series."""
+    for place, of_name in enumerate(found.values()):
+        for i, (series, (value, low, high)) in enumerate(of_name.items()):
+            at, colour = place + 0.22 * (i - (len(of_name) - 1) / 2), colours.get(series, "tab:blue")
+            panel.plot([low, high], [at, at], color=colour, linewidth=3, alpha=0.35)
+            panel.plot(value, at, marker="o", markersize=4, color=colour, label=series if place == 0 else None)
+    in_rows(panel, list(found), label)
+
+
 def frames_of(rows, columns, width, height):
     """A figure for pictures, each so wide, and its cells by row and column."""
     figure, axes = plt.subplots(rows, columns, figsize=(width * columns, height), squeeze=False, layout="constrained")

@@ -23,20 +23,18 @@ def sweep(bench, scenes, reference_seconds, seconds, seeds):
     references are known."""
     rows, curves, known = [], {name: [] for name in METHODS}, []
     for value, scene in scenes.items():
-        image, doubt = bench.reference(scene, reference_seconds)
-        truth = Truth(image, doubt)
+        truth = Truth(*bench.reference(scene, reference_seconds))
         known.append(np.sqrt(truth.variance / truth.scale))
         found = bench.interleaved({name: (scene, settings(name)) for name in METHODS}, seeds, cpu=seconds)
         for name, renders in found.items():
             p = parts(renders, truth)
             # By seed: its own account of its noise.
-            own = [render.standard_errors[-1] ** 2 * (render.image().mean() / image.mean()) ** 2 * render.cpu[-1] for render in renders]
+            own = [render.standard_errors[-1] ** 2 * (render.image().mean() / truth.mean) ** 2 * render.cpu[-1] for render in renders]
             more = p.certain_cost - p.variance * p.cpu
             curves[name].append((value, p.certain_cost, min(own) + more, max(own) + more))
-            ratio = np.mean([render.image().mean() for render in renders]) / image.mean()
             bias = (f"{p.bias:.2g}", "") if p.bias > p.doubt else ("", f"{max(p.bias, 0) + p.doubt:.1g}")
             rows.append([f"{value:g}", name, f"{p.passes:.0f}", f"{p.median:.3f}", f"{p.relmse99:.3g}", f"{p.variance:.3g}",
-                         *bias, f"{p.flip:.3f}", f"{ratio:.3f}", f"{p.certain_cost:.3g}"])
+                         *bias, f"{p.flip:.3f}", f"{p.mean:.3f}", f"{p.certain_cost:.3g}"])
     return rows, curves, known
 
 

@@ -15,6 +15,7 @@ import signal
 import subprocess
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -103,6 +104,16 @@ def set_options(settings):
     return [word for value in settings for word in ("--set", value)]
 
 
+@contextlib.contextmanager
+def workers(count):
+    """A pool of threads, each of which waits for a process. Where something goes wrong, what has not begun is left out."""
+    pool = ThreadPoolExecutor(count)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
 # ---- What is kept
 
 def content_key(what, *files):
@@ -173,12 +184,17 @@ class Film:
         return self.statistics["stages"]["passes"]["CPU seconds"]
 
 
+def read_film(file):
+    """What the renderer has written as NPZ."""
+    with np.load(file) as stored:
+        error = stored["standard_error"].astype(float) if "standard_error" in stored else None
+        return Film(stored["mean"].astype(float), error, json.loads(bytes(stored["metadata.json"])))
+
+
 def film(tungsten, scene, settings=(), passes=None, seconds=None, seed=1, threads=1, options=()):
     """A render of so many samples a pixel, or of so many seconds of the wall's clock; nothing of it stays but what is returned."""
     with tempfile.TemporaryDirectory() as folder:
         length = ["--spp", passes] if passes else ["--timeout", f"{seconds:g}s", "--spp", MOST_SAMPLES]
         checked([tungsten, "--quiet", "--no-frames", "--allow-outside", "-t", threads, "-s", seed, "-d", folder, "-e", "film.npz", *length, *options,
                  *set_options(settings), scene])
-        with np.load(Path(folder) / "film.npz") as stored:
-            error = stored["standard_error"].astype(float) if "standard_error" in stored else None
-            return Film(stored["mean"].astype(float), error, json.loads(bytes(stored["metadata.json"])))
+        return read_film(Path(folder) / "film.npz")

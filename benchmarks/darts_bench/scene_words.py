@@ -137,14 +137,14 @@ def steady(bounces=32, **fields):
 def write_assets(folder):
     """A ball of triangles with smooth normals, a bump map of waves, a mask of stripes."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "ball.obj").write_text(_ball(6, 10))
+    (folder / "ball.obj").write_text(ball(6, 10))
     y, x = np.mgrid[0:16, 0:16] / 16.0
     for name, grey in (("waves", 0.5 + 0.5 * np.sin(2 * np.pi * x) * np.sin(4 * np.pi * y)), ("stripes", np.where(x < 0.5, 1.0, 0.2))):
         write_pfm(folder / f"{name}.pfm", np.repeat(grey[:, :, None], 3, axis=2))
 
 
-def _ball(rings, segments):
-    """A sphere of radius 1 about the origin, front faces outwards."""
+def ball(rings, segments):
+    """A sphere of radius 1 about the origin as OBJ: 2 segments (rings - 1) triangles, their front faces outwards."""
     points, faces = [(0.0, 0.0, 1.0)], []
     for ring in range(1, rings):
         theta = np.pi * ring / rings

@@ -8,7 +8,6 @@ interrupted sweep goes on with the same command, and only what changed is render
 
 import argparse
 import json
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +16,7 @@ import numpy as np
 from agreement.sweep_scenes import FAST, all_scenes
 from agreement.sweep_slices import SLICE_FAST, slice_scenes
 from darts_bench.measures import Samples, compare, compare_pairs, means, without_kernel
-from darts_bench.run import BenchError, add_renderer, build_of, checked, content_key, require_renderer
+from darts_bench.run import BenchError, add_renderer, build_of, checked, content_key, read_film, require_renderer, workers
 from darts_bench.scene_words import write_assets
 from darts_bench.sweep_copies import moved, scaled
 from darts_bench.sweep_report import INTRODUCTION, SLICES_INTRODUCTION, report, scene_row, tables
@@ -172,22 +171,22 @@ class Renderer:
         folder, files = self.folder / "renders", []
         for name, key in due:
             content = json.loads(self._scene(name).read_text())
-            content["renderer"] |= {"output_file": f"{key}.png", "hdr_output_file": f"{key}.npy"}
+            content["renderer"] |= {"output_file": f"{key}.png", "hdr_output_file": f"{key}.film.npz"}
             files.append(folder / f"{key}.scene.json")
             files[-1].write_text(json.dumps(content))
         said = checked([self.tungsten, "--quiet", "--allow-outside", "-t", "1", "-s", seed, "-d", folder, *files], limit=LIMIT_SECONDS * len(due))
         lines, before = [line for line in said.splitlines() if line.strip()], 0.0
         for i, (name, key) in enumerate(due):
-            pixels = np.load(folder / f"{key}.npy").astype(float)
-            until = json.loads((folder / f"{key}.npy.json").read_text())["statistics"]["process CPU seconds"]
+            film = read_film(folder / f"{key}.film.npz")
+            until = film.statistics["process CPU seconds"]
             # What names no scene is the first one's.
             messages = [line for line in lines if key in line or i == 0 and not any(other in line for _, other in due)]
             messages = [line.replace(f"{key}.scene.json", f"{name}.json") for line in messages]
-            np.savez(folder / f"{key}.part.npz", means=means(pixels), frames=len(pixels), seconds=until - before,
+            np.savez(folder / f"{key}.part.npz", means=means(film.mean), frames=len(film.mean), seconds=until - before,
                      messages=np.array(messages, str))
             (folder / f"{key}.part.npz").replace(self._kept(key))
             before = until
-            for ending in ("npy", "npy.json", "png", "scene.json"):
+            for ending in ("film.npz", "png", "scene.json"):
                 (folder / f"{key}.{ending}").unlink()
 
 
@@ -278,7 +277,7 @@ def main(arguments):
             (options.folder / name).write_text(content)
         return agree
 
-    with ThreadPoolExecutor(options.jobs) as pool:
+    with workers(options.jobs) as pool:
         for scene in chosen(sweep, options):
             try:
                 rendered = render_scene(scene, sweep, options.effort, renderer, pool)

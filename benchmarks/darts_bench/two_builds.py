@@ -17,10 +17,9 @@ import math
 import os
 import statistics
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from darts_bench.run import SHARED, BenchError
+from darts_bench.run import SHARED, BenchError, workers
 from darts_bench.tables import table
 from darts_bench.unused import METHODS, SCENE, of_samples
 
@@ -93,12 +92,11 @@ def main(arguments):
         parser.error("--seeds and --jobs are at least 1")
     jobs = [(build, scene, method, seed) for scene, method in rows for build in (options.before, options.after)
             for seed in range(1, options.seeds + 1)]
-    with ThreadPoolExecutor(options.jobs) as threads:
-        try:
-            counts = dict(zip(jobs, threads.map(count, jobs)))
-        except BenchError as error:
-            threads.shutdown(cancel_futures=True)
-            raise BenchError(f"{error}\n(valgrind must be installed, and the builds be of the preset `portable`)") from error
+    try:
+        with workers(options.jobs) as pool:
+            counts = dict(zip(jobs, pool.map(count, jobs)))
+    except BenchError as error:
+        raise BenchError(f"{error}\n(valgrind must be installed, and the builds be of the preset `portable`)") from error
 
     def of(build, picked):
         return added([counts[build, scene, method, seed] for seed in range(1, options.seeds + 1)] for scene, method in picked)

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 
-from darts_bench.measures import Truth, mse, parts
-from darts_bench.plots import panels, plain_log
+from darts_bench.measures import Truth, parts
+from darts_bench.plots import panels, plain_log, ranges
 from darts_bench.program import PRIMITIVES, Bench, Scene
 
 TITLE = "Ablation: the parts of the sampling, with the same photons and radii"
@@ -54,39 +54,28 @@ def groups(bench):
     return [group for group in found if group[0]]
 
 
-def measured(renders, truth):
-    """MSE x CPU s by seed, relative standard error, mean over the reference's, and all that errors.Parts has."""
-    costs = [max(mse(render.image(), truth), 1e-12) * render.cpu[-1] for render in renders]
-    noise = np.sqrt(np.nanmean([render.standard_errors[-1] ** 2 for render in renders]))
-    return costs, noise, np.mean([render.image().mean() for render in renders]) / truth.image.mean(), parts(renders, truth)
-
-
 def rows_of(found, truth):
-    figures = {key: measured(renders, truth) for key, renders in found.items()}
-    vanilla, best = (np.mean(figures[key][0]) for key in ("vanilla", "best"))
+    """The table's rows, and by variant the cost over that of best: mean, least and largest of the seeds."""
+    figures = {key: parts(renders, truth) for key, renders in found.items()}
+    vanilla, best = (np.mean(figures[key].costs) for key in ("vanilla", "best"))
     rows, losses = [], {}
-    for key, (costs, noise, ratio, p) in figures.items():
-        mean = np.mean(costs)
-        rows.append([key, f"{noise:.3f}", f"{p.median:.3f}", f"{p.flip:.3f}", f"{ratio:.3f}", f"{mean:.3g}", f"{min(costs):.3g}", f"{max(costs):.3g}",
-                     f"{vanilla / mean:.3g}", f"{mean / best:.3g}"])
-        losses[key] = ([cost / best for cost in costs])
+    for key, p in figures.items():
+        costs = np.mean(p.costs), min(p.costs), max(p.costs)
+        rows.append([key, f"{p.told:.3f}", f"{p.median:.3f}", f"{p.flip:.3f}", f"{p.mean:.3f}", *(f"{cost:.3g}" for cost in costs),
+                     f"{vanilla / costs[0]:.3g}", f"{costs[0] / best:.3g}"])
+        losses[key] = {"loss": [cost / best for cost in costs]}
     return rows, losses
 
 
 def picture(bench, pictures):
-    """Of [(title, {variant: cost over that of best, by seed})]."""
+    """Of [(title, losses)]."""
     figure, axes = panels(len(pictures), 2.3, 4.6)
     for (title, losses), panel in zip(pictures, axes):
-        for row, costs in enumerate(losses.values()):
-            panel.plot([min(costs), max(costs)], [row, row], color="tab:blue", linewidth=4, alpha=0.4)
-            panel.plot(np.mean(costs), row, marker="o", markersize=4, color="tab:blue")
-        panel.set_xscale("log")
+        ranges(panel, losses, "MSE × CPU seconds, over that of best" if panel is axes[len(axes) // 2] else "")
         plain_log(panel.xaxis)
-        panel.axvline(1, color="0.3", linewidth=0.8)
         panel.set_title(title, fontsize=8)
-        panel.set_yticks(range(len(losses)), list(losses) if panel is axes[0] else [""] * len(losses))
-        panel.invert_yaxis()
-    axes[len(axes) // 2].set_xlabel("MSE × CPU seconds, over that of best", fontsize=9)
+        if panel is not axes[0]:
+            panel.set_yticklabels([])
     bench.plot(figure, "ablation")
 
 

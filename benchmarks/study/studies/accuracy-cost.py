@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from darts_bench.measures import grey
+from darts_bench.measures import grey, own_error
 from darts_bench.plots import panels
 from darts_bench.program import Bench, Scene
 
@@ -57,7 +57,7 @@ class Measured:
         self.passes = np.mean([r.passes[-1] for r in renders])
         greys = np.array([grey(r.image()) for r in renders])
         self.noise = float(np.sqrt(np.var(greys, axis=0, ddof=1).mean()) / greys.mean())
-        self.told = float(np.sqrt(np.mean([r.standard_errors[-1] ** 2 for r in renders])))
+        self.told = own_error(renders)
         self.bias = float(np.mean([r.entries[-1].get("relative bias") or 0.0 for r in renders]))
         self.error = float(np.hypot(self.noise, self.bias))
 

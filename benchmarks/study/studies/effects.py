@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from darts_bench.plots import panels, plain_log
+from darts_bench.plots import panels, plain_log, ranges
 from darts_bench.program import PATHS, Bench, Scene
 from darts_bench.run import BenchError
 
@@ -108,15 +108,9 @@ def row_of(effect, scene, own, renders):
 
 def picture(bench, points):
     figure, axes = panels(1, 6.4, 5.6)
-    points = sorted(points, key=lambda point: point[1])
-    for row, (_, ratio, rest) in enumerate(points):
-        axes[0].plot([1, ratio], [row, row], color="tab:blue", linewidth=3, alpha=0.4)
-        axes[0].plot(ratio, row, marker="o", markersize=4, color="tab:blue")
-    axes[0].set_xscale("log")
+    points = sorted(points, key=lambda point: -point[1])
+    ranges(axes[0], {label: {"ratio": (ratio, 1, ratio)} for label, ratio, _ in points}, "CPU seconds with the effect / without")
     plain_log(axes[0].xaxis)
-    axes[0].axvline(1, color="0.3", linewidth=0.8)
-    axes[0].set_yticks(range(len(points)), [point[0] for point in points])
-    axes[0].set_xlabel("CPU seconds with the effect / without", fontsize=9)
     bench.plot(figure, bench.name)
 
 

@@ -2,13 +2,11 @@
 camera, at a moment and in a gate; and what `volume_photon_type: auto` makes of them."""
 
 import re
-import subprocess
 
 import numpy as np
 
-from darts_bench.images import tone_map
 from darts_bench.measures import Truth, grey, parts
-from darts_bench.plots import panels, plt
+from darts_bench.plots import frames_of, panels, ranges, save, show, show_difference
 from darts_bench.program import MAP, PRESETS, Bench, Scene, method
 
 TITLE = "Liu et al.'s primitives beside points, beams and paths"
@@ -73,9 +71,9 @@ class Case:
 
     def automatic(self, bench):
         """What `auto` chooses, and why."""
-        command = bench.command(self.place, [MAP, "integrator.volume_photon_type=auto", "integrator.darts=best"], ["--explain=effects"])
-        said = subprocess.run([*command, str(self.place.file)], capture_output=True, text=True, check=True).stdout
-        return re.search(rf"^\s*on .*?\s{{2,}}({'|'.join(['points', 'beams', *SLICES])}): (.*)$", said, re.MULTILINE).groups()
+        render = bench.render(self.place, [MAP, "integrator.volume_photon_type=auto", "integrator.darts=best"], passes=1)
+        reasons = [effect["reason"] for effect in render.stats["effects"] if effect["on"]]
+        return next(found.groups() for reason in reasons if (found := re.match(rf"({'|'.join(['points', 'beams', *SLICES])}): (.*)", reason)))
 
 
 def three(value):
@@ -84,35 +82,23 @@ def three(value):
 
 def picture(bench, case, truth, found):
     """The first seed's image of some methods, and the seeds' mean less the reference."""
-    figure, axes = plt.subplots(2, len(SHOWN) + 1, figsize=(2.6 * (len(SHOWN) + 1), 4.4), layout="constrained")
-    for cell in axes.flat:
-        cell.axis("off")
-    white, mean = float(np.percentile(truth.image, 99)), truth.image.mean()
-    axes[0, 0].imshow(tone_map(truth.image[0], white))
-    axes[0, 0].set_title("reference", fontsize=8)
+    figure, axes = frames_of(2, len(SHOWN) + 1, 2.6, 4.4)
+    white = float(np.percentile(truth.image, 99))
+    show(axes[0, 0], truth.image[0], white, "reference")
     for column, name in enumerate(SHOWN, 1):
         images = [render.image()[0] for render in found[name]]
-        axes[0, column].imshow(tone_map(images[0], white))
-        axes[0, column].set_title(name, fontsize=8)
-        shown = axes[1, column].imshow((grey(np.mean(images, axis=0)) - truth.grey[0]) / mean, cmap="RdBu_r", vmin=-0.5, vmax=0.5)
-        axes[1, column].set_title(f"mean of {len(images)} − reference", fontsize=8)
+        show(axes[0, column], images[0], white, name)
+        shown = show_difference(axes[1, column], (grey(np.mean(images, axis=0)) - truth.grey[0]) / truth.mean, f"mean of {len(images)} − reference")
     figure.colorbar(shown, ax=axes[1, 0], shrink=0.8, location="left", label="over the reference's mean")
-    bench.results.mkdir(parents=True, exist_ok=True)
-    figure.savefig(bench.results / f"{case.scene}.png", dpi=80)
-    plt.close(figure)
+    save(figure, bench.results / f"{case.scene}.png", dpi=80)
 
 
 def gains(bench, chosen):
     """Of {case: (cost of the best sliced primitive, of the best of beams and points, of auto's choice)}."""
     figure, (panel,) = panels(1, 7.0, 4.6)
-    for row, costs in enumerate(chosen.values()):
-        for cost, marker, colour, label in zip(costs, "o^x", ("tab:green", "tab:orange", "black"),
-                                               ("best sliced primitive", "best of points and beams", "auto")):
-            panel.plot(cost, row, marker, markersize=6, color=colour, label=label if row == 0 else None, fillstyle="none")
-    panel.set_xscale("log")
-    panel.set_yticks(range(len(chosen)), list(chosen))
-    panel.invert_yaxis()
-    panel.set_xlabel("MSE × CPU seconds, plain or guided, whichever is less", fontsize=9)
+    colours = {"best sliced primitive": "tab:green", "best of points and beams": "tab:orange", "auto": "black"}
+    ranges(panel, {case: {label: [cost] * 3 for label, cost in zip(colours, costs)} for case, costs in chosen.items()},
+           "MSE × CPU seconds, plain or guided, whichever is less", colours)
     panel.legend(fontsize=8)
     bench.plot(figure, "liu-primitives")
 
@@ -139,7 +125,7 @@ def run(bench: Bench):
                               f"{spreads[f'best {primitive}'] / calm:.2f}", reason])
             sliced = [cost for name, cost in photons.items() if name.split()[1] in SLICES]
             chosen[case.name] = (min(sliced), min(cost for name, cost in photons.items() if name.split()[1] not in SLICES), auto)
-            means.append([case.name, *(f"{np.mean([r.image().mean() for r in found[name]]) / truth.image.mean():.3f}" for name in SHOWN),
+            means.append([case.name, *(f"{said[name].mean:.3f}" for name in SHOWN),
                           f"{np.sqrt(truth.variance / truth.scale):.2f}"])
             if unwarped and delta:
                 picture(bench, case, truth, found)

@@ -6,6 +6,7 @@ import numpy as np
 
 from darts_bench.plots import look, panels, plain_log
 from darts_bench.program import Bench, Scene, method
+from darts_bench.scene_words import ball
 from darts_bench.tables import table
 
 TITLE = "Time and memory against the size of a scene and its image"
@@ -19,19 +20,6 @@ def counts(name, times=1.0):
     return [f"integrator.photon_count={int(surface * times)}", f"integrator.volume_photon_count={int(volume * times)}"] if surface else []
 
 
-def sphere(rings):
-    """Vertices and triangles of a ball of so many rings, as the text of an OBJ file."""
-    sides = 2 * rings
-    angles = [(np.pi * i / rings, 2 * np.pi * j / sides) for i in range(rings + 1) for j in range(sides)]
-    lines = [f"v {np.sin(a) * np.cos(b):.6f} {np.cos(a):.6f} {np.sin(a) * np.sin(b):.6f}" for a, b in angles]
-    for i in range(rings):
-        for j in range(sides):
-            near, far = i * sides + j, i * sides + (j + 1) % sides
-            lines += [f"f {near + 1} {far + 1} {near + sides + 1}"] if i > 0 else []
-            lines += [f"f {far + 1} {far + sides + 1} {near + sides + 1}"] if i < rings - 1 else []
-    return "\n".join(lines) + "\n"
-
-
 def triangles_of(rings):
     return 4 * rings * (rings - 1)
 
@@ -40,7 +28,7 @@ def ball_scene(bench, rings):
     """A ball of triangles in fog, over a floor."""
     folder = bench.work / f"ball-{rings}"
     folder.mkdir(exist_ok=True)
-    (folder / f"sphere-{rings}.obj").write_text(sphere(rings))
+    (folder / f"sphere-{rings}.obj").write_text(ball(rings, 2 * rings))
     scene = {
         "media": [{"name": "fog", "type": "homogeneous", "sigma_s": 0.3, "sigma_a": 0.02}],
         "primitives": [

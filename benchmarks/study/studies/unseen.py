@@ -1,11 +1,9 @@
 """Scenes that nobody tuned on, written when the methods were done: what best costs beside plain, whatever it shows."""
 
-import math
-
 import numpy as np
 
-from darts_bench.measures import Truth, mse
-from darts_bench.plots import panels
+from darts_bench.measures import Truth, parts, standard_error
+from darts_bench.plots import panels, ranges
 from darts_bench.program import Bench, Scene, method
 from darts_bench.run import PROJECT
 from darts_bench.tables import table
@@ -19,30 +17,13 @@ def scenes():
     return [f"unseen/{file.stem}" for file in sorted((PROJECT / "benchmarks/study/scenes/unseen").glob("*.json"))]
 
 
-class Cost:
-    """MSE x CPU s of one method's seeds over the reference's mean squared, the reference's own noise taken off."""
-
-    def __init__(self, renders, truth):
-        each = [mse(render.image(), truth) * render.cpu[-1] for render in renders]
-        self.mean, self.error = float(np.mean(each)), float(np.std(each, ddof=1) / math.sqrt(len(each)))
-        means = [render.image().mean() / truth.image.mean() for render in renders]
-        self.light, self.light_error = float(np.mean(means)), float(np.std(means, ddof=1) / math.sqrt(len(means)))
-
-
 def geometric_mean(values):
-    return math.exp(float(np.mean(np.log(values))))
+    return float(np.exp(np.mean(np.log(values))))
 
 
 def picture(bench, ratios):
     figure, (panel,) = panels(1, 7.0, 4.2)
-    for shift, (kind, colour) in enumerate(zip(PRIMITIVES, ("tab:green", "tab:blue", "tab:orange"))):
-        for row, found in enumerate(ratios.values()):
-            panel.plot(found[kind], row + 0.22 * (shift - 1), marker="o", markersize=4, color=colour, label=kind if row == 0 else None)
-    panel.set_xscale("log")
-    panel.axvline(1, color="0.3", linewidth=0.8)
-    panel.set_yticks(range(len(ratios)), list(ratios))
-    panel.invert_yaxis()
-    panel.set_xlabel("MSE × CPU seconds of best over plain", fontsize=9)
+    ranges(panel, {name: {kind: [ratio] * 3 for kind, ratio in found.items()} for name, found in ratios.items()}, "MSE × CPU seconds of best over plain")
     panel.legend(fontsize=8)
     bench.plot(figure, "unseen")
 
@@ -55,12 +36,12 @@ def run(bench: Bench):
         truth = Truth(*bench.reference(place, bench.short(60, 2)))
         cells = {f"{preset} {kind}": (place, method(f"{preset} {kind}")) for kind in PRIMITIVES for preset in ("plain", "best")}
         cells["best auto"] = (place, [*method("best beams"), AUTO])
-        found = {key: Cost(renders, truth) for key, renders in bench.interleaved(cells, seeds, cpu=bench.short(4, 0.3)).items()}
+        found = {key: parts(renders, truth) for key, renders in bench.interleaved(cells, seeds, cpu=bench.short(4, 0.3)).items()}
+        costs = {key: np.mean(p.costs) for key, p in found.items()}
         short = name.removeprefix("unseen/")
-        ratios[short] = {kind: found[f"best {kind}"].mean / found[f"plain {kind}"].mean for kind in PRIMITIVES}
-        auto[short] = found["best auto"].mean / min(found["best points"].mean, found["best beams"].mean)
-        rows += [[short, key, f"{cost.mean:.3g}", f"{cost.error:.2g}", f"{cost.light:.3f}", f"{cost.light_error:.3f}"]
-                 for key, cost in found.items()]
+        ratios[short] = {kind: costs[f"best {kind}"] / costs[f"plain {kind}"] for kind in PRIMITIVES}
+        auto[short] = costs["best auto"] / min(costs["best points"], costs["best beams"])
+        rows += [[short, key, f"{costs[key]:.3g}", f"{standard_error(p.costs):.2g}", f"{p.mean:.3f}", f"{p.mean_error:.3f}"] for key, p in found.items()]
     picture(bench, ratios)
     body = [[name, *(f"{found[kind]:.3g}" for kind in PRIMITIVES), f"{auto[name]:.3g}"] for name, found in ratios.items()]
     mean = ["geometric mean", *(f"{geometric_mean([found[kind] for found in ratios.values()]):.3g}" for kind in PRIMITIVES),
