@@ -13,7 +13,7 @@ from darts_bench.film_code import encode
 from darts_bench.images import average_down, read_exr
 from darts_bench.report import conditions, legend
 from darts_bench.run import COMMAND, PROJECT, as_typed, write_whole
-from darts_bench.tables import accuracy_table, cost_table, left_out_table, overview_table, published_table
+from darts_bench.tables import left_out, overview, scene_tables
 
 TEMPLATE = PROJECT / "tungsten/page/page.html"
 PAYLOAD_BYTES = 20e6  # of all images, before base64
@@ -33,14 +33,10 @@ def write_html(file, data, payloads):
     write_whole(file, "".join([*parts, "\n", after]))
 
 
-def _rows(markdown):
-    lines = [line.strip().strip("|").split(" | ") for line in markdown.splitlines() if line.startswith("|")]
-    return [[cell.strip().replace("**", "").replace("`", "") for cell in line] for line in lines if set(line[0].strip()) != {"-"}]
-
-
-def _table(title, markdown, **more):
-    header, *rows = _rows(markdown)
-    return {"title": title, "header": header, "rows": rows, **more}
+def _plain(table):
+    """A table without Markdown."""
+    rows = [[str(cell).replace("**", "").replace("`", "") for cell in row] for row in table.rows]
+    return {"title": table.title, "header": table.header, "rows": rows, **({"seconds": table.seconds} if table.seconds else {})}
 
 
 def _commands(runs):
@@ -110,18 +106,6 @@ def _pictures(study, scene, summaries, reference):
     return found
 
 
-def _tables(study, scene, by_seconds):
-    tables = []
-    for seconds, summaries in by_seconds.items():
-        if any(s.seeds for s in summaries.values()):
-            tables.append(_table(f"Accuracy, {seconds:g} s", accuracy_table(study, summaries), seconds=seconds))
-            tables.append(_table(f"Cost, {seconds:g} s", cost_table(summaries), seconds=seconds))
-    if scene.published:
-        source = f"Published implementation, {scene.published.seconds:g} s on {scene.published.threads} threads ({scene.published.source})"
-        tables.append(_table(source, published_table(scene.published)))
-    return tables
-
-
 def _facts(study, everything):
     machines = sorted({machine for s in everything for machine in s.machines})
     builds = sorted({build for s in everything for build in s.builds})
@@ -146,7 +130,7 @@ def _page_data(study, summaries, references, runs):
             films.append(film)
         scenes.append({"name": scene.name, "toneMap": "pbrt", "quantity": "radiance", "reference": 0, "unit": reference.mean,
                        "films": films, "curves": _curves(scene, by_seconds, mine, reference),
-                       "tables": _tables(study, scene, by_seconds), "commands": _commands(mine)})
+                       "tables": [_plain(table) for table in scene_tables(study, scene, by_seconds)], "commands": _commands(mine)})
     return scenes, payloads
 
 
@@ -154,11 +138,9 @@ def write_page(study, summaries, references, runs, work: Path):
     """Writes report.html into the work folder; returns its path."""
     everything = [s for by_seconds in summaries.values() for group in by_seconds.values() for s in group.values()]
     scenes, payloads = _page_data(study, summaries, references, runs)
-    tables = [_table(f"MSE × CPU seconds, {study.seconds[-1]:g} s", overview_table(study, summaries))]
-    if left_out := left_out_table(study, summaries):
-        tables.append(_table("Not compared", left_out))
+    tables = [overview(study, summaries), left_out(study, summaries)]
     data = {"title": study.title, "subtitle": f"Pictures: the first seed of {study.seconds[-1]:g} s. " + conditions(study, everything)
-            .replace("**", "").replace("\n", " "), "scenes": scenes, "tables": tables, "facts": _facts(study, everything),
+            .replace("**", "").replace("\n", " "), "scenes": scenes, "tables": [_plain(table) for table in tables if table.rows], "facts": _facts(study, everything),
             "notes": legend(study)}
     write_html(work / "report.html", data, payloads)
     return work / "report.html"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from darts_bench.plots import scene_pictures, scene_plots
 from darts_bench.run import write_whole
-from darts_bench.tables import accuracy_table, cost_table, left_out_table, overview_table, published_table
+from darts_bench.tables import left_out, overview, scene_tables
 
 SHARE_OF_A_QUIET_MACHINE = 0.85
 
@@ -59,25 +59,12 @@ def _failures(everything):
     return ([f"## Failed runs ({len(failures)})"] if failures else []) + [f"**{label}**\n\n```\n{message}\n```" for label, message in failures]
 
 
-def _overview(study, summaries):
-    parts = []
-    if len(study.scenes) > 1:
-        parts += [f"## MSE × CPU seconds, {study.seconds[-1]:g} s", overview_table(study, summaries)]
-    if left_out := left_out_table(study, summaries):
-        parts += ["## Not compared", left_out]
-    return parts
-
-
 def _scene_section(study, scene, by_seconds, reference, folder):
     width, height = scene.resolution
     gate = f", gate [{scene.gate[0]:g}, {scene.gate[1]:g})" if scene.gate else ""
     parts = [f"## {scene.name}", f"{scene.path.name} at {width}×{height}{gate}; reference {scene.reference.name}, "
              f"{reference.image.shape[1]}×{reference.image.shape[0]}."]
-    for seconds, summaries in by_seconds.items():
-        if any(s.seeds for s in summaries.values()):
-            parts += [f"### {seconds:g} seconds", accuracy_table(study, summaries), cost_table(summaries)]
-    if scene.published:
-        parts.append(published_table(scene.published))
+    parts += [f"### {table.title}\n\n{table.markdown}" for table in scene_tables(study, scene, by_seconds)]
     shown = scene_plots(study, scene, by_seconds, folder) + scene_pictures(study, scene, by_seconds, reference, folder)
     return parts + [f"### {title}\n\n![{title}]({file})" for title, file in shown]
 
@@ -85,7 +72,9 @@ def _scene_section(study, scene, by_seconds, reference, folder):
 def write_report(study, summaries, references, work: Path):
     """Writes report.md and its images into the work folder; returns its path."""
     everything = [s for by_seconds in summaries.values() for group in by_seconds.values() for s in group.values()]
-    parts = [f"# {study.title}", conditions(study, everything), *_failures(everything), legend(study), *_overview(study, summaries)]
+    parts = [f"# {study.title}", conditions(study, everything), *_failures(everything), legend(study)]
+    shared = [*([overview(study, summaries)] if len(study.scenes) > 1 else []), left_out(study, summaries)]
+    parts += [f"## {table.title}\n\n{table.markdown}" for table in shared if table.rows]
     for scene in study.scenes:
         parts += _scene_section(study, scene, summaries[scene.name], references[scene.name], work)
     write_whole(work / "report.md", "\n\n".join(parts) + "\n")

@@ -5,6 +5,7 @@ import shlex
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 from darts_bench.run import COMMAND, BenchError
 
@@ -26,19 +27,13 @@ def part_of(text):
 
 def same_study(options, action):
     """The command line of this study with another action."""
-    arguments = [options.study, action, "--tungsten", str(options.tungsten), "--root", str(options.root.resolve())]
-    if options.work:
-        arguments += ["--work", str(options.work.resolve())]
-    if options.seconds:
-        arguments += ["--seconds", *map(str, options.seconds)]
-    for name in ("seeds", "threads"):
-        if getattr(options, name) is not None:
-            arguments += [f"--{name}", str(getattr(options, name))]
-    for name in ("scenes", "methods"):
-        if getattr(options, name) is not None:
-            arguments += [f"--{name}", "; ".join(getattr(options, name))]
-    flags = ("quick", "retry_failed", "accept_warnings")
-    return arguments + ["--" + name.replace("_", "-") for name in flags if getattr(options, name)]
+    arguments = [options.study, action]
+    for name, of_option in (("tungsten", str), ("root", Path.resolve), ("work", Path.resolve), ("seeds", str), ("threads", str),
+                            ("scenes", "; ".join), ("methods", "; ".join)):
+        if (value := getattr(options, name)) is not None:
+            arguments += [f"--{name}", str(of_option(value))]
+    arguments += ["--seconds", *map(str, options.seconds)] if options.seconds else []
+    return arguments + [f"--{name.replace('_', '-')}" for name in ("quick", "retry_failed", "accept_warnings") if getattr(options, name)]
 
 
 def run_by_workers(options):

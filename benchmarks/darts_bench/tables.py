@@ -2,6 +2,7 @@
 
 import csv
 import io
+from typing import NamedTuple
 
 STAGES = ["load", "prepare", "photon pass", "build", "camera pass"]
 
@@ -28,6 +29,20 @@ def comma_separated(header, rows):
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([header, *(["" if cell in ("–", None) else cell for cell in row] for row in rows)])
     return text.getvalue()
+
+
+class Table(NamedTuple):
+    """One of a study's."""
+
+    title: str
+    header: list
+    rows: list
+    words: int = 1
+    seconds: float | None = None  # of the renders that it is about
+
+    @property
+    def markdown(self):
+        return table(self.header, self.rows, self.words)
 
 
 def bias_text(bias):
@@ -66,43 +81,75 @@ def baseline_of(study, summaries):
     return baseline
 
 
-def accuracy_table(study, summaries):
-    done = [s for s in summaries.values() if s.seeds]
-    baseline = baseline_of(study, summaries)
-    averaged = any(s.std_averaged is not None for s in done)
-    published = any(s.gain_over_published() is not None for s in done)
-    header = ["method", "seeds", "passes", "wall s", "CPU s", "rel. std (range)", "std over seeds"]
-    header += ["std, averaged down"] if averaged else []
-    told = any(s.told_bias is not None for s in done)
-    header += ["block bias"] + (["own bias"] if told else []) + ["mean ratio", "MSE", "relMSE 0.99", "median error", "FLIP",
-                                                                 "MSE × CPU s", "gain", "gain per CPU s"]
-    header += ["over published"] if published else []
-    rows = []
-    for s in done:
-        row = [s.method.name, s.seeds, number(s.passes), number(s.wall), number(s.cpu), _range(s), number(s.std_spread)]
-        row += [number(s.std_averaged)] if averaged else []
-        row += [bias_text(s.bias)] + ([_told(s.told_bias)] if told else [])
-        row += [_ratio(s), number(s.mse), number(s.relmse99), number(s.median_error), number(s.flip), number(s.cost),
-                _times(s.gain_over(baseline)), _times(s.gain_over(baseline, at_equal_cpu=True))]
-        row += [_times(s.gain_over_published())] if published else []
-        rows.append(row)
-    return table(header, rows)
+def accuracy(study, seconds, summaries):
+    """What only some studies have is left out where no method has it."""
+    done, baseline = [s for s in summaries.values() if s.seeds], baseline_of(study, summaries)
+    columns = {
+        "method": [s.method.name for s in done],
+        "seeds": [s.seeds for s in done],
+        "passes": [number(s.passes) for s in done],
+        "wall s": [number(s.wall) for s in done],
+        "CPU s": [number(s.cpu) for s in done],
+        "rel. std (range)": [_range(s) for s in done],
+        "std over seeds": [number(s.std_spread) for s in done],
+        "std, averaged down": [number(s.std_averaged) for s in done],
+        "block bias": [bias_text(s.bias) for s in done],
+        "own bias": [_told(s.told_bias) for s in done],
+        "mean ratio": [_ratio(s) for s in done],
+        "MSE": [number(s.mse) for s in done],
+        "relMSE 0.99": [number(s.relmse99) for s in done],
+        "median error": [number(s.median_error) for s in done],
+        "FLIP": [number(s.flip) for s in done],
+        "MSE × CPU s": [number(s.cost) for s in done],
+        "gain": [_times(s.gain_over(baseline)) for s in done],
+        "gain per CPU s": [_times(s.gain_over(baseline, at_equal_cpu=True)) for s in done],
+        "over published": [_times(s.gain_over_published()) for s in done]}
+    for name in ("std, averaged down", "own bias", "over published"):
+        if set(columns[name]) == {"–"}:
+            del columns[name]
+    return Table(f"Accuracy, {seconds:g} s", list(columns), list(zip(*columns.values())), seconds=seconds)
 
 
-def overview_table(study, summaries):
+def cost(seconds, summaries):
+    done, once = [s for s in summaries.values() if s.seeds], ("load", "prepare")
+    columns = {"method": [s.method.name for s in done], "peak memory, MB": [number(s.memory / 1e6) for s in done],
+               "processor share": [f"{100 * s.share:.0f} %" for s in done]}
+    for stage in STAGES:
+        if any(stage in s.stages for s in done):
+            spent = [(s.stages.get(stage), 1 if stage in once else s.passes / 1000) for s in done]
+            columns[f"{stage}, {'s' if stage in once else 'ms per pass'}"] = [number(None if time is None else time / unit) for time, unit in spent]
+    columns["non-finite samples"] = [s.non_finite for s in done]
+    return Table(f"Cost, {seconds:g} s", list(columns), list(zip(*columns.values())), seconds=seconds)
+
+
+def published(figures):
+    rows = [[row["method"], number(row.get("passes")), number(row.get("std")), f"< {row['bias_below']}" if "bias_below" in row else number(row.get("bias")),
+             number(row.get("mean_ratio")), number(row.get("memory_mb"))] for row in figures.rows]
+    return Table(f"Published implementation, {figures.seconds:g} s on {figures.threads} threads ({figures.source})",
+                 ["method", "passes", "rel. std", "block bias", "mean ratio", "memory, MB"], rows)
+
+
+def scene_tables(study, scene, by_seconds):
+    found = []
+    for seconds, summaries in by_seconds.items():
+        if any(s.seeds for s in summaries.values()):
+            found += [accuracy(study, seconds, summaries), cost(seconds, summaries)]
+    return found + ([published(scene.published)] if scene.published else [])
+
+
+def overview(study, summaries):
     """MSE × CPU seconds of every method in every scene, at the longest time; the least of a scene is bold."""
     rows = []
     for scene in study.scenes:
         costs = {name: s.cost for name, s in list(summaries[scene.name].values())[-1].items() if s.seeds}
         least = min((cost for cost in costs.values() if cost is not None), default=None)
         cells = [costs.get(method.name) for method in study.methods]
-        rows.append([scene.name] + [f"**{number(cost)}**" if cost is not None and cost == least else number(cost)
-                                    for cost in cells])
-    return table(["scene", *(method.name for method in study.methods)], rows)
+        rows.append([scene.name] + [f"**{number(cost)}**" if cost is not None and cost == least else number(cost) for cost in cells])
+    return Table(f"MSE × CPU seconds, {study.seconds[-1]:g} s", ["scene", *(method.name for method in study.methods)], rows)
 
 
-def left_out_table(study, summaries):
-    """What has no result, and why: left out by the study, or impossible to the renderer. Empty if there is nothing."""
+def left_out(study, summaries):
+    """What has no result, and why: left out by the study, or impossible to the renderer."""
     found = {}
     for scene, method, reason in study.left_out():
         found.setdefault((method.name, reason), []).append(scene.name)
@@ -110,34 +157,6 @@ def left_out_table(study, summaries):
         for s in list(by_seconds.values())[-1].values():
             if s.skipped:
                 found.setdefault((s.method.name, s.skipped), []).append(s.scene.name)
-    if not found:
-        return ""
     order = [method.name for method in study.methods]
     lines = sorted(found.items(), key=lambda entry: order.index(entry[0][0]))
-    return table(["method", "scenes", "why"], [[method, ", ".join(scenes), reason] for (method, reason), scenes in lines], words=3)
-
-
-def cost_table(summaries):
-    done = [s for s in summaries.values() if s.seeds]
-    stages = [stage for stage in STAGES if any(stage in s.stages for s in done)]
-    once = {"load", "prepare"}
-    header = ["method", "peak memory, MB", "processor share"]
-    header += [f"{stage}, {'s' if stage in once else 'ms per pass'}" for stage in stages] + ["non-finite samples"]
-    rows = []
-    for s in done:
-        row = [s.method.name, number(s.memory / 1e6), f"{100 * s.share:.0f} %"]
-        for stage in stages:
-            seconds = s.stages.get(stage)
-            row.append(number(seconds if stage in once or seconds is None else 1000 * seconds / s.passes))
-        rows.append([*row, s.non_finite])
-    return table(header, rows)
-
-
-def published_table(published):
-    rows = []
-    for row in published.rows:
-        bias = f"< {row['bias_below']}" if "bias_below" in row else number(row.get("bias"))
-        rows.append([row["method"], number(row.get("passes")), number(row.get("std")), bias, number(row.get("mean_ratio")),
-                     number(row.get("memory_mb"))])
-    return (f"Published implementation, {published.seconds:g} s on {published.threads} threads ({published.source}):\n\n"
-            + table(["method", "passes", "rel. std", "block bias", "mean ratio", "memory, MB"], rows))
+    return Table("Not compared", ["method", "scenes", "why"], [[method, ", ".join(scenes), reason] for (method, reason), scenes in lines], words=3)

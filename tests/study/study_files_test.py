@@ -15,7 +15,7 @@ from darts_bench.results import Summary  # noqa: E402
 from darts_bench.run import BenchError  # noqa: E402
 from darts_bench.study_file import Method, PublishedFigures, Scene, Study, load_study, require_references  # noqa: E402
 from darts_bench.study_runs import plan  # noqa: E402
-from darts_bench.tables import baseline_of, left_out_table, overview_table  # noqa: E402
+from darts_bench.tables import baseline_of, left_out, overview  # noqa: E402
 
 
 class Summaries(unittest.TestCase):
@@ -42,9 +42,9 @@ class Summaries(unittest.TestCase):
             return {1: {method.name: Summary(scene, method, 1, seeds=3 if noise else 0, cpu=2.0, wall=1.0, std=noise)
                         for method, noise in zip(methods, noises)}}
 
-        table = overview_table(study, {"s": row(scenes[0], (1.0, 0.5, None)), "t": row(scenes[1], (None, 3.0, 2.0))})
-        self.assertIn("| s | 2 | **0.5** | – |", table)
-        self.assertIn("| t | – | 18 | **8** |", table)
+        text = overview(study, {"s": row(scenes[0], (1.0, 0.5, None)), "t": row(scenes[1], (None, 3.0, 2.0))}).markdown
+        self.assertIn("| s | 2 | **0.5** | – |", text)
+        self.assertIn("| t | – | 18 | **8** |", text)
         summaries = row(scenes[1], (None, 3.0, 2.0))[1]
         self.assertIs(baseline_of(study, summaries), summaries["n"])
 
@@ -90,8 +90,7 @@ class StudyFiles(unittest.TestCase):
         self.assertEqual([(scene.name, method.name, why) for scene, method, why in loaded.left_out()],
                          [("b", "m", "nothing to see"), ("b", "n", "nothing to see")])
         self.assertEqual(len(plan(loaded, Path("work"))), 3 * 4)
-        table = left_out_table(loaded, {})
-        self.assertIn("| m | b | nothing to see |", table)
+        self.assertIn("| m | b | nothing to see |", left_out(loaded, {}).markdown)
         study["scenes"][1]["skip"] = {"z": "nothing to see"}
         with self.assertRaisesRegex(BenchError, "skips 'z', which is not compared"):
             self.load(study)
