@@ -36,6 +36,8 @@ def rendered(options, scene, method, darts):
 
 def fitted(rows, seconds, weights=1.0):
     """Least squares of relative errors with no negative result: the most negative one is left out until there is none."""
+    if not len(rows):
+        raise BenchError("not one render ended a pass in time: --seconds gives them more")
     rows, seconds = np.array(rows, float), np.array(seconds)
     weights = weights * np.ones(len(seconds))
     used = [i for i in range(rows.shape[1]) if rows[:, i].any()]
@@ -59,7 +61,8 @@ def fit_passes(options):
             counters, cpu, pixels = found
             records, splatted = counters.get(stored, 0), counters.get("splatted records", 0)
             own = np.zeros(5 * len(PRIMITIVES))
-            own[5 * place: 5 * place + 5] = [records, counters.get("kernels ended at surfaces", 0), records * pixels if everywhere and splatted else 0, 0 if everywhere else splatted,
+            own[5 * place: 5 * place + 5] = [records, counters.get("kernels ended at surfaces", 0),
+                                             records * pixels if everywhere and splatted else 0, 0 if everywhere else splatted,
                                              counters.get(gathered, 0) - splatted]
             rows.append([sum(counters.get(name, 0) for name in added) for _, added in WALKS_OF_PASSES] + list(own))
             seconds.append(cpu)

@@ -190,7 +190,7 @@ class Bench:
         """README.md of the results: what the study says, then the conditions. Long tables (`keep`) and the first command are files beside it."""
         end = ["## Conditions", f"`benchmarks/bench.py study {self.name}{' --quick' if self.quick else ''}`, renderer built at "
                f"`{run.commit()}`, {time.strftime('%Y-%m-%d')}, {run.machine()}, load {os.getloadavg()[1]:.1f} in the last 5 minutes; "
-               f"{self.spent / 60:.1f} CPU minutes of renders, one thread each unless a table says else; the first of them: [command.sh](command.sh)."]
+               f"{self.spent / 60:.1f} CPU minutes of renders; the first: [command.sh](command.sh)."]
         self.results.mkdir(parents=True, exist_ok=True)
         (self.results / "command.sh").write_text(f"{run.as_typed(self.sample)}\n")
         file = self.results / "README.md"
