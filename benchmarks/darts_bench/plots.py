@@ -113,10 +113,23 @@ def _saved(figure, folder, name):
     return name
 
 
-def _beside(axes):
-    """Readable labels, and the legend beside the plot."""
+def _errors_against(parameter, series, title):
+    """A figure of {method: [(value of the parameter, summary)]}, its axes to be added to."""
+    figure, (axes,) = panels(1, 9.5, 5.3)
+    for method, style in styles(series).items():
+        values, points = zip(*sorted(series[method], key=lambda point: point[0]))
+        axes.loglog(values, [s.mse for s in points], label=method, **style)
+        biases = [s.bias.squared if s.bias and s.bias.is_significant else np.nan for s in points]
+        for part, line in (([s.noise**2 for s in points], ":"), (biases, "--")):
+            axes.loglog(values, part, line, color=style["color"], linewidth=0.8, alpha=0.6)
+    axes.set(xlabel=parameter, ylabel="relative to (reference mean)²", title=f"{title}: MSE (thin: variance dotted, bias² dashed where significant)")
+    return figure, axes
+
+
+def _saved_errors(figure, axes, folder, name):
     plain_log(axes.xaxis)
     axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5))
+    return _saved(figure, folder, name)
 
 
 def _mse_against_time(scene, by_seconds, folder):
@@ -124,25 +137,13 @@ def _mse_against_time(scene, by_seconds, folder):
     for summaries in by_seconds.values():
         for name, s in summaries.items():
             if s.seeds and s.mse:
-                bias = max(s.bias_squared, 0.0) if s.bias and s.bias.is_significant else None
-                series.setdefault(name, []).append((s.wall, s.mse, bias))
-    if not series or max(len(points) for points in series.values()) < 2:
+                series.setdefault(name, []).append((s.wall, s))
+    if not series or max(map(len, series.values())) < 2:
         return []
-    figure, (axes,) = panels(1, 9.5, 5.5)
-    style = styles(series)
-    for name, points in series.items():
-        points.sort()
-        axes.loglog([p[0] for p in points], [p[1] for p in points], label=name, **style[name])
-        biased = [(time, bias) for time, _, bias in points if bias is not None]
-        if biased:
-            axes.loglog(*zip(*biased), color=style[name]["color"], linewidth=0.8, alpha=0.5)
-    low, high = axes.get_xlim()
-    top = axes.get_ylim()[1]
+    figure, axes = _errors_against("wall time of the passes, s", series, scene.name)
+    (low, high), top = axes.get_xlim(), axes.get_ylim()[1]
     axes.loglog([low, high], [top, top * low / high], color="0.8", zorder=0, label="1 / time")
-    axes.set(xlabel="wall time of the passes, s", ylabel="MSE relative to (reference mean)²",
-             title=f"{scene.name}: MSE against time (thin: bias² where significant)")
-    _beside(axes)
-    return [("MSE against time", _saved(figure, folder, f"{scene.name}-mse-time.png"))]
+    return [("MSE against time", _saved_errors(figure, axes, folder, f"{scene.name}-mse-time.png"))]
 
 
 def _gains(study, scene, seconds, summaries, folder):
@@ -167,26 +168,15 @@ def _gains(study, scene, seconds, summaries, folder):
 
 
 def _sweeps(scene, seconds, summaries, folder):
-    sweeps = {}
+    sweeps, found = {}, []
     for s in summaries.values():
         if s.seeds and s.method.swept and s.mse:
             parameter, value, method = s.method.swept
             sweeps.setdefault(parameter, {}).setdefault(method, []).append((value, s))
-    found = []
-    for parameter, methods in sweeps.items():
-        figure, (axes,) = panels(1, 9.5, 5)
-        style = styles(methods)
-        for method, points in methods.items():
-            points.sort(key=lambda point: point[0])
-            curves = {"MSE": ([s.mse for _, s in points], "-", "o"), "variance": ([s.noise**2 for _, s in points], ":", ""),
-                      "bias²": ([s.bias.squared if s.bias and s.bias.is_significant else np.nan for _, s in points], "--", ".")}
-            for what, (values, line, marker) in curves.items():
-                if not np.isnan(values).all():
-                    axes.loglog([value for value, _ in points], values, line, marker=marker, color=style[method]["color"], label=f"{method}: {what}")
-        axes.set(xlabel=parameter, ylabel="relative to (reference mean)²", title=f"{scene.name}, {seconds:g} s: {parameter}")
-        _beside(axes)
+    for parameter, series in sweeps.items():
+        figure, axes = _errors_against(parameter, series, f"{scene.name}, {seconds:g} s")
         name = f"{scene.name}-{parameter.replace(' ', '-')}-{seconds:g}s.png"
-        found.append((f"Sweep of the {parameter}, {seconds:g} seconds", _saved(figure, folder, name)))
+        found.append((f"Sweep of the {parameter}, {seconds:g} seconds", _saved_errors(figure, axes, folder, name)))
     return found
 
 

@@ -159,10 +159,8 @@ def summarise(runs, reference, study: Study):
     summary.non_finite = sum(s["non-finite samples"] for s in stats)
     told = [(s["relative bias"], s["relative bias bound"]) for s in stats if s.get("relative bias") is not None]
     summary.told_bias = tuple(median(column) for column in zip(*told)) if told else None
-    for stage in STAGES:
-        seconds = [s["stages"][stage]["wall seconds"] for s in stats if stage in s["stages"]]
-        if seconds:
-            summary.stages[stage] = median(seconds)
+    found = {stage: [s["stages"][stage]["wall seconds"] for s in stats if stage in s["stages"]] for stage in STAGES}
+    summary.stages = {stage: median(seconds) for stage, seconds in found.items() if seconds}
     _add_images(summary, images, errors, reference, study.block)
     return summary
 
@@ -173,11 +171,6 @@ def collect(study: Study, runs):
     groups = {}
     for run in runs:
         groups.setdefault((run.scene.name, run.seconds, run.method.name), []).append(run)
-    summaries = {}
-    for scene in study.scenes:
-        for seconds in study.seconds:
-            for method in study.methods_of(scene):
-                group = groups[(scene.name, seconds, method.name)]
-                summary = summarise(group, references[scene.name], study)
-                summaries.setdefault(scene.name, {}).setdefault(seconds, {})[method.name] = summary
+    summaries = {scene.name: {seconds: {method.name: summarise(groups[scene.name, seconds, method.name], references[scene.name], study)
+                                        for method in study.methods_of(scene)} for seconds in study.seconds} for scene in study.scenes}
     return summaries, references
