@@ -45,6 +45,9 @@ def require_renderer(tungsten):
 
 # ---- Starting it
 
+_running = set()  # process groups; workers() ends them, and takes them out
+
+
 def call(command, limit=LONGEST, cpu=None, first=None):
     """Exit code (None: stopped after `limit` seconds) and messages. With `cpu`, the renderer is asked to write what it has once it has used so many
     seconds of processor time and its first pass has left the file `first`. It ends when this program is interrupted."""
@@ -52,24 +55,28 @@ def call(command, limit=LONGEST, cpu=None, first=None):
     # A session of its own keeps Ctrl-C from the renderer, which would write a render cut short.
     shell = subprocess.Popen(["/bin/sh", "-c", '"$@" >&2 & echo $!; wait $!', "sh", *map(str, command)], stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True)
-    pid, end, asked = int(shell.stdout.readline()), time.monotonic() + limit, cpu is None
+    pid, end, asked, messages = int(shell.stdout.readline()), time.monotonic() + limit, cpu is None, None
+    _running.add(shell.pid)
     try:
-        while True:
+        while messages is None:
             left = max(end - time.monotonic(), 0.0)
             try:
                 messages = shell.communicate(timeout=left if asked else min(0.02, left))[1]
-                return shell.returncode, messages
             except subprocess.TimeoutExpired:
                 if time.monotonic() >= end:
                     os.killpg(shell.pid, signal.SIGKILL)
                     return None, shell.communicate()[1] + f"\nstopped: not finished after {limit:g} seconds"
-            if not asked and cpu_used(pid) >= cpu and first.exists():
-                os.kill(pid, signal.SIGTERM)
-                asked = True
-    except BaseException:
-        os.killpg(shell.pid, signal.SIGKILL)
-        shell.communicate()
-        raise
+                if not asked and cpu_used(pid) >= cpu and first.exists():
+                    os.kill(pid, signal.SIGTERM)
+                    asked = True
+        if shell.pid not in _running:
+            raise BenchError(f"{command[0]} was ended: others failed, or it was asked for")
+        return shell.returncode, messages
+    finally:
+        _running.discard(shell.pid)
+        if messages is None and shell.poll() is None:
+            os.killpg(shell.pid, signal.SIGKILL)
+            shell.communicate()
 
 
 def checked(command, **limits):
@@ -106,12 +113,18 @@ def set_options(settings):
 
 @contextlib.contextmanager
 def workers(count):
-    """A pool of threads, each of which waits for a process. Where something goes wrong, what has not begun is left out."""
+    """A pool of threads, each of which waits for a process. Where something goes wrong, or on Ctrl-C, all of them are ended."""
     pool = ThreadPoolExecutor(count)
     try:
         yield pool
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        while _running:
+            with contextlib.suppress(KeyError, ProcessLookupError):
+                os.killpg(_running.pop(), signal.SIGKILL)
+        raise
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.shutdown()
 
 
 # ---- What is kept

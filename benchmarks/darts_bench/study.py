@@ -13,7 +13,7 @@ from darts_bench.results import collect
 from darts_bench.run import PROJECT, BenchError, add_renderer, require_renderer
 from darts_bench.study_file import load_study, missing_references, require_references
 from darts_bench.study_runs import SECONDS, SEEDS, check, plan, render_references, run_all
-from darts_bench.submit import MOST_TASKS, part_of, run_by_workers, submit
+from darts_bench.submit import MOST_TASKS, part_of, submit
 
 STUDIES = PROJECT / "benchmarks/study/studies"
 ACTIONS = ["run", "report", "check", "list", "references", "submit"]
@@ -165,11 +165,9 @@ def main(arguments):
     if options.action == "submit":
         submit(study, runs, work, options)
         return DONE
-    if options.action == "run" and options.workers > 1:
-        run_by_workers(options)
-    elif options.action == "run":
+    if options.action == "run":
         part, parts = part_of(options.part or "0/1")
-        run_all(study, runs[part::parts], options.tungsten, options.retry_failed, options.accept_warnings)
+        run_all(study, runs[part::parts], options.tungsten, options.retry_failed, options.accept_warnings, options.workers)
         if options.part:
             return DONE
     failed = [run for run in runs if (record := run.record()) and record["error"]]

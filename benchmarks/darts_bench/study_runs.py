@@ -12,7 +12,7 @@ import numpy as np
 
 from darts_bench import measures
 from darts_bench.images import read_exr, write_pfm
-from darts_bench.run import MOST_SAMPLES, BenchError, appearing, build_of, call, content_key, machine, set_options
+from darts_bench.run import MOST_SAMPLES, BenchError, appearing, build_of, call, content_key, machine, set_options, workers
 from darts_bench.study_file import Method, Scene, Study
 
 BAD_INPUT = 1  # exit code
@@ -146,33 +146,40 @@ def _state(run, build, retry_failed):
     return "failed before" if record["error"] and retry_failed else None
 
 
-def run_all(study: Study, runs, tungsten: Path, retry_failed=False, accept_warnings=False, say=print):
+def run_all(study: Study, runs, tungsten: Path, retry_failed=False, accept_warnings=False, at_once=1):
     """Makes the missing runs. Failures are recorded and reported, and not tried again unless `retry_failed`."""
     build = build_of(tungsten)
     due = [(run, state) for run in runs if (state := _state(run, build, retry_failed))]
     if len(due) < len(runs):
-        say(f"{len(runs) - len(due)} of {len(runs)} runs are already there")
+        print(f"{len(runs) - len(due)} of {len(runs)} runs are already there")
     if due:
-        say(f"{len(due)} runs, {sum(run.seconds for run, _ in due) / 60:.1f} minutes of passes and the time for loading")
-    for number, (run, state) in enumerate(due, 1):
-        limit = study.limit_seconds or 10 * run.seconds + 600
-        say(f"[{number}/{len(due)}] {run.label}{'' if state == 'new' else f' ({state})'} ...", end=" ", flush=True)
-        record = execute(run, tungsten, build, limit, accept_warnings)
-        say(f"FAILED: {record['error']}" if record["error"] else f"skipped: {record['skipped']}" if record["skipped"]
-            else f"{record['wall seconds']:.1f} s", flush=True)
+        print(f"{len(due)} runs, {sum(run.seconds for run, _ in due) / 60:.1f} minutes of passes and the time for loading")
+
+    def make(number, run, state):
+        title = f"[{number}/{len(due)}] {run.label}{'' if state == 'new' else f' ({state})'} ... "
+        if at_once == 1:  # else lines would mix
+            print(title, end="", flush=True)
+        record = execute(run, tungsten, build, study.limit_seconds or 10 * run.seconds + 600, accept_warnings)
+        told = f"FAILED: {record['error']}" if record["error"] else f"skipped: {record['skipped']}" if record["skipped"] \
+            else f"{record['wall seconds']:.1f} s"
+        print(told if at_once == 1 else title + told, flush=True)
+
+    with workers(at_once) as pool:
+        for job in [pool.submit(make, number, *one) for number, one in enumerate(due, 1)]:
+            job.result()
 
 
-def check(runs, tungsten: Path, say=print):
+def check(runs, tungsten: Path):
     """Reads every scene with every method's settings, renders nothing. Returns what the renderer objects to."""
     problems = []
     for run in (run for run in runs if run.seed == 1):
         code, messages = call([str(tungsten), "--explain", *run.arguments()], 600)
         if skipped := impossible(code, messages, run.method):
-            say(f"skipped  {run.scene.name}, {run.method.name}: {skipped}")
+            print(f"skipped  {run.scene.name}, {run.method.name}: {skipped}")
             continue
         refused = refused_warning(messages, run.overrides)
         problem = messages.strip() if code != 0 else refused
-        say(f"{'refused' if problem else 'good   '}  {run.scene.name}, {run.method.name}")
+        print(f"{'refused' if problem else 'good   '}  {run.scene.name}, {run.method.name}")
         if problem:
             problems.append(f"{run.scene.name}, {run.method.name}: {problem}")
     return problems
@@ -192,7 +199,7 @@ def average(images, block):
     return np.mean(images, axis=0), float(np.mean(blocks.var(axis=0, ddof=1)) / len(images))
 
 
-def render_references(study, work, tungsten, retry_failed, accept_warnings, say=print):
+def render_references(study, work, tungsten, retry_failed, accept_warnings):
     """Renders what is missing and writes each reference as a PFM with NAME.blockvar beside it. The study's times and seeds
     are those of the references. Returns the scenes that have none because their renders failed."""
     failed = []
@@ -202,7 +209,7 @@ def render_references(study, work, tungsten, retry_failed, accept_warnings, say=
         if scene.reference.suffix != ".pfm" or study.seeds < 2:
             raise BenchError(f"scene '{scene.name}': references are rendered as .pfm, from at least 2 seeds")
         alone, runs = _runs_of(study, scene, work)
-        run_all(alone, runs, tungsten, retry_failed, accept_warnings, say)
+        run_all(alone, runs, tungsten, retry_failed, accept_warnings)
         if any((record := run.record())["error"] or record["skipped"] for run in runs):
             failed.append(scene.name)
             continue
@@ -210,5 +217,5 @@ def render_references(study, work, tungsten, retry_failed, accept_warnings, say=
         scene.reference.parent.mkdir(parents=True, exist_ok=True)
         write_pfm(scene.reference, image)
         scene.reference.with_suffix(".blockvar").write_text(f"{variance!r}\n")
-        say(f"{scene.reference}: noise of a block {np.sqrt(variance) / image.mean():.2%} of the mean")
+        print(f"{scene.reference}: noise of a block {np.sqrt(variance) / image.mean():.2%} of the mean")
     return failed

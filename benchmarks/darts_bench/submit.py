@@ -1,8 +1,7 @@
-"""Runs of a study shared out: to workers on this machine, or to Slurm as a job array. A part is every N-th run, whoever makes it."""
+"""Runs of a study handed to Slurm as a job array. A part is every N-th run, whoever makes it."""
 
 import math
 import shlex
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -36,23 +35,6 @@ def same_study(options, action):
     return arguments + [f"--{name.replace('_', '-')}" for name in ("quick", "retry_failed", "accept_warnings") if getattr(options, name)]
 
 
-def run_by_workers(options):
-    """Every worker is a process of this program with a part of the runs."""
-    command = [*PROGRAM, *same_study(options, "run"), "--part"]
-    workers = [subprocess.Popen([*command, f"{i}/{options.workers}"]) for i in range(options.workers)]
-    try:
-        codes = [worker.wait() for worker in workers]
-    except BaseException:
-        for worker in workers:
-            worker.send_signal(signal.SIGINT)
-        for worker in workers:
-            worker.wait()
-        raise
-    bad = [code for code in codes if code != 0]
-    if bad:
-        raise BenchError(f"{len(bad)} of {len(workers)} workers ended with exit code {bad[0]}")
-
-
 def _longest(runs, tasks):
     """Minutes that the longest task takes, and half as much again."""
     seconds = max(sum(run.seconds + LOADING for run in runs[task::tasks]) for task in range(tasks))
@@ -75,7 +57,7 @@ def _sbatch(options, arguments):
     return result.stdout.strip().partition(";")[0]
 
 
-def submit(study, runs, work, options, say=print):
+def submit(study, runs, work, options):
     """Writes an array of tasks, each with a part of the runs, and a job that reports when all have ended; submits both."""
     tasks = min(len(runs), options.tasks)
     folder = work / "slurm"
@@ -88,9 +70,9 @@ def submit(study, runs, work, options, say=print):
     report = folder / "report.sh"
     report.write_text(_script(f"{study.name}-report", ["--ntasks=1", "--time=60", f"--output={folder}/report.log"],
                               report_all))
-    say(f"{array}: {tasks} tasks of {len(runs)} runs, {study.threads} threads each\n{report}")
+    print(f"{array}: {tasks} tasks of {len(runs)} runs, {study.threads} threads each\n{report}")
     if options.write_only:
         return
     job = _sbatch(options, [str(array)])
     after = _sbatch(options, [f"--dependency=afterany:{job}", str(report)])
-    say(f"submitted as jobs {job} and, once all its tasks have ended, {after}")
+    print(f"submitted as jobs {job} and, once all its tasks have ended, {after}")

@@ -5,9 +5,11 @@ named by the environment's TUNGSTEN."""
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -16,7 +18,6 @@ sys.path.insert(0, str(PROJECT / "tests/support"))
 
 from study_command import study  # noqa: E402
 
-BENCH = PROJECT / "benchmarks/bench.py"
 TUNGSTEN = os.environ.get("TUNGSTEN", str(PROJECT / "build/bin/tungsten"))
 SCENE = PROJECT / "data/scenes/cornell-fog/scene.json"
 # As sbatch does it: reads the script's directives, starts each task of an array, prints the job's number. It waits for them.
@@ -57,10 +58,7 @@ class Submit(unittest.TestCase):
 
     def call(self, *options, code=0):
         arguments = [self.folder / "tiny.json", *options, "--work", self.work, "--tungsten", TUNGSTEN]
-        if "--workers" in options:  # they inherit what this process writes to
-            result = subprocess.run([sys.executable, BENCH, "study", *map(str, arguments)], capture_output=True, text=True)
-        else:
-            result = study(*arguments)
+        result = study(*arguments)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
@@ -87,8 +85,17 @@ class Submit(unittest.TestCase):
     def test_workers(self):
         out = self.call("run", "--workers", "2").stdout
         self.assertEqual(len(self.runs()), 6)
-        self.assertEqual(len(re.findall(r"3 runs, ", out)), 2)
+        self.assertEqual(len(re.findall(r"^\[\d/6\] fog, .* s$", out, re.M)), 6)
         self.assertTrue((self.work / "report.md").exists())
+
+    def test_interrupted_workers_leave_no_result(self):
+        process = subprocess.Popen([sys.executable, PROJECT / "benchmarks/bench.py", "study", self.folder / "tiny.json", "--seconds", "600", "--workers", "2",
+                                    "--work", self.work, "--tungsten", TUNGSTEN], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while len(list(self.work.glob("runs/*/*/*.partial"))) < 2 and process.poll() is None:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("interrupted", process.communicate(timeout=60)[1])
+        self.assertEqual((process.returncode, self.runs()), (130, []))
 
     def test_what_goes_wrong_is_said(self):
         error = self.call("submit", "--sbatch", self.stub, "--sbatch-option=--fail", code=2).stderr
