@@ -4,7 +4,7 @@
 
 #include "darts/CandidateImportance.h"
 #include "darts/DistanceSampler.h"
-#include "darts/Registers.h"
+#include "darts/Lanes.h"
 
 namespace darts {
 

@@ -1,10 +1,144 @@
 #include "darts/DistanceSampler.h"
 
 #include "darts/CandidateKernel.h"
+#include "darts/FastMath.h"
+#include "darts/Lanes.h"
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 namespace darts {
+
+namespace {
+
+/// Towards the bound in time importance falls to nothing; the last node's logarithm is this much below the one before
+/// it: half of it, which the mean over the interval then is, about.
+constexpr float FallToBound = 0.7f;
+/// Logarithm of importance, relative to the highest: what is farther down stays possible. Transmittance may be lower
+/// yet: slopes that end there would be too gentle, and most draws in thick media in vain.
+constexpr float LeastLog = -57.5f;
+/// Least part of all mass that the uniform numbers of a draw can resolve.
+constexpr float LeastMass = 0x1p-24f;
+
+template <typename Batch, Shape G, int Channels>
+void logImportanceOf(const CandidateDraw& draw, const float* distances, float* logs) {
+    using std::max;
+    constexpr int Width = lanes::Width<Batch>;
+    // What is reachable of the gate is a length: a part of it has no unit, and logarithms are rounded alike in any.
+    const float part = G != Shape::FirstPassage && draw.overlap ? 1.0f / draw.gateWidth : 1.0f;
+    for (int first = 0; first < LogLinearDistance::Nodes; first += Width) {
+        const Batch d = lanes::get<Batch>(distances + first);
+        const PlaceOf<G, Batch> place(draw, d);
+        std::array<Batch, size_t(Channels)> exponents, factors;
+        Batch top(-std::numeric_limits<float>::max());
+        for (int i = 0; i < Channels; ++i) {
+            const CandidateImportance<G> channel(draw, i, Channels == 1);
+            exponents[size_t(i)] = channel.exponent(d, place, factors[size_t(i)]);
+            top = max(top, exponents[size_t(i)]);
+        }
+        Batch sum = factors[0];
+        if constexpr (Channels > 1) {
+            sum = Batch(0.0f);
+            for (size_t i = 0; i < Channels; ++i) sum = sum + factors[i] * lanes::exp(Batch(exponents[i] - top));
+        }
+        lanes::put(logs + first, Batch(top + lanes::log(max(Batch(place.reachable * part * sum), Batch(1e-30f)))));
+    }
+}
+
+template <Shape G>
+LogLinearDistance::LogImportance importanceOf(bool grey, bool scalar) {
+    if (scalar) return grey ? logImportanceOf<float, G, 1> : logImportanceOf<float, G, 3>;
+    using Batch = RegisterOf<LogLinearDistance::Nodes>;
+    return grey ? logImportanceOf<Batch, G, 1> : logImportanceOf<Batch, G, 3>;
+}
+
+} // namespace
+
+LogLinearDistance::LogImportance LogLinearDistance::logImportance(Shape shape, bool grey, bool scalar) {
+    switch (shape) {
+    case Shape::TimeBound:
+        return importanceOf<Shape::TimeBound>(grey, scalar);
+    case Shape::Diffusion:
+        return importanceOf<Shape::Diffusion>(grey, scalar);
+    case Shape::Causal:
+        return importanceOf<Shape::Causal>(grey, scalar);
+    case Shape::FirstPassage:
+        return importanceOf<Shape::FirstPassage>(grey, scalar);
+    }
+    throw std::invalid_argument("unknown shape of importance");
+}
+
+LogLinearDistance::LogLinearDistance(const CandidateDraw& draw, LogImportance importance) {
+    const float end = draw.bound;
+    // A surface ends what is in time; else importance falls to nothing there.
+    const bool endsInTime = !(end < draw.firstLeg);
+    alignas(64) std::array<float, Nodes> at, log;
+    int count = 0;
+    const auto add = [&](float d) {
+        int i = count++;
+        for (; i > 0 && at[size_t(i) - 1] > d; --i) at[size_t(i)] = at[size_t(i) - 1];
+        at[size_t(i)] = d;
+    };
+    add(0.0f);
+    const float sigmaT = mean(draw.medium->sigmaT()), gone = -fastExpm1(-sigmaT * end);
+    // In thin media the quantiles of both are the same: those of the uniform distance fill the places between.
+    const bool thin = sigmaT * end < 0.3f;
+    for (int j = 1; j <= 3; ++j)
+        add(thin ? end * (float(j) - 0.5f) / 4.0f : std::min(-fastLog1p(-gone * (float(j) / 4.0f)) / sigmaT, end));
+    const float kink = draw.kink > 1e-6f * end && draw.kink < end * (1.0f - 1e-6f) ? draw.kink : 0.95f * end;
+    add(kink);
+    const float left = 1.0f - kink / end;
+    const bool near = endsInTime && left < 0.2f / float(Nodes);
+    for (int j = 1; count < Nodes - (near || !endsInTime ? 1 : 0); ++j)
+        add(end * float(j) / (endsInTime && !near ? 4.0f : 3.0f));
+    if (near) add(end * (1.0f - std::sqrt(left / float(Nodes))));
+    if (!endsInTime) add(end);
+    importance(draw, at.data(), log.data());
+    intervals_ = endsInTime ? Nodes : Nodes - 1;
+    const float top = *std::max_element(log.begin(), log.end());
+    std::array<float, Nodes + 1> values;
+    const float least = smallest(draw.medium->sigmaT());
+    for (size_t i = 0; i < Nodes; ++i) {
+        nodes_[i] = at[i];
+        logs_[i] = std::max(log[i] - top, std::min(LeastLog, -least * at[i]));
+        values[i] = std::exp(logs_[i]);
+    }
+    nodes_[Nodes] = end;
+    logs_[Nodes] = logs_[Nodes - 1] - (draw.falls ? FallToBound : sigmaT * (end - at[Nodes - 1]));
+    values[Nodes] = std::exp(logs_[Nodes]);
+    for (int i = 0; i < intervals_; ++i) {
+        const auto k = size_t(i);
+        const float here = values[k], next = values[k + 1], rise = slope(i);
+        const float mean = std::abs(rise) < 0.05f
+                               ? here * (1.0f + rise * (0.5f + rise * (1.0f / 6.0f + rise * (1.0f / 24.0f))))
+                               : (next - here) / rise;
+        masses_[k] = (nodes_[k + 1] - nodes_[k]) * mean;
+        sum_ += masses_[k];
+    }
+}
+
+float LogLinearDistance::sample(float u) const {
+    float rest = u * sum_;
+    int i = 0;
+    while (i < intervals_ - 1 && !(rest < masses_[size_t(i)])) rest -= masses_[size_t(i++)];
+    // Rounding leads to intervals that are never meant, and their weights are as large as they are unlikely.
+    for (; i > 0 && masses_[size_t(i)] < LeastMass * sum_; --i) rest = sum_;
+    const auto k = size_t(i);
+    const float part = masses_[k] > 0.0f ? std::clamp(rest / masses_[k], 0.0f, BelowOne) : 0.0f, rise = slope(i);
+    const float along = std::abs(rise) < 1e-5f ? part : fastLog1p(part * fastExpm1(rise)) / rise;
+    const float d = nodes_[k] + (nodes_[k + 1] - nodes_[k]) * std::clamp(along, 0.0f, 1.0f);
+    return std::min(d, nodes_[size_t(intervals_)] * BelowOne);
+}
+
+float LogLinearDistance::pdf(float distance) const {
+    if (!(distance >= 0.0f && distance < nodes_[size_t(intervals_)])) return 0.0f;
+    int i = 0;
+    while (i < intervals_ - 1 && !(distance < nodes_[size_t(i) + 1])) ++i;
+    const auto k = size_t(i);
+    const float width = nodes_[k + 1] - nodes_[k];
+    return std::exp(logs_[k] + slope(i) * (distance - nodes_[k]) / width) / sum_;
+}
 
 namespace {
 

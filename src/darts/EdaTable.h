@@ -1,8 +1,8 @@
 #pragma once
 // The published direction sampling of He et al. 2024: the elliptical diffusion approximation, tabulated.
 
-#include "darts/OctaveBins.h"
-
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,6 +11,35 @@
 #include <vector>
 
 namespace darts {
+
+/// Bins of nearly equal ratio whose number is read off a float's bits, without a logarithm.
+/// [2^lowest, 2^(lowest + octaves)), every octave cut into 2^log2PerOctave equal bins (at most 2^8).
+class OctaveBins {
+  public:
+    OctaveBins(int lowest, int octaves, int log2PerOctave)
+        : shift_(23 - log2PerOctave), base_((lowest + 127) << log2PerOctave), count_(octaves << log2PerOctave) {}
+
+    [[nodiscard]] int count() const { return count_; }
+    /// The bin that holds x; the nearest one for x outside the range.
+    [[nodiscard]] int index(float x) const {
+        return std::clamp((std::bit_cast<std::int32_t>(x) >> shift_) - base_, 0, count_ - 1);
+    }
+    /// Lower edge of bin i; edge(count()) is the end of the range.
+    [[nodiscard]] float edge(int i) const { return std::bit_cast<float>((base_ + i) << shift_); }
+    [[nodiscard]] float centre(int i) const { return 0.5f * (edge(i) + edge(i + 1)); }
+
+  private:
+    int shift_, base_, count_;
+};
+
+/// How much light a direction can still bring to the target, if what follows its first flight is taken from the
+/// diffusion approximation.
+///
+/// log f of a direction, f(cos | C, S) = int_0^{t(S)} e^{-tau} Phi(rho(tau), S - tau) dtau, up to a term common to all
+/// directions of the same C and S. Phi is DiffusionGreensFunction, t and rho are those of Ellipse. Lengths are in mean
+/// free paths (sigmaT = 1): C is the distance to the target, delta = S - C > 0, h = 1 - cos(theta) in [0, 2].
+/// Within 2e-4 for S from 1e-6 to 1e4, C / S up to 1 - 1e-7 and every albedo and g.
+[[nodiscard]] double edaLogDensity(double albedo, double g, double C, double delta, double h);
 
 /// How finely a table is cut. delta / S = 1 - C / S has bins that shrink toward the needle, C / S -> 1; so has sigmaT
 /// S.

@@ -3,7 +3,6 @@
 
 #include "support/ChiSquare.h"
 
-#include "darts/EdaDensity.h"
 #include "darts/EdaTable.h"
 #include "darts/Ellipse.h"
 #include "darts/GreensFunction.h"

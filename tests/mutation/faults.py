@@ -166,23 +166,23 @@ FAULTS = [
      [("darts_tests", "DistanceSampler.DrawsKnowTheirDensity")]),  # surfaces are reached with no density, and weigh infinitely
     ("src/darts/DistanceSampler.cpp", "draw.falls = shape != Shape::TimeBound || draw.overlap;", ";",
      [("darts_tests", "LogLinearDistance.OfPlainFlightsHasNoNoise")]),  # plain flights with bounds in time are noisier than free ones
-    ("src/darts/LogLinearDistance.cpp", "fastLog1p(part * fastExpm1(rise)) / rise;", "part;",
+    ("src/darts/DistanceSampler.cpp", "fastLog1p(part * fastExpm1(rise)) / rise;", "part;",
      [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # distances are uniform between nodes
-    ("src/darts/LogLinearDistance.cpp", ": (next - here) / rise;", ": (next + here) * 0.5f;",
+    ("src/darts/DistanceSampler.cpp", ": (next - here) / rise;", ": (next + here) * 0.5f;",
      [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # masses of intervals by the trapezoid rule
-    ("src/darts/LogLinearDistance.cpp", "std::min(LeastLog, -least * at[i])", "LeastLog",
+    ("src/darts/DistanceSampler.cpp", "std::min(LeastLog, -least * at[i])", "LeastLog",
      [("darts_tests", "DistancesOut.WeightsOfCameraPathsHardlyVaryDeepInside")]),  # most distances in thick media are drawn in vain
-    ("src/darts/LogLinearDistance.cpp", "i > 0 && masses_[size_t(i)] < LeastMass * sum_", "false",
+    ("src/darts/DistanceSampler.cpp", "i > 0 && masses_[size_t(i)] < LeastMass * sum_", "false",
      [("darts_tests", "LogLinearDistance.SamplesFollowTheDensityWhichIntegratesToOne")]),  # rounding leads to distances of enormous weight
-    ("src/darts/LogLinearDistance.cpp", "Batch(place.reachable * part * sum)", "Batch(sum)",
+    ("src/darts/DistanceSampler.cpp", "Batch(place.reachable * part * sum)", "Batch(sum)",
      [("darts_tests", "LogLinearDistance.NodesKnowThePartOfTheGateStillInReach")]),  # distances forget the part of the gate still in reach: more variance
-    ("src/darts/DirectionStrata.h", "weights_[size_t(Strata + stratum(", "weights_[size_t(stratum(",
+    ("src/darts/DirectionSampler.h", "weights_[size_t(Strata + stratum(", "weights_[size_t(stratum(",
      [("darts_tests", "DirectionStrata.SamplesFollowTheDensityWhichIntegratesToOne")]),  # the guide's strata have the weights of the phase function's
-    ("src/darts/DirectionStrata.h", "dot(direction, frame.towards) - dot(frame.axis, frame.towards) < 0.0f", "dot(direction, frame.towards) > 0.0f",
+    ("src/darts/DirectionSampler.h", "dot(direction, frame.towards) - dot(frame.axis, frame.towards) < 0.0f", "dot(direction, frame.towards) > 0.0f",
      [("darts_tests", "DirectionStrata.SamplesFollowTheDensityWhichIntegratesToOne")]),  # halves of strata are taken for each other
-    ("src/darts/DirectionStrata.h", "/ (0.5f * (own + guided));", ";",
+    ("src/darts/DirectionSampler.h", "/ (0.5f * (own + guided));", ";",
      [("darts_tests", "DirectionStrata.WeightsVaryLessThanThoseOfAMixture")]),  # strata are weighed by what is wanted, not by how much more than drawn
-    ("src/darts/DirectionStrata.h", "float(Strata) * (own + guided) / sum_", "float(Strata) * own / sum_",
+    ("src/darts/DirectionSampler.h", "float(Strata) * (own + guided) / sum_", "float(Strata) * own / sum_",
      [("darts_tests", "DirectionStrata.DrawsOfTheSamplerKnowTheirDensity")]),  # the density of products lacks the guide's part
     ("src/darts/PhaseFunction.h", "(1.0f + s) * h / (root * (root + 1.0f - s))", "(1.0f - s) * h / (root * (root + 1.0f - s))",
      [("darts_tests", "Inverse.HenyeyGreenstein")]),  # parts of phase functions do not invert their quantiles
@@ -198,7 +198,7 @@ FAULTS = [
      [("darts_tests", "SamplingOptions.SwitchesOfResamplingHaveNoEffectWithBestAndAreWarnedAbout")]),  # switches undo the known densities of best
     ("src/darts/ConnectionLobe.h", "1 / (Real(TwoPi) * (kappa_ + h) * range_)", "1 / (Real(TwoPi) * (kappa_ + h))",
      [("darts_tests", "Accuracy.ConnectionLobes")]),  # lobe's density is not normalised
-    ("src/darts/EscapeDirections.cpp", "+ (1.0f - connectionShare_) * drift;", "+ drift;",
+    ("src/darts/DirectionSampler.cpp", "+ (1.0f - connectionShare_) * drift;", "+ drift;",
      [("path_tests", "Bodies.AHalfSpacesReflectanceDecaysAsInTheDiffusionLimit")]),  # directions out of bodies: density too large, image too dark
     ("src/darts/GreensFunction.h", "- Real(0.25) * logU + Real(0.5)", "+ Real(0.25) * logU + Real(0.5)",
      [("darts_tests", "NumbersAccuracy.UsefulnessOfWalks")]),  # causal Green's function wrong near the light front

@@ -7,7 +7,6 @@
 #include "darts/ConnectionLobe.h"
 #include "darts/ControlVertex.h"
 #include "darts/DistanceSampler.h"
-#include "darts/EdaDensity.h"
 #include "darts/EdaTable.h"
 #include "darts/GreensFunction.h"
 #include "darts/TemporalResponse.h"

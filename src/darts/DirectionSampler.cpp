@@ -1,4 +1,4 @@
-#include "darts/EscapeDirections.h"
+#include "darts/DirectionSampler.h"
 
 namespace darts {
 
