@@ -6,7 +6,7 @@ GUIDED = ["best paths", "best points", "best beams"]
 
 REMOVALS = [
     ("looking through index-matched boundaries in connections", ["plain paths", *GUIDED], [
-        ("src/transport/Connection.cpp", "if (forwardBoundaries_) return traceVisibility(scene_, ray, distance, region, rays);", ""),
+        ("src/transport/Vertex.cpp", "if (forwardBoundaries_) return traceVisibility(scene_, ray, distance, region, rays);", ""),
     ]),
     ("delays and the sensor's response", [*PATHS, *MAPS], [
         ("src/transport/TimeSensor.h", "if (!delay) {", "if (true) {"),

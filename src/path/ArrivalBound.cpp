@@ -1,6 +1,6 @@
 #include "path/ArrivalBound.h"
 
-#include "transport/RecordingDelays.h"
+#include "transport/TimeSensor.h"
 
 namespace tungsten::path {
 

@@ -4,8 +4,8 @@
 #include "path/PixelAccumulator.h"
 
 #include "transport/Balance.h"
-#include "transport/Connection.h"
-#include "transport/PathState.h"
+#include "transport/Vertex.h"
+#include "transport/Walk.h"
 
 #include <optional>
 

@@ -93,7 +93,7 @@ void PathTracer::prepare(const SceneFacts& facts, const ProgressToken& watch, St
 
 void PathTracer::prepareGuides(const SceneFacts& facts, const ProgressToken& watch, Statistics& statistics) {
     const StageTimer timer(statistics, "guide preparation");
-    guides_ = PathGuides::of(*scene_, settings_.policy.sampling, facts, watch);
+    guides_ = PathGuides::of(*scene_, settings_.policy, facts, watch);
     if (plan_.edaTable.on) statistics.add(counter::DirectionTables, uint64_t(guides_.tables()));
     escapeModels_ = transport::EscapeModels::make(*scene_, settings_.policy);
     windows_ = plan_.balance.on ? transport::TimeWindows::ofSequence(*scene_, facts, sensor_.arrivals)

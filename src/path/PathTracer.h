@@ -1,7 +1,7 @@
 #pragma once
 // The integrators `path_tracer` and `transient_path_tracer`: unbiased, steady state or time-resolved.
 
-#include "path/GuidedVisitor.h"
+#include "path/GuidedPath.h"
 #include "path/PathPlan.h"
 #include "path/PathVisitor.h"
 #include "path/SampleAllocation.h"

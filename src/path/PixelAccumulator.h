@@ -100,16 +100,14 @@ class PixelAccumulator {
             used_ |= 1u << place;
             sum = {frame, Vec3d(0.0)};
         }
-        sum.value += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z)) * double(weight);
+        sum.value += Vec3d(radiance) * double(weight);
     }
 
     struct FrameSum {
         int frame;
         Vec3d value;
     };
-    void addToFilm(const FrameSum& sum) {
-        film_->add(sum.frame, x_, y_, Rgb(float(sum.value.x), float(sum.value.y), float(sum.value.z)));
-    }
+    void addToFilm(const FrameSum& sum) { film_->add(sum.frame, x_, y_, Rgb(sum.value)); }
 
     Film* film_ = nullptr;
     const transport::TimeSensor& sensor_;

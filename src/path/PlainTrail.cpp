@@ -3,7 +3,7 @@
 #include "path/techniques/EmitterConnections.h"
 #include "path/techniques/LightCaches.h"
 
-#include "transport/Roulette.h"
+#include "transport/PlainSteps.h"
 
 namespace tungsten::path {
 

@@ -2,9 +2,28 @@
 
 #include "path/Tuning.h"
 
+#include "transport/GuidancePlan.h"
 #include "transport/PlainSteps.h"
 
 namespace tungsten::path {
+
+PathGuides PathGuides::of(const Scene& scene, const transport::Policy& policy, const SceneFacts& facts,
+                          const ProgressToken& watch) {
+    PathGuides guides;
+    watch.stage("guides of media", scene.media.size());
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        watch.advance();
+        const Medium& medium = scene.media[i];
+        darts::Settings settings = transport::settingsIn(medium, policy, darts::Mode::Path);
+        if (!medium.scatters() || facts.isExcluded(i)) settings.direction = darts::Direction::Phase;
+        const darts::Medium coefficients{darts::vec3(medium.sigmaA()), darts::vec3(medium.sigmaS()), medium.phase.g()};
+        guides.media.emplace_back(settings, coefficients);
+        darts::Settings glossy = settings;
+        if (!policy.sampling.published) glossy.alpha = std::max(glossy.alpha, tuning::GlossyAlpha);
+        guides.glossy.emplace_back(glossy, coefficients);
+    }
+    return guides;
+}
 
 using transport::Ahead;
 using transport::Flight;

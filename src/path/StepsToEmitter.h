@@ -3,19 +3,43 @@
 // directions in media and from surfaces that reflect smoothly, elsewhere as the scene has them.
 
 #include "path/ArrivalBound.h"
-#include "path/PathGuides.h"
 #include "path/PathSettings.h"
 #include "path/PathTarget.h"
 #include "path/techniques/ShellChord.h"
 
+#include "transport/Balance.h"
 #include "transport/GuidedSteps.h"
-#include "transport/PlainFlight.h"
-#include "transport/StrategyBalance.h"
 #include "transport/TimeSensor.h"
 #include "transport/TimeWindows.h"
 #include "transport/Walk.h"
 
+#include "darts/Guide.h"
+
+#include "tungsten/integrator/ProgressToken.h"
+#include "tungsten/integrator/SceneFacts.h"
+#include "tungsten/scene/Scene.h"
+
+#include <algorithm>
+#include <vector>
+
 namespace tungsten::path {
+
+/// How guided camera paths sample in each medium, and from surfaces before it.
+struct PathGuides {
+    /// `plan`: media that light is out of time in are not guided in.
+    static PathGuides of(const Scene& scene, const transport::Policy& policy, const SceneFacts& facts,
+                         const ProgressToken& watch);
+
+    std::vector<darts::Guide> media;  ///< for flights, and for leaving scatterers and surfaces into it
+    std::vector<darts::Guide> glossy; ///< for leaving surfaces without diffuse lobes
+
+    /// Number of tables of directions in use: one for every medium that has one.
+    [[nodiscard]] size_t tables() const {
+        return size_t(std::count_if(media.begin(), media.end(), [](const darts::Guide& guide) {
+            return guide.settings().direction == darts::Direction::Eda;
+        }));
+    }
+};
 
 class LightCaches;
 

@@ -1,7 +1,9 @@
 #pragma once
 // Weights of a path that several techniques find (multiple importance sampling; Veach and Guibas 1995): over all of
-// them they add up to one.
+// them they add up to one. Plain and guided walks side by side are weighed by how densely both together find what one
+// has found (docs/method.md, section 11).
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -28,5 +30,61 @@ template <typename... Densities>
 [[nodiscard]] inline float pdfFreeFlight(float sigmaT, float distance) {
     return sigmaT * std::exp(-sigmaT * distance);
 }
+
+enum class Strategy { Alone, Plain, Guided };
+
+/// Logarithm of a quotient of densities, which does not depend on the unit of both; bounded where one of two ways to
+/// find a path never does.
+inline float logOfQuotient(float density, float over = 1.0f) {
+    constexpr float Least = 1e-30f, Most = 1e30f;
+    return std::log(std::clamp(std::max(density, Least) / std::max(over, Least), Least, Most));
+}
+
+/// How densely guided paths find what one has found, over plain ones; logarithms.
+struct LogRatio {
+    float weighed;         ///< as both strategies weigh it: StrategyBalance
+    float plainToEstimate; ///< plain paths' own estimate over the one at hand
+
+    /// Both are the same, unless an estimate is random: what light paths bring is weighed by the way up to them.
+    LogRatio(float exact) : weighed(exact), plainToEstimate(exact) {} // NOLINT(google-explicit-constructor)
+    LogRatio(float asWeighed, float ofPlain) : weighed(asWeighed), plainToEstimate(ofPlain) {}
+    /// Where a part of the guided paths alone may find it, the logarithm of which this is.
+    [[nodiscard]] LogRatio plus(float logOfPart) const { return {weighed + logOfPart, plainToEstimate + logOfPart}; }
+};
+
+/// Where a contribution was found: at a vertex that its path has gone on from, or beside the path's way, where guided
+/// paths alone look.
+enum class Found { OnWay, Aside };
+
+/// Shares of the paths that are plain and guided, and weights of what they bring. A path X is found by plain paths with
+/// the density lambda_P, by guided ones with lambda_G = lambda_P e^L; either adds f / (plain lambda_P + guided
+/// lambda_G), which is its own estimate f / lambda times a weight. No contribution exceeds what plain paths bring, over
+/// `plain`.
+struct StrategyBalance {
+    float plain = 0.0f, guided = 1.0f; ///< sum 1
+
+    [[nodiscard]] bool both() const { return plain > 0.0f && guided > 0.0f; }
+    /// Weight of what a plain path has found, as its own estimate alone would have it; `logRatio` is L.
+    [[nodiscard]] float weightOfPlain(float logRatio) const {
+        return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));
+    }
+    [[nodiscard]] float weightOfGuided(float logRatio) const {
+        return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);
+    }
+    [[nodiscard]] float weight(Strategy strategy, float logRatio) const {
+        if (strategy == Strategy::Alone) return 1.0f;
+        return strategy == Strategy::Plain ? weightOfPlain(logRatio) : weightOfGuided(logRatio);
+    }
+    /// Guided paths end where plain ones are so much denser, which hardly ever happens (Markov: at most e^-EarlyOut of
+    /// them in each generation); plain paths that go where they do not need no densities from there on.
+    [[nodiscard]] bool endsGuided(float logRatio) const { return both() && logRatio < -EarlyOut; }
+
+    static constexpr float EarlyOut = 8.0f;
+    /// L where guided paths do not come.
+    static constexpr float Never = -80.0f;
+
+  private:
+    static constexpr float Most = 80.0f; ///< of exponents
+};
 
 } // namespace tungsten::transport

@@ -1,6 +1,6 @@
 #include "transport/DetectorLight.h"
 
-#include "transport/StraightSteps.h"
+#include "transport/PlainSteps.h"
 
 #include "tungsten/scene/LightChoice.h"
 

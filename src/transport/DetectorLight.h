@@ -3,10 +3,10 @@
 // zero: points, spots and those of a single direction.
 
 #include "transport/BounceLimits.h"
-#include "transport/Connection.h"
 #include "transport/GateBounds.h"
-#include "transport/PathState.h"
 #include "transport/StepCounters.h"
+#include "transport/Vertex.h"
+#include "transport/Walk.h"
 
 #include <functional>
 

@@ -1,32 +1,28 @@
 #pragma once
-// Steps by the scene's own distributions: free flights, phase functions, BSDFs, roulette by the throughput.
+// Steps by the scene's own distributions: free flights, phase functions, BSDFs, roulette by the throughput; or straight
+// through media from surface to surface.
 
 #include "transport/BounceLimits.h"
-#include "transport/Roulette.h"
+#include "transport/Tuning.h"
 #include "transport/Walk.h"
+
+#include "tungsten/core/Random.h"
 
 namespace tungsten::transport {
 
-/// Along a lobe of the surface's BSDF, of those that are asked for. None when they absorb the path, or when `checks`
-/// are on and the direction is on different sides of the geometric and the shading normal.
-inline std::optional<Way> sampleSurfaceWay(PathState& path, const WalkVertex& vertex, TransportMode mode, bool checks,
-                                           LobeMask lobes = lobe::All) {
-    const SurfaceInteraction& surface = *vertex.surface;
-    path.random.at(path.interactions, Draw::Direction);
-    const auto exit = sampleBsdf(surface, surface.query(mode, lobes), checks, path.random);
-    if (!exit) return std::nullopt;
-    const bool shades = mode == TransportMode::Photons && !exit->straight();
-    return Way{surface.hit.spawnRay(exit->direction), regionBeyond(surface, exit->direction, path.region),
-               shades ? exit->weight * surface.photonShadingFactor(-vertex.before, exit->direction) : exit->weight,
-               (exit->lobe & lobe::Smooth) != 0 ? exit->pdf : 0.0f, exit->lobe};
+/// Probability of going on; `throughput` relative to that of the path's start.
+inline float survivalByThroughput(const Rgb& throughput, int interactions) {
+    const float survival = maxComponent(throughput);
+    return interactions < tuning::RouletteFirstInteraction || survival >= tuning::RouletteThreshold ? 1.0f : survival;
 }
 
-/// Draws a direction by the phase function.
-inline Way sampleMediumWay(PathState& path, const WalkVertex& vertex) {
-    path.random.at(path.interactions, Draw::Direction);
-    const PhaseFunction& phase = vertex.medium->phase;
-    const Vec3f direction = phase.sample(vertex.before, path.random.next2D());
-    return {Ray{vertex.position, direction}, path.region, Rgb(1.0f), phase.pdf(vertex.before, direction)};
+/// False ends the path; else the throughput, relative to that of the path's start, makes up for those that ended.
+inline bool survivesRoulette(Rgb& throughput, int interactions, Sampler& sampler) {
+    const float survival = survivalByThroughput(throughput, interactions);
+    if (survival == 1.0f) return true;
+    if (sampler.next1D() >= survival) return false;
+    throughput = throughput / survival;
+    return true;
 }
 
 /// Chosen when compiled.
@@ -100,5 +96,41 @@ class PlainSteps {
 
 /// From lights.
 using PlainLightSteps = PlainSteps<PlainOptions{.mode = TransportMode::Photons}>;
+
+/// Straight through media, whatever they scatter, from surface to surface along the lobes that the visitor asks for.
+template <TransportMode Mode>
+class StraightSteps {
+  public:
+    static constexpr bool Timed = true;
+
+    explicit StraightSteps(const WalkContext& context)
+        : checks(context.scene.transport.consistencyChecks), context_(context) {}
+    [[nodiscard]] const WalkContext& context() const { return context_; }
+
+    Ahead ahead(PathState& path) {
+        const Medium* medium = context_.scene.medium(path.region);
+        if (medium) context_.counters.fly(*medium);
+        ++context_.counters.rays;
+        return {true, medium, context_.scene.geometry->intersect(path.ray)};
+    }
+    Flight flight(PathState&, const Ahead& ahead) {
+        Flight flight{ahead.hit ? Flight::Event::Surface : Flight::Event::Escape, ahead.reach()};
+        if (ahead.medium && attenuated) flight.weight = ahead.medium->transmittance(ahead.reach());
+        return flight;
+    }
+    bool canArrive(PathState&, const WalkVertex&) { return true; }
+    int copies(PathState&, const WalkVertex&) { return 1; }
+    std::optional<Way> way(PathState& path, const WalkVertex& vertex) {
+        return sampleSurfaceWay(path, vertex, Mode, checks, lobes);
+    }
+    bool survives(PathState&) { return true; }
+
+    bool checks;            ///< of directions against both normals (sampleSurfaceWay)
+    bool attenuated = true; ///< false: only when, and where, light gets
+    LobeMask lobes = lobe::All;
+
+  private:
+    WalkContext context_;
+};
 
 } // namespace tungsten::transport

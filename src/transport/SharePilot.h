@@ -2,7 +2,7 @@
 // How much time plain and guided paths get: a few paths of both, before the first pass, tell what either costs and how
 // much the image would vary at any share (docs/method.md, section 11).
 
-#include "transport/StrategyBalance.h"
+#include "transport/Balance.h"
 
 #include <array>
 #include <cstdint>

@@ -1,9 +1,43 @@
 #pragma once
-// When the sensor is open, and how it weighs times of arrival.
+// When the sensor is open, how it weighs times of arrival, and how long after that light is recorded: pulses and the
+// sensor's response (docs/method.md, section 1).
 
-#include "transport/RecordingDelays.h"
+#include "darts/TemporalResponse.h"
+#include "darts/TimeBudget.h"
+
+#include "tungsten/core/Random.h"
+#include "tungsten/scene/Scene.h"
+
+#include <memory>
+#include <vector>
 
 namespace tungsten::transport {
+
+/// How long after an emitter's emission_time its light is recorded, beyond its time of flight.
+/// The delays of a scene whose sensor averages over frames; none in steady state.
+class RecordingDelays {
+  public:
+    RecordingDelays() = default;
+    static RecordingDelays of(const Scene& scene);
+
+    [[nodiscard]] bool any() const { return !densities_.empty(); }
+    /// Density of the delay per time; null for light that is recorded as it arrives. `emitter` is one of the scene's.
+    [[nodiscard]] const darts::TemporalResponse* density(const Emitter& emitter) const {
+        return any() ? densities_[size_t(&emitter - first_)].get() : nullptr;
+    }
+    /// A delay by that density. Draws a number only where there is one.
+    [[nodiscard]] double sample(const Emitter& emitter, Sampler& sampler) const {
+        const darts::TemporalResponse* delay = density(emitter);
+        return delay ? delay->quantile(sampler.nextDouble()) : 0.0;
+    }
+    /// When light that is recorded in `gate` arrives, whichever emitter's: the gate widened by all delays.
+    [[nodiscard]] TimeGate arrivals(const TimeGate& gate) const;
+
+  private:
+    const Emitter* first_ = nullptr;
+    std::vector<std::shared_ptr<const darts::TemporalResponse>> densities_; ///< by emitter
+    double least_ = 0.0, most_ = 0.0;
+};
 
 /// Weighs time evenly over the gate, or by a response W(T) whose support is the gate. Times are total times of flight,
 /// emission time included.
@@ -17,24 +51,7 @@ struct TimeSensor {
     TimeSensor(const TimeGate& openDuring, std::shared_ptr<const darts::TemporalResponse> weighedBy = nullptr)
         : gate(openDuring), response(std::move(weighedBy)), arrivals(openDuring) {}
     /// The sensor as the scene says; `gate` is the pass's, which is the scene's or a delta gate's temporal kernel.
-    static TimeSensor of(const Scene& scene, const TimeGate& gate) {
-        const TimeProfile& r = scene.transport.response;
-        if (r.empty()) {
-            TimeSensor sensor{gate};
-            sensor.delays = RecordingDelays::of(scene);
-            sensor.arrivals = sensor.delays.arrivals(gate);
-            return sensor;
-        }
-        TimeSensor sensor{
-            gate, std::make_shared<darts::TemporalResponse>(darts::TemporalResponse::tabulated(r.times, r.values))};
-        auto& open = sensor.openTimes;
-        for (size_t i = 0; i + 1 < r.times.size(); ++i) {
-            if (r.values[i] <= 0.0 && r.values[i + 1] <= 0.0) continue;
-            if (open.empty() || open.back().end < r.times[i]) open.push_back({r.times[i], r.times[i]});
-            open.back().end = r.times[i + 1];
-        }
-        return sensor;
-    }
+    static TimeSensor of(const Scene& scene, const TimeGate& gate);
 
     /// Frame of a time; 0 in steady state, -1 while the sensor is closed.
     [[nodiscard]] int frameOf(double time) const { return gate.steadyState ? 0 : gate.frameOf(time); }

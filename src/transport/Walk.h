@@ -3,14 +3,53 @@
 // on; a visitor does what is to be done on the way: connections, deposits, light that is met. Neither the loop nor a
 // step adds light anywhere.
 
-#include "transport/PathState.h"
 #include "transport/StepCounters.h"
 #include "transport/Vertex.h"
+
+#include "tungsten/scene/Interaction.h"
 
 #include <concepts>
 #include <optional>
 
 namespace tungsten::transport {
+
+/// The last vertex that a walk has not passed straight: where its present direction was drawn.
+struct LastVertex {
+    enum class Kind { Specular, Surface, Medium }; ///< Specular: mirrors, refraction, and where the walk starts
+
+    Kind kind = Kind::Specular;
+    Vec3f position{0.0f};
+    float pdf = 0.0f; ///< of the present direction, per solid angle (Way::pdf)
+};
+
+/// In double, of positions as they are stored.
+inline double distanceBetween(const Vec3f& a, const Vec3f& b) {
+    const Vec3d d(double(b.x) - double(a.x), double(b.y) - double(a.y), double(b.z) - double(a.z));
+    return d.length();
+}
+
+/// Where a walk has got to.
+/// A value: copies of a walk that is split have one each.
+struct PathState {
+    Sampler random;       ///< the path's own numbers
+    Ray ray{};            ///< ahead, from the last vertex, unit direction; at a vertex: the direction up to there
+    Region region{};      ///< medium and speed along it
+    Rgb throughput{1.0f}; ///< the path's contribution per channel over its density; walks from lights may hold power
+    ChannelDensities channels{1.0f}; ///< of plain flights
+    float logRatio = 0.0f;           ///< log of the density of guided paths up to here over that of plain ones
+    double time = 0.0;               ///< of flight so far; stands still while `timed` is false
+    int interactions = 0;            ///< surfaces met, index-matched ones included, and scatterings in media
+    int flights = 0;                 ///< in scattering media since the last surface
+    int mediumScatters = 0;
+    int inARow = 0;         ///< the last of these, since the last surface
+    bool timed = true;      ///< false: on camera segments that do not count, up to the first vertex that scatters
+    bool scattered = false; ///< at a surface by a smooth lobe, or in a medium
+    LastVertex last{};
+
+    /// The time at the end of a straight way of this length.
+    [[nodiscard]] double timeAfter(double length) const { return timed ? time + length / double(region.speed) : time; }
+};
+static_assert(sizeof(PathState) <= 256, "walks are copied where they are split");
 
 /// Where walks go, who counts what they do, and who may break them off.
 struct WalkContext {
@@ -63,6 +102,28 @@ struct Way {
     [[nodiscard]] bool straight() const { return lobe == lobe::Forward; }
     [[nodiscard]] bool smooth() const { return (lobe & lobe::Smooth) != 0; }
 };
+
+/// Along a lobe of the surface's BSDF, of those that are asked for. None when they absorb the path, or when `checks`
+/// are on and the direction is on different sides of the geometric and the shading normal.
+inline std::optional<Way> sampleSurfaceWay(PathState& path, const WalkVertex& vertex, TransportMode mode, bool checks,
+                                           LobeMask lobes = lobe::All) {
+    const SurfaceInteraction& surface = *vertex.surface;
+    path.random.at(path.interactions, Draw::Direction);
+    const auto exit = sampleBsdf(surface, surface.query(mode, lobes), checks, path.random);
+    if (!exit) return std::nullopt;
+    const bool shades = mode == TransportMode::Photons && !exit->straight();
+    return Way{surface.hit.spawnRay(exit->direction), regionBeyond(surface, exit->direction, path.region),
+               shades ? exit->weight * surface.photonShadingFactor(-vertex.before, exit->direction) : exit->weight,
+               (exit->lobe & lobe::Smooth) != 0 ? exit->pdf : 0.0f, exit->lobe};
+}
+
+/// Draws a direction by the phase function.
+inline Way sampleMediumWay(PathState& path, const WalkVertex& vertex) {
+    path.random.at(path.interactions, Draw::Direction);
+    const PhaseFunction& phase = vertex.medium->phase;
+    const Vec3f direction = phase.sample(vertex.before, path.random.next2D());
+    return {Ray{vertex.position, direction}, path.region, Rgb(1.0f), phase.pdf(vertex.before, direction)};
+}
 
 /// How a walk goes on. `Timed`: it has a clock. What it draws it takes from path.random by place (Draw).
 template <typename S>

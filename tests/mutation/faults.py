@@ -61,13 +61,13 @@ FAULTS = [
      [("darts_tests", "FirstPassageAccuracy.Slopes")]),
     ("src/darts/FirstPassage.cpp", "(logThrough(face, later) - log)", "(log - logThrough(face, later))",
      [("darts_tests", "FirstPassageAccuracy.Slopes")]),
-    ("src/transport/Connection.cpp", "/ sqr(way.distance),", "/ way.distance,",
+    ("src/transport/Vertex.cpp", "/ sqr(way.distance),", "/ way.distance,",
      [("transport_tests", "TransportAccuracy.StraightWaysAndDensitiesAtTheirEnds")]),
-    ("src/transport/Connection.cpp", "medium ? medium->transmittance(distance) :", "medium ? medium->transmittance(0.0f) :",
+    ("src/transport/Vertex.cpp", "medium ? medium->transmittance(distance) :", "medium ? medium->transmittance(0.0f) :",
      [("path_tests", "BoxGates/GuidedOrders.MatchVerifiedValues/*")]),
-    ("src/transport/Connection.cpp", "double(distance) / double(region.speed)", "double(distance)",
+    ("src/transport/Vertex.cpp", "double(distance) / double(region.speed)", "double(distance)",
      [("photon_tests", "GlossySurfaces.KnowTheSpeedThatMatters")]),
-    ("src/transport/PathState.h", "length / double(region.speed)", "length * double(region.speed)",
+    ("src/transport/Walk.h", "length / double(region.speed)", "length * double(region.speed)",
      [("path_tests", "SpecularTime.GlassBallDelaysAndEchoes")]),
     ("src/path/PathVisitor.cpp", "const double time = path.time + emitter.emissionTime;", "const double time = path.time - emitter.emissionTime;",
      [("path_tests", "LightTracer.ShowsSurfacesThroughALens")]),
@@ -85,7 +85,7 @@ FAULTS = [
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),
     ("src/path/PathTarget.cpp", "path.throughput = path.throughput / (1.0f - scatters);", ";",
      [("path_tests", "LightTracer.ShowsALaserThroughSlowGlassAndOffVarnish")]),
-    ("src/transport/PlainSteps.h", "exit->weight * surface.photonShadingFactor(-vertex.before, exit->direction)", "exit->weight",
+    ("src/transport/Walk.h", "exit->weight * surface.photonShadingFactor(-vertex.before, exit->direction)", "exit->weight",
      [("path_tests", "LightTracer.KeepsTheFactorOfShadingNormals")]),
     ("src/path/light/CameraConnections.cpp", "? scattered : path.time + connection.time", "? scattered + connection.time : path.time + connection.time",
      [("path_tests", "LightTracer.ShowsSurfacesInTimeOfArrivalAndWithoutTheCamerasTime")]),
@@ -99,11 +99,11 @@ FAULTS = [
      [("path_tests", "*Guided*:LightVertices*:*DirectLight*")]),
     ("src/path/techniques/EmitterConnections.cpp", "? 1.0f - controlShare : 1.0f", "? 1.0f : 1.0f",
      [("path_tests", "Bodies.GuidedControlVerticesThatRouletteKeepsAreWeighedUp")]),
-    ("src/path/techniques/LightVertexConnections.cpp", "transmittance = beyond->transmittance(light.distance);", "transmittance = beyond->transmittance(0.0f);",
+    ("src/path/techniques/LightVertices.cpp", "transmittance = beyond->transmittance(light.distance);", "transmittance = beyond->transmittance(0.0f);",
      [("agreement_tests", "Cases/GuidedRoom.AgreesWithPlainPaths/*")]),
     ("src/photon/light/DepositVisitor.cpp", "path.throughput * (shading / geometric)", "path.throughput * (geometric / shading)",
      [("photon_tests", "PhotonMap.ShadingNormalsWeighWhatArrives")]),
-    ("src/transport/PathState.h", "length / double(region.speed)", "length",
+    ("src/transport/Walk.h", "length / double(region.speed)", "length",
      [("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:PointGather*")]),
     ("src/photon/light/DepositVisitor.cpp", "path.time = emitter.emissionTime +", "path.time = 0.0 +",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
@@ -224,7 +224,7 @@ FAULTS = [
     ("src/darts/python/Sampling.cpp", "(s - rho) * (s + rho) / (s * s), s)", "(s - rho) * (s + rho) / s, s)",
      [("tests/python/sampling_test.py", "")]),  # python: causal_log right at s = 1 alone
     # src/transport
-    ("src/transport/Roulette.h", "throughput = throughput / survival;", "throughput = throughput * survival;",
+    ("src/transport/PlainSteps.h", "throughput = throughput / survival;", "throughput = throughput * survival;",
      [("path_tests", "Energy.RoomWithRussianRoulette")]),  # roulette loses energy: images too dark
     ("src/transport/Balance.h", "sum = squared + other * other;", "sum = squared + other;",
      [("transport_tests", "Balance.WeightsAddUpToOne")]),  # weights of the power heuristic do not sum to 1
@@ -234,13 +234,13 @@ FAULTS = [
      [("path_tests", "SpecularTime.MirrorPathsCountEverySegment")]),  # min_bounces leaves out one order too many
     ("src/transport/BounceLimits.h", "maxBounces - 1 - interactions}", "maxBounces - interactions}",
      [("transport_tests", "BounceLimits.CountInteractionsAndOrders")]),  # splatted photons show one bounce more than max_bounces
-    ("src/transport/Connection.cpp", "ray.tMax = end.margin.before(end.direction, end.distance);", ";",
+    ("src/transport/Vertex.cpp", "ray.tMax = end.margin.before(end.direction, end.distance);", ";",
      [("path_tests", "SpecularTime.UnwarpedFogShowsInAMirrorFarFromTheLight")]),  # lights are taken for hidden by what lies behind them
-    ("src/transport/Connection.cpp", "vertex.regionTowards(end.direction), rays);", "vertex.region(), rays);",
+    ("src/transport/Vertex.cpp", "vertex.regionTowards(end.direction), rays);", "vertex.region(), rays);",
      [("transport_tests", "Connections.*")]),  # connections through a surface go through the medium on its other side
-    ("src/transport/RecordingDelays.cpp", "widened.start = gate.start - most_;", "widened.start = gate.start - least_;",
+    ("src/transport/TimeSensor.cpp", "widened.start = gate.start - most_;", "widened.start = gate.start - least_;",
      [("photon_tests", "Sampling/Delays.SingleScatteringIsTheClosedFormByFrame/PublishedPaths")]),  # light of long pulses that arrives early for the gate is lost
-    ("src/transport/RecordingDelays.cpp", "most = std::max(most, each ? each->end() : 0.0);", "most = std::max(most, each ? each->begin() : 0.0);",
+    ("src/transport/TimeSensor.cpp", "most = std::max(most, each ? each->end() : 0.0);", "most = std::max(most, each ? each->begin() : 0.0);",
      [("photon_tests", "Sampling/Delays.SingleScatteringIsTheClosedFormByFrame/PublishedPaths")]),  # latest part of pulses is left out of gates
     ("src/transport/Vertex.cpp", "return value * surface.photonShadingFactor(-at.before, direction);", "return value;",
      [("transport_tests", "Surfaces/Reversed.LightAndCameraPathsFindTheSameValue/Lambert")]),  # light paths at interpolated normals: too bright or too dark facets
@@ -248,7 +248,7 @@ FAULTS = [
      [("photon_tests", "Delays.EachEmitterHasItsOwnPulse")]),  # pulses: later frames get the light of all frames before them again
     ("src/transport/TimeSensor.h", "float(response->pdf(time) * gate.frameWidth)", "float(response->pdf(time))",
      [("photon_tests", "PhotonResponseOnSurfaces.VisibleEmissionIsWeighedByItsArrival")]),  # photon maps under a temporal response are wrong by the gate's width
-    ("src/transport/TimeSensor.h", "open.back().end = r.times[i + 1];", "open.back().end = r.times[i];",
+    ("src/transport/TimeSensor.cpp", "open.back().end = r.times[i + 1];", "open.back().end = r.times[i];",
      [("photon_tests", "PhotonResponseOnSurfaces.AgreesWithPaths")]),  # light in the last piece of a response is lost
     ("src/transport/GuidedSteps.cpp", "vertex.distance -= distance;", "vertex.distance += distance;",
      [("transport_tests", "GuidedSteps.ConnectionGoesOnThroughBoundaries")]),  # control vertices behind an index-matched boundary lie too far away
@@ -277,9 +277,9 @@ FAULTS = [
      [("transport_tests", "Scripted.ArrivesWithTheFlightsWeightAndTimeAndLeavesWithTheWaysWeight")]),  # the density of the way is not kept
     ("src/transport/Walk.h", "path.throughput = path.throughput * flight.weight;", ";",
      [("transport_tests", "Scripted.ArrivesWithTheFlightsWeightAndTimeAndLeavesWithTheWaysWeight")]),  # flights have no weight
-    ("src/transport/PlainSteps.h", "phase.pdf(vertex.before, direction)};", "0.0f};",
+    ("src/transport/Walk.h", "phase.pdf(vertex.before, direction)};", "0.0f};",
      [("transport_tests", "OwnSteps.DirectionsAreDrawnWithTheNumbersOfTheirVertex")]),  # phase functions have no density
-    ("src/transport/StraightSteps.h", "flight.weight = ahead.medium->transmittance(ahead.reach());", ";",
+    ("src/transport/PlainSteps.h", "flight.weight = ahead.medium->transmittance(ahead.reach());", ";",
      [("transport_tests", "OwnSteps.StraightOnesAreWeakenedByWhatTheyCross")]),  # straight ways cross media unweakened
     ("tungsten/medium/Medium.cpp", "channels * density / pdf};", "channels};",
      [("medium_tests", "Medium.FlightsOfAPathAreWeighedByChannelsOverAllOfIt")]),  # densities of channels forget collisions
@@ -316,9 +316,9 @@ FAULTS = [
      [("path_tests", "PlainTrail.*")]),  # densities of channels stand still on guided paths
     ("src/path/PathVisitor.cpp", "weight = target.shareOfConnection(path.ray.origin, vertex.pdf(way->direction));", ";",
      [("path_tests", "Scenes/Balanced.MeansAreTheSameAtAnyShare/LampMetAndConnectedTo")]),  # lamps that are met and connected to count twice
-    ("src/transport/StrategyBalance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
+    ("src/transport/Balance.h", "return 1.0f / (plain + guided * std::exp(std::min(logRatio, Most)));", "return 1.0f / plain;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # plain paths bring all of what both find
-    ("src/transport/StrategyBalance.h", "return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);", "return 1.0f / guided;",
+    ("src/transport/Balance.h", "return 1.0f / (plain * std::exp(std::min(-logRatio, Most)) + guided);", "return 1.0f / guided;",
      [("path_tests", "StrategyBalance.WeightsOfBothAddUpToTheContributionOverBothDensities:Scenes/Balanced.*")]),  # guided paths bring all of what both find
     ("src/path/StepsToEmitter.cpp", "if (hasDensities()) path.logRatio += std::log(survival * float(copies));", ";",
      [("path_tests", "PlainTrail.*")]),  # densities forget roulette and splits
@@ -358,13 +358,13 @@ FAULTS = [
     ("src/path/StepsToEmitter.cpp", "Rgb(own * sample.inversePdf)", "Rgb(sample.inversePdf)",
      [("photon_tests", "Sampling/Delays.DoubleScatteringIsTheSequenceConvolved/PlainPaths")]),  # guided directions lose the phase function's value
     # src/path/light
-    ("src/path/light/SplatBuffer.cpp", "filter_.pdf(splat->raster.x - float(x))", "filter_.pdf(splat->raster.y - float(x))",
+    ("src/path/light/LightTracer.cpp", "filter_.pdf(splat->raster.x - float(x))", "filter_.pdf(splat->raster.y - float(x))",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer: filter takes rows for columns
     ("src/path/light/LightTracer.cpp", "float(1.0 / double(paths))", "float(1.0 / double(pixels))",
      [("path_tests", "LightTracer.ShowsSurfacesInSteadyState")]),  # light tracer too bright by the samples of a pass
     ("src/transport/PlainSteps.h", "path.channels = drawn_.channels;", ";",
      [("tests/agreement/awaits_balance_test.py", "-k coloured")]),  # coloured media: every flight is weighed as if it were the path's first
-    ("src/path/light/StepsToDetectors.h", "path.throughput = path.throughput / worth;", ";",
+    ("src/path/light/CameraConnections.cpp", "path.throughput = path.throughput / worth;", ";",
      [("path_tests", "DetectorPower.OfBothSides*")]),  # light paths that go away from detectors end for nothing
     ("src/path/light/CameraConnections.cpp", "connect(vertex, power * share, transport", "connect(vertex, power * std::sqrt(share), transport",
      [("path_tests", "DetectorPower.OfASpot*")]),  # connections to detectors take a part of what directions find
@@ -375,15 +375,15 @@ FAULTS = [
     # src/path/techniques
     ("src/path/techniques/EmitterConnections.cpp", "(weight / target.choice.ofPath)", "weight",
      [("path_tests", "ManyLights.*")]),  # emitters met by guided paths lack 1 / probability of their choice
-    ("src/path/techniques/GlossyVertexConnections.cpp", "* transmittance * (choice.weight * share),", "* transmittance * choice.weight,",
+    ("src/path/techniques/GlossyLightVertices.cpp", "* transmittance * (choice.weight * share),", "* transmittance * choice.weight,",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light of glossy reflections is counted twice
     ("src/path/techniques/GlossyLightVertices.cpp", "vertices.back().power = reflected / (pdf * density);", "vertices.back().power = reflected / pdf;",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/Point")]),  # glossy light in fog lacks the density of its flight
     ("src/path/techniques/LightVertices.cpp", "LightVertex{{vertex, emission.power / choice.ofPath},", "LightVertex{{vertex, emission.power},",
      [("path_tests", "ManyLights.ShownByFogAboveAFloor")]),  # light paths too dark where there are several lights
-    ("src/path/techniques/LightVertexConnections.cpp", "transport::balance(density(light.areaPdf), walk, reflected);", "transport::balance(density(light.areaPdf), walk);",
+    ("src/path/techniques/LightVertices.cpp", "transport::balance(density(light.areaPdf), walk, reflected);", "transport::balance(density(light.areaPdf), walk);",
      [("path_tests", "Corners/WithReflectedLight.MeansAreAsWithout/*")]),  # light vertices take the share of reflected light, too
-    ("src/path/techniques/RefractedPath.cpp", "out * cosInside / sqr(cosOutside))", "out * cosInside / cosOutside)",
+    ("src/path/techniques/RefractedView.cpp", "out * cosInside / sqr(cosOutside))", "out * cosInside / cosOutside)",
      [("path_tests", "RefractionAccuracy.WaysThroughAPlane")]),  # spreading of refracted light at slant angles
     ("src/path/techniques/RefractedView.cpp", "b1 + b2 > determinant", "b1 > determinant",
      [("path_tests", "RefractiveConnections.DrawsAreAsDenseAsItSays")]),  # density of refracted draws counts directions beside the lamp's triangles

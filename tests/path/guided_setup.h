@@ -1,7 +1,7 @@
 #pragma once
 // Everything that a guided path, and a plain one beside it, needs of a scene.
 
-#include "path/GuidedVisitor.h"
+#include "path/GuidedPath.h"
 #include "path/PathPlan.h"
 #include "path/PathVisitor.h"
 #include "path/PlainTrail.h"
@@ -35,7 +35,7 @@ struct GuidedSetup {
     ProgressToken watch;
     transport::TimeSensor sensor = transport::TimeSensor::of(scene, scene.transport.gate);
     transport::TimeWindows windows{sensor.arrivals};
-    PathGuides guides = PathGuides::of(scene, settings.policy.sampling, facts, watch);
+    PathGuides guides = PathGuides::of(scene, settings.policy, facts, watch);
     LightCaches lightCaches; ///< none
     ArrivalBound bound{scene, facts};
     std::unique_ptr<const transport::EscapeModels> escapeModels = transport::EscapeModels::make(scene, settings.policy);

@@ -1,7 +1,7 @@
 // Refracted ways against 50 digits: depths and heights from 1e-4 to 1e4, ways that leave along the boundary, indices
 // from 0.4 to 2.5.
 
-#include "path/techniques/RefractedPath.h"
+#include "path/techniques/RefractedView.h"
 
 #include "support/Exact.h"
 #include "support/LogUniform.h"

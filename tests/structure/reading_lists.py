@@ -14,7 +14,7 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 PAGE = "docs/architecture.md"
 #: How many files each list has at most.
-MOST = {"Files to read: from a scene file to an output file": 20, "Files to read: a guided photon": 26, "Files to read: a guided camera path": 22}
+MOST = {"Files to read: from a scene file to an output file": 20, "Files to read: a guided photon": 25, "Files to read: a guided camera path": 13}
 
 LINE = re.compile(r"(\d+)\. `([\w/.]+)`: (.*)")
 COMMENT = re.compile(r"//[^\n]*")
@@ -81,7 +81,7 @@ def check_itself():
     assert "NOWHERE.h does not exist" in told(first, "2. `src/path/NOWHERE.h`: `PixelAccumulator`.")[0]
     assert "does not define Sink" in told(first, "2. `src/path/PixelAccumulator.h`: `Sink`.")[0]
     assert "does not define pollWithin" in told(first, "2. `src/path/PathTracer.cpp`: `pollWithin`, which it calls.")[0]
-    assert "no file before it uses SplatBuffer" in told(first, "2. `src/path/light/SplatBuffer.h`: `SplatBuffer`.")[0]
+    assert "no file before it uses LightTracer" in told(first, "2. `src/path/light/LightTracer.h`: `LightTracer`.")[0]
     assert "no file before it uses Walk" in told("1. `src/path/PixelAccumulator.h`: `PixelAccumulator`.", "2. `src/transport/Walk.h`: `Walk`.")[0]
     assert "no file before it uses what it has" in told(first, "2. `src/path/PixelAccumulator.h`: frames.")[0]
     assert "instead of 2" in told(first, second.replace("2.", "3."))[0]

@@ -17,9 +17,9 @@ PROJECT = Path(__file__).resolve().parents[2]
 STEPS = "steps of walks"
 PLACES = {
     "sampleFlight": {"src/transport/PlainSteps.h": STEPS},
-    "sampleBsdf": {"src/transport/PlainSteps.h": STEPS},
+    "sampleBsdf": {"src/transport/Walk.h": STEPS},
     "regionBeyond": {
-        "src/transport/PlainSteps.h": STEPS,
+        "src/transport/Walk.h": STEPS,
         "src/path/StepsToEmitter.cpp": "the region that a guided surface scatters back into, before a direction is drawn",
         "src/transport/Vertex.cpp": "the region of a connection",
         "src/transport/EscapeModels.cpp": "what lies behind the boundary of a body, on a straight way",
@@ -28,13 +28,12 @@ PLACES = {
     },
     "geometry->intersect": {
         "src/transport/PlainSteps.h": STEPS,
-        "src/transport/StraightSteps.h": STEPS,
         "src/path/StepsToEmitter.cpp": STEPS,
         "src/photon/light/StepsToCamera.cpp": STEPS,
         "src/path/PathVisitor.cpp": "the first way, which is given, of a walk that is aimed through a wall",
         "src/path/techniques/LightVertices.cpp": "a single step, from a light to the first surface",
         "src/path/techniques/GlossyLightVertices.cpp": "a single step, from there to the next surface",
-        "src/path/techniques/RefractivePilot.cpp": "its loop",
+        "src/path/techniques/RefractiveConnections.cpp": "its loop",
         "src/transport/EscapeModels.cpp": "its loops",
         "src/photon/DefaultRadius.cpp": "its loop",
         "src/photon/light/RecordImportance.cpp": "its loop",
@@ -42,7 +41,7 @@ PLACES = {
 }
 #: How many geometry->intersect have a loop around them, and what it does.
 IN_LOOPS = {
-    "src/path/techniques/RefractivePilot.cpp": (1, "indexTowards: refractive indices along a straight line"),
+    "src/path/techniques/RefractiveConnections.cpp": (1, "indexTowards: refractive indices along a straight line"),
     "src/transport/EscapeModels.cpp": (2, "findBoundary, addOuterDepth: the boundary of a body on a straight line, and the layers behind it"),
     "src/photon/light/RecordImportance.cpp": (1, "segmentToCamera: what a straight line passes"),
     "src/photon/DefaultRadius.cpp": (1, "depthOf: single rays, all over the image"),

@@ -1,7 +1,7 @@
 #pragma once
 // A guided walk's state as a plain walk that went the same way would have it.
 
-#include "transport/PathState.h"
+#include "transport/Walk.h"
 
 #include <cmath>
 

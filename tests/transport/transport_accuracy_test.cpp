@@ -3,9 +3,9 @@
 
 #include "transport/Balance.h"
 #include "transport/BoundedMedium.h"
-#include "transport/Connection.h"
 #include "transport/GateBounds.h"
 #include "transport/TimeSensor.h"
+#include "transport/Vertex.h"
 
 #include "support/Exact.h"
 #include "support/LogUniform.h"

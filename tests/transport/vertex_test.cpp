@@ -1,8 +1,8 @@
 // Vertices and their connections, and the tests that paths pass on their way: numbers known by hand.
 
 #include "transport/BounceLimits.h"
-#include "transport/Connection.h"
 #include "transport/GateBounds.h"
+#include "transport/Vertex.h"
 
 #include "support/SceneFile.h"
 

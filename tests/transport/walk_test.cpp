@@ -1,7 +1,7 @@
 // The loop of all walks: the order of its hooks, what the path holds at each, copies; and the steps that draw from the
 // scene's own distributions, number by number.
 
-#include "transport/StraightSteps.h"
+#include "transport/PlainSteps.h"
 
 #include "support/SceneFile.h"
 

@@ -2,15 +2,21 @@
 // What plain walks from a light do on their way: every vertex is connected to the camera. Directions that they take to
 // a detector count, too: both ways to find a path share it by the balance heuristic.
 
-#include "path/light/SplatBuffer.h"
-#include "transport/Connection.h"
 #include "transport/GateBounds.h"
 #include "transport/PlainSteps.h"
 #include "transport/TimeSensor.h"
+#include "transport/Vertex.h"
 
 namespace tungsten::path {
 
 using transport::PathState;
+
+/// A contribution to any place of the image.
+struct Splat {
+    Vec2f raster; ///< in pixels; whole numbers are pixels' centres
+    int32_t frame;
+    Rgb radiance;
+};
 
 /// What a walk needs to know; shared by all threads.
 struct LightContext {

@@ -4,6 +4,7 @@
 #include "path/PathSettings.h"
 #include "path/Tuning.h"
 
+#include "transport/GuidancePlan.h"
 #include "transport/SamplingSummary.h"
 
 #include "tungsten/integrator/EarliestArrival.h"
@@ -59,6 +60,47 @@ void readRest(const ObjectReader& block, const Scene& scene) {
         diagnostics.warnings.push_back({diagnostics.file, "primitives",
                                         "the light tracer does not show the environment itself, only what it lights"});
 }
+
+/// Adds splats to the pass image, weighed by the filter's density about each pixel, in an order that does not depend on
+/// the threads.
+class SplatBuffer {
+  public:
+    SplatBuffer(Film& film, const ReconstructionFilter& filter, float scale)
+        : film_(film), filter_(filter), scale_(scale) {}
+
+    /// Order within a batch in which add() takes it; batches can be prepared in parallel.
+    static void sortByRow(std::vector<Splat>& batch) {
+        std::stable_sort(batch.begin(), batch.end(), [](const Splat& a, const Splat& b) {
+            return std::floor(a.raster.y) < std::floor(b.raster.y);
+        });
+    }
+    /// Batches in their order. Rows of the image are filled in parallel, each pixel by one thread.
+    void add(const std::vector<std::vector<Splat>>& batches, const ProgressToken& watch) const {
+        tbb::parallel_for(0, film_.height(), [&](int y) {
+            watch.advance(0);
+            for (const auto& batch : batches) addToRow(y, batch);
+        });
+    }
+
+  private:
+    void addToRow(int y, const std::vector<Splat>& batch) const {
+        const float reach = filter_.reach(), first = std::floor(float(y) - reach), last = float(y) + reach;
+        auto splat =
+            std::partition_point(batch.begin(), batch.end(), [&](const Splat& s) { return s.raster.y < first; });
+        for (; splat != batch.end() && std::floor(splat->raster.y) <= last; ++splat) {
+            const float weight = filter_.pdf(splat->raster.y - float(y)) * scale_;
+            if (!(weight > 0.0f)) continue;
+            const int from = std::max(int(std::ceil(splat->raster.x - reach)), 0),
+                      to = std::min(int(std::floor(splat->raster.x + reach)), film_.width() - 1);
+            for (int x = from; x <= to; ++x)
+                film_.add(splat->frame, x, y, splat->radiance * (weight * filter_.pdf(splat->raster.x - float(x))));
+        }
+    }
+
+    Film& film_;
+    const ReconstructionFilter& filter_;
+    float scale_;
+};
 
 void report(const LightCounters& counters, Statistics& statistics) {
     statistics.add("rays", counters.rays);

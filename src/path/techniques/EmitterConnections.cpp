@@ -1,7 +1,7 @@
 #include "path/techniques/EmitterConnections.h"
 
-#include "path/techniques/GlossyVertexConnections.h"
-#include "path/techniques/LightVertexConnections.h"
+#include "path/techniques/GlossyLightVertices.h"
+#include "path/techniques/LightVertices.h"
 
 #include "transport/Balance.h"
 

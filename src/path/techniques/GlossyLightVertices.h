@@ -3,6 +3,7 @@
 // upon the caustics that a glossy surface throws on what is close by; light's own paths go there. (Dragon: a
 // quarter of the MSE at equal time.)
 
+#include "path/GuidedPath.h"
 #include "path/techniques/LightVertices.h"
 
 namespace tungsten::path {
@@ -61,6 +62,20 @@ class GlossyVertexCache {
   private:
     ArrivalCandidates<GlossyLightVertex> window_;
     float candidates_ = 0.0f;
+};
+
+/// Light that a glossy surface has reflected, connected to vertices of the walk.
+struct GlossyVertexConnections {
+    /// From the vertex at the ray's origin.
+    static void connect(const GuidedPath& path, const transport::Vertex& here, const GlossyVertexCache& cache);
+    /// Whether one vertex before reflected light was connected to that may have come by way of `glossy`.
+    [[nodiscard]] static bool mayFind(const GuidedPath& path, const transport::Vertex& glossy) {
+        return path.behind.approach && reflectsSharply(glossy.lobes());
+    }
+    /// Density of the reflected light that one vertex before was connected to (mayFind), at the ray's origin and at a
+    /// light vertex of density `areaPdf` at the end of `way`, over the walk's density at the ray's origin. `pdf` is
+    /// light's from there, per solid angle, back along `way`.
+    [[nodiscard]] static float density(const GuidedPath& path, float pdf, const transport::Segment& way, float areaPdf);
 };
 
 } // namespace tungsten::path

@@ -1,8 +1,9 @@
 #pragma once
-// Surface points that light reaches first, shared by all paths of a pass. Few surfaces lie where a path of given length
-// can end; of these points a vertex has many candidates, by distance alone, before it traces a single ray. (cbox, 128 x
-// 128: a tenth of the variance at equal time.)
+// Surface points that light reaches first, shared by all paths of a pass, and their connections to vertices of walks.
+// Few surfaces lie where a path of given length can end; of these points a vertex has many candidates, by distance
+// alone, before it traces a single ray. (cbox, 128 x 128: a tenth of the variance at equal time.)
 
+#include "path/GuidedPath.h"
 #include "path/PathTarget.h"
 #include "path/techniques/ArrivalCandidates.h"
 
@@ -46,5 +47,13 @@ class LightVertexCache {
 inline float candidateDensity(float areaPdf) {
     return float(tuning::Candidates) * areaPdf;
 }
+
+/// Light by way of light vertices, connected to vertices of the walk.
+struct LightVertexConnections {
+    /// From the vertex at the ray's origin.
+    static void connect(const GuidedPath& path, const transport::Vertex& here, const LightVertexCache& cache);
+    /// Per area, of a surface point that light reaches with density `areaPdf`.
+    [[nodiscard]] static float density(float areaPdf) { return candidateDensity(areaPdf); }
+};
 
 } // namespace tungsten::path

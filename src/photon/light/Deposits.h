@@ -4,7 +4,7 @@
 #include "photon/primitives/VolumePrimitive.h"
 #include "photon/surface/ConnectionRecord.h"
 
-#include "transport/StrategyBalance.h"
+#include "transport/Balance.h"
 
 #include <optional>
 

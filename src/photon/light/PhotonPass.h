@@ -7,7 +7,7 @@
 #include "photon/primitives/sliced/RecordBudget.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
-#include "transport/StrategyBalance.h"
+#include "transport/Balance.h"
 
 #include "tungsten/integrator/Integrator.h"
 

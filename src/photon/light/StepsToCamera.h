@@ -7,8 +7,7 @@
 #include "photon/light/PhotonGuidance.h"
 
 #include "transport/GuidedSteps.h"
-#include "transport/PlainFlight.h"
-#include "transport/StrategyBalance.h"
+#include "transport/Balance.h"
 #include "transport/Walk.h"
 
 namespace tungsten::photon {

@@ -7,7 +7,7 @@
 #include "photon/surface/RegularisedConnection.h"
 #include "photon/surface/VisiblePointClusters.h"
 #include "photon/view/CameraRecord.h"
-#include "transport/Connection.h"
+#include "transport/Vertex.h"
 #include "transport/TimeSensor.h"
 
 #include "darts/TimeBudget.h"

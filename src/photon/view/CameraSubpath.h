@@ -2,7 +2,7 @@
 // A camera subpath of the camera pass: straight through forward surfaces and along specular lobes. Its segments are
 // shown to what gathers photons, or records where photons are wanted.
 
-#include "transport/StraightSteps.h"
+#include "transport/PlainSteps.h"
 
 #include "tungsten/integrator/Names.h"
 #include "tungsten/scene/Interaction.h"

@@ -2,7 +2,7 @@
 // Surface points of camera subpaths, connected to points of lights.
 
 #include "photon/view/CameraSubpath.h"
-#include "transport/Connection.h"
+#include "transport/Vertex.h"
 #include "transport/GateBounds.h"
 #include "transport/TimeSensor.h"
 

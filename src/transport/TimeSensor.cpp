@@ -1,4 +1,4 @@
-#include "transport/RecordingDelays.h"
+#include "transport/TimeSensor.h"
 
 #include <algorithm>
 
@@ -54,6 +54,23 @@ TimeGate RecordingDelays::arrivals(const TimeGate& gate) const {
     widened.frameWidth = gate.end() - least_ - widened.start;
     widened.frames = 1;
     return widened;
+}
+
+TimeSensor TimeSensor::of(const Scene& scene, const TimeGate& gate) {
+    const TimeProfile& r = scene.transport.response;
+    TimeSensor sensor{gate, densityOf(r)};
+    if (r.empty()) {
+        sensor.delays = RecordingDelays::of(scene);
+        sensor.arrivals = sensor.delays.arrivals(gate);
+        return sensor;
+    }
+    auto& open = sensor.openTimes;
+    for (size_t i = 0; i + 1 < r.times.size(); ++i) {
+        if (r.values[i] <= 0.0 && r.values[i + 1] <= 0.0) continue;
+        if (open.empty() || open.back().end < r.times[i]) open.push_back({r.times[i], r.times[i]});
+        open.back().end = r.times[i + 1];
+    }
+    return sensor;
 }
 
 } // namespace tungsten::transport
