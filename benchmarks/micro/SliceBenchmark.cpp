@@ -1,11 +1,11 @@
 // Time of one meeting of a camera ray and a sliced primitive: hit tests, and estimators ray by ray (in double) and a
 // register of rays at a time; with and without the camera's leg, at delta and box gates.
 
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
-#include "photon/primitives/sliced/SliceFootprints.h"
-#include "photon/primitives/volumes/VolumeSlice.h"
+#include "photon/primitives/sliced/SliceSplat.h"
+#include "photon/primitives/sliced/Volume.h"
 
 #include "tungsten/core/Warp.h"
 
@@ -76,10 +76,10 @@ void hit(benchmark::State& state, FlightShape shape, Gate gate) {
     const Setting setting(shape, false, gate);
     const double length = gate.warped ? 5.5 : 2.2;
     everyPair(state, setting, [&](const SliceRecord& record, const CameraSegment& ray) {
-        const CameraRay<double> sight{inDouble(ray.origin), inDouble(ray.direction), 0.0, 10.0, gate.warped};
+        const CameraRay<double> sight{Vec3d(ray.origin), Vec3d(ray.direction), 0.0, 10.0, gate.warped};
         std::array<Vec3d, 4> w;
-        for (size_t i = 0; i < 4; ++i) w[i] = inDouble(record.directions[i]);
-        const Vec3d base = inDouble(record.base);
+        for (size_t i = 0; i < 4; ++i) w[i] = Vec3d(record.directions[i]);
+        const Vec3d base = Vec3d(record.base);
         if (shape == FlightShape::Plane)
             benchmark::DoNotOptimize(crossPlane<double>(base, {w[0], w[1]}, sight));
         else if (shape == FlightShape::Volume && gate.delta)

@@ -2,7 +2,7 @@
 
 #include "photon/PrimitivePilot.h"
 #include "photon/Tuning.h"
-#include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/Primitive.h"
 #include "photon/surface/PathReuse.h"
 #include "transport/SharePilot.h"
 
@@ -215,7 +215,7 @@ void PhotonIntegrator::addDetectorLight(const transport::TimeSensor& sensor, con
             ++arrivals;
             sensor.spread(time, emitter, [&](int frame, float share) {
                 const Rgb part = seen * share;
-                sums[size_t(frame)] += Vec3d(double(part.x), double(part.y), double(part.z));
+                sums[size_t(frame)] += Vec3d(part);
             });
         };
         for (uint32_t i = 0; i < pass.samples; ++i) {
@@ -225,7 +225,7 @@ void PhotonIntegrator::addDetectorLight(const transport::TimeSensor& sensor, con
         }
         for (int frame = 0; frame < sensor.gate.frames; ++frame) {
             const Vec3d value = sums[size_t(frame)] * scale;
-            const Rgb pixel{float(value.x), float(value.y), float(value.z)};
+            const Rgb pixel(value);
             if (isFinite(pixel)) film.add(frame, column, 0, pixel);
             if (!isFinite(pixel)) statistics.add(counter::NonFiniteSamples, 1);
         }

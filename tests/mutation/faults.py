@@ -107,19 +107,19 @@ FAULTS = [
      [("photon_tests", "PhotonMap.*:BeamMap.*:Arrival*:BeamGather*:PointGather*")]),
     ("src/photon/light/DepositVisitor.cpp", "path.time = emitter.emissionTime +", "path.time = 0.0 +",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
-    ("src/photon/CameraGather.cpp", "surface.wi, wo) / std::abs(wo.z)", "surface.wi, wo)",
+    ("src/photon/CameraPass.cpp", "surface.wi, wo) / std::abs(wo.z)", "surface.wi, wo)",
      [("photon_tests", "PhotonMap.DirectLightingAndItsArrivalTime")]),
-    ("src/photon/CameraGather.cpp", "state.time + own)", "state.time - own)",
+    ("src/photon/CameraPass.cpp", "state.time + own)", "state.time - own)",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
-    ("src/photon/CameraGather.cpp", "state.interactions + photon.bounce", "state.interactions + photon.bounce + 1",
+    ("src/photon/CameraPass.cpp", "state.interactions + photon.bounce", "state.interactions + photon.bounce + 1",
      [("photon_tests", "PhotonMap.DirectLightingIsOneBounce")]),
     ("src/photon/surface/PathReuse.cpp", "scale_ / double(among)", "scale_ * double(among)",
      [("photon_tests", "PathReuse.KeepWhatIsTheSameEverywhere")]),
     ("src/photon/primitives/beams/BeamGather.cpp", "(ribbon.width() * approach->sine)", "ribbon.width()",
      [("photon_tests", "BeamGather.EvaluatesEveryBeamOnTheRayOnce")]),
-    ("src/photon/primitives/points/FoldedKernels.cpp", "edge.normal * (2.0f * edge.reach)", "edge.normal * edge.reach",
+    ("src/photon/primitives/points/Points.cpp", "edge.normal * (2.0f * edge.reach)", "edge.normal * edge.reach",
      [("photon_tests", "BoundaryKernels.PointsLoseNoLight/*")]),
-    ("src/photon/primitives/beams/RibbonRange.h", "edge.reach - along * edge.normal.dot(direction)", "edge.reach",
+    ("src/photon/primitives/beams/BeamGather.h", "edge.reach - along * edge.normal.dot(direction)", "edge.reach",
      [("photon_tests", "BoundaryKernels.BeamsLoseNoLight/*")]),
     ("src/photon/primitives/beams/BeamGather.cpp", "medium.transmittance(s + t)", "medium.transmittance(s)",
      [("photon_tests", "BeamGather.EvaluatesEveryBeamOnTheRayOnce")]),
@@ -396,58 +396,54 @@ FAULTS = [
     ("src/path/techniques/ArrivalCandidates.h", "float(count) * thinned.each /", "float(count) /",
      [("photon_tests", "PhotonMapsOfBodies.ShowLightBehindWallsThatReflectNearlyAll")]),  # thinned candidates of refracted light stand for themselves alone
     # src/photon/primitives
-    ("src/photon/primitives/ProgressiveSchedule.h", "::lgamma_r(i + 2.0, &sign)", "::lgamma_r(i + 1.0, &sign)",
+    ("src/photon/primitives/Primitive.h", "::lgamma_r(i + 2.0, &sign)", "::lgamma_r(i + 1.0, &sign)",
      [("photon_tests", "KernelsAccuracy.RadiiFromPassToPass")]),  # progressive radii grow instead of shrinking
     ("src/photon/primitives/VolumeGather.h", "redirected_.radii.scale(factor);", ";",
      [("photon_tests", "KernelBiasBehindMirrors.IsThatOfTheSameViewWithoutOne")]),  # --bias: behind mirrors the narrow kernel is the wide one
     # src/photon/primitives/beams
     ("src/photon/primitives/beams/BeamGather.cpp", "segment.interactions + beam.bounce + 1;", "segment.interactions + beam.bounce;",
      [("photon_tests", "BeamGather.OnlyItsMediumItsOrdersAndItsFrames")]),  # beams: max_bounces shows one order more
-    ("src/photon/primitives/beams/BeamSplat.cpp", "r.time = beam.time + toFoot / speed_;", "r.time = beam.time + toFoot * speed_;",
+    ("src/photon/primitives/beams/Beams.cpp", "r.time = beam.time + toFoot / speed_;", "r.time = beam.time + toFoot * speed_;",
      [("photon_tests", "Views/Splat.AddsTheBeamsThatGatheringFinds/Frames")]),  # splatted beams arrive at wrong times where light's speed is not 1
-    ("src/photon/primitives/beams/BeamSplat.cpp", "(scale_ / (2.0f * radius))", "(scale_ / radius)",
+    ("src/photon/primitives/beams/Beams.cpp", "(scale_ / (2.0f * radius))", "(scale_ / radius)",
      [("photon_tests", "Views/Splat.AddsTheBeamsThatGatheringFinds/Frames")]),  # splatted beams twice too bright
-    ("src/photon/primitives/beams/PhotonBeam.cpp", "beam.tEnd = std::min(beam.tEnd, float(part.end));", "beam.tEnd = float(part.end);",
+    ("src/photon/primitives/beams/Beams.cpp", "beam.tEnd = std::min(beam.tEnd, float(part.end));", "beam.tEnd = float(part.end);",
      [("photon_tests", "BeamMap.PartsOfBeamsMakeTheSameImageAsWholeOnes")]),  # beams seen on straight rays go on behind walls
     # src/photon/primitives/points
     ("src/photon/primitives/points/PointGather.cpp", "medium.transmittance(along) * (weight", "medium.transmittance(segment.length) * (weight",
      [("photon_tests", "PhotonMap.SingleScatteringInAFoggedBox")]),  # photon points are attenuated up to the surface behind them
-    ("src/photon/primitives/points/PointSplat.cpp", "(weight * 3.0f * InvPi * inverse)", "(weight * 2.0f * InvPi * inverse)",
+    ("src/photon/primitives/points/Points.cpp", "(weight * 3.0f * InvPi * inverse)", "(weight * 2.0f * InvPi * inverse)",
      [("photon_tests", "PointSplat.AttenuatesFromTheStartOfEveryRay")]),  # kernel of splatted points is not normalised
-    ("src/photon/primitives/points/PointSplat.cpp", "way.length() / double(scene_.cameraRegion.speed)", "way.length()",
+    ("src/photon/primitives/points/Points.cpp", "distanceBetween(origin_, position) / double(scene_.cameraRegion.speed)", "distanceBetween(origin_, position)",
      [("photon_tests", "GlossySurfaces.KnowTheSpeedThatMatters")]),  # splatted points: time to the camera in lengths
-    # src/photon/primitives/planes
-    ("src/photon/primitives/planes/PlaneCrossing.h", "collisions(medium.sigmaS, 2) / jacobian", "collisions(medium.sigmaS, 2) * jacobian",
-     [("photon_sliced_tests", "SlicesAccuracy.PlanesAndVolumes")]),  # photon planes: inverse Jacobian
-    ("src/photon/primitives/planes/PlaneLanes.h", "record.towardsCamera(Lanes3(record.flights->directions[1]), rays)", "record.towardsCamera(Lanes3(record.flights->directions[0]), rays)",
-     [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # phase function of splatted planes takes the first flight for the last
-    # src/photon/primitives/volumes
-    ("src/photon/primitives/volumes/VolumeSlice.h", "slice.lengths = {t1, t2, residual - t1 - t2};", "slice.lengths = {t1, t2, residual - t1};",
-     [("photon_sliced_tests", "SlicesAccuracy.PlanesAndVolumes")]),  # unwarped volumes: third flight too long, too dark
-    ("src/photon/primitives/volumes/VolumeLanes.h", "record.towardsCamera(last, rays) / jacobian;", "record.towardsCamera(last, rays) * jacobian;",
-     [("photon_sliced_tests", "LanesAccuracy.PlanesAndVolumes")]),  # splatted volumes at a moment: inverse Jacobian
-    # src/photon/primitives/balls
-    ("src/photon/primitives/balls/BallSlice.h", "const Real jacobian = (beyond * beyond + h * h) / 2;", "const Real jacobian = beyond * beyond + h * h;",
-     [("photon_sliced_tests", "SlicesAccuracy.Balls")]),  # warped balls at a moment are half as bright
-    ("src/photon/primitives/balls/BallLanes.h", "record.towardsCamera(last, rays) * angles / h;", "record.towardsCamera(last, rays) * angles;",
-     [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/volumesA2UnwarpedBox")]),  # splatted balls lack 1 / distance from the ray
-    ("src/photon/primitives/balls/VolumeBallMis.h", "Real(1) : ratio / (1 + ratio);", "Real(1) : ratio * ratio / (1 + ratio * ratio);",
-     [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # volumes take the power heuristic, balls the balance heuristic
-    # src/photon/primitives/hypervolumes
-    ("src/photon/primitives/hypervolumes/HypervolumeSlice.h", "system.solve(sight.direction + w[3] * warp)", "system.solve(sight.direction - w[3] * warp)",
-     [("photon_sliced_tests", "SlicesAccuracy.ChordsOfVolumesAndHypervolumes")]),  # warped hypervolumes: lengths along the ray have the wrong slope
-    ("src/photon/primitives/hypervolumes/HypervolumeLanes.h", "* (1.0f / edges_.determinant);", "* edges_.determinant;",
-     [("photon_sliced_tests", "LanesAccuracy.Chords")]),  # splatted hypervolumes: inverse Jacobian
     # src/photon/primitives/sliced
-    ("src/photon/primitives/sliced/BallEstimate.cpp", "double factor = m.speed * width * m.phase(", "double factor = width * m.phase(",
+    ("src/photon/primitives/sliced/Plane.h", "collisions(medium.sigmaS, 2) / jacobian", "collisions(medium.sigmaS, 2) * jacobian",
+     [("photon_sliced_tests", "SlicesAccuracy.PlanesAndVolumes")]),  # photon planes: inverse Jacobian
+    ("src/photon/primitives/sliced/Plane.h", "record.towardsCamera(Lanes3(record.flights->directions[1]), rays)", "record.towardsCamera(Lanes3(record.flights->directions[0]), rays)",
+     [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # phase function of splatted planes takes the first flight for the last
+    ("src/photon/primitives/sliced/Volume.h", "slice.lengths = {t1, t2, residual - t1 - t2};", "slice.lengths = {t1, t2, residual - t1};",
+     [("photon_sliced_tests", "SlicesAccuracy.PlanesAndVolumes")]),  # unwarped volumes: third flight too long, too dark
+    ("src/photon/primitives/sliced/Volume.h", "record.towardsCamera(last, rays) / jacobian;", "record.towardsCamera(last, rays) * jacobian;",
+     [("photon_sliced_tests", "LanesAccuracy.PlanesAndVolumes")]),  # splatted volumes at a moment: inverse Jacobian
+    ("src/photon/primitives/sliced/Ball.h", "const Real jacobian = (beyond * beyond + h * h) / 2;", "const Real jacobian = beyond * beyond + h * h;",
+     [("photon_sliced_tests", "SlicesAccuracy.Balls")]),  # warped balls at a moment are half as bright
+    ("src/photon/primitives/sliced/Ball.h", "record.towardsCamera(last, rays) * angles / h;", "record.towardsCamera(last, rays) * angles;",
+     [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/volumesA2UnwarpedBox")]),  # splatted balls lack 1 / distance from the ray
+    ("src/photon/primitives/sliced/VolumeBallMis.h", "Real(1) : ratio / (1 + ratio);", "Real(1) : ratio * ratio / (1 + ratio * ratio);",
+     [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # volumes take the power heuristic, balls the balance heuristic
+    ("src/photon/primitives/sliced/Hypervolume.h", "system.solve(sight.direction + w[3] * warp)", "system.solve(sight.direction - w[3] * warp)",
+     [("photon_sliced_tests", "SlicesAccuracy.ChordsOfVolumesAndHypervolumes")]),  # warped hypervolumes: lengths along the ray have the wrong slope
+    ("src/photon/primitives/sliced/Hypervolume.h", "* (1.0f / edges_.determinant);", "* edges_.determinant;",
+     [("photon_sliced_tests", "LanesAccuracy.Chords")]),  # splatted hypervolumes: inverse Jacobian
+    ("src/photon/primitives/sliced/SliceEstimate.cpp", "double factor = m.speed * width * m.phase(", "double factor = width * m.phase(",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedFast")]),  # balls at a moment: density per length taken for one per time
     ("src/photon/primitives/sliced/SliceBuilder.cpp", "flights.power = flights.power / expected;", "flights.power = flights.power * expected;",
      [("photon_sliced_tests", "Kinds/GuidedSliceOrders.MatchVerifiedValues/planesA3WarpedBox")]),  # records of branched flights carry the wrong power
     ("src/photon/primitives/sliced/SliceBuilder.cpp", "surface.wi, Vec3f(0, 0, 1)) * Pi;", "surface.wi, Vec3f(0, 0, 1));",
      [("photon_sliced_tests", "SlicesAboveFloors.AgreeWithBeams")]),  # light that walls scatter into fog is pi times too dark
-    ("src/photon/primitives/sliced/FrameRoulette.cpp", "share ? float(1.0 / share) : 0.0f;", "share ? 1.0f : 0.0f;",
+    ("src/photon/primitives/sliced/RecordBudget.cpp", "share ? float(1.0 / share) : 0.0f;", "share ? 1.0f : 0.0f;",
      [("photon_sliced_tests", "FrameRoulette.MakeUpForWhatTheyLeaveOut")]),  # dim frames of slices lose light
-    ("src/photon/primitives/sliced/SystematicShadowRays.cpp", "whole * dose / lit, Batch(0.0f)", "dose / lit, Batch(0.0f)",
+    ("src/photon/primitives/sliced/SliceSplat.cpp", "whole * dose / lit, Batch(0.0f)", "dose / lit, Batch(0.0f)",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/planesW4WarpedDelta")]),  # bright slices among surfaces bring one dose at most
     ("src/photon/primitives/sliced/SliceEstimate.cpp", "m.phase(m.flights.directions[3]) * m.speed", "m.phase(m.flights.directions[2]) * m.speed",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/Warped")]),  # hypervolumes scatter towards the camera from the third flight
@@ -455,15 +451,15 @@ FAULTS = [
      [("photon_sliced_tests", "SliceGather.EndsFirstFlightsAtWalls")]),  # slices pass through the wall that ends their first flight
     ("src/photon/primitives/sliced/SliceSplat.cpp", "segment.end[pixel] - start,", "segment.end[pixel],",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedRayByRay")]),  # camera segments behind boundaries are too long
-    ("src/photon/primitives/sliced/SliceFootprints.cpp", "speed * gate_.frameWidth : 1.0;", "gate_.frameWidth : 1.0;",
+    ("src/photon/primitives/sliced/SliceSplat.cpp", "speed * gate_.frameWidth : 1.0;", "gate_.frameWidth : 1.0;",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedFast")]),  # splatted slices wrong where light's speed is not 1
     ("src/photon/primitives/sliced/SliceGather.cpp", "(gate.end() - flights.time) * double(medium.speedOfLight)", "(gate.end() - flights.time) / double(medium.speedOfLight)",
      [("photon_sliced_tests", "Cameras/SliceSplat.BringsWhatGathersBring/WarpedFast")]),  # boxes about slices too small in fast media: light is missing
-    ("src/photon/primitives/sliced/Chord.h", "peak = slope >= 0 ? start : end;", "peak = slope >= 0 ? end : start;",
+    ("src/photon/primitives/sliced/CameraRay.h", "peak = slope >= 0 ? start : end;", "peak = slope >= 0 ? end : start;",
      [("photon_sliced_tests", "SlicesAccuracy.ChordsOfVolumesAndHypervolumes")]),  # integral along chords from the dark end
-    ("src/photon/primitives/sliced/ChordLanes.h", "factor * chord * meanOfFall(z) / left;", "factor * chord * meanOfFall(z);",
+    ("src/photon/primitives/sliced/SliceLanes.h", "factor * chord * meanOfFall(z) / left;", "factor * chord * meanOfFall(z);",
      [("photon_sliced_tests", "Kinds/SliceOrders.MatchVerifiedValues/mis_volumes_ballsA3WarpedBox")]),  # points drawn on chords lack what their density divides by
-    ("src/photon/primitives/sliced/ShortFlights.h", "return std::exp(double(meanComponent(medium.sigmaT())) * sum);", "return 1.0;",
+    ("src/photon/primitives/sliced/RaySliceQuery.h", "return std::exp(double(meanComponent(medium.sigmaT())) * sum);", "return 1.0;",
      [("photon_sliced_tests", "ShortFlights.HaveTheVerifiedValues")]),  # flights that end at random are attenuated twice
     # src/photon/raster
     ("src/photon/raster/ImageBand.cpp", "settled[i][int(k)] += double(", "settled[i][int(k)] = double(",
@@ -475,16 +471,16 @@ FAULTS = [
     # src/photon/store
     ("src/photon/store/NearestPhotons.cpp", "found.front().squaredDistance : radius * radius;", "found.front().squaredDistance : radius;",
      [("photon_tests", "NearestPhotons.MatchBruteForce")]),  # sparse surface photons are divided by a wrong area
-    ("src/photon/store/RedirectedSelection.h", "elements[i].power * float(1.0 / share)", "elements[i].power",
+    ("src/photon/primitives/Selection.h", "elements[i].power * float(1.0 / share)", "elements[i].power",
      [("photon_tests", "RedirectedSelection.KeepsEveryElementEquallyOftenAndThePowerOnAverage")]),  # volumes seen in mirrors too dark: chosen photons do not stand for the others
-    ("src/photon/store/StoreFilling.h", "store.full = true;", ";",
+    ("src/photon/store/Store.h", "store.full = true;", ";",
      [("photon_tests", "Rooms/StoreFilling.LeavesEveryPathsShare/ForManyPaths")]),  # a full store still takes short paths: their light is too bright
     # src/photon/view
     ("src/photon/view/CameraRecord.cpp", "behind += length;", "behind = length;",
      [("photon_tests", "CameraRecord.HoldsStraightPiecesAndVisiblePoints")]),  # fog behind two boundaries starts at the wrong place
-    ("src/photon/view/GlossyLight.cpp", "transport::powerHeuristic(light->direct.pdf * light->probability, bsdfPdf)", "transport::powerHeuristic(light->direct.pdf, bsdfPdf)",
+    ("src/photon/view/GlossyLight.cpp", "transport::powerHeuristic(direct->pdf * choice->probability, bsdfPdf)", "transport::powerHeuristic(direct->pdf, bsdfPdf)",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # highlights of several lights: shares do not sum to 1
-    ("src/photon/view/LightConnection.cpp", "{connection->throughput / choice->probability, start", "{connection->throughput, start",
+    ("src/photon/view/GlossyLight.cpp", "{connection->throughput / choice->probability, start", "{connection->throughput, start",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # glossy surfaces lit by several lights too dark
     ("src/photon/view/CameraSubpath.h", "state_.time = path.time;", ";",
      [("photon_tests", "CameraRecord.TimesGoByTheSpeedOfEachRegion")]),  # times behind mirrors and glass as if light's speed were 1
@@ -514,18 +510,18 @@ FAULTS = [
      [("photon_tests", "GuidedEmission.DirectionsDoNotDependOnDelays")]),  # directions of emission and delays by the same numbers
     ("src/photon/light/DepositVisitor.cpp", "uint16_t(path.interactions + 1)", "uint16_t(path.interactions)",
      [("photon_tests", "PointsAtDeltaGates.HaveNoTemporalBias")]),  # guided photons: max_bounces shows one order more
-    ("src/photon/light/EmissionDirections.h", "share_ * towards / float(cones_.size());", "share_ * towards;",
+    ("src/photon/light/StepsToCamera.h", "share_ * towards / float(cones_.size());", "share_ * towards;",
      [("photon_tests", "EmissionDirections.CarryThePowerOfTheEmitter")]),  # lamps outside several bodies of fog too dark
     ("src/photon/light/PhotonGuidance.cpp", "frames_.all().end + slack_};", "frames_.all().end - slack_};",
      [("photon_tests", "GuidedThroughALens.FindAllLightInTheGate")]),  # light that a wide lens sees at the gate's end is lost
     # src/photon/surface
     ("src/photon/surface/SurfaceConnections.cpp", "light.light * visibility.transmittance * sensor_.weight(time);", "light.light * sensor_.weight(time);",
      [("photon_tests", "Delays.OfLightOnSurfacesAgree")]),  # fog does not dim what surface connections bring
-    ("src/photon/surface/ClusterSampling.cpp", "inverseVisits * points.total() / (point.weight * expected)", "points.total() / (point.weight * expected)",
+    ("src/photon/surface/VisiblePointClusters.cpp", "inverseVisits * points.total() / (point.weight * expected)", "points.total() / (point.weight * expected)",
      [("photon_tests", "VisiblePointClusters.BringAboutTheTargetWithEachDraw")]),  # surface connections lack the probability of their cluster
     ("src/photon/surface/PathReuse.cpp", "kernel, scale / width, film);", "kernel, scale, film);",
      [("photon_tests", "PathReuse.BelowOnePixelEachPointKeepsItsOwn")]),  # shared light is not divided by the frame's width
-    ("src/photon/surface/RegularisedConnection.h", "1.0f / squared};", "1.0f / std::sqrt(squared)};",
+    ("src/photon/surface/SurfaceConnections.h", "1.0f / squared};", "1.0f / std::sqrt(squared)};",
      [("photon_tests", "VisiblePointClusters.BringAboutTheTargetWithEachDraw")]),  # light of surface connections falls off with the distance, not its square
     # src/photon
     ("src/photon/PhotonIntegrator.cpp", "return {false, false, gate.start - tau, 2.0 * tau, 1};", "return {false, false, gate.start - tau, tau, 1};",
@@ -534,13 +530,13 @@ FAULTS = [
      [("photon_tests", "BestPreset/GuidedOrders.MatchVerifiedValues/A2UnwarpedBoxBestBeams")]),  # splats too bright by the samples of a pass
     ("src/photon/PhotonIntegrator.cpp", "1.0f / (1.0f - sqr(structures.kernel));", "1.0f / (1.0f - structures.kernel);",
      [("photon_tests", "KernelBiasOf.IsWithinAFactorOfTwo/ColouredPoints")]),  # estimated bias is extrapolated too far
-    ("src/photon/CameraGather.cpp", "share * structures_.glossy->emissionWeight(state, surface)", "structures_.glossy->emissionWeight(state, surface)",
+    ("src/photon/CameraPass.cpp", "share * structures_.glossy->emissionWeight(state, surface)", "structures_.glossy->emissionWeight(state, surface)",
      [("photon_tests", "GlossySurfaces.ShowSeveralLamps")]),  # lights in glossy surfaces too bright by the highlight paths
-    ("src/photon/CameraGather.cpp", "structures_.surfacePhotons.scale() * InvPi / squaredRadius;", "structures_.surfacePhotons.scale() / squaredRadius;",
+    ("src/photon/CameraPass.cpp", "structures_.surfacePhotons.scale() * InvPi / squaredRadius;", "structures_.surfacePhotons.scale() / squaredRadius;",
      [("photon_tests", "Presets/GuidedMaps.AgreeWithPathsInEveryFrame/PublishedPoints")]),  # surface photons pi times too bright
     ("src/photon/CameraPass.cpp", "addSample({x, y}, first_ + s, workspace, counters);", "addSample({x, y}, s, workspace, counters);",
      [("photon_tests", "PhotonMap.PassesHaveCameraPathsOfTheirOwn")]),  # camera paths of photon maps are the same in every pass
-    ("src/photon/DefaultRadius.cpp", "float(gate.frameWidth) * scene.cameraRegion.speed", "float(gate.frameWidth)",
+    ("src/photon/PhotonSettings.cpp", "float(gate.frameWidth) * scene.cameraRegion.speed", "float(gate.frameWidth)",
      [("photon_tests", "DefaultRadius.IsALengthWhateverTheSpeedOfLight")]),  # default radius takes a time for a length
     # tungsten/film
     ("tungsten/image/AtomicFile.cpp", "::flock(descriptor_, LOCK_EX | LOCK_NB);", ";",
@@ -823,9 +819,9 @@ FAULTS = [
     ("tungsten/python/Result.cpp", "valuesOf(inOutputUnits(frameOf(frame), scene, 1),", "valuesOf(frameOf(frame),",
      [("tests/python/module_test.py", "")]),  # python: arrays ignore time_normalization
     # seen from afar, and nearest photons
-    ("src/photon/CameraGather.cpp", "if (neighbours.size() == structures_.gatherCount)", "if (neighbours.empty())",
+    ("src/photon/CameraPass.cpp", "if (neighbours.size() == structures_.gatherCount)", "if (neighbours.empty())",
      [("photon_tests", "Counts/NearestGather.IsRightOnAverage/Five")]),  # surfaces of k nearest photons are k / (k - 1) times too bright
-    ("src/photon/primitives/sliced/FrameRoulette.cpp", "Even + (1.0 - Even) *", "(1.0 - Even) *",
+    ("src/photon/primitives/sliced/RecordBudget.cpp", "Even + (1.0 - Even) *", "(1.0 - Even) *",
      [("photon_sliced_tests", "FrameRoulette.LeaveNothingOut")]),  # slices that should be dark are never drawn
     ("src/photon/primitives/sliced/SliceLanes.h", "rays.lag = foot - common;", "rays.lag = foot + common;",
      [("photon_sliced_tests", "Cases/FarSlices.BringWhatPathsBring/Balls")]),  # slices are seen at a wrong time from where the ray does not begin

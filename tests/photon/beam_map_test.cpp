@@ -1,6 +1,6 @@
 // Photon beams against verified values, closed forms, photon points and the path tracer.
 
-#include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/Primitive.h"
 #include "tungsten/core/Errors.h"
 
 #include "support/Folders.h"

@@ -2,9 +2,9 @@
 
 #include "photon/Tuning.h"
 #include "photon/primitives/beams/BeamGather.h"
-#include "photon/primitives/beams/CutBeams.h"
-#include "photon/primitives/points/FoldedKernels.h"
+#include "photon/primitives/beams/Beams.h"
 #include "photon/primitives/points/PointGather.h"
+#include "photon/primitives/points/Points.h"
 #include "photon/view/CameraSubpath.h"
 
 #include "support/PathsAndPhotons.h"
@@ -154,7 +154,7 @@ TEST_P(BoundaryKernels, PointsLoseNoLight) {
     const auto plain = photons();
     auto ended = plain;
     Radii radii = GetParam().radius;
-    foldAtSurfaces(ends(), ended, radii);
+    Points::endAtSurfaces(ends(), ended, radii);
     expectNoLoss(PointGather(scene(), sensor(), ended, radii), PointGather(scene(), sensor(), plain, GetParam().radius),
                  double(plain.size()) / Sphere);
 }
@@ -165,7 +165,7 @@ TEST_P(BoundaryKernels, BeamsLoseNoLight) {
     for (const PhotonBeam& beam : plain) length += double(beam.tEnd);
     auto ended = plain;
     Radii radii = GetParam().radius;
-    cutAtSurfaces(ends(), ended, radii);
+    Beams::endAtSurfaces(ends(), ended, radii);
     expectNoLoss(BeamGather(scene(), sensor(), ended, radii), BeamGather(scene(), sensor(), plain, GetParam().radius),
                  SigmaS * length / Sphere);
 }
@@ -221,7 +221,7 @@ TEST_P(KernelsInACube, ErrorsFallAsTheSquareOfTheRadius) {
             exact += std::exp(-2.0 * Fall * depth(photons[i].position)) / Sphere;
         }
         Radii radii = radius;
-        if (ends) foldAtSurfaces(this->ends(), photons, radii);
+        if (ends) Points::endAtSurfaces(this->ends(), photons, radii);
         const PointGather gather(scene(), sensor(), photons, radii);
         return Rays(scene(), Vec3f(0, 1, 0))
                        .energy(gather, [&](const Vec3f& p) { return std::exp(-Fall * depth(p)); }) /
@@ -246,8 +246,8 @@ TEST_P(KernelsInACube, StayAsTheyAreWhereNoSurfaceIsNear) {
     const auto samePhotons = photons;
     const auto sameBeams = beams;
     Radii ofPhotons = GetParam().radius, ofBeams = GetParam().radius;
-    foldAtSurfaces(ends(), photons, ofPhotons);
-    cutAtSurfaces(ends(), beams, ofBeams);
+    Points::endAtSurfaces(ends(), photons, ofPhotons);
+    Beams::endAtSurfaces(ends(), beams, ofBeams);
     for (const Radii* radii : {&ofPhotons, &ofBeams}) {
         EXPECT_TRUE(radii->single());
         EXPECT_TRUE(radii->edges().empty());

@@ -1,6 +1,6 @@
 // Radii that scenes leave open.
 
-#include "photon/DefaultRadius.h"
+#include "photon/PhotonSettings.h"
 #include "tungsten/scene/SceneLoader.h"
 
 #include "support/PathsAndPhotons.h"

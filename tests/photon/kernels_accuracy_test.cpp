@@ -1,11 +1,11 @@
 // Kernels of points and beams, radii from pass to pass, and what records bring, against 50 digits: beams and rays that
 // are parallel to 1e-4, a thousand radii from each other, 1e9 passes.
 
-#include "photon/primitives/ProgressiveSchedule.h"
-#include "photon/primitives/balls/SharedLanes.h"
+#include "photon/primitives/Primitive.h"
 #include "photon/primitives/beams/BeamGather.h"
 #include "photon/primitives/points/PointGather.h"
 #include "photon/primitives/sliced/RecordBudget.h"
+#include "photon/primitives/sliced/SharedLanes.h"
 
 #include "support/Exact.h"
 #include "support/FogScene.h"

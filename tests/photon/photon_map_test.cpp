@@ -1,6 +1,6 @@
 // Photon points and surface photons against closed forms, verified values and the path tracer.
 
-#include "photon/primitives/ProgressiveSchedule.h"
+#include "photon/primitives/Primitive.h"
 #include "tungsten/core/Errors.h"
 
 #include "support/PathsAndPhotons.h"

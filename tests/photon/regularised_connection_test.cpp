@@ -1,6 +1,5 @@
 // Light from close by, spread over the surface: how much of it there is, and where.
 
-#include "photon/surface/RegularisedConnection.h"
 #include "photon/surface/SurfaceConnections.h"
 
 #include "tungsten/core/Warp.h"

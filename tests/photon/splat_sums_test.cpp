@@ -1,7 +1,8 @@
 // Sums of very many splats: what is added in single precision must not drift.
 
-#include "photon/primitives/beams/BeamSplat.h"
-#include "photon/primitives/points/PointSplat.h"
+#include "photon/primitives/beams/Beams.h"
+#include "photon/primitives/points/Points.h"
+#include "photon/view/CameraRecord.h"
 
 #include <gtest/gtest.h>
 
@@ -80,7 +81,7 @@ TEST(SplatSums, OfEqualPhotonsDoNotDrift) {
     const Vec3f ahead = scene.camera.generateRay({Pixels / 2, Pixels / 2}, {0.0f, 0.0f}, {0.5f, 0.5f}).direction;
     const Drift drift = driftOf(1, [&](int count, Film& film) {
         const std::vector<Photon> photons(size_t(count), Photon{0.0, ahead * 2.0f, ahead, Rgb(0.3f, 0.7f, 1.1f), 1, 0});
-        splatPhotons(scene, TimeGate{}, {&record}, photons, 0.5f, 1e-3, film);
+        Points::splat(scene, TimeGate{}, {&record}, {photons, 0.5f}, 1e-3, film);
     });
     EXPECT_GT(drift.lit, 3 * 16);
     EXPECT_LT(drift.most, 5e-6);
@@ -102,7 +103,7 @@ TEST(SplatSums, OfEqualBeamsDoNotDrift) {
                                   2.0f,
                                   0,
                                   0};
-            splatBeams(scene, gate, {&record}, std::vector<PhotonBeam>(size_t(count), beam), 0.3f, 1e-3, film);
+            Beams::splat(scene, gate, {&record}, {std::vector<PhotonBeam>(size_t(count), beam), 0.3f}, 1e-3, film);
         });
         EXPECT_GT(drift.lit, 3 * 8) << frames;
         EXPECT_LT(drift.most, frames == 1 ? 5e-6 : 5e-5) << frames << ": even rounding is off at random in one pass";

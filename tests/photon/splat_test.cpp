@@ -1,9 +1,10 @@
 // Splatted photons and beams against gathered ones.
 
 #include "photon/primitives/beams/BeamGather.h"
-#include "photon/primitives/beams/BeamSplat.h"
+#include "photon/primitives/beams/Beams.h"
 #include "photon/primitives/points/PointGather.h"
-#include "photon/primitives/points/PointSplat.h"
+#include "photon/primitives/points/Points.h"
+#include "photon/view/CameraRecord.h"
 
 #include "tungsten/core/Warp.h"
 
@@ -212,7 +213,7 @@ TEST_P(Splat, AddsWhatGatheringFinds) {
     splatted.beginPass();
     gathered.beginPass();
     const Radii kernels(radii, edges);
-    const uint64_t count = splatPhotons(scene, gate, {&record}, store.records, kernels, 3.0, splatted);
+    const uint64_t count = Points::splat(scene, gate, {&record}, {store.records, kernels}, 3.0, splatted);
     const uint64_t expected = gatherRecord(PointGather(scene, gate, store.records, kernels), gate, record, gathered);
     // At the kernel's edge rounding decides.
     EXPECT_NEAR(double(count), double(expected), 1e-4 * double(expected) + 2.0);
@@ -236,7 +237,7 @@ TEST_P(Splat, AddsTheBeamsThatGatheringFinds) {
         gathered.beginPass();
         Radii kernel = 0.1f;
         if (c.edges) kernel = {{0.1f}, {randomEdges(sampler, 0.1f, beam.direction)}};
-        const uint64_t count = splatBeams(scene, gate, {&record}, {beam}, kernel, 3.0, splatted);
+        const uint64_t count = Beams::splat(scene, gate, {&record}, {{beam}, kernel}, 3.0, splatted);
         const std::vector<PhotonBeam> single{beam};
         const uint64_t expected = gatherRecord(BeamGather(scene, gate, single, kernel), gate, record, gathered);
         EXPECT_NEAR(double(count), double(expected), 2.0);
@@ -262,8 +263,8 @@ TEST_P(Splat, AddsUpBeams) {
     singly.beginPass();
     const auto beams = inMediumOf(c, beamsAround(scene.camera.position(), 2000));
     uint64_t count = 0;
-    for (const PhotonBeam& beam : beams) count += splatBeams(scene, gate, {&record}, {beam}, 0.1f, 1.0, singly);
-    EXPECT_EQ(splatBeams(scene, gate, {&record}, beams, 0.1f, 1.0, together), count);
+    for (const PhotonBeam& beam : beams) count += Beams::splat(scene, gate, {&record}, {{beam}, 0.1f}, 1.0, singly);
+    EXPECT_EQ(Beams::splat(scene, gate, {&record}, {beams, 0.1f}, 1.0, together), count);
     expectScaled(together, singly, gate.frames, 1.0f, 1e-5f);
 }
 
@@ -299,7 +300,7 @@ TEST(PointSplat, AttenuatesFromTheStartOfEveryRay) {
     store.records.push_back({0.0, record.origin + offset, Vec3f(1.0f, 0.0f, 0.0f), Rgb(1.0f), 2, 3});
     Film film(16, 16, 1);
     film.beginPass();
-    EXPECT_EQ(splatPhotons(scene, TimeGate{}, {&record}, store.records, 0.15f, 1.0, film), 256u);
+    EXPECT_EQ(Points::splat(scene, TimeGate{}, {&record}, {store.records, 0.15f}, 1.0, film), 256u);
     for (size_t i = 0; i < fog.start.size(); ++i) {
         const Vec3f direction(record.x[i], record.y[i], record.z[i]);
         const float t = offset.dot(direction);

@@ -1,6 +1,6 @@
 // Stores of limited room: what paths bring on average, whatever they leave and however little fits.
 
-#include "photon/store/StoreFilling.h"
+#include "photon/store/Store.h"
 
 #include <gtest/gtest.h>
 

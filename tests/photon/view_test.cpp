@@ -1,7 +1,7 @@
 // What the camera sees, and directions that leave emitters.
 
-#include "photon/light/CameraView.h"
-#include "photon/light/EmissionDirections.h"
+#include "photon/light/PhotonGuidance.h"
+#include "photon/light/StepsToCamera.h"
 
 #include "tungsten/core/Warp.h"
 

@@ -1,6 +1,5 @@
 // Drawing visible points in time: as often as expectation() says, nothing in time left out, sums unbiased.
 
-#include "photon/surface/RegularisedConnection.h"
 #include "photon/surface/SurfaceConnections.h"
 #include "photon/surface/VisiblePointClusters.h"
 

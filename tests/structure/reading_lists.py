@@ -14,7 +14,7 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[2]
 PAGE = "docs/architecture.md"
 #: How many files each list has at most.
-MOST = {"Files to read: from a scene file to an output file": 20, "Files to read: a guided photon": 25, "Files to read: a guided camera path": 13}
+MOST = {"Files to read: from a scene file to an output file": 20, "Files to read: a guided photon": 16, "Files to read: a guided camera path": 13}
 
 LINE = re.compile(r"(\d+)\. `([\w/.]+)`: (.*)")
 COMMENT = re.compile(r"//[^\n]*")

@@ -35,7 +35,7 @@ PLACES = {
         "src/path/techniques/GlossyLightVertices.cpp": "a single step, from there to the next surface",
         "src/path/techniques/RefractiveConnections.cpp": "its loop",
         "src/transport/EscapeModels.cpp": "its loops",
-        "src/photon/DefaultRadius.cpp": "its loop",
+        "src/photon/PhotonSettings.cpp": "its loop",
         "src/photon/light/RecordImportance.cpp": "its loop",
     },
 }
@@ -44,7 +44,7 @@ IN_LOOPS = {
     "src/path/techniques/RefractiveConnections.cpp": (1, "indexTowards: refractive indices along a straight line"),
     "src/transport/EscapeModels.cpp": (2, "findBoundary, addOuterDepth: the boundary of a body on a straight line, and the layers behind it"),
     "src/photon/light/RecordImportance.cpp": (1, "segmentToCamera: what a straight line passes"),
-    "src/photon/DefaultRadius.cpp": (1, "depthOf: single rays, all over the image"),
+    "src/photon/PhotonSettings.cpp": (1, "depthOf: single rays, all over the image"),
 }
 
 # What may hold braces, quotes and semicolons without being code.

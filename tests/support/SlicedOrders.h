@@ -2,11 +2,11 @@
 // Single orders of scattering by planes, volumes, balls and hypervolumes, from their geometry alone: the rows of the
 // verified values without a renderer. Analog walks in an infinite medium, or beside an absorbing plane.
 
-#include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/balls/VolumeBallMis.h"
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
-#include "photon/primitives/volumes/VolumeSlice.h"
+#include "photon/primitives/sliced/Ball.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
+#include "photon/primitives/sliced/Volume.h"
+#include "photon/primitives/sliced/VolumeBallMis.h"
 
 #include "support/SlicedRows.h"
 
@@ -149,7 +149,7 @@ class SlicedOrder {
         if (!(length >= low_ && length < high_)) return;
         const double power = w.power[base] * phase(w.direction[base + 1], -sight_.direction) / (high_ - low_);
         add(sums, Sliced::Planes, power * met->weight(Medium));
-        if (withinFlights(w, base, met->lengths)) add(sums, Sliced::ShortPlanes, power * met->weight(Medium, 0, false));
+        if (withinFlights(w, base, met->lengths)) add(sums, Sliced::ShortPlanes, power * met->weight(Medium, false));
     }
 
     void volumes(const Walk& w, Sums& sums) const {
@@ -165,8 +165,8 @@ class SlicedOrder {
         if (value_.delta) {
             add(sums, Sliced::Volumes, value);
             if (withinFlights(w, base, t)) {
-                add(sums, Sliced::ShortVolumes, power * slice->weight(Medium, 0, false));
-                if (w.real[base + 2]) add(sums, Sliced::ShortWithoutGhosts, power * slice->weight(Medium, 0, false));
+                add(sums, Sliced::ShortVolumes, power * slice->weight(Medium, false));
+                if (w.real[base + 2]) add(sums, Sliced::ShortWithoutGhosts, power * slice->weight(Medium, false));
             }
         } else {
             add(sums, Sliced::SlicedVolumes, value);
@@ -184,7 +184,7 @@ class SlicedOrder {
         chord->keepGate({low_ - w.length[base], high_ - w.length[base]}, sight_.warp());
         add(sums, Sliced::Volumes, power / (high_ - low_) * photon::chordWeight(*chord, Medium));
         chord->keepFlights({w.flight[base], w.flight[base + 1], w.flight[base + 2]});
-        add(sums, Sliced::ShortVolumes, power / (high_ - low_) * photon::chordWeight(*chord, Medium, 0.0, false));
+        add(sums, Sliced::ShortVolumes, power / (high_ - low_) * photon::chordWeight(*chord, Medium, false));
     }
 
     [[nodiscard]] double shared(const std::array<Vec3d, 3>& d, double t1, double t2, double t3,
@@ -206,7 +206,7 @@ class SlicedOrder {
         if (unoccluded(w, base, t)) add(sums, Sliced::Hypervolumes, power * photon::chordWeight(*chord, Medium));
         chord->keepFlights({w.flight[base], w.flight[base + 1], w.flight[base + 2], w.flight[base + 3]});
         if (value_.configuration != 'W')
-            add(sums, Sliced::ShortHypervolumes, power * photon::chordWeight(*chord, Medium, 0.0, false));
+            add(sums, Sliced::ShortHypervolumes, power * photon::chordWeight(*chord, Medium, false));
     }
 
     void balls(const Walk& w, Sums& sums) const {
@@ -234,7 +234,7 @@ class SlicedOrder {
         const double power = scattered(w, centre, reach) / (high_ - low_);
         add(sums, Sliced::BallChords, power * lit.weight(reach, Medium));
         if (reach.length < w.flight[centre])
-            add(sums, Sliced::ShortBallChords, power * lit.weight(reach, Medium, 0.0, false));
+            add(sums, Sliced::ShortBallChords, power * lit.weight(reach, Medium, false));
     }
     /// Power times both phase functions.
     [[nodiscard]] double scattered(const Walk& w, size_t centre, const photon::BallHit<double>& reach) const {

@@ -1,7 +1,7 @@
 #include "photon/light/DepositVisitor.h"
 
 #include "photon/Tuning.h"
-#include "photon/light/EmissionDirections.h"
+#include "photon/light/StepsToCamera.h"
 
 #include "transport/Balance.h"
 

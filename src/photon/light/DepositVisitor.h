@@ -4,19 +4,54 @@
 // side by side, each record is weighed by how densely both leave it, whoever may gather it.
 
 #include "photon/PhotonSettings.h"
-#include "photon/light/Deposits.h"
 #include "photon/light/PhotonTrail.h"
 #include "photon/light/StepsToCamera.h"
+#include "photon/primitives/VolumePrimitive.h"
 #include "photon/primitives/sliced/RecordBudget.h"
 #include "photon/primitives/sliced/SliceBuilder.h"
 #include "photon/store/ArrivalCulling.h"
 #include "photon/surface/SurfaceConnections.h"
 
+#include "transport/Balance.h"
 #include "transport/PlainSteps.h"
 
+#include <optional>
 #include <span>
 
 namespace tungsten::photon {
+
+/// What a record was weighed by beside the other strategy's paths.
+struct Weighed {
+    float weight = 1.0f;   ///< of the strategy's own estimate
+    float logRatio = 0.0f; ///< log of the density of guided paths over that of plain ones
+    transport::Found found = transport::Found::OnWay;
+};
+/// What pilot paths note of records: one of these for every record, in their order.
+struct WeighedRecords {
+    std::vector<Weighed> volume, surface, received;
+};
+
+/// What consecutive light paths leave behind, with each path's share.
+struct Deposits {
+    explicit Deposits(const VolumePrimitive& primitive) : volume(depositsOf(primitive)) {}
+
+    DepositList<Photon> surface;
+    VolumeDeposits volume;
+    std::vector<ConnectionRecord> received;
+    std::vector<float>
+        expectedLight; ///< light of each vertex's connections, where nobody knows yet what one is to bring
+
+    std::optional<WeighedRecords> weighed;
+
+    [[nodiscard]] size_t volumeRecords() const {
+        return std::visit([](const auto& list) { return list.records.size(); }, volume);
+    }
+
+    void endPath() {
+        surface.endPath();
+        std::visit([](auto& list) { list.endPath(); }, volume);
+    }
+};
 
 using transport::PathState;
 

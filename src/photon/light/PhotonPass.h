@@ -58,7 +58,7 @@ class PhotonPass {
     /// What every walk is told; nothing is stored and nothing connected to.
     [[nodiscard]] PhotonContext contextOf(const PassInfo& pass, const PhotonSettings& settings) const;
 
-    // What a pass learns from a few paths of their own (PhotonPilots.cpp): it must not depend on the paths that it is
+    // What a pass learns from a few paths of their own: it must not depend on the paths that it is
     // for.
     /// So many paths, one after the other.
     Deposits tracePilots(const PhotonContext& context, const PassInfo& pass, uint64_t paths,

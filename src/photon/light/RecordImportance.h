@@ -2,7 +2,7 @@
 // What records of light paths bring to the image, about: what a pilot judges plain and guided paths by.
 
 #include "photon/PhotonSettings.h"
-#include "photon/surface/ConnectionRecord.h"
+#include "photon/surface/SurfaceConnections.h"
 #include "photon/view/CameraRecord.h"
 #include "transport/TimeSensor.h"
 

@@ -1,6 +1,6 @@
 #include "photon/light/StepsToCamera.h"
 
-#include "transport/PlainSteps.h"
+#include "transport/BounceLimits.h"
 
 namespace tungsten::photon {
 

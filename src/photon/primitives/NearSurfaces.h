@@ -1,7 +1,7 @@
 #pragma once
 // The surfaces about a record of a volume, as its kernel meets them.
 
-#include "photon/primitives/KernelEdge.h"
+#include "photon/primitives/Selection.h"
 #include "photon/primitives/SurfaceCells.h"
 #include "photon/raster/ImageFootprint.h"
 

@@ -80,8 +80,8 @@ void ImageBand::addToFilm(int frame, Film& film) {
         for (int row = firstRow; row <= lastRow; ++row)
             for (size_t column = 0; column < width; ++column) {
                 const size_t at = this->at(int(column), row), i = begin + at;
-                const Rgb sum = settles ? Rgb(float(settled[at].x), float(settled[at].y), float(settled[at].z))
-                                        : Rgb(segment.sums[0][i], segment.sums[1][i], segment.sums[2][i]);
+                const Rgb sum =
+                    settles ? Rgb(settled[at]) : Rgb(segment.sums[0][i], segment.sums[1][i], segment.sums[2][i]);
                 film.add(frame, int(column), row, sum * throughput[size_t(row) * width + column]);
             }
         settled.clear();

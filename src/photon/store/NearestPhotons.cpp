@@ -34,10 +34,25 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
     return true;
 }
 
+void photonBounds(const RTCBoundsFunctionArguments* arguments) {
+    const Vec3f& position = static_cast<const Photon*>(arguments->geometryUserPtr)[arguments->primID].position;
+    RTCBounds& bounds = *arguments->bounds_o;
+    bounds.lower_x = bounds.upper_x = position.x;
+    bounds.lower_y = bounds.upper_y = position.y;
+    bounds.lower_z = bounds.upper_z = position.z;
+}
+
 } // namespace
 
-NearestPhotons::NearestPhotons(const std::vector<Photon>& photons)
-    : photons_(photons), points_(std::make_unique<EmbreePoints>(photons)) {}
+/// Embree answers point queries for user geometry, but not for discs.
+NearestPhotons::NearestPhotons(const std::vector<Photon>& photons) : photons_(photons) {
+    if (photons.empty()) return;
+    points_.emplace(RTC_GEOMETRY_TYPE_USER, RTC_SCENE_FLAG_COMPACT, [&](RTCGeometry geometry) {
+        rtcSetGeometryUserPrimitiveCount(geometry, unsigned(photons.size()));
+        rtcSetGeometryUserData(geometry, const_cast<Photon*>(photons.data()));
+        rtcSetGeometryBoundsFunction(geometry, photonBounds, nullptr);
+    });
+}
 
 float NearestPhotons::find(const Vec3f& position, float radius, uint32_t count, std::vector<Neighbour>& found) const {
     found.clear();
@@ -49,7 +64,7 @@ float NearestPhotons::find(const Vec3f& position, float radius, uint32_t count, 
     pointQuery.radius = radius;
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    if (!photons_.empty()) rtcPointQuery(points_->scene(), &pointQuery, &context, visit, &query);
+    if (points_) rtcPointQuery(points_->get(), &pointQuery, &context, visit, &query);
     const bool all = found.size() == count;
     const float squared = all ? found.front().squaredDistance : radius * radius;
     std::sort(found.begin(), found.end(), [](const Neighbour& a, const Neighbour& b) { return a.index < b.index; });

@@ -1,10 +1,10 @@
 #pragma once
 // The nearest photons about a point, by Embree point queries over the photons' own structure.
 
-#include "photon/store/EmbreePoints.h"
+#include "photon/store/EmbreeScene.h"
 #include "photon/store/Store.h"
 
-#include <memory>
+#include <optional>
 
 namespace tungsten::photon {
 
@@ -25,7 +25,7 @@ class NearestPhotons {
 
   private:
     const std::vector<Photon>& photons_;
-    std::unique_ptr<EmbreePoints> points_;
+    std::optional<EmbreeScene> points_; ///< none without photons
 };
 
 } // namespace tungsten::photon

@@ -95,7 +95,7 @@ class Sharing {
                 reflect(record_.points[p], neighbours, sums);
                 for (size_t frame = 0; frame < sums.size(); ++frame) {
                     const Vec3d value = sums[frame] * (scale_ / double(among));
-                    const Rgb radiance{float(value.x), float(value.y), float(value.z)};
+                    const Rgb radiance(value);
                     if (isFinite(radiance))
                         film_.add(int(frame), x, y, radiance);
                     else
@@ -131,7 +131,7 @@ class Sharing {
                 const ConnectionRecord& one = *sorted_[i];
                 if (std::abs(one.offCentre) > kernel_.time) continue;
                 const Rgb radiance = vertex.scattering(one.from) * one.light * point.throughput;
-                sums[size_t(one.frame)] += Vec3d(double(radiance.x), double(radiance.y), double(radiance.z));
+                sums[size_t(one.frame)] += Vec3d(radiance);
             }
     }
 

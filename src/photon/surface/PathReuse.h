@@ -2,7 +2,7 @@
 // Path reuse between neighbouring visible points of the light that connections brought there: a density estimate on
 // what the camera sees, as gathering photons is, but of connections that arrive in time.
 
-#include "photon/surface/ConnectionRecord.h"
+#include "photon/surface/SurfaceConnections.h"
 #include "photon/view/CameraRecord.h"
 #include "transport/TimeSensor.h"
 

@@ -3,18 +3,56 @@
 // just in time, vertices look for surface points that the camera sees at the right time.
 
 #include "photon/Tuning.h"
-#include "photon/surface/ConnectionRecord.h"
-#include "photon/surface/RegularisedConnection.h"
 #include "photon/surface/VisiblePointClusters.h"
 #include "photon/view/CameraRecord.h"
-#include "transport/Vertex.h"
+
 #include "transport/TimeSensor.h"
+#include "transport/Vertex.h"
 
 #include "darts/TimeBudget.h"
 
+#include "tungsten/core/Types.h"
+
 #include <array>
+#include <cstdint>
 
 namespace tungsten::photon {
+
+/// Light that a connection brought to a visible point.
+struct ConnectionRecord {
+    uint32_t point; ///< index in the CameraRecord
+    int32_t frame;
+    float offCentre; ///< of its arrival in the frame: -1 at the start, 1 at the end
+    Vec3f from;      ///< unit direction it came from
+    Rgb light;       ///< of one path: times BSDF and cosine, radiance times the frame's width
+};
+
+/// A flight from a vertex as a visible point sees it.
+struct RegularisedConnection {
+    Vec3f from;   ///< unit direction towards the vertex, where it is seen
+    float weight; ///< instead of 1 / squared distance; at most 1 / spread^2
+
+    /// What arrives, to be reflected as coming along `from`; `intensity(direction)` is the vertex's, away from it.
+    template <typename Intensity>
+    [[nodiscard]] auto light(const Intensity& intensity) const {
+        return intensity(-from) * weight;
+    }
+};
+
+/// `toVertex` leads from the point to the vertex, `normal` is the surface's, on any side; `spread` >= 0, a length,
+/// keeps the light of vertices that are closer from falling on one point alone: they are seen lifted off the surface to
+/// that height.
+///
+/// On a plane, a vertex leaves the same flux at any height, whatever it sends where. The others stay where they are, so
+/// that the error is of second order in the spread, where vertices are near surfaces as often as elsewhere; and light
+/// is never negative, nor more than the one place brings.
+inline RegularisedConnection regularisedConnection(const Vec3f& toVertex, const Vec3f& normal, float spread) {
+    const float height = toVertex.dot(normal), lift = std::max(spread - std::abs(height), 0.0f);
+    const Vec3f seen = toVertex + normal * std::copysign(lift, height);
+    const float squared = seen.length2();
+    if (!(squared > 0.0f)) return {normal, 0.0f};
+    return {seen / std::sqrt(squared), 1.0f / squared};
+}
 
 /// A vertex of a light path that is connected to visible points.
 struct ConnectingVertex : transport::SubpathEnd {
@@ -23,7 +61,7 @@ struct ConnectingVertex : transport::SubpathEnd {
     float meanScattering; ///< above 0: over the directions into which it scatters, or of the intensity
 };
 
-/// How far light from close by is spread about visible points (RegularisedConnection.h): `pixels` square roots of the
+/// How far light from close by is spread about visible points (RegularisedConnection): `pixels` square roots of the
 /// area that a pixel covers on the surface, `most` (a length) at most.
 struct ConnectionBlur {
     float pixels, most;
@@ -38,7 +76,7 @@ struct ConnectionBlur {
 /// connection brings about the same: light that comes from close by lights few points, but those a lot.
 ///
 /// Such connections have a weak singularity where vertex and point are closer than points are to each other: light from
-/// close by is spread over the surface about the point (RegularisedConnection.h), a blur that shrinks with gather
+/// close by is spread over the surface about the point (RegularisedConnection), a blur that shrinks with gather
 /// radii.
 class SurfaceConnections {
   public:

@@ -66,12 +66,12 @@ class VisiblePointClusters {
     using ClusterWeights = Weights<MostClusters>;
     using PointWeights = Weights<MostSize>;
 
-    // How clusters are made (VisiblePointClusters.cpp).
+    // How clusters are made.
     void split(size_t first, size_t last, size_t parts, const std::vector<VisibleClusterPoint>& points);
     void addCluster(size_t first, size_t last, const std::vector<VisibleClusterPoint>& points);
     void addNeighbourhoods();
 
-    // How points are drawn (ClusterSampling.cpp).
+    // How points are drawn.
     /// Calls `visit` with the first cluster of every register that may hold one in time.
     template <typename Visit>
     void eachNeighbourhood(const ClusterQuery& query, const Visit& visit) const;

@@ -1,6 +1,9 @@
 #include "photon/view/GlossyLight.h"
 
 #include "transport/Balance.h"
+#include "transport/BounceLimits.h"
+
+#include "tungsten/emitter/Emitter.h"
 
 #include <tbb/parallel_for.h>
 
@@ -36,17 +39,34 @@ std::vector<uint8_t> pixelsNearGlossy(const Scene& scene) {
 } // namespace
 
 GlossyLight::GlossyLight(const Scene& scene, const SceneFacts& facts)
-    : scene_(scene), lights_(scene, facts), oversampled_(pixelsNearGlossy(scene)) {}
+    : scene_(scene), lights_(scene, facts.excludedEmitters),
+      connector_(scene, facts.forwardBoundaries || facts.everything), bounds_(scene.transport.gate, facts),
+      oversampled_(pixelsNearGlossy(scene)) {}
 
 std::optional<ArrivedLight> GlossyLight::connect(const transport::TimeSensor& sensor, const CameraSubpath& state,
                                                  const SurfaceInteraction& surface, Sampler& sampler,
                                                  uint64_t& rays) const {
-    const auto light = lights_.connect(sensor, state, surface, sampler, rays);
-    if (!light || !(light->direct.pdf > 0.0f)) return light ? std::optional(light->arrived) : std::nullopt;
-    const BsdfQuery query = surface.query(TransportMode::Radiance);
-    const float bsdfPdf = surface.bsdf->pdf(query, surface.wi, surface.frame.toLocal(light->direct.direction));
-    const float weight = transport::powerHeuristic(light->direct.pdf * light->probability, bsdfPdf);
-    return ArrivedLight{light->arrived.radiance * weight, light->arrived.time};
+    const auto choice = lights_.sample(sampler.next1D());
+    if (!choice) return std::nullopt;
+    const Emitter& emitter = *choice->emitter;
+    const auto direct = sampleDirect(emitter, surface.hit.position, sampler.next2D());
+    if (!direct) return std::nullopt;
+    const TransportSettings& settings = scene_.transport;
+    const double cameraTime = state.time + double(surface.hit.t) / double(state.region.speed);
+    const double start =
+        emitter.emissionTime + sensor.delays.sample(emitter, sampler) + (settings.cameraUnwarped ? 0.0 : cameraTime);
+    if (!bounds_.during(sensor.gate).mayArrive(start, double(direct->distance))) return std::nullopt;
+    const transport::Vertex vertex(scene_, surface, state.ray.direction, TransportMode::Radiance, state.region);
+    const auto connection = connector_.connect(vertex, state.throughput, transport::connectionEndpoint(*direct), rays);
+    if (!connection) return std::nullopt;
+    if (!transport::BounceLimits(settings).renders(state.interactions + 1 + connection->crossings)) return std::nullopt;
+    ArrivedLight light{connection->throughput / choice->probability, start + connection->time};
+    if (direct->pdf > 0.0f) {
+        const float bsdfPdf = surface.bsdf->pdf(surface.query(TransportMode::Radiance), surface.wi,
+                                                surface.frame.toLocal(direct->direction));
+        light.radiance = light.radiance * transport::powerHeuristic(direct->pdf * choice->probability, bsdfPdf);
+    }
+    return light;
 }
 
 float GlossyLight::emissionWeight(const CameraSubpath& state, const SurfaceInteraction& light) const {
@@ -54,7 +74,7 @@ float GlossyLight::emissionWeight(const CameraSubpath& state, const SurfaceInter
     const int index = light.primitive->emitter;
     const float lightPdf =
         pdfDirect(scene_.emitters[size_t(index)], state.glossyVertex, light.hit.position, light.hit.ng) *
-        lights_.lights().probability(index);
+        lights_.probability(index);
     return transport::powerHeuristic(state.glossyPdf, lightPdf);
 }
 

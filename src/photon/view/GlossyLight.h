@@ -2,16 +2,26 @@
 // Light that reaches glossy surfaces straight from the lights, where camera subpaths follow their lobes
 // (CameraSubpathRules::glossy).
 
-#include "photon/view/LightConnection.h"
+#include "photon/view/CameraSubpath.h"
+#include "transport/GateBounds.h"
+#include "transport/TimeSensor.h"
+#include "transport/Vertex.h"
+
+#include "tungsten/scene/LightChoice.h"
 
 namespace tungsten::photon {
+
+struct ArrivedLight {
+    Rgb radiance{0.0f}; ///< at the sensor
+    double time = 0.0;  ///< of arrival
+};
 
 class GlossyLight {
   public:
     GlossyLight(const Scene& scene, const SceneFacts& facts);
 
     /// Connects to a point on a light, weighed against camera subpaths that hit the light. `state` is the path up to
-    /// the glossy surface. None when it arrives outside the sensor's gate. Adds the rays traced to `rays`.
+    /// the glossy surface. None when nothing arrives, or outside the sensor's gate. Adds the rays traced to `rays`.
     [[nodiscard]] std::optional<ArrivedLight> connect(const transport::TimeSensor& sensor, const CameraSubpath& state,
                                                       const SurfaceInteraction& surface, Sampler& sampler,
                                                       uint64_t& rays) const;
@@ -23,7 +33,9 @@ class GlossyLight {
 
   private:
     const Scene& scene_;
-    LightConnector lights_;
+    LightChoice lights_;
+    transport::Connector connector_;
+    transport::GateBounds bounds_;
     std::vector<uint8_t> oversampled_; ///< by pixel
 };
 

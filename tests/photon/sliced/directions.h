@@ -1,7 +1,7 @@
 #pragma once
 // A sight line and the directions of verified slices.
 
-#include "photon/primitives/balls/BallSlice.h"
+#include "photon/primitives/sliced/Ball.h"
 
 #include <array>
 #include <limits>

@@ -2,7 +2,7 @@
 
 #include "support/VerifiedValues.h"
 
-#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/Slices.h"
 #include "photon/sliced/box_of_fog.h"
 
 namespace tungsten::photon {

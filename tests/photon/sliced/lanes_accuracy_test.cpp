@@ -3,10 +3,10 @@
 
 #include "photon/sliced/exact_slices.h"
 
-#include "photon/primitives/balls/BallLanes.h"
-#include "photon/primitives/hypervolumes/HypervolumeLanes.h"
-#include "photon/primitives/planes/PlaneLanes.h"
-#include "photon/primitives/volumes/VolumeLanes.h"
+#include "photon/primitives/sliced/Ball.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
+#include "photon/primitives/sliced/Volume.h"
 
 namespace tungsten::photon {
 namespace {

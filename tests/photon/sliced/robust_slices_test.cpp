@@ -3,8 +3,8 @@
 #include "support/PathsAndPhotons.h"
 #include "support/VerifiedValues.h"
 
-#include "photon/primitives/sliced/ChordLanes.h"
-#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/SliceLanes.h"
+#include "photon/primitives/sliced/Slices.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "photon/sliced/box_of_fog.h"
 
-#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/Slices.h"
 
 #include <gtest/gtest.h>
 

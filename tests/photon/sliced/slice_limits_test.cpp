@@ -4,11 +4,11 @@
 #include "support/SeedShift.h"
 #include "support/VerifiedValues.h"
 
-#include "photon/primitives/balls/VolumeBallMis.h"
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
 #include "photon/primitives/sliced/RecordBudget.h"
-#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/Slices.h"
+#include "photon/primitives/sliced/VolumeBallMis.h"
 #include "photon/sliced/box_of_fog.h"
 
 #include "tungsten/emitter/Emitter.h"

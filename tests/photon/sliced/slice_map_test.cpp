@@ -3,7 +3,7 @@
 #include "support/PathsAndPhotons.h"
 #include "support/VerifiedValues.h"
 
-#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/Slices.h"
 #include "tungsten/core/Errors.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // Slices drawn into the image against slices gathered ray by ray; edges where their linear systems degenerate.
 
 #include "photon/Tuning.h"
-#include "photon/primitives/sliced/FrameRoulette.h"
 #include "photon/primitives/sliced/RecordBudget.h"
 #include "photon/primitives/sliced/SliceGather.h"
 #include "photon/primitives/sliced/SliceSplat.h"

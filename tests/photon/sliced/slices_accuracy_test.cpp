@@ -3,10 +3,10 @@
 
 #include "photon/sliced/exact_slices.h"
 
-#include "photon/primitives/balls/VolumeBallMis.h"
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
-#include "photon/primitives/sliced/ShortFlights.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
+#include "photon/primitives/sliced/RaySliceQuery.h"
+#include "photon/primitives/sliced/VolumeBallMis.h"
 
 namespace tungsten::photon {
 namespace {

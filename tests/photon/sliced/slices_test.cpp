@@ -2,11 +2,11 @@
 
 #include "photon/sliced/directions.h"
 
-#include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/balls/VolumeBallMis.h"
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
-#include "photon/primitives/volumes/VolumeSlice.h"
+#include "photon/primitives/sliced/Ball.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
+#include "photon/primitives/sliced/Volume.h"
+#include "photon/primitives/sliced/VolumeBallMis.h"
 
 #include "tungsten/core/Random.h"
 
@@ -55,7 +55,7 @@ TEST(Volumes, ChordsIntegrateSlices) {
             auto chord = volumeChord<double>(Centre, w, sight);
             if (!chord) continue;
             chord->keepGate({low, high}, sight.warp());
-            const double whole = chord->empty() ? 0.0 : chordWeight(*chord, Fog, 0.0, longFlights);
+            const double whole = chord->empty() ? 0.0 : chordWeight(*chord, Fog, longFlights);
             // In pieces: the slices' range of lengths may begin or end inside the gate.
             double sum = 0.0;
             if (!chord->empty()) {
@@ -64,7 +64,7 @@ TEST(Volumes, ChordsIntegrateSlices) {
                              atEnd = chord->offsetSum() + slope * chord->end;
                 const auto slice = [&](double residual) {
                     const auto found = sliceVolume<double>(Centre, w, sight, residual, 0.0);
-                    return found ? found->weight(Fog, 0.0, longFlights) : 0.0;
+                    return found ? found->weight(Fog, longFlights) : 0.0;
                 };
                 sum = test::integrate<31>(slice, std::min(atStart, atEnd), std::max(atStart, atEnd), 4, 1e-10);
                 EXPECT_GE(std::min(atStart, atEnd), low - 1e-9);

@@ -2,11 +2,11 @@
 
 #include "photon/sliced/directions.h"
 
-#include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/balls/VolumeBallMis.h"
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
-#include "photon/primitives/volumes/VolumeSlice.h"
+#include "photon/primitives/sliced/Ball.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
+#include "photon/primitives/sliced/Volume.h"
+#include "photon/primitives/sliced/VolumeBallMis.h"
 
 #include <gtest/gtest.h>
 

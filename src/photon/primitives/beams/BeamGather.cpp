@@ -1,20 +1,20 @@
 #include "photon/primitives/beams/BeamGather.h"
 
-#include "photon/primitives/SegmentQuery.h"
-#include "photon/primitives/beams/RibbonRange.h"
+#include "photon/Tuning.h"
+#include "photon/primitives/CameraSegment.h"
 #include "transport/BounceLimits.h"
 
 namespace tungsten::photon {
 
 namespace {
 
-/// What evaluate() sees (SegmentQuery.h).
+/// What gatherBeam() sees (queryAbout).
 struct BeamQuery {
     embree::Context context;
     const Scene* scene;
     const transport::TimeSensor* sensor;
     const PhotonBeam* beams;
-    const EmbreeBeams::Piece* pieces;
+    const BeamGather::Piece* pieces;
     const CameraSegment* segment;
     FrameSums* sums;
     const Radii* radii;
@@ -31,8 +31,8 @@ bool mayArrive(const TimeGate& gate, const CameraSegment& segment, const PhotonB
            start + double(toBase + 2.0f * end + rounding) * segment.inverseSpeed >= gate.start;
 }
 
-void evaluate(BeamQuery& query, uint32_t index) {
-    const EmbreeBeams::Piece& piece = query.pieces[index];
+void gatherBeam(BeamQuery& query, uint32_t index) {
+    const BeamGather::Piece& piece = query.pieces[index];
     const PhotonBeam& beam = query.beams[piece.beam];
     const CameraSegment& segment = *query.segment;
     if (beam.medium != segment.medium) return;
@@ -66,7 +66,7 @@ void evaluate(BeamQuery& query, uint32_t index) {
     const Medium& medium = query.scene->media[size_t(segment.medium)];
     weight *= medium.phase.eval(beam.direction, -segment.direction) / (ribbon.width() * approach->sine);
     const Rgb value = beam.power * medium.sigmaS() * medium.transmittance(s + t) * weight;
-    (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
+    (*query.sums)[size_t(frame)] += Vec3d(value);
     ++query.gathered;
 }
 
@@ -74,14 +74,45 @@ void evaluate(BeamQuery& query, uint32_t index) {
 
 BeamGather::BeamGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<PhotonBeam>& beams,
                        const Radii& radius, bool fewRays)
-    : scene_(scene), sensor_(sensor), beams_(beams), radii_(radius), structure_(beams, radius, fewRays) {}
+    : scene_(scene), sensor_(sensor), beams_(beams), radii_(radius) {
+    cut(fewRays ? 1.0f : tuning::MostPieces);
+    if (pieces_.empty()) return;
+    ribbons_.emplace(RTC_GEOMETRY_TYPE_FLAT_LINEAR_CURVE, embree::QueryFilterFlag, [&](RTCGeometry geometry) {
+        auto* vertices = EmbreeScene::newBuffer<PointWithRadius>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
+                                                                 2 * pieces_.size());
+        auto* first =
+            EmbreeScene::newBuffer<uint32_t>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, pieces_.size());
+        for (size_t i = 0; i < pieces_.size(); ++i) {
+            const Piece& piece = pieces_[i];
+            const PhotonBeam& beam = beams_[piece.beam];
+            vertices[2 * i] = {beam.base + beam.direction * piece.start, radii_[piece.beam]};
+            vertices[2 * i + 1] = {beam.base + beam.direction * piece.end, radii_[piece.beam]};
+            first[i] = uint32_t(2 * i);
+        }
+    });
+}
+
+void BeamGather::cut(float mostPieces) {
+    pieces_.reserve(beams_.size());
+    for (uint32_t i = 0; i < beams_.size(); ++i) {
+        const PhotonBeam& beam = beams_[i];
+        const float length = beam.tEnd - beam.tStart, radius = radii_[i];
+        largestRadius_ = std::max(largestRadius_, radius);
+        const float count = std::clamp(std::ceil(length / (tuning::PieceInRadii * radius)), 1.0f, mostPieces);
+        float start = beam.tStart;
+        for (float k = 1.0f; k <= count; ++k) {
+            const float end = k == count ? beam.tEnd : beam.tStart + length * (k / count);
+            pieces_.push_back({i, start, end});
+            start = end;
+        }
+    }
+}
 
 uint64_t BeamGather::gather(const CameraSegment& segment, FrameSums& sums) const {
-    if (beams_.empty()) return 0;
+    if (!ribbons_) return 0;
     const bool timed = !sensor_.gate.steadyState && !scene_.transport.cameraUnwarped;
-    BeamQuery query{{},       &scene_, &sensor_, beams_.data(), structure_.pieces().data(),
-                    &segment, &sums,   &radii_,  timed,         0};
-    queryAbout<evaluate>(structure_.scene(), segment, structure_.largestRadius(), query);
+    BeamQuery query{{}, &scene_, &sensor_, beams_.data(), pieces_.data(), &segment, &sums, &radii_, timed, 0};
+    queryAbout<gatherBeam>(ribbons_->get(), segment, largestRadius_, query);
     return query.gathered;
 }
 

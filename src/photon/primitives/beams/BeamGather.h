@@ -1,9 +1,9 @@
 #pragma once
 // Gathering photon beams along a camera segment with the one-dimensional kernel.
 
-#include "photon/primitives/Radii.h"
-#include "photon/primitives/beams/EmbreeBeams.h"
-#include "photon/view/CameraSegment.h"
+#include "photon/primitives/CameraSegment.h"
+#include "photon/primitives/beams/Beams.h"
+#include "photon/store/EmbreeScene.h"
 
 #include <optional>
 
@@ -47,10 +47,44 @@ inline std::optional<Approach> closestApproach(const Vec3f& base, const Vec3f& d
                : detail::closestApproach<double>(base, direction, origin, cameraDirection);
 }
 
+/// Across a beam, of the ribbon that a camera ray sees: half-width r, without what the beam's edges cut off.
+struct RibbonRange {
+    float low, high;
+
+    /// `along`: from the beam's base to the ribbon's place; `across`: unit, the ribbon's direction there.
+    static RibbonRange of(const KernelEdges& edges, float along, const Vec3f& direction, const Vec3f& across,
+                          float radius) {
+        RibbonRange range{-radius, radius};
+        for (const KernelEdge& edge : {edges.nearest, edges.opposite})
+            if (edge.exists()) range.cut(edge.reach - along * edge.normal.dot(direction), edge.normal.dot(across));
+        return range;
+    }
+    [[nodiscard]] bool holds(float distance) const { return distance >= low && distance < high; }
+    [[nodiscard]] float width() const { return high - low; }
+
+  private:
+    /// Cuts the range by a plane at `height` from the beam. A beam that leaves a plane behind before the curved surface
+    /// itself counts as lying on it.
+    void cut(float height, float slope) {
+        const float end = std::max(height, 0.0f) / std::max(std::abs(slope), 1e-6f);
+        if (slope > 0.0f)
+            high = std::min(high, end);
+        else
+            low = std::max(low, -end);
+    }
+};
+
 class BeamGather {
   public:
+    /// A part of one beam, [start, end) in distances from its base: long beams are cut, so that boxes stay small.
+    struct Piece {
+        uint32_t beam;
+        float start, end;
+    };
+
     /// `beams` must stay alive. `sensor` has the pass's gate: a delta gate's temporal kernel is a narrow box.
-    /// `fewRays`: few segments will be asked for.
+    /// `fewRays`: few segments will be asked for, so that beams stay whole, which builds faster (staircase, 100 000
+    /// beams: 0.17 s instead of 0.28) and queries slower.
     BeamGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<PhotonBeam>& beams,
                const Radii& radius, bool fewRays = false);
 
@@ -59,11 +93,16 @@ class BeamGather {
     uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
 
   private:
+    void cut(float mostPieces);
+
     const Scene& scene_;
     transport::TimeSensor sensor_;
     const std::vector<PhotonBeam>& beams_;
     Radii radii_;
-    EmbreeBeams structure_;
+    std::vector<Piece> pieces_; ///< by Embree's index
+    /// Ray-facing ribbons of their half-width, exactly the support of the one-dimensional kernel; none without beams.
+    std::optional<EmbreeScene> ribbons_;
+    float largestRadius_ = 0.0f;
 };
 
 } // namespace tungsten::photon

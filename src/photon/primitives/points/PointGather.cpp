@@ -1,6 +1,6 @@
 #include "photon/primitives/points/PointGather.h"
 
-#include "photon/primitives/SegmentQuery.h"
+#include "photon/primitives/CameraSegment.h"
 #include "photon/store/NearestPhotons.h"
 #include "transport/BounceLimits.h"
 
@@ -10,7 +10,7 @@ namespace tungsten::photon {
 
 namespace {
 
-/// What evaluate() sees (SegmentQuery.h).
+/// What gatherPoint() sees (queryAbout).
 struct PointQuery {
     embree::Context context;
     const Scene* scene;
@@ -23,7 +23,7 @@ struct PointQuery {
     uint64_t gathered;
 };
 
-void evaluate(PointQuery& query, uint32_t index) {
+void gatherPoint(PointQuery& query, uint32_t index) {
     const Photon& photon = (*query.photons)[index];
     const CameraSegment& segment = *query.segment;
     if (photon.medium != segment.medium) return;
@@ -53,7 +53,7 @@ void evaluate(PointQuery& query, uint32_t index) {
     const Medium& medium = query.scene->media[size_t(segment.medium)];
     const Rgb value =
         photon.power * medium.transmittance(along) * (weight * medium.phase.eval(photon.direction, -segment.direction));
-    (*query.sums)[size_t(frame)] += Vec3d(double(value.x), double(value.y), double(value.z));
+    (*query.sums)[size_t(frame)] += Vec3d(value);
     ++query.gathered;
 }
 
@@ -75,17 +75,22 @@ float usualDistance(const std::vector<Photon>& photons) {
 PointGather::PointGather(const Scene& scene, const transport::TimeSensor& sensor, const std::vector<Photon>& photons,
                          const Radii& radii, bool)
     : scene_(scene), sensor_(sensor), photons_(photons), edges_(radii.edges()) {
-    std::vector<PointWithRadius> points;
-    points.reserve(photons.size());
-    for (size_t i = 0; i < photons.size(); ++i) points.push_back({photons[i].position, radii[i]});
     for (const float radius : radii.values()) squaredRadii_.push_back(radius * radius);
-    points_ = std::make_unique<EmbreePoints>(points);
+    if (photons.empty()) return;
+    discs_.emplace(RTC_GEOMETRY_TYPE_DISC_POINT, embree::QueryFilterFlag, [&](RTCGeometry geometry) {
+        auto* discs = EmbreeScene::newBuffer<PointWithRadius>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
+                                                              photons.size());
+        for (size_t i = 0; i < photons.size(); ++i) {
+            discs[i] = {photons[i].position, radii[i]};
+            largestRadius_ = std::max(largestRadius_, radii[i]);
+        }
+    });
 }
 
 uint64_t PointGather::gather(const CameraSegment& segment, FrameSums& sums) const {
-    if (photons_.empty()) return 0;
+    if (!discs_) return 0;
     PointQuery query{{}, &scene_, &sensor_, &photons_, &squaredRadii_, &edges_, &segment, &sums, 0};
-    queryAbout<evaluate>(points_->scene(), segment, points_->largestRadius(), query);
+    queryAbout<gatherPoint>(discs_->get(), segment, largestRadius_, query);
     return query.gathered;
 }
 

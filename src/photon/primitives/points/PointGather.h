@@ -1,17 +1,16 @@
 #pragma once
 // Gathering volume photons along a camera segment with the two-dimensional kernel.
 
-#include "photon/primitives/Radii.h"
-#include "photon/store/EmbreePoints.h"
+#include "photon/primitives/CameraSegment.h"
+#include "photon/primitives/Selection.h"
+#include "photon/store/EmbreeScene.h"
 #include "photon/store/Store.h"
-#include "photon/view/CameraSegment.h"
 #include "transport/TimeSensor.h"
 
 #include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/scene/Scene.h"
 
-#include <functional>
-#include <memory>
+#include <optional>
 
 namespace tungsten::photon {
 
@@ -38,7 +37,9 @@ class PointGather {
     const std::vector<Photon>& photons_;
     std::vector<float> squaredRadii_;
     std::vector<KernelEdges> edges_; ///< by photon, or none
-    std::unique_ptr<EmbreePoints> points_;
+    /// Ray-facing discs, exactly the support of the two-dimensional kernel; none without photons.
+    std::optional<EmbreeScene> discs_;
+    float largestRadius_ = 0.0f;
 };
 
 /// Radii that follow the density: r^2 = d_m^2 0.05 sqrt(N) / m, d_m the distance to the m-th nearest photon, m =

@@ -42,16 +42,27 @@ struct Points {
     static double kernelWidth(const KernelSettings& settings, bool deltaGate, uint32_t step);
     static Radii radii(const KernelSettings& settings, bool deltaGate, const std::vector<Photon>& photons,
                        uint32_t step, const ProgressToken& watch);
-    /// Ends kernels at surfaces: records and radii become those of the ended kernels.
+    /// For endAtSurfaces().
     static NearSurfaces nearSurfaces(const KernelSettings& settings, const Scene& scene);
+    /// Records and radii become those of kernels that end at surfaces (docs/photon-primitives.md, section 2.8).
+    ///
+    /// Ends kernels at the plane through the nearest point of a surface, and adds their mirror images behind it, which
+    /// end there, too: what one loses beyond the plane the other brings before it, for rays of any direction. Where a
+    /// second surface is as near on the other side, the radius ends there. What curved surfaces and corners still cut
+    /// off is made up for on average over directions. Records that no surface is near to, or that are out of view, stay
+    /// as they are.
     static void endAtSurfaces(const KernelEnds& ends, std::vector<Photon>& photons, Radii& radii);
     /// What straight camera subpaths see inside the gate; needs culling.straightTimesKnown().
     static Selection<Photon> straight(const Scene& scene, const ArrivalCulling& culling,
                                       const std::vector<Photon>& photons, const Radii& radii);
     /// The part that redirected rays need where straight ones have theirs splatted (ExpectedHits).
     static double redirectedShare(const std::vector<Photon>& photons, const Radii& radii);
+    /// Adds what PointGather would gather along the straight rays of each record to the pass image, times `scale`. Each
+    /// photon visits the pixels that its kernel covers: an order of magnitude cheaper than a hierarchy over the photons
+    /// and a traversal per ray (benchmarks/micro, gather). Returns the number of photons gathered, one per pixel and
+    /// photon. `sensor` has the pass's gate.
     static uint64_t splat(const Scene& scene, const transport::TimeSensor& sensor, const CameraRecords& records,
-                          const Selection<Photon>& photons, double scale, Film& film, const ProgressToken& watch);
+                          const Selection<Photon>& photons, double scale, Film& film, const ProgressToken& watch = {});
 };
 
 } // namespace tungsten::photon

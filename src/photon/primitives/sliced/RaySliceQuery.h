@@ -1,22 +1,15 @@
 #pragma once
 // A query of a slice record by a camera segment: the data that all kinds of slices need.
 
-#include "photon/primitives/sliced/Chord.h"
+#include "photon/primitives/CameraSegment.h"
+#include "photon/primitives/sliced/CameraRay.h"
 #include "photon/primitives/sliced/SliceRecord.h"
-#include "photon/view/CameraSegment.h"
 
 #include "tungsten/medium/Medium.h"
 
 #include <bit>
 
 namespace tungsten::photon {
-
-inline Vec3d inDouble(const Vec3f& v) {
-    return {double(v.x), double(v.y), double(v.z)};
-}
-inline Vec3f inFloat(const Vec3d& v) {
-    return {float(v.x), float(v.y), float(v.z)};
-}
 
 /// In [0, 1), different for every ray.
 inline double rayRotation(const Vec3f& d) {
@@ -43,7 +36,7 @@ struct RaySliceQuery {
     template <size_t K>
     [[nodiscard]] std::array<Vec3d, K> directions() const {
         std::array<Vec3d, K> w;
-        for (size_t i = 0; i < K; ++i) w[i] = inDouble(flights.directions[i]);
+        for (size_t i = 0; i < K; ++i) w[i] = Vec3d(flights.directions[i]);
         return w;
     }
     [[nodiscard]] double residual(double time) const { return (time - start) * speed; }
@@ -65,5 +58,40 @@ struct RaySliceQuery {
         return medium.isGrey() ? Vec3d(first) : Vec3d(first, channel(1), channel(2));
     }
 };
+
+// Short primitives: collapsed flights that end at random lengths, in place of a transmittance
+// (docs/photon-primitives.md, section 2).
+
+/// Lengths at which a record's flights end, by the mean coefficient; infinite for long ones. They are drawn by the
+/// record's own number: a flight's end need not be where the light path's was, as nothing else of the record depends on
+/// it, and ghosts have none.
+inline std::array<double, 4> flightEnds(const SliceRecord& flights, const Medium& medium) {
+    std::array<double, 4> ends;
+    ends.fill(std::numeric_limits<double>::infinity());
+    if (!flights.shortFlights) return ends;
+    uint64_t state = (uint64_t(flights.random[0]) << 16 | flights.random[1]) + 1;
+    for (double& end : ends) {
+        // Steele, Lea and Flood 2014, SplitMix64
+        uint64_t bits = state += 0x9e3779b97f4a7c15u;
+        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+        bits ^= bits >> 31;
+        end = -std::log1p(-double(bits >> 11) * 0x1p-53) / double(meanComponent(medium.sigmaT()));
+    }
+    return ends;
+}
+
+/// What short flights of these lengths are weighed by besides their transmittance: 1 / P(none has ended), or 0 where
+/// one has; 1 for long ones.
+inline double unended(const SliceRecord& flights, const Medium& medium, const double* lengths, int count) {
+    if (!flights.shortFlights) return 1.0;
+    const std::array<double, 4> ends = flightEnds(flights, medium);
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+        if (lengths[i] > ends[size_t(i)]) return 0.0;
+        sum += lengths[i];
+    }
+    return std::exp(double(meanComponent(medium.sigmaT())) * sum);
+}
 
 } // namespace tungsten::photon

@@ -2,6 +2,8 @@
 
 #include "photon/Tuning.h"
 
+#include <tbb/parallel_for.h>
+
 namespace tungsten::photon {
 
 double lengthToSpare(const Scene& scene, const SliceRecord& record, double time) {
@@ -49,6 +51,76 @@ double RecordBudget::logLightOf(const SliceRecord& record) const {
     const double soonest =
         scene_.transport.gate.delta && !record.blurredInTime() ? scene_.transport.gate.start : gate_.start;
     return logSliceLight(scene_, record, soonest);
+}
+
+// ---- Roulette by frame
+
+namespace {
+
+/// Logarithms for what leaves its base after the frame has ended, and for what should not get to the camera before.
+constexpr float Never = -Infinity, Dark = std::numeric_limits<float>::lowest();
+
+} // namespace
+
+FrameRoulette::FrameRoulette(const Scene& scene, const TimeGate& gate, const std::vector<SliceRecord>& records,
+                             const ProgressToken& watch)
+    : frames_(size_t(gate.frames)) {
+    if (frames_ == 1) return;
+    factors_.resize(records.size() * frames_);
+    tbb::parallel_for(size_t(0), records.size(), [&](size_t i) {
+        watch.advanceWithin(64, i);
+        for (size_t f = 0; f < frames_; ++f) {
+            const double end = gate.frameStart(int(f) + 1);
+            float& log = factors_[i * frames_ + f];
+            if (!(end > records[i].time))
+                log = Never;
+            else if (lengthToSpare(scene, records[i], end) > 0.0)
+                log = float(logSliceLight(scene, records[i], gate.frameStart(int(f))));
+            else
+                log = Dark;
+        }
+    });
+    for (const FlightShape shape :
+         {FlightShape::Ball, FlightShape::Plane, FlightShape::Volume, FlightShape::Hypervolume})
+        chooseAmong(shape, records);
+}
+
+/// Turns logarithms of light into factors.
+void FrameRoulette::chooseAmong(FlightShape shape, const std::vector<SliceRecord>& records) {
+    const auto each = [&](size_t i, const auto& visit) {
+        for (size_t f = 0; f < frames_ && records[i].shape == shape; ++f) visit(f, factors_[i * frames_ + f]);
+    };
+    std::vector<float> tops(frames_, Dark);
+    for (size_t i = 0; i < records.size(); ++i) each(i, [&](size_t f, float log) { tops[f] = std::max(tops[f], log); });
+    // Light of the brightest, below 0 for what never is.
+    tbb::parallel_for(size_t(0), records.size(), [&](size_t i) {
+        each(i, [&](size_t f, float& log) {
+            log = log == Never ? -1.0f : log == Dark ? 0.0f : std::exp(log - tops[f]);
+        });
+    });
+    // Means over what is seen, in the records' order.
+    std::vector<double> sums(frames_), counts(frames_);
+    for (size_t i = 0; i < records.size(); ++i)
+        each(i, [&](size_t f, float light) {
+            if (!(light > 0.0f)) return;
+            sums[f] += double(light);
+            counts[f] += 1.0;
+        });
+    tbb::parallel_for(size_t(0), records.size(), [&](size_t i) {
+        each(i, [&](size_t f, float& factor) {
+            const double share = factor < 0.0f ? 0.0 : shareOf(double(factor) * counts[f], sums[f]);
+            // Another irrational number than that of frameRotation: points on chords are drawn by the same random one.
+            constexpr double Turn = 0.7548776662466927;
+            const double u = records[i].randomNumber(1) + double(f) * Turn;
+            factor = u - std::floor(u) < share ? float(1.0 / share) : 0.0f;
+        });
+    });
+}
+
+double FrameRoulette::shareOf(double light, double mean) {
+    if (!(mean > 0.0)) return 1.0;
+    constexpr auto Even = double(tuning::EvenInFrames);
+    return Even + (1.0 - Even) * std::min(light / mean, 1.0);
 }
 
 } // namespace tungsten::photon

@@ -2,7 +2,7 @@
 // The flights of a light path since its last surface or light, as they come, and what they leave.
 
 #include "photon/primitives/sliced/RecordBudget.h"
-#include "photon/primitives/sliced/SliceKind.h"
+#include "photon/primitives/sliced/Slices.h"
 #include "photon/store/ArrivalCulling.h"
 
 #include "tungsten/scene/Interaction.h"

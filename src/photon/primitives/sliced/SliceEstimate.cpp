@@ -1,10 +1,9 @@
 #include "photon/primitives/sliced/SliceEstimate.h"
 
-#include "photon/primitives/hypervolumes/HypervolumeSlice.h"
-#include "photon/primitives/planes/PlaneCrossing.h"
+#include "photon/primitives/sliced/Hypervolume.h"
+#include "photon/primitives/sliced/Plane.h"
 #include "photon/primitives/sliced/RaySliceQuery.h"
-#include "photon/primitives/sliced/ShortFlights.h"
-#include "photon/primitives/volumes/VolumeSlice.h"
+#include "photon/primitives/sliced/Volume.h"
 
 namespace tungsten::photon {
 
@@ -27,13 +26,13 @@ bool SliceEstimate::add(const SliceRecord& flights, const CameraSegment& segment
     if (flights.medium != segment.medium) return false;
     const int interactions = segment.interactions + flights.bounce + flights.flights();
     if (interactions < transport.minBounces || interactions >= transport.maxBounces) return false;
-    const CameraRay<double> sight{inDouble(segment.origin), inDouble(segment.direction), 0.0, double(segment.length),
+    const CameraRay<double> sight{Vec3d(segment.origin), Vec3d(segment.direction), 0.0, double(segment.length),
                                   warped_};
     const RaySliceQuery m{flights,
                           segment,
                           scene_.media[size_t(segment.medium)],
                           sight,
-                          inDouble(flights.base),
+                          Vec3d(flights.base),
                           1.0 / segment.inverseSpeed,
                           flights.time + (warped_ ? segment.time : 0.0)};
     switch (flights.shape) {
@@ -53,7 +52,7 @@ bool SliceEstimate::add(const SliceRecord& flights, const CameraSegment& segment
 }
 
 bool SliceEstimate::deposit(const Vec3d& value, const Rgb& power, double factor, int frame, FrameSums& sums) {
-    const Vec3d added = value * Vec3d(double(power.x), double(power.y), double(power.z)) * factor;
+    const Vec3d added = value * Vec3d(power) * factor;
     if (!(added.x + added.y + added.z > 0.0)) return false;
     sums[size_t(frame)] += added;
     return true;
@@ -62,11 +61,11 @@ bool SliceEstimate::deposit(const Vec3d& value, const Rgb& power, double factor,
 bool SliceEstimate::unoccluded(const SliceRecord& flights, const double* lengths, int count) const {
     if (!occluders_) return true;
     if (lengths[0] >= double(flights.reach)) return false;
-    Vec3d point = inDouble(flights.base) + inDouble(flights.directions[0]) * lengths[0];
+    Vec3d point = Vec3d(flights.base) + Vec3d(flights.directions[0]) * lengths[0];
     for (int i = 1; i < count; ++i) {
         const Vec3f& direction = flights.directions[size_t(i)];
-        if (scene_.geometry->occluded(Ray{inFloat(point), direction, 0.0f, float(lengths[i])})) return false;
-        point += inDouble(direction) * lengths[i];
+        if (scene_.geometry->occluded(Ray{Vec3f(point), direction, 0.0f, float(lengths[i])})) return false;
+        point += Vec3d(direction) * lengths[i];
     }
     return true;
 }
@@ -118,7 +117,7 @@ bool SliceEstimate::addVolumeChord(const RaySliceQuery& m, FrameSums& sums) cons
 SharedPath<double> SliceEstimate::sharedPath(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
                                              const std::array<double, 3>& lengths) const {
     const double pdfs = double(pdfFlight(m.medium, float(lengths[0]))) * double(pdfFlight(m.medium, float(lengths[1])));
-    return {w, lengths[2], double(m.medium.phase.pdf(inFloat(w[1]), inFloat(w[2]))), pdfs};
+    return {w, lengths[2], double(m.medium.phase.pdf(Vec3f(w[1]), Vec3f(w[2]))), pdfs};
 }
 
 double SliceEstimate::ratio(const RaySliceQuery& m, const std::array<Vec3d, 3>& w,
@@ -193,6 +192,84 @@ bool SliceEstimate::addHypervolume(const RaySliceQuery& m, int frame, double tim
     if (m.flights.shortFlights) chord->keepFlights(flightEnds(m.flights, m.medium));
     const double factor = m.phase(m.flights.directions[3]) * m.speed * width;
     return addChord(m, *chord, frame, m.random(1, frame), factor, nullptr, sums);
+}
+
+// ---- Balls: at one time, and over a gate
+
+bool SliceEstimate::addBall(const RaySliceQuery& m, FrameSums& sums) const {
+    if (scene_.transport.gate.delta && !m.flights.blurredInTime())
+        return eachSlice(
+            m, [&](int frame, double time, double width) { return addBallSlice(m, frame, time, width, sums); });
+    bool any = false;
+    for (int frame = sensor_.gate.nearestFrame(m.start); frame < sensor_.gate.frames; ++frame)
+        any = addBallGate(m, frame, sums) || any;
+    return any;
+}
+
+Rgb SliceEstimate::leavingBall(const RaySliceQuery& m, const BallHit<double>& hit, const Vec3f& last) const {
+    const SliceRecord& ball = m.flights;
+    const Rgb power = ball.emitter >= 0 ? ball.power * emittedIntensity(scene_.emitters[size_t(ball.emitter)],
+                                                                        ball.surfacePoint(), last)
+                      : ball.onSurface  ? ball.power * ball.leavingSurface(last)
+                                        : ball.power * m.medium.phase.eval(ball.directions[1], last);
+    if (isBlack(power) || unoccluded(ball, Vec3f(m.sight.at(hit.alongRay)))) return power;
+    return Rgb(0.0f);
+}
+
+bool SliceEstimate::unoccluded(const SliceRecord& ball, const Vec3f& end) const {
+    if (!occluders_) return true;
+    const Vec3f way = end - ball.base;
+    const float length = way.length();
+    if (!(length > 0.0f)) return true;
+    const Vec3f direction = way / length;
+    Ray ray = ball.emitter >= 0 || ball.onSurface ? ball.surfacePoint().spawnRay(direction) : Ray{ball.base, direction};
+    ray.tMax = length;
+    return !scene_.geometry->occluded(ray);
+}
+
+template <typename Ratio>
+double SliceEstimate::ballShareOf(const RaySliceQuery& m, const Vec3d& last, double length, const Ratio& ratio) const {
+    if (!m.flights.shared) return 1.0;
+    const auto w = m.directions<2>();
+    const auto& t = m.flights.lengths;
+    return ballWeight(
+        ratio(std::array<Vec3d, 3>{w[0], w[1], last}, std::array<double, 3>{double(t[0]), double(t[1]), length}));
+}
+
+bool SliceEstimate::addBallSlice(const RaySliceQuery& m, int frame, double time, double width, FrameSums& sums) const {
+    const auto slice = sliceBall(m.base, m.sight, m.residual(time));
+    bool any = false;
+    for (int i = 0; i < slice.count; ++i) {
+        const BallHit<double>& hit = slice.hits[size_t(i)];
+        const Vec3d last = (m.sight.at(hit.alongRay) - m.base) / hit.length;
+        double factor = m.speed * width * m.phase(Vec3f(last)) * unended(m.flights, m.medium, &hit.length, 1);
+        if (!(factor > 0.0)) continue;
+        factor *=
+            ballShareOf(m, last, hit.length, [&](const auto& w, const auto& lengths) { return ratio(m, w, lengths); });
+        const Vec3d value = m.perChannel([&](const auto& medium) { return hit.weight(medium); });
+        any = deposit(value, leavingBall(m, hit, Vec3f(last)), factor, frame, sums) || any;
+    }
+    return any;
+}
+
+bool SliceEstimate::addBallGate(const RaySliceQuery& m, int frame, FrameSums& sums) const {
+    const TimeGate& gate = sensor_.gate;
+    const auto lit =
+        gateBall<double>(m.base, m.sight, {m.residual(gate.frameStart(frame)), m.residual(gate.frameStart(frame + 1))});
+    if (!(lit.angles() > 0.0)) return false;
+    const auto hit = lit.sample(m.random(0, frame));
+    if (!(hit.length > 0.0) || hit.length < double(m.flights.reach)) return false;
+    const Vec3d towards = (m.sight.at(hit.alongRay) - m.base) / hit.length;
+    const Vec3f last = Vec3f(towards);
+    const double arrival = m.arrival(hit.length + m.sight.warp() * hit.alongRay);
+    const double share = ballShareOf(m, towards, hit.length, [&](const auto& w, const auto& lengths) {
+        return ratioInGate(m, w, lengths, hit.alongRay);
+    });
+    const double factor =
+        m.phase(last) * double(sensor_.weight(arrival)) * unended(m.flights, m.medium, &hit.length, 1) * share;
+    if (!(factor > 0.0)) return false;
+    const Vec3d value = m.perChannel([&](const auto& medium) { return lit.weight(hit, medium); });
+    return deposit(value, leavingBall(m, hit, last), factor, frame, sums);
 }
 
 } // namespace tungsten::photon

@@ -1,8 +1,8 @@
 #pragma once
 // What one record of collapsed flights brings to one camera segment.
 
-#include "photon/primitives/balls/VolumeBallMis.h"
 #include "photon/primitives/sliced/RaySliceQuery.h"
+#include "photon/primitives/sliced/VolumeBallMis.h"
 #include "transport/TimeSensor.h"
 
 #include "tungsten/scene/Scene.h"

@@ -2,10 +2,9 @@
 // Gathering planes, volumes, balls, hypervolumes, and the beams beside them, along a camera segment.
 
 #include "photon/primitives/beams/BeamGather.h"
-#include "photon/primitives/sliced/EmbreeSlices.h"
 #include "photon/primitives/sliced/SliceEstimate.h"
 
-#include <memory>
+#include <optional>
 
 namespace tungsten::photon {
 
@@ -21,12 +20,18 @@ class SliceGather {
     /// Adds what the records bring to the segment, times the gate's width; returns how many brought something.
     uint64_t gather(const CameraSegment& segment, FrameSums& sums) const;
 
+    /// About what a record can reach.
+    struct Box {
+        Vec3f low, high;
+    };
+
   private:
     SliceEstimate estimate_;
-    std::vector<const SliceRecord*> slices_; ///< all but beams
+    std::vector<const SliceRecord*> slices_; ///< all but beams, by Embree's index
+    std::vector<Box> boxes_;                 ///< of these
     std::vector<PhotonBeam> beams_;
-    std::unique_ptr<EmbreeSlices> structure_;
-    std::unique_ptr<BeamGather> beamGather_;
+    std::optional<EmbreeScene> structure_; ///< none without slices
+    std::optional<BeamGather> beamGather_; ///< none without beams
 };
 
 } // namespace tungsten::photon

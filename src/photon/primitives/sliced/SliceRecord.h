@@ -32,7 +32,7 @@ struct SliceRecord {
     int16_t emitter; ///< a ball on a light: its index; otherwise -1
     FlightShape shape;
     bool shared : 1;       ///< balls and volumes make the same paths: weighed by multiple importance sampling
-    bool shortFlights : 1; ///< they end at random lengths (ShortFlights.h)
+    bool shortFlights : 1; ///< they end at random lengths (flightEnds)
     bool onSurface : 1;    ///< a ball on a surface that scatters evenly; power: before it is spread over directions
 
     [[nodiscard]] int flights() const { return std::max(int(shape), 1); }

@@ -1,18 +1,186 @@
 #include "photon/primitives/sliced/SliceSplat.h"
 
 #include "photon/Tuning.h"
-#include "photon/primitives/beams/BeamSplat.h"
-#include "photon/primitives/sliced/FrameRoulette.h"
-#include "photon/primitives/sliced/SliceFootprints.h"
+#include "photon/primitives/beams/Beams.h"
+#include "photon/primitives/sliced/CameraRay.h"
+#include "photon/primitives/sliced/RecordBudget.h"
+#include "photon/primitives/sliced/SliceEstimate.h"
 #include "photon/primitives/sliced/SliceGather.h"
-#include "photon/primitives/sliced/SystematicShadowRays.h"
+#include "photon/primitives/sliced/SliceLanes.h"
 #include "photon/raster/ImageBand.h"
 
 #include <tbb/parallel_for.h>
 
+#include <limits>
+
 namespace tungsten::photon {
 
+SliceFootprints::SliceFootprints(const Scene& scene, const transport::TimeSensor& sensor, double scale)
+    : scene_(scene), gate_(sensor.gate), scale_(scale), warped_(!scene.transport.cameraUnwarped),
+      delta_(scene.transport.gate.delta), weighed_(sensor.response != nullptr) {
+    if (scene.camera.hasSinglePosition()) footprint_.emplace(scene.camera);
+}
+
+std::optional<ImageSlice> SliceFootprints::prepare(const SliceRecord& flights, std::span<const float> shares) const {
+    const Medium& medium = scene_.media[size_t(flights.medium)];
+    const auto speed = double(medium.speedOfLight);
+    const bool far = farAway(flights, speed);
+    const float common =
+        far && warped_ && !gate_.steadyState ? (scene_.camera.position() - flights.base).length() : 0.0f;
+    LaneTimes times = timesOf(flights, speed, double(common));
+    times.shares = shares;
+    const float length = std::min(times.start(times.frames) + common, visibleReach(medium));
+    if (!(length > 0.0f)) return std::nullopt;
+    const auto area = areaOf(flights, length);
+    if (!area) return std::nullopt;
+    const bool ball = flights.shape == FlightShape::Ball, occluders = !scene_.primitives.empty();
+    const auto& w = flights.directions;
+    const auto light =
+        flights.emitter >= 0 ? isotropicIntensity(scene_.emitters[size_t(flights.emitter)]) : std::optional<Rgb>();
+    LaneRecord record{&flights,
+                      times,
+                      medium.sigmaT(),
+                      medium.isGrey(),
+                      warped_,
+                      far,
+                      common,
+                      medium.phase.g(),
+                      occluders ? flights.reach : Infinity,
+                      occluders || flights.shared,
+                      ball ? 0.0f : medium.phase.pdf(w[1], w[2]),
+                      1.0f,
+                      light.has_value()};
+    if (ball) record.pdfs = pdfFlight(medium, flights.lengths[0]) * pdfFlight(medium, flights.lengths[1]);
+    ImageSlice s{record, kernelOf(flights), *area, flights.power, false};
+    s.inLanes = !weighed_ && medium.phase.isHenyeyGreenstein() && (flights.emitter < 0 || light);
+    const double perLength = atLengths(flights) ? speed * gate_.frameWidth : 1.0;
+    for (int k = 0; k < 3; ++k)
+        s.power[k] *= float(scale_ * perLength * collisions(double(medium.sigmaS()[k]), flights.flights()));
+    if (light) s.power = s.power * *light;
+    return s;
+}
+
+bool SliceFootprints::farAway(const SliceRecord& flights, double speed) const {
+    // Floats lose 1e-7 of the distance: a hundred-thousandth of what is left, a thousandth of a frame.
+    constexpr double MostOfLeft = 32.0, MostOfFrame = 1e4;
+    const auto distance = double((scene_.camera.position() - flights.base).length());
+    if (gate_.steadyState) return distance > MostOfLeft * double(visibleReach(scene_.media[size_t(flights.medium)]));
+    const double left = (gate_.end() - flights.time) * speed - (warped_ ? distance : 0.0);
+    return distance > std::min(MostOfLeft * left, MostOfFrame * gate_.frameWidth * speed);
+}
+
+bool SliceFootprints::atLengths(const SliceRecord& flights) const {
+    if (flights.shape == FlightShape::Hypervolume) return true;
+    return delta_ && !flights.blurredInTime();
+}
+
+LaneTimes SliceFootprints::timesOf(const SliceRecord& flights, double speed, double common) const {
+    if (gate_.steadyState) return {0.0f, std::numeric_limits<float>::max(), 1};
+    if (delta_ && !flights.blurredInTime())
+        return {float((scene_.transport.gate.start - flights.time) * speed - common), 0.0f, 1};
+    return {float((gate_.start - flights.time) * speed - common), float(gate_.frameWidth * speed), gate_.frames};
+}
+
+SliceKernel SliceFootprints::kernelOf(const SliceRecord& flights) const {
+    if (flights.shape == FlightShape::Plane) return PlaneLanes(flights);
+    if (flights.shape == FlightShape::Hypervolume) return HypervolumeLanes(flights);
+    if (flights.shape == FlightShape::Volume)
+        return atLengths(flights) ? SliceKernel(VolumeSliceLanes(flights)) : SliceKernel(VolumeChordLanes(flights));
+    return atLengths(flights) ? SliceKernel(BallSliceLanes()) : SliceKernel(BallGateLanes());
+}
+
+std::optional<PixelArea> SliceFootprints::areaOf(const SliceRecord& flights, float length) const {
+    const Vec2i resolution = scene_.camera.resolution;
+    const PixelArea all{0, resolution.x - 1, 0, resolution.y - 1};
+    if (!footprint_) return all;
+    if (flights.shape == FlightShape::Ball) {
+        const auto area = footprint_->around(flights.base, 1.0001f * length);
+        return area;
+    }
+    std::array<Vec3f, 5> points;
+    points[0] = flights.base;
+    const auto count = size_t(flights.flights());
+    for (size_t i = 0; i < count; ++i) points[i + 1] = flights.base + flights.directions[i] * length;
+    // An unwarped slice is the triangle alone.
+    const bool triangle = delta_ && !warped_ && flights.shape == FlightShape::Volume;
+    return footprint_->aroundHull(std::span(points).subspan(triangle ? 1 : 0, count + (triangle ? 0 : 1)));
+}
+
 namespace {
+
+// ---- Shadow rays of slices that are drawn a register of rays at a time
+
+/// Whole doses in place of weights: shadow rays cost a hundred times what weights do. Whenever what a ray has been
+/// given fills another dose, by the record at hand, that one is tested and stands for the dose; evenly from a random
+/// start, so that every record brings what it weighs on average, whatever the doses are.
+class SystematicShadowRays {
+  public:
+    /// For so many rays. Until begin() all is counted and nothing let through: a pilot over a part of the records.
+    void reserve(size_t rays) {
+        dose_.assign(rays, 1.0f);
+        filled_.assign(rays, 0.0f);
+        begun_ = false;
+    }
+    /// The pilot has shown `part` of what comes: about `number` doses for each ray.
+    void begin(float part, float number, Sampler& sampler);
+
+    /// Factors on weights of this brightness at rays `first`...: 0 for what is not tested, or not seen. The rays'
+    /// origins are relative to the base.
+    [[nodiscard]] Batch tested(const SliceEstimate& estimate, const LaneRecord& record, const LaneRays& rays,
+                               const LaneHit& hit, const Batch& brightness, size_t first);
+
+  private:
+    std::vector<float> dose_, filled_;
+    bool begun_ = false;
+};
+
+using LaneArray = std::array<float, size_t(Lanes)>;
+
+LaneArray stored(const Batch& batch) {
+    alignas(64) LaneArray values;
+    batch.store_unaligned(values.data());
+    return values;
+}
+
+void SystematicShadowRays::begin(float part, float number, Sampler& sampler) {
+    for (size_t i = 0; i < dose_.size(); ++i) {
+        dose_[i] = std::max(filled_[i] / (part * number), 1e-30f);
+        filled_[i] = sampler.next1D();
+    }
+    begun_ = true;
+}
+
+Batch SystematicShadowRays::tested(const SliceEstimate& estimate, const LaneRecord& record, const LaneRays& rays,
+                                   const LaneHit& hit, const Batch& brightness, size_t first) {
+    const Batch filled = Batch::load_unaligned(filled_.data() + first);
+    if (!begun_) {
+        (filled + brightness).store_unaligned(filled_.data() + first);
+        return Batch(0.0f);
+    }
+    const Batch dose = Batch::load_unaligned(dose_.data() + first);
+    const Batch sum = filled + brightness / dose, whole = xsimd::floor(sum);
+    (sum - whole).store_unaligned(filled_.data() + first);
+    if (!xsimd::any(whole > 0.0f)) return Batch(0.0f);
+    const Batch lit = xsimd::max(brightness, Batch(std::numeric_limits<float>::min()));
+    LaneArray factors = stored(xsimd::select(whole > 0.0f, whole * dose / lit, Batch(0.0f)));
+    const Lanes3 at = rays.toOrigin + rays.direction * hit.alongRay;
+    const LaneArray x = stored(at.x), y = stored(at.y), z = stored(at.z);
+    std::array<LaneArray, 4> lengths;
+    for (size_t k = 0; k < 4; ++k) lengths[k] = stored(hit.lengths[k]);
+    const SliceRecord& flights = *record.flights;
+    for (size_t lane = 0; lane < size_t(Lanes); ++lane) {
+        if (!(factors[lane] > 0.0f)) continue;
+        std::array<double, 4> t;
+        for (size_t k = 0; k < 4; ++k) t[k] = double(lengths[k][lane]);
+        const bool open = flights.shape == FlightShape::Ball
+                              ? estimate.unoccluded(flights, flights.base + Vec3f(x[lane], y[lane], z[lane]))
+                              : estimate.unoccluded(flights, t.data(), flights.flights());
+        if (!open) factors[lane] = 0.0f;
+    }
+    return Batch::load_unaligned(factors.data());
+}
+
+// ---- Drawing
 
 /// What a band's rays have besides the band.
 struct BandRays {
@@ -185,7 +353,7 @@ class SliceSplatter {
     void addToFilm(const FrameSums& sums, const Rgb& throughput, int x, int y) const {
         for (size_t frame = 0; frame < sums.size(); ++frame) {
             const Vec3d value = sums[frame] * scale_;
-            film_.add(int(frame), x, y, Rgb(float(value.x), float(value.y), float(value.z)) * throughput);
+            film_.add(int(frame), x, y, Rgb(value) * throughput);
         }
     }
 
@@ -208,7 +376,7 @@ class SliceSplatter {
     bool occluders_;
 };
 
-/// Whether the media that scatter and the camera's region have one speed: what splatBeams needs.
+/// Whether the media that scatter and the camera's region have one speed: what Beams::splat needs.
 bool oneSpeed(const Scene& scene) {
     return std::all_of(scene.media.begin(), scene.media.end(), [&](const Medium& medium) {
         return !medium.scatters() || medium.speedOfLight == scene.cameraRegion.speed;
@@ -249,10 +417,10 @@ uint64_t splatSlices(const Scene& scene, const transport::TimeSensor& sensor, co
     const SliceList slices = prepared(SliceFootprints(scene, sensor, scale), records, shares, watch);
     const size_t bands = ImageBand::count(record.height);
     const std::vector<std::vector<uint32_t>> drawnIn = byBand(slices, bands);
-    const auto beams = beamsAmong(scene, records);
+    const Selection<PhotonBeam> beams{beamsAmong(scene, records), radius[0]};
     const bool drawBeams = record.origins.empty() && oneSpeed(scene);
     std::optional<BeamGather> beamGather;
-    if (!beams.empty() && !drawBeams) beamGather.emplace(scene, sensor, beams, radius);
+    if (!beams.records.empty() && !drawBeams) beamGather.emplace(scene, sensor, beams.records, radius);
     std::vector<uint64_t> gathered(bands, 0);
     watch.stage("splat", bands);
     tbb::parallel_for(size_t(0), bands, [&](size_t number) {
@@ -268,7 +436,7 @@ uint64_t splatSlices(const Scene& scene, const transport::TimeSensor& sensor, co
         if (beamGather) gathered[number] += splatter.gatherBeams(*beamGather, band);
         watch.advance();
     });
-    uint64_t total = drawBeams ? splatBeams(scene, sensor, {&record}, beams, radius[0], scale, film, watch) : 0;
+    uint64_t total = drawBeams ? Beams::splat(scene, sensor, {&record}, beams, scale, film, watch) : 0;
     for (const uint64_t count : gathered) total += count;
     return total;
 }

@@ -1,11 +1,25 @@
 #pragma once
-// Everything that Embree holds about a camera segment.
+// What a camera subpath looks volumes up along, and everything that Embree holds about it.
 
-#include "photon/view/CameraSegment.h"
-
+#include "tungsten/core/Types.h"
 #include "tungsten/geometry/Embree.h"
 
+#include <vector>
+
 namespace tungsten::photon {
+
+/// A camera segment in one medium.
+struct CameraSegment {
+    Vec3f origin, direction;
+    float length; ///< may be infinite
+    double time;  ///< of the camera path up to the origin
+    double inverseSpeed;
+    int interactions; ///< of the camera path up to the origin
+    int medium;
+};
+
+/// Sums of contributions per frame; doubles, so that the order of the sum shows only beyond the seventh digit.
+using FrameSums = std::vector<Vec3d>;
 
 /// Calls evaluate(query, index) for every disc or ribbon of at most `radius` that may be near the segment; the hits are
 /// a superset, for evaluate() to test exactly. `query.context` is the query's first member, so that Embree's address of

@@ -1,7 +1,7 @@
 #pragma once
 // VolumeBallMis.h for a register of rays.
 
-#include "photon/primitives/sliced/ChordLanes.h"
+#include "photon/primitives/sliced/SliceLanes.h"
 
 namespace tungsten::photon {
 
@@ -15,7 +15,7 @@ inline Batch shareOf(const Batch& a, const Batch& b) {
     return a / xsimd::max(a + b, Batch(1e-37f));
 }
 
-/// Jacobian of volumes, at flights along these directions that end on the ray: VolumeSlice.h.
+/// Jacobian of volumes, at flights along these directions that end on the ray: Volume.h.
 inline Batch volumeJacobian(const Lanes3& first, const Lanes3& second, const Lanes3& last, const Lanes3& ray,
                             bool warped) {
     return xsimd::abs(warped ? (first + ray).dot((second + ray).cross(last + ray))

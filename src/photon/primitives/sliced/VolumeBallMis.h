@@ -1,8 +1,8 @@
 #pragma once
 // Multiple importance sampling of sliced volumes and balls (docs/photon-primitives.md, section 2.7).
 
-#include "photon/primitives/balls/BallSlice.h"
-#include "photon/primitives/volumes/VolumeSlice.h"
+#include "photon/primitives/sliced/Ball.h"
+#include "photon/primitives/sliced/Volume.h"
 
 namespace tungsten::photon {
 
