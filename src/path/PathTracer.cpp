@@ -22,7 +22,8 @@ namespace {
 constexpr size_t TileSide = 8;
 constexpr double PilotFrame = 10.0;       ///< nanoseconds for each frame of a path in that pilot
 constexpr uint32_t MostSampleRounds = 64; ///< pairs of a block of pixels in a pilot of samples
-constexpr double PilotPart = 0.35;        ///< of the cost of a pilot of shares: those of samples and of windows
+/// Of the cost of a pilot of shares: those of samples and of windows, and where one of these is to be sure.
+constexpr double PilotPart = 0.35, LongPilotPart = 4.0 * PilotPart;
 constexpr uint32_t SamplesPerPoll = 16;
 constexpr double LightPathsPart = 0.1; ///< of a pass
 /// Multiples of it, modulo 1, fill the unit interval evenly from any place on.
@@ -300,42 +301,51 @@ void PathTracer::allocateSamples(const ProgressToken& watch, Statistics& statist
         lightCaches_.trace(*scene_, *targets_, tuning::FewestPaths, pass, ignored);
     }
     if (refracted_) refracted_->trace(pass);
+    SampleAllocation plain(scene_->camera.resolution), windowed = plain;
+    const bool windows = plan_.weightWindows.on && takesWindows(plain, windowed, watch, statistics);
+    if (!plan_.allocation.on) return;
+    if (!windows && (guides() || plain.pairs() == 0.0)) {
+        allocation_ = SampleAllocation(scene_->camera.resolution);
+        measureSamples(allocation_, PilotPart, watch, statistics);
+    } else {
+        allocation_ = std::move(windows ? windowed : plain);
+    }
+}
+
+bool PathTracer::takesWindows(SampleAllocation& plain, SampleAllocation& windowed, const ProgressToken& watch,
+                              Statistics& statistics) {
+    WeightWindows windows = learnWindows(watch, statistics);
+    if (!windows.any()) return false;
     const auto worth = [&](const SampleAllocation& allocation) {
         return plan_.allocation.on ? allocation.varianceTimesCost() : allocation.varianceTimesCostOfEven();
     };
-    if (plan_.weightWindows.on) {
-        if (WeightWindows windows = learnWindows(watch, statistics); windows.any()) {
-            const StrategyBalance chosen = std::exchange(balance_, {1.0f, 0.0f});
-            SampleAllocation plain = measureSamples(watch, statistics);
-            weightWindows_ = std::move(windows);
-            SampleAllocation windowed = measureSamples(watch, statistics);
-            // Few bright paths have most of a variance: windows must be better by two standard errors.
-            const double doubt = 2.0 * std::hypot(plain.relativeError(), windowed.relativeError());
-            if (worth(windowed) * gainOfBalance_ * (1.0 + doubt) < worth(plain)) {
-                if (plan_.allocation.on) allocation_ = std::move(windowed);
-                return;
-            }
-            weightWindows_ = {};
-            balance_ = chosen;
-            if (!guides()) {
-                if (plan_.allocation.on) allocation_ = std::move(plain);
-                return;
-            }
-        }
+    const StrategyBalance chosen = std::exchange(balance_, {1.0f, 0.0f});
+    for (const double part : {PilotPart, LongPilotPart}) {
+        measureSamples(plain, part, watch, statistics);
+        std::swap(windows, weightWindows_);
+        measureSamples(windowed, part, watch, statistics);
+        // Few bright paths have most of a variance: windows must be better by two standard errors.
+        const double ratio = worth(windowed) * gainOfBalance_ / worth(plain),
+                     doubt = 2.0 * std::hypot(plain.relativeError(), windowed.relativeError());
+        if (ratio * (1.0 + doubt) < 1.0) return true;
+        std::swap(windows, weightWindows_);
+        if (!(ratio < tuning::WorthSharing)) break;
     }
-    if (plan_.allocation.on) allocation_ = measureSamples(watch, statistics);
+    balance_ = chosen;
+    return false;
 }
 
-SampleAllocation PathTracer::measureSamples(const ProgressToken& watch, Statistics& statistics) const {
+void PathTracer::measureSamples(SampleAllocation& allocation, double part, const ProgressToken& watch,
+                                Statistics& statistics) const {
     const StageTimer timer(statistics, "pilot of samples");
     constexpr uint64_t Key = transport::PilotKey;
     const int frames = sensor_.gate.frames;
-    SampleAllocation allocation(scene_->camera.resolution);
     Film probe(1, 1, frames, {.moments = false});
     std::vector<Rgb> before(static_cast<size_t>(frames));
-    Sampler places(Key, RandomStream::Pilot, 1, 0);
+    const auto first = uint32_t(2.0 * allocation.pairs());
+    Sampler places(Key, RandomStream::Pilot, 1, first);
     double cost = 0.0;
-    uint32_t traced = 0;
+    uint32_t traced = first;
     const auto tracePair = [&](const auto& trace, size_t block) {
         const float u = places.next1D(), v = places.next1D();
         const Vec2i pixel = allocation.pixelOf(block, u, v);
@@ -362,10 +372,10 @@ SampleAllocation PathTracer::measureSamples(const ProgressToken& watch, Statisti
         allocation.tell(block, variance, own);
         cost += own + 2.0 * PilotFrame * double(frames);
     };
-    watch.stage("pilot of samples", MostSampleRounds);
+    const auto rounds = uint32_t(double(MostSampleRounds) * part / PilotPart);
+    watch.stage("pilot of samples", rounds);
     withPaths(watch, [&](const auto& trace) {
-        for (uint32_t round = 0;
-             round < MostSampleRounds && cost < PilotPart * double(transport::tuning::MostPilotCost); ++round) {
+        for (uint32_t round = 0; round < rounds && cost < part * double(transport::tuning::MostPilotCost); ++round) {
             for (size_t block = 0; block < allocation.blocks(); ++block) {
                 watch.advanceWithin(SamplesPerPoll, block + 1);
                 tracePair(trace, block);
@@ -374,8 +384,7 @@ SampleAllocation PathTracer::measureSamples(const ProgressToken& watch, Statisti
         }
     });
     allocation.choose();
-    statistics.add("pilot samples", traced);
-    return allocation;
+    statistics.add("pilot samples", traced - first);
 }
 
 double PathTracer::cost(const PathCounters& counters, const tuning::Costs::Walk& each) const {

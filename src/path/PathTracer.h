@@ -33,10 +33,15 @@ class PathTracer : public Integrator {
     [[nodiscard]] bool guides() const { return plan_.guidance.on && balance_.guided > 0.0f; }
     /// Points that the paths of the pass aim at.
     [[nodiscard]] const TargetChoice& targets() const { return guides() ? *targets_ : *sources_; }
-    /// Measures how much pixels vary, by pairs of paths as they are now.
-    [[nodiscard]] SampleAllocation measureSamples(const ProgressToken& watch, Statistics& statistics) const;
+    /// Measures how much pixels vary, by further pairs of paths as they are now.
+    void measureSamples(SampleAllocation& allocation, double part, const ProgressToken& watch,
+                        Statistics& statistics) const;
     /// Shares samples out, and takes plain paths with weight windows where they are worth more than what was chosen.
     void allocateSamples(const ProgressToken& watch, Statistics& statistics);
+    /// True if plain paths with windows, which it leaves in place, are surely better than what was chosen; measures
+    /// plain ones without and with them.
+    bool takesWindows(SampleAllocation& plain, SampleAllocation& windowed, const ProgressToken& watch,
+                      Statistics& statistics);
     [[nodiscard]] WeightWindows learnWindows(const ProgressToken& watch, Statistics& statistics) const;
     /// use(trace) of the paths that the plan and the shares ask for: trace(ray, sink, counters, sampler, u, strategy)
     /// traces one; u chooses among targets, and strategy, uniform too, among strategies.

@@ -39,6 +39,7 @@ class SampleAllocation {
     [[nodiscard]] double varianceTimesCost() const { return part_ * varianceTimesCostOfEven(); }
     [[nodiscard]] double varianceTimesCostOfEven() const;
     [[nodiscard]] double relativeError() const;
+    [[nodiscard]] double pairs() const { return total().pairs; }
 
     /// Samples [first, first + count) of a pixel in a pass that has samples [first, first + count) of an even image.
     struct Samples {

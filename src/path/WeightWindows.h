@@ -1,6 +1,6 @@
 #pragma once
 // Splitting and roulette of plain camera paths by what paths of a pilot found from places and times like theirs on
-// (docs/method.md, section 11.3).
+// (docs/method.md, section 11).
 
 #include "transport/PlainSteps.h"
 #include "transport/SharePilot.h"
@@ -41,8 +41,7 @@ class WeightWindows {
         std::vector<Vertex> vertices{};
 
         void add(const transport::PathState& path, const transport::WalkVertex& vertex) {
-            vertices.push_back(
-                {windows.stateOf(path, vertex), pilot.contributions(), meanComponent(path.throughput)});
+            vertices.push_back({windows.stateOf(path, vertex), pilot.contributions(), meanComponent(path.throughput)});
         }
     };
     /// Learns from two paths of a pixel.

@@ -93,7 +93,8 @@ struct Costs {
     double density;            ///< of guided paths, for a flight of a plain one
     double pixel;              ///< a path of a pixel in a pass
 };
-/// Fitted to CPU seconds and counters of 37 scenes: benchmarks/bench.py costs --method points (beams, mis_volumes_balls).
+/// Fitted to CPU seconds and counters of 37 scenes: benchmarks/bench.py costs --method points (beams,
+/// mis_volumes_balls).
 inline constexpr Costs Nanoseconds{.plain = {115.0, 120.0, 100.0, 0.0},
                                    .guided = {50.0, 200.0, 200.0, 500.0},
                                    .connection = 200.0,

@@ -35,8 +35,11 @@ struct Place {
     transport::WalkVertex vertex;
 
     Place(const Medium& fog, float x, double time)
-        : path{.random = Sampler(1, RandomStream::Camera, 0, 0), .time = time},
-          vertex{&fog, nullptr, Vec3f(x, 0.0f, 0.0f), Vec3f(0.0f, 0.0f, 1.0f), {}} {}
+        : path{.random = Sampler(1, RandomStream::Camera, 0, 0), .time = time}, vertex{&fog,
+                                                                                       nullptr,
+                                                                                       Vec3f(x, 0.0f, 0.0f),
+                                                                                       Vec3f(0.0f, 0.0f, 1.0f),
+                                                                                       {}} {}
 };
 
 struct Learned {
@@ -72,7 +75,8 @@ TEST(WeightWindows, FactorsAreRootsOfVarianceOverCost) {
     Learned learned;
     learned.learn(40000);
     ASSERT_TRUE(learned.windows.any());
-    // Of what paths find: variance 17/4 - 25/16 for two vertices; then 8 - 4 and 1/2 - 1/4, squares of 8 and 1/2, for one.
+    // Of what paths find: variance 17/4 - 25/16 for two vertices; then 8 - 4 and 1/2 - 1/4, squares of 8 and 1/2, for
+    // one.
     const double start = std::sqrt((17.0 / 4.0 - 25.0 / 16.0) / 2.0);
     EXPECT_NEAR(learned.at(learned.much).split, 2.0 / start, 0.03);
     EXPECT_NEAR(learned.at(learned.much).survival, std::sqrt(8.0) / start, 0.03);
@@ -142,8 +146,7 @@ WindowedRender renderWith(const std::string& darts) {
     tracer.prepare(facts, {}, statistics);
     for (uint32_t pass = 0; pass < 100; ++pass) {
         film.beginPass();
-        tracer.renderPass({.index = pass, .firstSample = 16 * pass, .samples = 16, .seed = 5}, film,
-                          statistics);
+        tracer.renderPass({.index = pass, .firstSample = 16 * pass, .samples = 16, .seed = 5}, film, statistics);
         film.endPass(16.0);
     }
     return {std::move(film), statistics.counter("camera paths with weight windows"),
@@ -158,7 +161,9 @@ TEST(WindowedPaths, KeepTheMeanAndLessenTheError) {
     EXPECT_EQ(without.pilot, 0u);
     EXPECT_EQ(plain.pilot, 0u);
     const double mean = meanValue(plain.film);
-    const auto errorOf = [&](const WindowedRender& of) { return relativeStandardError(of.film) * meanValue(of.film) / 6.0; };
+    const auto errorOf = [&](const WindowedRender& of) {
+        return relativeStandardError(of.film) * meanValue(of.film) / 6.0;
+    };
     EXPECT_NEAR(meanValue(with.film), mean, 4.5 * std::hypot(errorOf(with), errorOf(plain)));
     EXPECT_LT(errorOf(with), 0.9 * errorOf(plain));
 }
