@@ -5,7 +5,7 @@
 #include "transport/BounceLimits.h"
 #include "transport/Policy.h"
 
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 
 namespace tungsten::path {

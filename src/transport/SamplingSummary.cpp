@@ -3,7 +3,7 @@
 #include "transport/EscapeModels.h"
 #include "transport/GuidancePlan.h"
 
-#include "tungsten/scene/Field.h"
+#include "tungsten/reader/Field.h"
 
 namespace tungsten::transport {
 

@@ -657,9 +657,9 @@ FAULTS = [
      [("path_tests", "DirectLight.SpotWithItsSmoothEdge")]),  # spots fade outside their cone
     ("tungsten/scene/LoadBsdfs.cpp", "Texture(std::sqrt(2.0f) * sigma)", "Texture(sigma)",
      [("scene_tests", "SceneLoader.OrenNayarTakesRoughnessOrTheFacetsDeviation")]),  # sigma of oren_nayar is taken for its roughness
-    ("tungsten/scene/Duration.cpp", "if (unit.empty()) return 60.0;", "if (unit.empty()) return 1.0;",
+    ("tungsten/reader/Duration.cpp", "if (unit.empty()) return 60.0;", "if (unit.empty()) return 1.0;",
      [("scene_tests", "SceneLoader.FieldsBecomeTypedValues")]),  # --timeout 5 means seconds
-    ("tungsten/scene/ObjectReader.cpp", "std::isfinite(number) && number >= range.low", "std::isfinite(number) && number > range.low",
+    ("tungsten/reader/ObjectReader.cpp", "std::isfinite(number) && number >= range.low", "std::isfinite(number) && number > range.low",
      [("path_tests", "SpecularTime.MirrorPathsCountEverySegment")]),  # values at the lower end of what is accepted are refused
     ("tungsten/scene/JsonWriter.cpp", "std::isfinite(value) ? writer.Double(value) : writer.Null();", "writer.Double(value);",
      [("session_tests", "Session.OnePassDoesNotKnowItsError")]),  # unknown figures leave JSON that no one can read

@@ -9,9 +9,10 @@ PROJECT = Path(__file__).resolve().parents[2]
 
 # A folder of the host may include itself and these.
 MODELS = {"geometry", "texture", "bsdf", "medium", "emitter", "camera"}
-SCENE = {"core", "image", "film", "scene", *MODELS}
+SCENE = {"core", "reader", "image", "film", "scene", *MODELS}
 HOST = {
     "core": set(),
+    "reader": {"core"},
     "image": {"core"},
     "film": {"core", "image"},
     "geometry": {"core"},

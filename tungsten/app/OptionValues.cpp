@@ -1,7 +1,7 @@
 #include "tungsten/app/OptionValues.h"
 
 #include "tungsten/core/Errors.h"
-#include "tungsten/scene/Duration.h"
+#include "tungsten/reader/Duration.h"
 
 #include <CLI/CLI.hpp>
 

@@ -5,7 +5,7 @@
 #include "tungsten/app/Signals.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/film/FilmErrors.h"
-#include "tungsten/scene/Field.h"
+#include "tungsten/reader/Field.h"
 #include "tungsten/session/Progress.h"
 #include "tungsten/session/Report.h"
 #include "tungsten/session/Session.h"

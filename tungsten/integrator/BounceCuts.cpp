@@ -2,7 +2,7 @@
 
 #include "tungsten/integrator/EarliestArrival.h"
 #include "tungsten/integrator/SceneElements.h"
-#include "tungsten/scene/Field.h"
+#include "tungsten/reader/Field.h"
 
 #include <algorithm>
 #include <cmath>

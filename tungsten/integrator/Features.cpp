@@ -2,7 +2,7 @@
 
 #include "tungsten/integrator/BounceCuts.h"
 #include "tungsten/integrator/SceneElements.h"
-#include "tungsten/scene/Field.h"
+#include "tungsten/reader/Field.h"
 
 namespace tungsten {
 

@@ -5,7 +5,7 @@
 #include "tungsten/integrator/Features.h"
 #include "tungsten/integrator/ProgressToken.h"
 #include "tungsten/integrator/Statistics.h"
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 
 #include <functional>

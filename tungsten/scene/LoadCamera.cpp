@@ -1,4 +1,4 @@
-#include "tungsten/scene/FormatTypes.h"
+#include "tungsten/reader/FormatTypes.h"
 #include "tungsten/scene/LoadContext.h"
 
 #include <algorithm>

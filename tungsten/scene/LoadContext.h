@@ -1,7 +1,7 @@
 #pragma once
 // What the readers of the scene's blocks share while a scene is loaded, and the readers themselves (one file each).
 
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 #include "tungsten/scene/SceneLoader.h"
 

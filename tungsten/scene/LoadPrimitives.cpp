@@ -1,7 +1,7 @@
 #include "tungsten/scene/LoadContext.h"
 
 #include "tungsten/core/Overloaded.h"
-#include "tungsten/scene/FormatTypes.h"
+#include "tungsten/reader/FormatTypes.h"
 #include "tungsten/scene/LoadEmitters.h"
 
 #include <map>

@@ -2,7 +2,7 @@
 // Reading densities over time.
 
 #include "tungsten/core/TimeProfile.h"
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 
 namespace tungsten {
 

@@ -1,7 +1,7 @@
 #include "tungsten/scene/SceneLoader.h"
 
 #include "tungsten/core/Hash.h"
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Json.h"
 #include "tungsten/scene/LoadContext.h"
 #include "tungsten/scene/LoadEmitters.h"
 

@@ -2,7 +2,7 @@
 // Scene files in, typed scenes out.
 
 #include "tungsten/image/Exposure.h"
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 #include "tungsten/scene/Scene.h"
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/FileBytes.h"
 #include "tungsten/integrator/Plugin.h"
-#include "tungsten/scene/FormatTypes.h"
+#include "tungsten/reader/FormatTypes.h"
 
 #include <algorithm>
 #include <cstdlib>

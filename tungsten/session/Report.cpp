@@ -4,7 +4,7 @@
 #include "tungsten/film/FilmErrors.h"
 #include "tungsten/io/Format.h"
 #include "tungsten/io/Result.h"
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Json.h"
 #include "tungsten/scene/JsonWriter.h"
 #include "tungsten/session/Progress.h"
 

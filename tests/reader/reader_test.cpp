@@ -1,7 +1,7 @@
 // Reading JSON: the grammar, durations, values and their problems, overrides.
 
-#include "tungsten/scene/Duration.h"
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Duration.h"
+#include "tungsten/reader/Json.h"
 
 #include <gtest/gtest.h>
 

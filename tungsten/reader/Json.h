@@ -1,7 +1,7 @@
 #pragma once
 // The JSON library behind ObjectReader; included only by the files of this folder that parse.
 
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 
 #include "tungsten/core/LoadWatch.h"
 

@@ -1,4 +1,4 @@
-#include "tungsten/scene/Field.h"
+#include "tungsten/reader/Field.h"
 
 #include <algorithm>
 #include <cstdio>

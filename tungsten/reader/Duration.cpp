@@ -1,4 +1,4 @@
-#include "tungsten/scene/Duration.h"
+#include "tungsten/reader/Duration.h"
 
 #include <cctype>
 #include <cmath>

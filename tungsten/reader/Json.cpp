@@ -1,4 +1,4 @@
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Json.h"
 
 #include "tungsten/core/FileBytes.h"
 

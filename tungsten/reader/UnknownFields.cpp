@@ -1,6 +1,6 @@
 // What an ObjectReader says of fields that nobody has asked for.
 
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Json.h"
 
 namespace tungsten {
 

@@ -4,7 +4,7 @@
 
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/Transform.h"
-#include "tungsten/scene/Field.h"
+#include "tungsten/reader/Field.h"
 
 #include <cstdint>
 #include <map>

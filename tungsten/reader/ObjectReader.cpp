@@ -1,8 +1,8 @@
-#include "tungsten/scene/ObjectReader.h"
+#include "tungsten/reader/ObjectReader.h"
 
-#include "tungsten/scene/Duration.h"
-#include "tungsten/scene/FormatTypes.h"
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Duration.h"
+#include "tungsten/reader/FormatTypes.h"
+#include "tungsten/reader/Json.h"
 
 #include <cmath>
 

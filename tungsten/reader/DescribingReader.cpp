@@ -1,6 +1,6 @@
 // What an ObjectReader does only, or differently, while it describes; and the transform, which has fields of its own.
 
-#include "tungsten/scene/Json.h"
+#include "tungsten/reader/Json.h"
 
 namespace tungsten {
 
