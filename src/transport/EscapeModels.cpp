@@ -77,7 +77,7 @@ void EscapeModels::choose(const FlightStart& start, const Region& region, const 
         const BoundedMedium::BoundaryHit exit = body.intersectBoundary(start.position, darts::to<Vec3f>(budget.axis));
         const Bsdf& bsdf = *body.primitive->bsdfs[0];
         const SurfaceMargin margin{exit.face.normal, roundingError(exit.face.point, exit.face.normal)};
-        return setGeometry({exit, relativeIndex(bsdf), isIndexMatched(bsdf), body.primitive->outside, margin},
+        return setGeometry({exit, bsdf.relativeIndex(), isIndexMatched(bsdf), body.primitive->outside, margin},
                            start.position, region, aim, budget, rays);
     }
     // From the boundary itself the way out of a body that the walk enters would miss it.
@@ -103,7 +103,7 @@ std::optional<EscapeModels::Boundary> EscapeModels::findBoundary(Ray way, const 
         if (!isIndexMatched(bsdf) && !refracts(bsdf)) return std::nullopt; // opaque
         const Region beyond = regionBehind(scene_, *hit, way.direction, at);
         const bool outward = way.direction.dot(hit->ng) >= 0.0f;
-        const float index = outward ? relativeIndex(bsdf) : 1.0f / relativeIndex(bsdf);
+        const float index = outward ? bsdf.relativeIndex() : 1.0f / bsdf.relativeIndex();
         const Boundary boundary{{{hit->position, outward ? hit->ng : -hit->ng}, before + hit->t},
                                 index,
                                 isIndexMatched(bsdf),

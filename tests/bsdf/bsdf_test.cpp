@@ -5,7 +5,6 @@
 
 #include "tungsten/bsdf/Bsdf.h"
 #include "tungsten/bsdf/Fresnel.h"
-#include "tungsten/bsdf/Lambertian.h"
 #include "tungsten/bsdf/ShadingFrame.h"
 #include "tungsten/core/Warp.h"
 
@@ -23,25 +22,29 @@ const Rgb GoldEta{0.143f, 0.375f, 1.44f}, GoldK{3.98f, 2.39f, 1.60f};
 
 std::vector<Named> smoothModels() {
     std::vector<Named> models;
-    const auto add = [&](const std::string& name, BsdfModel model) {
+    const auto add = [&](const std::string& name, Bsdfs::Variant model) {
         models.push_back({name, Bsdf(name, std::move(model), Texture(0.8f))});
     };
     add("lambert", Lambert{});
-    add("oren_nayar", OrenNayar{Texture(0.7f)});
+    add("oren_nayar", OrenNayar{{}, Texture(0.7f)});
     for (const auto& [name, distribution] : {std::pair{"beckmann", MicrofacetModel::Beckmann},
                                              {"ggx", MicrofacetModel::Ggx},
                                              {"phong", MicrofacetModel::Phong},
                                              {"pbrt-ggx", MicrofacetModel::PbrtGgx}}) {
         for (const float roughness : {0.15f, 0.5f}) {
             const std::string suffix = std::string(" ") + name + " " + std::to_string(roughness);
-            add("rough_conductor" + suffix, RoughConductor{GoldEta, GoldK, distribution, Texture(roughness)});
-            add("rough_dielectric" + suffix, RoughDielectric{1.5f, distribution, Texture(roughness), true});
+            add("rough_conductor" + suffix, RoughConductor{{}, GoldEta, GoldK, distribution, Texture(roughness)});
+            add("rough_dielectric" + suffix, RoughDielectric{{}, 1.5f, distribution, Texture(roughness), true});
         }
     }
     add("rough_plastic", makeRoughPlastic(1.5f, 1.0f, Rgb(0.2f), MicrofacetModel::Ggx, Texture(0.3f), Rgb(1.0f)));
-    add("pbrt_plastic", PbrtPlastic{1.5f, MicrofacetModel::PbrtGgx, Texture(0.3f), Rgb(0.25f)});
-    const auto part = [](BsdfModel model) { return std::make_shared<const Bsdf>("", std::move(model), Texture(0.6f)); };
-    add("mixed", Mixed{part(Lambert{}), part(RoughConductor{GoldEta, GoldK, MicrofacetModel::Ggx, Texture(0.4f)}),
+    add("pbrt_plastic", PbrtPlastic{{}, 1.5f, MicrofacetModel::PbrtGgx, Texture(0.3f), Rgb(0.25f)});
+    const auto part = [](Bsdfs::Variant model) {
+        return std::make_shared<const Bsdf>("", std::move(model), Texture(0.6f));
+    };
+    add("mixed", Mixed{{},
+                       part(Lambert{}),
+                       part(RoughConductor{{}, GoldEta, GoldK, MicrofacetModel::Ggx, Texture(0.4f)}),
                        Texture(0.3f)});
     return models;
 }
@@ -103,17 +106,17 @@ TEST(Bsdf, NothingGainsEnergy) {
 
 /// What says that it scatters evenly does, and nothing else does.
 TEST(Bsdf, EvenOnesHaveOneValue) {
-    const auto shared = [](BsdfModel model) {
+    const auto shared = [](Bsdfs::Variant model) {
         return std::make_shared<const Bsdf>("", std::move(model), Texture(0.6f));
     };
-    const BsdfPtr metal = shared(RoughConductor{GoldEta, GoldK, MicrofacetModel::Ggx, Texture(0.4f)});
+    const BsdfPtr metal = shared(RoughConductor{{}, GoldEta, GoldK, MicrofacetModel::Ggx, Texture(0.4f)});
     std::vector<Named> models = smoothModels();
-    const auto add = [&](const std::string& name, BsdfModel model) {
+    const auto add = [&](const std::string& name, Bsdfs::Variant model) {
         models.push_back({name, Bsdf(name, std::move(model), Texture(0.8f))});
     };
-    add("two lamberts", Mixed{shared(Lambert{}), shared(Lambert{}), Texture(0.3f)});
-    add("transparency of lambert", Transparency{shared(Lambert{}), Texture(0.4f)});
-    add("transparency of metal", Transparency{metal, Texture(0.4f)});
+    add("two lamberts", Mixed{{}, shared(Lambert{}), shared(Lambert{}), Texture(0.3f)});
+    add("transparency of lambert", Transparency{{}, shared(Lambert{}), Texture(0.4f)});
+    add("transparency of metal", Transparency{{}, metal, Texture(0.4f)});
     int even = 0;
     for (const Named& model : models) {
         float least = Infinity, most = 0.0f;
@@ -125,8 +128,8 @@ TEST(Bsdf, EvenOnesHaveOneValue) {
             if (wo.z < 0.0f && f > 0.0f) least = 0.0f; // comes out on the other side
             most = std::max(most, f);
         }
-        EXPECT_EQ(isLambertian(model.bsdf), most <= 1.0001f * least) << model.name << ": " << least << ", " << most;
-        even += isLambertian(model.bsdf) ? 1 : 0;
+        EXPECT_EQ(model.bsdf.isLambertian(), most <= 1.0001f * least) << model.name << ": " << least << ", " << most;
+        even += model.bsdf.isLambertian() ? 1 : 0;
     }
     EXPECT_EQ(even, 3);
 }
@@ -146,7 +149,7 @@ TEST(Bsdf, ReflectionIsReciprocal) {
 }
 
 TEST(Bsdf, RefractionSqueezesRadianceByTheSquaredIndexRatio) {
-    const Bsdf glass("", RoughDielectric{1.5f, MicrofacetModel::Ggx, Texture(0.4f), true});
+    const Bsdf glass("", RoughDielectric{{}, 1.5f, MicrofacetModel::Ggx, Texture(0.4f), true});
     const Vec3f wi = Vec3f(0.3f, 0.1f, 0.9f).normalized(), wo = Vec3f(-0.1f, 0.05f, -0.9f).normalized();
     const float radiance = glass.eval({{0, 0}, TransportMode::Radiance, lobe::All}, wi, wo).x;
     const float photons = glass.eval({{0, 0}, TransportMode::Photons, lobe::All}, wi, wo).x;
@@ -164,7 +167,7 @@ TEST(Bsdf, SpecularModelsReflectAndRefract) {
     ASSERT_TRUE(mirror);
     EXPECT_EQ(mirror->wo, Vec3f(-0.6f, 0.0f, 0.8f));
     EXPECT_FLOAT_EQ(mirror->weight.x, 0.9f);
-    const Bsdf glass("", Dielectric{1.5f, true});
+    const Bsdf glass("", Dielectric{{}, 1.5f, true});
     const auto refracted = glass.sample(query, wi, {{0.5f, 0.5f}, 0.99f});
     ASSERT_TRUE(refracted);
     EXPECT_NEAR(refracted->wo.x, -0.4f, 1e-6f); // Snell
@@ -188,7 +191,7 @@ TEST(Bsdf, LobeMasksSelect) {
     EXPECT_FALSE(
         Bsdf("", Lambert{}).sample({{0, 0}, TransportMode::Radiance, lobe::Specular}, wi, {{0.5f, 0.5f}, 0.5f}));
     EXPECT_EQ(plastic.eval({{0, 0}, TransportMode::Radiance, lobe::Specular}, wi, wi), Rgb(0.0f));
-    const Bsdf veil("", Transparency{std::make_shared<const Bsdf>("", BsdfModel(Lambert{})), Texture(0.25f)});
+    const Bsdf veil("", Transparency{{}, std::make_shared<const Bsdf>("", Bsdfs::Variant(Lambert{})), Texture(0.25f)});
     EXPECT_NEAR(veil.forwardWeight({0, 0}).x, 0.75f, 1e-6f);
     EXPECT_NEAR(veil.eval({}, wi, wi).x, 0.25f * 0.8f / 3.14159265f, 1e-6f);
     const auto straight = veil.sample({{0, 0}, TransportMode::Radiance, lobe::Forward}, wi, {{0.5f, 0.5f}, 0.9f});
@@ -199,15 +202,16 @@ TEST(Bsdf, LobeMasksSelect) {
 
 /// A connection that goes straight through carries what paths that are sampled straight through carry on average.
 TEST(Bsdf, StraightConnectionsWeighWhatStraightSamplesDo) {
-    const auto part = [](BsdfModel model, float albedo = 1.0f) {
+    const auto part = [](Bsdfs::Variant model, float albedo = 1.0f) {
         return std::make_shared<const Bsdf>("", std::move(model), Texture(albedo));
     };
-    const BsdfPtr veil = part(Transparency{part(Lambert{}, 0.6f), Texture(0.25f)});
-    const BsdfPtr filter = part(Mixed{part(Forward{}), part(Null{}), Texture(0.4f)}, 0.5f);
-    for (const auto& [bsdf, expected] : {std::pair{part(Forward{}), 1.0f},
-                                         {veil, 0.75f},
-                                         {filter, 0.5f * 0.4f},
-                                         {part(Mixed{veil, filter, Texture(0.3f)}, 0.9f), 0.9f * (0.225f + 0.14f)}}) {
+    const BsdfPtr veil = part(Transparency{{}, part(Lambert{}, 0.6f), Texture(0.25f)});
+    const BsdfPtr filter = part(Mixed{{}, part(Forward{}), part(Null{}), Texture(0.4f)}, 0.5f);
+    for (const auto& [bsdf, expected] :
+         {std::pair{part(Forward{}), 1.0f},
+          {veil, 0.75f},
+          {filter, 0.5f * 0.4f},
+          {part(Mixed{{}, veil, filter, Texture(0.3f)}, 0.9f), 0.9f * (0.225f + 0.14f)}}) {
         constexpr int Count = 10000; // of lobes, stratified
         double sum = 0.0;
         for (int i = 0; i < Count; ++i) {
@@ -256,7 +260,7 @@ TEST(Bsdf, PlasticFollowsItsFormula) {
 /// Oren and Nayar's full model (1994, equations 32 to 34), towards the light and away from it.
 TEST(Bsdf, OrenNayarFollowsItsFormula) {
     const double sigma = 0.5, s = sigma * sigma, albedo = 0.8;
-    const Bsdf bsdf("", OrenNayar{Texture(float(sigma * std::sqrt(2.0)))}, Texture(float(albedo)));
+    const Bsdf bsdf("", OrenNayar{{}, Texture(float(sigma * std::sqrt(2.0)))}, Texture(float(albedo)));
     const double alpha = std::acos(0.6), beta = std::acos(0.8), ratio = 2.0 * beta / M_PI;
     const Vec3f wi(0.6f, 0.0f, 0.8f);
     for (const double cosPhi : {1.0, 0.6, 0.0, -0.6, -1.0}) {

@@ -53,7 +53,7 @@ class BeckmannInterface {
 
 TEST(Bsdf, ARoughInterfaceLetsOutWhatItsFacetsDo) {
     const BeckmannInterface facets(double(1.33f), double(0.3f));
-    const Bsdf glass("", RoughDielectric{1.33f, MicrofacetModel::Beckmann, Texture(0.3f), true});
+    const Bsdf glass("", RoughDielectric{{}, 1.33f, MicrofacetModel::Beckmann, Texture(0.3f), true});
     const BsdfQuery query{{0, 0}, TransportMode::Photons, lobe::All};
     for (const float z : {0.95f, 0.6f, 0.2f, -0.95f, -0.6f, -0.2f}) {
         const Vec3f wi(std::sqrt(1.0f - z * z), 0.0f, z);
@@ -75,7 +75,7 @@ TEST(Bsdf, ARoughInterfaceLetsOutWhatItsFacetsDo) {
 /// f(i, o) / n_o^2 = f(o, i) / n_i^2 of what photons carry across, per cosine.
 TEST(Bsdf, RefractionIsReciprocal) {
     for (const auto model : {MicrofacetModel::Beckmann, MicrofacetModel::Ggx, MicrofacetModel::Phong}) {
-        const Bsdf glass("", RoughDielectric{1.33f, model, Texture(0.3f), true});
+        const Bsdf glass("", RoughDielectric{{}, 1.33f, model, Texture(0.3f), true});
         const BsdfQuery query{{0, 0}, TransportMode::Photons, lobe::All};
         for (uint64_t i = 0; i < 2000; ++i) {
             Sampler s(6, RandomStream::Test, 0, i);

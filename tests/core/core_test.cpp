@@ -7,6 +7,7 @@
 #include "tungsten/core/Distribution.h"
 #include "tungsten/core/Errors.h"
 #include "tungsten/core/InsideFolder.h"
+#include "tungsten/core/ModelSet.h"
 #include "tungsten/core/Transform.h"
 #include "tungsten/core/Warp.h"
 
@@ -17,6 +18,22 @@
 
 namespace tungsten {
 namespace {
+
+struct Wide {
+    static constexpr const char* Type = "wide";
+};
+struct Narrow {
+    static constexpr const char* Type = "narrow";
+};
+
+TEST(ModelSet, KnowsItsModelsByTheirTypes) {
+    using Set = ModelSet<Wide, Narrow>;
+    EXPECT_EQ(Set::types(), (std::vector<std::string>{"narrow", "wide"}));
+    EXPECT_TRUE(Set::has("wide"));
+    EXPECT_FALSE(Set::has("wid"));
+    const auto made = Set::read("narrow", []<typename Model> { return Set::Variant(Model()); });
+    EXPECT_TRUE(std::holds_alternative<Narrow>(made));
+}
 
 using Words = std::array<uint32_t, 4>;
 

@@ -20,9 +20,9 @@ TEST(LommelSeeliger, WeightsAverageToItsAlbedo) {
         constexpr int Count = 100000;
         for (int i = 0; i < Count; ++i) {
             const Vec2f u = sampler.next2D();
-            const MaybeSample sample = sampleModel(model, at, wi, {u, 0.5f});
+            const MaybeSample sample = model.sample(at, wi, {u, 0.5f});
             ASSERT_TRUE(sample);
-            ASSERT_FLOAT_EQ(sample->pdf, pdfModel(model, at, wi, sample->wo));
+            ASSERT_FLOAT_EQ(sample->pdf, model.pdf(at, wi, sample->wo));
             sum += double(sample->weight.x);
         }
         // Integral of f cos over the hemisphere: albedo / 2 (1 - mu ln(1 + 1 / mu)).

@@ -15,7 +15,7 @@ const Vec3f ToLight = Vec3f(0.5f, -0.2f, 0.7f).normalized(), ToCamera = Vec3f(-0
 
 struct Material {
     const char* name;
-    BsdfModel model;
+    Bsdfs::Variant model;
 };
 
 class Reversed : public testing::TestWithParam<Material> {
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
     Surfaces, Reversed,
     testing::Values(Material{"Lambert", Lambert{}}, Material{"OrenNayar", OrenNayar{}},
                     Material{"RoughConductor",
-                             RoughConductor{Rgb(0.2f), Rgb(3.0f), MicrofacetModel::Ggx, Texture(0.4f)}},
+                             RoughConductor{{}, Rgb(0.2f), Rgb(3.0f), MicrofacetModel::Ggx, Texture(0.4f)}},
                     Material{"RoughPlastic", makeRoughPlastic(1.5f, 0.0f, Rgb(0.0f), MicrofacetModel::Beckmann,
                                                               Texture(0.4f), Rgb(1.0f))}),
     [](const auto& instance) { return instance.param.name; });

@@ -1,8 +1,8 @@
 // Mirrors and metals, smooth and rough; the table of named metals.
 
+#include "tungsten/bsdf/BsdfReader.h"
 #include "tungsten/bsdf/Fresnel.h"
-#include "tungsten/bsdf/Microfacet.h"
-#include "tungsten/bsdf/Models.h"
+#include "tungsten/reader/FormatTypes.h"
 
 #include <map>
 
@@ -45,65 +45,61 @@ std::vector<std::string> conductorNames() {
     return names;
 }
 
-template <>
-LobeMask lobesOf(const Mirror&) {
-    return lobe::SpecularReflection;
-}
-template <>
-Rgb evalModel(const Mirror&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return Rgb(0.0f);
-}
-template <>
-float pdfModel(const Mirror&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return 0.0f;
-}
-template <>
-MaybeSample sampleModel(const Mirror&, const ModelPoint& at, const Vec3f& wi, const BsdfRandom&) {
+MaybeSample Mirror::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom&) const {
     return specularReflection(at, wi, at.albedo);
 }
 
-template <>
-LobeMask lobesOf(const Conductor&) {
-    return lobe::SpecularReflection;
-}
-template <>
-Rgb evalModel(const Conductor&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return Rgb(0.0f);
-}
-template <>
-float pdfModel(const Conductor&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return 0.0f;
-}
-template <>
-MaybeSample sampleModel(const Conductor& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom&) {
-    return specularReflection(at, wi, at.albedo * fresnelConductor(model.eta, model.k, wi.z));
+MaybeSample Conductor::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom&) const {
+    return specularReflection(at, wi, at.albedo * fresnelConductor(eta, k, wi.z));
 }
 
-template <>
-LobeMask lobesOf(const RoughConductor&) {
-    return lobe::GlossyReflection;
-}
-template <>
-Rgb evalModel(const RoughConductor& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+Rgb RoughConductor::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (wi.z <= 0.0f || wo.z <= 0.0f || !at.wants(lobe::GlossyReflection)) return Rgb(0.0f);
-    const Microfacet facets(model.distribution, model.roughness.scalar(at.query.uv));
+    const Microfacet facets(distribution, roughness.scalar(at.query.uv));
     const Vec3f m = (wi + wo).normalized();
-    const Rgb fresnel = fresnelConductor(model.eta, model.k, wi.dot(m));
+    const Rgb fresnel = fresnelConductor(eta, k, wi.dot(m));
     return at.albedo * fresnel * (facets.density(m) * facets.shadowing(wi, wo, m) / (4.0f * wi.z));
 }
-template <>
-float pdfModel(const RoughConductor& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+float RoughConductor::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (wi.z <= 0.0f || wo.z <= 0.0f || !at.wants(lobe::GlossyReflection)) return 0.0f;
-    const Microfacet facets(model.distribution, model.roughness.scalar(at.query.uv));
+    const Microfacet facets(distribution, roughness.scalar(at.query.uv));
     const Vec3f m = (wi + wo).normalized();
     return facets.pdf(wi, m) / (4.0f * std::abs(wi.dot(m)));
 }
-template <>
-MaybeSample sampleModel(const RoughConductor& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
+MaybeSample RoughConductor::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
     if (wi.z <= 0.0f) return std::nullopt;
-    const Microfacet facets(model.distribution, model.roughness.scalar(at.query.uv));
+    const Microfacet facets(distribution, roughness.scalar(at.query.uv));
     const Vec3f wo = reflectedAbout(wi, facets.sample(wi, u.direction));
-    return smoothSample(model, at, wi, wo, lobe::GlossyReflection);
+    return smoothSample(*this, at, wi, wo, lobe::GlossyReflection);
+}
+
+namespace {
+
+/// A material name wins over eta and k, which replace the default only together.
+Optics readOptics(const BsdfReader& fields) {
+    Optics optics = metals().at("Cu");
+    const Rgb eta = fields.rgb("eta", optics.eta, {"none", "index of refraction, with `k`", "copper's"}, {1e-6, 1e6});
+    const Rgb k = fields.rgb("k", optics.k, {"none", "extinction index, with `eta`", "copper's"}, {0.0, 1e6});
+    const std::string material =
+        fields.choice("material", "Cu", conductorNames(), {"none", "metal whose `eta` and `k` are used instead"},
+                      unsupportedMetals());
+    if (fields.has("eta") != fields.has("k"))
+        fields.warn(fields.has("eta") ? "eta" : "k", "eta and k take effect only together; copper is used");
+    else
+        optics = {eta, k};
+    return fields.has("material") ? metals().at(material) : optics;
+}
+
+} // namespace
+
+Conductor Conductor::read(const BsdfReader& fields) {
+    const Optics optics = readOptics(fields);
+    return {{}, optics.eta, optics.k};
+}
+
+RoughConductor RoughConductor::read(const BsdfReader& fields) {
+    const Optics optics = readOptics(fields);
+    return {{}, optics.eta, optics.k, fields.distribution(MicrofacetModel::Ggx), fields.roughness(0.1f)};
 }
 
 } // namespace tungsten

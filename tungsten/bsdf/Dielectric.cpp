@@ -1,8 +1,7 @@
 // Smooth and rough dielectric interfaces (Walter et al. 2007).
 
+#include "tungsten/bsdf/BsdfReader.h"
 #include "tungsten/bsdf/Fresnel.h"
-#include "tungsten/bsdf/Microfacet.h"
-#include "tungsten/bsdf/Models.h"
 
 namespace tungsten {
 
@@ -55,43 +54,25 @@ struct RoughInterface {
 
 } // namespace
 
-template <>
-LobeMask lobesOf(const Dielectric& model) {
-    return model.enableRefraction ? lobe::Specular : lobe::SpecularReflection;
-}
-template <>
-Rgb evalModel(const Dielectric&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return Rgb(0.0f);
-}
-template <>
-float pdfModel(const Dielectric&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return 0.0f;
-}
-template <>
-MaybeSample sampleModel(const Dielectric& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
+MaybeSample Dielectric::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
     float cosTransmitted = 0.0f;
-    const float fresnel = fresnelDielectric(1.0f / model.ior, wi.z, cosTransmitted);
+    const float fresnel = fresnelDielectric(1.0f / ior, wi.z, cosTransmitted);
     const bool reflects = at.wants(lobe::SpecularReflection);
-    const bool refracts = at.wants(lobe::SpecularTransmission) && model.enableRefraction;
+    const bool refracts = at.wants(lobe::SpecularTransmission) && enableRefraction;
     const float probability = reflects && refracts ? fresnel : (reflects ? 1.0f : 0.0f);
     if (u.lobe < probability)
         return BsdfSample{mirrored(wi), at.albedo * (fresnel / probability), probability, lobe::SpecularReflection};
     if (!refracts || fresnel >= 1.0f) return std::nullopt;
-    const float eta = relativeIor(model.ior, wi);
+    const float eta = relativeIor(ior, wi);
     const Vec3f wo(-eta * wi.x, -eta * wi.y, wi.z > 0.0f ? -cosTransmitted : cosTransmitted);
     const float weight = (1.0f - fresnel) / (1.0f - probability) * crossingFactor(at, eta);
     return BsdfSample{wo.normalized(), at.albedo * weight, 1.0f - probability, lobe::SpecularTransmission};
 }
 
-template <>
-LobeMask lobesOf(const RoughDielectric& model) {
-    return lobe::GlossyReflection | (model.enableRefraction ? lobe::GlossyTransmission : lobe::None);
-}
-template <>
-Rgb evalModel(const RoughDielectric& model, const ModelPoint& at, const Vec3f& worldWi, const Vec3f& worldWo) {
+Rgb RoughDielectric::eval(const ModelPoint& at, const Vec3f& worldWi, const Vec3f& worldWo) const {
     const bool below = worldWi.z < 0.0f;
     const Vec3f wi = flipped(worldWi, below), wo = flipped(worldWo, below);
-    const RoughInterface interface(model, at, worldWi);
+    const RoughInterface interface(*this, at, worldWi);
     if (wi.z <= 0.0f || wo.z == 0.0f) return Rgb(0.0f);
     if (wo.z > 0.0f) {
         if (!interface.reflects) return Rgb(0.0f);
@@ -108,11 +89,10 @@ Rgb evalModel(const RoughDielectric& model, const ModelPoint& at, const Vec3f& w
                         interface.facets.shadowing(wi, wo, m) * interface.refractionJacobian(wi, wo, m) / wi.z;
     return at.albedo * (value * crossingFactor(at, interface.eta));
 }
-template <>
-float pdfModel(const RoughDielectric& model, const ModelPoint& at, const Vec3f& worldWi, const Vec3f& worldWo) {
+float RoughDielectric::pdf(const ModelPoint& at, const Vec3f& worldWi, const Vec3f& worldWo) const {
     const bool below = worldWi.z < 0.0f;
     const Vec3f wi = flipped(worldWi, below), wo = flipped(worldWo, below);
-    const RoughInterface interface(model, at, worldWi);
+    const RoughInterface interface(*this, at, worldWi);
     if (wi.z <= 0.0f || wo.z == 0.0f) return 0.0f;
     if (wo.z > 0.0f) {
         const Vec3f m = (wi + wo).normalized();
@@ -125,12 +105,11 @@ float pdfModel(const RoughDielectric& model, const ModelPoint& at, const Vec3f& 
     return (1.0f - interface.reflectProbability(fresnel)) * interface.facets.pdf(wi, m) *
            interface.refractionJacobian(wi, wo, m);
 }
-template <>
-MaybeSample sampleModel(const RoughDielectric& model, const ModelPoint& at, const Vec3f& worldWi, const BsdfRandom& u) {
+MaybeSample RoughDielectric::sample(const ModelPoint& at, const Vec3f& worldWi, const BsdfRandom& u) const {
     const bool below = worldWi.z < 0.0f;
     const Vec3f wi = flipped(worldWi, below);
     if (wi.z <= 0.0f) return std::nullopt;
-    const RoughInterface interface(model, at, worldWi);
+    const RoughInterface interface(*this, at, worldWi);
     const Vec3f m = interface.facets.sample(wi, u.direction);
     const float cosine = wi.dot(m);
     if (cosine <= 0.0f) return std::nullopt;
@@ -139,12 +118,33 @@ MaybeSample sampleModel(const RoughDielectric& model, const ModelPoint& at, cons
     if (u.lobe < interface.reflectProbability(fresnel)) {
         const Vec3f wo = reflectedAbout(wi, m);
         if (wo.z <= 0.0f) return std::nullopt;
-        return smoothSample(model, at, worldWi, flipped(wo, below), lobe::GlossyReflection);
+        return smoothSample(*this, at, worldWi, flipped(wo, below), lobe::GlossyReflection);
     }
     if (!interface.refracts || fresnel >= 1.0f) return std::nullopt;
     const Vec3f wo = (m * (interface.eta * cosine - cosTransmitted) - wi * interface.eta).normalized();
     if (wo.z >= 0.0f) return std::nullopt;
-    return smoothSample(model, at, worldWi, flipped(wo, below), lobe::GlossyTransmission);
+    return smoothSample(*this, at, worldWi, flipped(wo, below), lobe::GlossyTransmission);
+}
+
+namespace {
+
+bool readRefraction(const BsdfReader& fields) {
+    return fields.flag("enable_refraction", true, {"none", "false: light is only reflected"});
+}
+
+} // namespace
+
+Dielectric Dielectric::read(const BsdfReader& fields) {
+    return {{}, fields.ior(), readRefraction(fields)};
+}
+
+std::variant<RoughDielectric, Dielectric> RoughDielectric::read(const BsdfReader& fields) {
+    RoughDielectric rough{
+        {}, fields.ior(), fields.distribution(MicrofacetModel::Ggx), fields.roughness(0.1f), readRefraction(fields)};
+    // Where hardly anything is refracted, directions no longer tell the facet they passed.
+    constexpr float LeastContrast = 1e-4f;
+    if (std::abs(rough.ior - 1.0f) < LeastContrast) return Dielectric{{}, 1.0f, rough.enableRefraction};
+    return rough;
 }
 
 } // namespace tungsten

@@ -1,7 +1,6 @@
 // Lambert and Oren-Nayar.
 
-#include "tungsten/bsdf/Models.h"
-
+#include "tungsten/bsdf/BsdfReader.h"
 #include "tungsten/core/Warp.h"
 
 namespace tungsten {
@@ -21,34 +20,21 @@ float pdfCosine(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
 
 } // namespace
 
-template <>
-LobeMask lobesOf(const Lambert&) {
-    return lobe::DiffuseReflection;
-}
-template <>
-Rgb evalModel(const Lambert&, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+Rgb Lambert::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (wi.z <= 0.0f || wo.z <= 0.0f || !at.wants(lobe::DiffuseReflection)) return Rgb(0.0f);
     return at.albedo * (InvPi * wo.z);
 }
-template <>
-float pdfModel(const Lambert&, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+float Lambert::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     return pdfCosine(at, wi, wo);
 }
-template <>
-MaybeSample sampleModel(const Lambert& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
-    return sampleCosine(model, at, wi, u);
+MaybeSample Lambert::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
+    return sampleCosine(*this, at, wi, u);
 }
 
-template <>
-LobeMask lobesOf(const OrenNayar&) {
-    return lobe::DiffuseReflection;
-}
 /// The full model with interreflection (Oren and Nayar 1994); sigma = roughness / sqrt 2.
-template <>
-Rgb evalModel(const OrenNayar& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+Rgb OrenNayar::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (wi.z <= 0.0f || wo.z <= 0.0f || !at.wants(lobe::DiffuseReflection)) return Rgb(0.0f);
-    const float roughness = model.roughness.scalar(at.query.uv);
-    const float s = 0.5f * sqr(roughness);
+    const float s = 0.5f * sqr(roughness.scalar(at.query.uv));
     const float thetaI = std::acos(std::min(wi.z, 1.0f)), thetaO = std::acos(std::min(wo.z, 1.0f));
     const float alpha = std::max(thetaI, thetaO), beta = std::min(thetaI, thetaO);
     const float lengths = std::sqrt((wi.x * wi.x + wi.y * wi.y) * (wo.x * wo.x + wo.y * wo.y));
@@ -62,13 +48,20 @@ Rgb evalModel(const OrenNayar& model, const ModelPoint& at, const Vec3f& wi, con
     const float interreflected = 0.17f * s / (s + 0.13f) * (1.0f - cosPhi * b * b);
     return (at.albedo * direct + at.albedo * at.albedo * interreflected) * (InvPi * wo.z);
 }
-template <>
-float pdfModel(const OrenNayar&, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+float OrenNayar::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     return pdfCosine(at, wi, wo);
 }
-template <>
-MaybeSample sampleModel(const OrenNayar& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
-    return sampleCosine(model, at, wi, u);
+MaybeSample OrenNayar::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
+    return sampleCosine(*this, at, wi, u);
+}
+
+OrenNayar OrenNayar::read(const BsdfReader& fields) {
+    const float sigma = float(fields.number(
+        "sigma", 0.0, {"radians", "standard deviation of the facets' slope, where `roughness` is not given"},
+        Range::nonNegative()));
+    return {{},
+            fields.texture("roughness", Texture(std::sqrt(2.0f) * sigma),
+                           {"none", "of the facets", "sigma times the square root of 2"}, {0.0, 10.0})};
 }
 
 } // namespace tungsten

@@ -1,9 +1,12 @@
 #pragma once
-// Isotropic microfacet distributions (docs/scene-format.md, section 8.2) and their sampling, in the local frame.
+// Isotropic microfacet distributions and their sampling, in the local frame.
 
-#include "tungsten/bsdf/Bsdf.h"
+#include "tungsten/bsdf/BsdfModel.h"
 
 namespace tungsten {
+
+/// Isotropic microfacet distributions (docs/scene-format.md, section 8.2). The roughness is alpha.
+enum class MicrofacetModel { Beckmann, Ggx, Phong, PbrtGgx };
 
 /// Distribution of facet normals with its shadowing term. `roughness` is alpha; values below 1e-3 are raised to it.
 class Microfacet {

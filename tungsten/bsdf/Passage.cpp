@@ -1,6 +1,6 @@
 // Models that let light through or combine others: null, forward, transparency, mixed.
 
-#include "tungsten/bsdf/Models.h"
+#include "tungsten/bsdf/BsdfReader.h"
 
 namespace tungsten {
 
@@ -27,106 +27,87 @@ float firstProbability(const Mixed& model, const ModelPoint& at, float ratio) {
 
 } // namespace
 
-template <>
-LobeMask lobesOf(const Null&) {
-    return lobe::None;
-}
-template <>
-Rgb evalModel(const Null&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return Rgb(0.0f);
-}
-template <>
-float pdfModel(const Null&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return 0.0f;
-}
-template <>
-MaybeSample sampleModel(const Null&, const ModelPoint&, const Vec3f&, const BsdfRandom&) {
-    return std::nullopt;
-}
-
-template <>
-LobeMask lobesOf(const Forward&) {
-    return lobe::Forward;
-}
-template <>
-Rgb evalModel(const Forward&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return Rgb(0.0f);
-}
-template <>
-float pdfModel(const Forward&, const ModelPoint&, const Vec3f&, const Vec3f&) {
-    return 0.0f;
-}
-template <>
-MaybeSample sampleModel(const Forward&, const ModelPoint& at, const Vec3f& wi, const BsdfRandom&) {
+MaybeSample Forward::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom&) const {
     if (!at.wants(lobe::Forward)) return std::nullopt;
     return passStraight(wi, Rgb(1.0f), 1.0f);
 }
-Rgb forwardOf(const Forward&, const ModelPoint&) {
-    return Rgb(1.0f);
-}
 
-template <>
-LobeMask lobesOf(const Transparency& model) {
-    return lobe::Forward | model.base->lobes();
+LobeMask Transparency::lobes() const {
+    return lobe::Forward | base->lobes();
 }
-template <>
-Rgb evalModel(const Transparency& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
-    return model.base->eval(at.query, wi, wo) * model.alpha.alpha(at.query.uv);
+Rgb Transparency::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
+    return base->eval(at.query, wi, wo) * alpha.alpha(at.query.uv);
 }
-template <>
-float pdfModel(const Transparency& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
-    const float alpha = model.alpha.alpha(at.query.uv);
-    return (1.0f - straightProbability(model, at, alpha)) * model.base->pdf(at.query, wi, wo);
+float Transparency::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
+    const float opacity = alpha.alpha(at.query.uv);
+    return (1.0f - straightProbability(*this, at, opacity)) * base->pdf(at.query, wi, wo);
 }
-template <>
-MaybeSample sampleModel(const Transparency& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
-    const float alpha = model.alpha.alpha(at.query.uv);
-    const float probability = straightProbability(model, at, alpha);
-    if (u.lobe < probability) return passStraight(wi, Rgb((1.0f - alpha) / probability), probability);
+MaybeSample Transparency::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
+    const float opacity = alpha.alpha(at.query.uv);
+    const float probability = straightProbability(*this, at, opacity);
+    if (u.lobe < probability) return passStraight(wi, Rgb((1.0f - opacity) / probability), probability);
     if (probability >= 1.0f) return std::nullopt;
-    auto sample = model.base->sample(at.query, wi, {u.direction, (u.lobe - probability) / (1.0f - probability)});
+    auto sample = base->sample(at.query, wi, {u.direction, (u.lobe - probability) / (1.0f - probability)});
     if (!sample) return sample;
-    sample->weight *= alpha / (1.0f - probability);
+    sample->weight *= opacity / (1.0f - probability);
     sample->pdf *= 1.0f - probability;
     return sample;
 }
-Rgb forwardOf(const Transparency& model, const ModelPoint& at) {
-    return Rgb(1.0f - model.alpha.alpha(at.query.uv));
+Rgb Transparency::forwardWeight(const ModelPoint& at) const {
+    return Rgb(1.0f - alpha.alpha(at.query.uv));
 }
 
-template <>
-LobeMask lobesOf(const Mixed& model) {
-    return model.bsdf0->lobes() | model.bsdf1->lobes();
+LobeMask Mixed::lobes() const {
+    return bsdf0->lobes() | bsdf1->lobes();
 }
-template <>
-Rgb evalModel(const Mixed& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
-    const float ratio = model.ratio.scalar(at.query.uv);
-    return at.albedo *
-           (model.bsdf0->eval(at.query, wi, wo) * ratio + model.bsdf1->eval(at.query, wi, wo) * (1.0f - ratio));
+Rgb Mixed::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
+    const float share0 = ratio.scalar(at.query.uv);
+    return at.albedo * (bsdf0->eval(at.query, wi, wo) * share0 + bsdf1->eval(at.query, wi, wo) * (1.0f - share0));
 }
-template <>
-float pdfModel(const Mixed& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
-    const float p = firstProbability(model, at, model.ratio.scalar(at.query.uv));
-    return p * model.bsdf0->pdf(at.query, wi, wo) + (1.0f - p) * model.bsdf1->pdf(at.query, wi, wo);
+float Mixed::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
+    const float p = firstProbability(*this, at, ratio.scalar(at.query.uv));
+    return p * bsdf0->pdf(at.query, wi, wo) + (1.0f - p) * bsdf1->pdf(at.query, wi, wo);
 }
-template <>
-MaybeSample sampleModel(const Mixed& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
-    const float ratio = model.ratio.scalar(at.query.uv);
-    const float p = firstProbability(model, at, ratio);
+MaybeSample Mixed::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
+    const float share0 = ratio.scalar(at.query.uv);
+    const float p = firstProbability(*this, at, share0);
     const bool first = u.lobe < p;
-    const Bsdf& part = first ? *model.bsdf0 : *model.bsdf1;
-    const float chosen = first ? p : 1.0f - p, share = first ? ratio : 1.0f - ratio;
+    const Bsdf& part = first ? *bsdf0 : *bsdf1;
+    const float chosen = first ? p : 1.0f - p, share = first ? share0 : 1.0f - share0;
     auto sample = part.sample(at.query, wi, {u.direction, first ? u.lobe / p : (u.lobe - p) / (1.0f - p)});
     if (!sample) return sample;
-    if ((sample->lobe & lobe::Smooth) != 0) return smoothSample(model, at, wi, sample->wo, sample->lobe);
+    if ((sample->lobe & lobe::Smooth) != 0) return smoothSample(*this, at, wi, sample->wo, sample->lobe);
     sample->weight = sample->weight * at.albedo * (share / chosen);
     sample->pdf *= chosen;
     return sample;
 }
-Rgb forwardOf(const Mixed& model, const ModelPoint& at) {
-    const float ratio = model.ratio.scalar(at.query.uv);
+Rgb Mixed::forwardWeight(const ModelPoint& at) const {
+    const float share0 = ratio.scalar(at.query.uv);
     return at.albedo *
-           (model.bsdf0->forwardWeight(at.query.uv) * ratio + model.bsdf1->forwardWeight(at.query.uv) * (1.0f - ratio));
+           (bsdf0->forwardWeight(at.query.uv) * share0 + bsdf1->forwardWeight(at.query.uv) * (1.0f - share0));
+}
+
+bool Transparency::isLambertian() const {
+    return base->isLambertian();
+}
+bool Mixed::isLambertian() const {
+    return bsdf0->isLambertian() && bsdf1->isLambertian();
+}
+
+Transparency Transparency::read(const BsdfReader& fields) {
+    return {
+        {},
+        fields.bsdf("base", {"none", "what is seen where alpha is 1", "white Lambert"}),
+        fields.texture("alpha", Texture(1.0f), {"none", "opacity: 0 lets everything straight through"}, Range::unit())};
+}
+
+Mixed Mixed::read(const BsdfReader& fields) {
+    for (const char* field : {"bsdf0", "bsdf1"})
+        if (!fields.has(field)) fields.problem(field, "a mixed BSDF needs bsdf0 and bsdf1");
+    return {{},
+            fields.bsdf("bsdf0", {"none", "mixed with the share `ratio`", "required"}),
+            fields.bsdf("bsdf1", {"none", "the rest of the mixture", "required"}),
+            fields.texture("ratio", Texture(0.5f), {"none", "share of bsdf0"}, Range::unit())};
 }
 
 } // namespace tungsten

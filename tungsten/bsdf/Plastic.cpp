@@ -1,9 +1,7 @@
 // A diffuse base under a dielectric coat: smooth, rough, and the sum of lobes that pbrt-v3 calls plastic.
 
+#include "tungsten/bsdf/BsdfReader.h"
 #include "tungsten/bsdf/Fresnel.h"
-#include "tungsten/bsdf/Microfacet.h"
-#include "tungsten/bsdf/Models.h"
-
 #include "tungsten/core/Warp.h"
 
 namespace tungsten {
@@ -65,107 +63,122 @@ MaybeSample sampleTwoLobes(const Model& model, const ModelPoint& at, float proba
     return smoothSample(model, at, wi, wo, gloss ? lobe::GlossyReflection : lobe::DiffuseReflection);
 }
 
-constexpr LobeMask RoughLobes = lobe::GlossyReflection | lobe::DiffuseReflection;
-
 } // namespace
 
 Plastic makePlastic(float ior, float thickness, const Rgb& sigmaA) {
-    return {ior, thickness, sigmaA, averageFresnel(ior)};
+    return {{}, ior, thickness, sigmaA, averageFresnel(ior)};
 }
 
 RoughPlastic makeRoughPlastic(float ior, float thickness, const Rgb& sigmaA, MicrofacetModel distribution,
                               Texture roughness, const Rgb& ks) {
-    return {ior, thickness, sigmaA, distribution, std::move(roughness), ks, averageFresnel(ior)};
+    return {{}, ior, thickness, sigmaA, distribution, std::move(roughness), ks, averageFresnel(ior)};
 }
 
-template <>
-LobeMask lobesOf(const Plastic&) {
-    return lobe::SpecularReflection | lobe::DiffuseReflection;
-}
-template <>
-Rgb evalModel(const Plastic& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+Rgb Plastic::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (!facesUp(wi, wo) || !at.wants(lobe::DiffuseReflection)) return Rgb(0.0f);
-    return evalBase(model, at.albedo, wi, wo);
+    return evalBase(*this, at.albedo, wi, wo);
 }
 
-namespace {
-float mirrorProbability(const Plastic& model, const ModelPoint& at, const Vec3f& wi) {
-    const float fresnel = fresnelDielectric(1.0f / model.ior, wi.z);
+float Plastic::mirrorProbability(const ModelPoint& at, const Vec3f& wi) const {
+    const float fresnel = fresnelDielectric(1.0f / ior, wi.z);
     return coatProbability(at.wants(lobe::SpecularReflection), at.wants(lobe::DiffuseReflection), fresnel,
                            maxComponent(at.albedo) * (1.0f - fresnel));
 }
-} // namespace
 
-template <>
-float pdfModel(const Plastic& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+float Plastic::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (!facesUp(wi, wo) || !at.wants(lobe::DiffuseReflection)) return 0.0f;
-    return (1.0f - mirrorProbability(model, at, wi)) * warp::squareToCosineHemispherePdf(wo);
+    return (1.0f - mirrorProbability(at, wi)) * warp::squareToCosineHemispherePdf(wo);
 }
-template <>
-MaybeSample sampleModel(const Plastic& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
+MaybeSample Plastic::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
     if (wi.z <= 0.0f) return std::nullopt;
-    const float probability = mirrorProbability(model, at, wi);
+    const float probability = mirrorProbability(at, wi);
     if (u.lobe < probability) {
-        const float fresnel = fresnelDielectric(1.0f / model.ior, wi.z);
+        const float fresnel = fresnelDielectric(1.0f / ior, wi.z);
         return BsdfSample{mirrored(wi), Rgb(fresnel / probability), probability, lobe::SpecularReflection};
     }
-    return smoothSample(model, at, wi, warp::squareToCosineHemisphere(u.direction), lobe::DiffuseReflection);
+    return smoothSample(*this, at, wi, warp::squareToCosineHemisphere(u.direction), lobe::DiffuseReflection);
 }
 
-template <>
-LobeMask lobesOf(const RoughPlastic&) {
-    return RoughLobes;
-}
-template <>
-Rgb evalModel(const RoughPlastic& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+Rgb RoughPlastic::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (!facesUp(wi, wo)) return Rgb(0.0f);
     Rgb value(0.0f);
     if (at.wants(lobe::GlossyReflection)) {
-        const Microfacet facets(model.distribution, model.roughness.scalar(at.query.uv));
+        const Microfacet facets(distribution, roughness.scalar(at.query.uv));
         const Vec3f m = (wi + wo).normalized();
-        value += model.ks * evalGloss(facets, fresnelDielectric(1.0f / model.ior, wi.dot(m)), wi, wo, m);
+        value += ks * evalGloss(facets, fresnelDielectric(1.0f / ior, wi.dot(m)), wi, wo, m);
     }
-    if (at.wants(lobe::DiffuseReflection)) value += evalBase(model, at.albedo, wi, wo);
+    if (at.wants(lobe::DiffuseReflection)) value += evalBase(*this, at.albedo, wi, wo);
     return value;
 }
-template <>
-float pdfModel(const RoughPlastic& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+float RoughPlastic::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (!facesUp(wi, wo)) return 0.0f;
-    return pdfTwoLobes(model, at, glossProbability(model, at, fresnelDielectric(1.0f / model.ior, wi.z)), wi, wo);
+    return pdfTwoLobes(*this, at, glossProbability(*this, at, fresnelDielectric(1.0f / ior, wi.z)), wi, wo);
 }
-template <>
-MaybeSample sampleModel(const RoughPlastic& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
+MaybeSample RoughPlastic::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
     if (wi.z <= 0.0f) return std::nullopt;
-    return sampleTwoLobes(model, at, glossProbability(model, at, fresnelDielectric(1.0f / model.ior, wi.z)), wi, u);
+    return sampleTwoLobes(*this, at, glossProbability(*this, at, fresnelDielectric(1.0f / ior, wi.z)), wi, u);
 }
 
-// The coat's Fresnel term is taken from the inside (eta = ior), as pbrt-v3's plastic does: it is 1 beyond the critical
-// angle.
-template <>
-LobeMask lobesOf(const PbrtPlastic&) {
-    return RoughLobes;
-}
-template <>
-Rgb evalModel(const PbrtPlastic& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+Rgb PbrtPlastic::eval(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (!facesUp(wi, wo)) return Rgb(0.0f);
     Rgb value(0.0f);
     if (at.wants(lobe::GlossyReflection)) {
-        const Microfacet facets(model.distribution, model.roughness.scalar(at.query.uv));
+        const Microfacet facets(distribution, roughness.scalar(at.query.uv));
         const Vec3f m = (wi + wo).normalized();
-        value += model.ks * evalGloss(facets, fresnelDielectric(model.ior, wi.dot(m)), wi, wo, m);
+        value += ks * evalGloss(facets, fresnelDielectric(ior, wi.dot(m)), wi, wo, m);
     }
     if (at.wants(lobe::DiffuseReflection)) value += at.albedo * (InvPi * wo.z);
     return value;
 }
-template <>
-float pdfModel(const PbrtPlastic& model, const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) {
+float PbrtPlastic::pdf(const ModelPoint& at, const Vec3f& wi, const Vec3f& wo) const {
     if (!facesUp(wi, wo)) return 0.0f;
-    return pdfTwoLobes(model, at, glossProbability(model, at, fresnelDielectric(model.ior, wi.z)), wi, wo);
+    return pdfTwoLobes(*this, at, glossProbability(*this, at, fresnelDielectric(ior, wi.z)), wi, wo);
 }
-template <>
-MaybeSample sampleModel(const PbrtPlastic& model, const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) {
+MaybeSample PbrtPlastic::sample(const ModelPoint& at, const Vec3f& wi, const BsdfRandom& u) const {
     if (wi.z <= 0.0f) return std::nullopt;
-    return sampleTwoLobes(model, at, glossProbability(model, at, fresnelDielectric(model.ior, wi.z)), wi, u);
+    return sampleTwoLobes(*this, at, glossProbability(*this, at, fresnelDielectric(ior, wi.z)), wi, u);
+}
+
+namespace {
+
+float readThickness(const BsdfReader& fields) {
+    return float(fields.number("thickness", 1.0, {"length", "of the coat, for absorption"}, Range::nonNegative()));
+}
+
+Rgb readCoatAbsorption(const BsdfReader& fields) {
+    return fields.rgb("sigma_a", Rgb(0.0f), {"1/length", "absorption in the coat"}, Range::nonNegative());
+}
+
+Rgb readSpecularFactor(const BsdfReader& fields, float fallback) {
+    return fields.rgb("Ks", Rgb(fallback), {"none", "factor on what the coat reflects"}, Range::nonNegative());
+}
+
+} // namespace
+
+Plastic Plastic::read(const BsdfReader& fields) {
+    const Rgb sigmaA = readCoatAbsorption(fields);
+    const float thickness = readThickness(fields);
+    return makePlastic(fields.ior(), thickness, sigmaA);
+}
+
+RoughPlastic RoughPlastic::read(const BsdfReader& fields) {
+    RoughPlastic coat;
+    coat.ks = readSpecularFactor(fields, 1.0f);
+    coat.roughness = fields.roughness(0.02f);
+    coat.distribution = fields.distribution(MicrofacetModel::Ggx);
+    coat.sigmaA = readCoatAbsorption(fields);
+    coat.thickness = readThickness(fields);
+    coat.ior = fields.ior();
+    coat.diffuseFresnel = averageFresnel(coat.ior);
+    return coat;
+}
+
+PbrtPlastic PbrtPlastic::read(const BsdfReader& fields) {
+    return {{},
+            fields.ior(),
+            fields.distribution(MicrofacetModel::PbrtGgx),
+            fields.roughness(0.1f),
+            readSpecularFactor(fields, 0.25f)};
 }
 
 } // namespace tungsten

@@ -8,24 +8,13 @@ namespace tungsten {
 
 namespace {
 
-/// Some texture of the model, or of one that it consists of, varies over the surface.
-bool varies(const Bsdf& bsdf);
-
-bool varies(const BsdfModel& model) {
-    const auto textured = [](const Texture& texture) { return !texture.isConstant(); };
-    return std::visit(
-        Overloaded{
-            [&](const OneOf<OrenNayar, RoughConductor, RoughDielectric, RoughPlastic, PbrtPlastic> auto& rough) {
-                return textured(rough.roughness);
-            },
-            [&](const Transparency& t) { return textured(t.alpha) || varies(*t.base); },
-            [&](const Mixed& mixed) { return textured(mixed.ratio) || varies(*mixed.bsdf0) || varies(*mixed.bsdf1); },
-            [](const OneOf<Lambert, Mirror, Conductor, Dielectric, Plastic, Null, Forward> auto&) { return false; }},
-        model);
-}
-
+/// Some texture of the material, or of one that it consists of, varies over the surface.
 bool varies(const Bsdf& bsdf) {
-    return !bsdf.albedo.isConstant() || bsdf.bump || varies(bsdf.model);
+    const BsdfParts parts = bsdf.parts();
+    return !bsdf.albedo.isConstant() || bsdf.bump ||
+           std::any_of(parts.textures.begin(), parts.textures.end(),
+                       [](const Texture& t) { return !t.isConstant(); }) ||
+           std::any_of(parts.bsdfs.begin(), parts.bsdfs.end(), [](const BsdfPtr& part) { return varies(*part); });
 }
 
 /// Over a surface.
@@ -37,12 +26,9 @@ bool varies(const Emitter& emitter) {
 }
 
 bool isTransparent(const Bsdf& bsdf) {
-    return std::visit(
-        Overloaded{[](const Transparency&) { return true; },
-                   [](const Mixed& mixed) { return isTransparent(*mixed.bsdf0) || isTransparent(*mixed.bsdf1); },
-                   [](const OneOf<Lambert, OrenNayar, Mirror, Conductor, RoughConductor, Dielectric, RoughDielectric,
-                                  Plastic, RoughPlastic, PbrtPlastic, Null, Forward> auto&) { return false; }},
-        bsdf.model);
+    if (std::holds_alternative<Transparency>(bsdf.model)) return true;
+    const std::vector<BsdfPtr> parts = bsdf.parts().bsdfs;
+    return std::any_of(parts.begin(), parts.end(), [](const BsdfPtr& part) { return isTransparent(*part); });
 }
 
 } // namespace

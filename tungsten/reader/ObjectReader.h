@@ -133,4 +133,17 @@ class ObjectReader {
     std::shared_ptr<Description> description_; ///< none unless describing
 };
 
+/// "; did you mean 'x'?", or nothing: of the names in a map, while the problem will be listed at all.
+template <typename Value>
+std::string didYouMean(const std::string& name, const std::map<std::string, Value>& known, const ObjectReader& owner) {
+    if (!owner.diagnostics()->listsMore()) return {};
+    std::vector<std::string> names;
+    for (const auto& [candidate, value] : known) names.push_back(candidate);
+    const std::string near = nearestName(name, names);
+    return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+inline constexpr Meaning NameMeaning{"none", "what the rest of the scene, and --set, call it"};
+inline constexpr Meaning PlacementMeaning{"none", "from its own coordinates to the world's", "identity"};
+
 } // namespace tungsten

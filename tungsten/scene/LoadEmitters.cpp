@@ -21,8 +21,8 @@ struct Strength {
 /// `emission` means what the emitter's own function says.
 Strength readStrength(LoadContext& context, const ObjectReader& reader, const Meaning& emissionMeaning,
                       const Meaning& powerMeaning = PowerMeaning) {
-    const Rgb emission = readConstantTexture(context, reader, "emission", emissionMeaning);
-    const Rgb power = readConstantTexture(context, reader, "power", powerMeaning);
+    const Rgb emission = context.fieldsOf(reader).constantTexture("emission", emissionMeaning);
+    const Rgb power = context.fieldsOf(reader).constantTexture("power", powerMeaning);
     return reader.has("power") ? Strength{power, true} : Strength{emission, false};
 }
 
@@ -92,9 +92,9 @@ void readCollimated(LoadContext& context, const ObjectReader& reader, const Tran
 }
 
 void readInfiniteSphere(LoadContext& context, const ObjectReader& reader, const Transform& transform) {
-    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f),
-                                   {"radiance", "by direction, from infinitely far away"}, Range::nonNegative());
-    const Texture power = readTexture(context, reader, "power", Texture(0.0f), PowerMeaning, Range::nonNegative());
+    Texture radiance = context.fieldsOf(reader).texture(
+        "emission", Texture(0.0f), {"radiance", "by direction, from infinitely far away"}, Range::nonNegative());
+    const Texture power = context.fieldsOf(reader).texture("power", Texture(0.0f), PowerMeaning, Range::nonNegative());
     if (reader.has("power")) radiance = infiniteRadianceFromPower(power);
     const bool samplable = reader.flag("sample", true, {"none", "vertices may connect to it"});
     if (!shines(reader, radiance.maximum())) return;
@@ -146,9 +146,9 @@ bool readPointOrInfiniteEmitter(LoadContext& context, const ObjectReader& reader
 }
 
 std::optional<Texture> readAreaRadiance(LoadContext& context, const ObjectReader& reader, const Shape& shape) {
-    Texture radiance = readTexture(context, reader, "emission", Texture(0.0f),
-                                   {"radiance", "emitted to the side of the normal"}, Range::nonNegative());
-    const Texture power = readTexture(context, reader, "power", Texture(0.0f), PowerMeaning, Range::nonNegative());
+    Texture radiance = context.fieldsOf(reader).texture(
+        "emission", Texture(0.0f), {"radiance", "emitted to the side of the normal"}, Range::nonNegative());
+    const Texture power = context.fieldsOf(reader).texture("power", Texture(0.0f), PowerMeaning, Range::nonNegative());
     if (reader.has("power")) radiance = areaRadianceFromPower(power, surfaceArea(shape));
     if (maxComponent(radiance.maximum()) <= 0.0f) return std::nullopt;
     return radiance;

@@ -25,13 +25,13 @@ Shape readMesh(LoadContext& context, const ObjectReader& reader, const Transform
         return mesh;
     }
     try {
-        mesh = loadMesh(context.resource(file), context.allowedFolder(), context.watch);
+        mesh = loadMesh(context.files.find(file), context.files.allowedFolder(), context.files.watch);
     } catch (const InputError& error) {
         reader.problem("file", error.what());
         return TriangleMesh{};
     }
     mesh.smooth = smooth;
-    if (smooth && recompute) recomputeNormals(mesh, context.watch);
+    if (smooth && recompute) recomputeNormals(mesh, context.files.watch);
     if (!smooth) std::vector<Vec3f>().swap(mesh.normals);
     transformMesh(mesh, transform);
     return mesh;
@@ -112,9 +112,8 @@ void readSurface(LoadContext& context, const ObjectReader& reader, SurfaceReader
     primitive.shape = readShape(context, reader, transform);
     if (!isPlaced(primitive.shape))
         reader.problem("transform", "the surface reaches beyond coordinates of " + brief(double(LargestCoordinate)));
-    primitive.bsdfs =
-        readBsdfList(context, reader, "bsdf",
-                     {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});
+    primitive.bsdfs = context.fieldsOf(reader).bsdfs(
+        "bsdf", {"none", "how it scatters light; an array goes by the mesh's materials", "white Lambert"});
     readRegions(context, reader, primitive);
     const std::optional<Texture> radiance = readAreaRadiance(context, reader, primitive.shape);
     EmissionTimes times = readEmissionTimes(reader);
@@ -169,7 +168,7 @@ void describePrimitive(const std::shared_ptr<Description>& description) {
 
 void readPrimitives(LoadContext& context, const ObjectReader& root) {
     for (const ObjectReader& primitive : root.objects("primitives", {"none", "surfaces and light sources"})) {
-        context.watch.poll();
+        context.files.watch.poll();
         readPrimitive(context, primitive);
     }
     finishEmitters(context, root);

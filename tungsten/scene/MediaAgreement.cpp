@@ -307,7 +307,7 @@ void warnAboutMedia(const LoadContext& context, const ObjectReader& root, const 
     for (size_t i = 0; i < context.scene.primitives.size() && looked < MostChecked; ++i) {
         if (!agreement.isWorthChecking(i)) continue;
         ++looked;
-        context.watch.poll();
+        context.files.watch.poll();
         agreement.checkSurface(i);
     }
 }

@@ -127,7 +127,8 @@ Blocks readScene(LoadContext& context, const ObjectReader& root, const LoadOptio
     context.scene.transport = readTransport(integrator, options.defaultGate(type));
     context.scene.lengthUnit = readLengthUnit(root);
     readMedia(context, root);
-    readBsdfs(context, root);
+    for (const ObjectReader& bsdf : root.objects("bsdfs", {"none", "how surfaces scatter"}))
+        context.fieldsOf(bsdf).asBsdf();
     readPrimitives(context, root);
     const ObjectReader camera = blockOf(root, "camera", {"none", "where it is seen from"});
     readCamera(context, root, camera);
@@ -188,10 +189,10 @@ LoadedScene loadScene(const std::filesystem::path& file, const LoadOptions& opti
     const ObjectReader root(document, nodeOf(*document), "", diagnostics);
     auto scene = std::make_shared<Scene>();
     scene->file = file;
-    LoadContext context{*scene, options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory,
-                        options.allowOutside};
+    LoadContext context{
+        *scene, {options.inputDirectory.empty() ? file.parent_path() : options.inputDirectory, options.allowOutside}};
     FilesRead read;
-    context.watch = options.watch.telling(
+    context.files.watch = options.watch.telling(
         [&read](const std::filesystem::path& resource, std::string_view bytes) { read.add(resource, bytes); });
     requirePrimitives(*document, root);
     const Blocks blocks = readScene(context, root, options);
@@ -223,7 +224,7 @@ RendererSettings peekRenderer(const std::filesystem::path& file, const std::vect
 
 std::shared_ptr<const Scene> emptyScene(const TransportSettings& transport) {
     auto scene = std::make_shared<Scene>();
-    LoadContext context{*scene, {}};
+    LoadContext context{*scene};
     readScene(context, ObjectReader::empty("", std::make_shared<Diagnostics>()));
     scene->transport = transport;
     finishGeometry(*scene);
@@ -250,8 +251,8 @@ struct Kind {
 };
 constexpr Kind Kinds[] = {{"media", mediumTypes, describeMedium},
                           {"phase functions", phaseFunctionTypes, describePhaseFunction},
-                          {"bsdfs", bsdfTypes, describeBsdf},
-                          {"textures", textureTypes, describeTexture},
+                          {"bsdfs", Bsdfs::types, describeBsdf},
+                          {"textures", Textures::types, describeTexture},
                           {"primitives", primitiveTypes, describePrimitive},
                           {"cameras", cameraTypes, describeCamera},
                           {"filters", filterNames, describeFilter},

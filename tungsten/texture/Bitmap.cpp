@@ -1,6 +1,6 @@
-// Lookups in bitmaps, as the scene format defines them.
+// Bitmaps and lookups in them, as the scene format defines them.
 
-#include "tungsten/texture/Texture.h"
+#include "tungsten/texture/ModelReader.h"
 
 #include <array>
 
@@ -93,6 +93,24 @@ Rgb Bitmap::average() const {
     }
     sum /= double(texels);
     return Rgb(float(sum.x), float(sum.y), float(sum.z)) * appliedScale();
+}
+
+Vec2f BitmapTexture::derivatives(const Vec2f& uv, const Rgb& factor) const {
+    const Vec2f texel(1.0f / float(bitmap->width), 1.0f / float(bitmap->height));
+    const auto at = [&](float du, float dv) { return scalar({uv.x + du, uv.y + dv}, factor); };
+    return {at(texel.x, 0) - at(-texel.x, 0), at(0, texel.y) - at(0, -texel.y)};
+}
+
+Texture BitmapTexture::read(const ModelReader& fields, const Texture& fallback, Range range) {
+    const std::string file = fields.text("file", "", {"none", "the image", "required"});
+    Bitmap lookup;
+    lookup.gammaCorrect = fields.flag("gamma_correct", true, {"none", "colours of 8-bit images are linearised"});
+    lookup.interpolate = fields.flag("interpolate", true, {"none", "bilinear between texels"});
+    lookup.clamp = fields.flag("clamp", false, {"none", "the edge goes on outside [0, 1], not the image again"});
+    lookup.scale = float(fields.number("scale", 1.0, {"none", "factor on every value"}));
+    if (!file.empty()) return fields.bitmap("file", file, lookup, range);
+    fields.problem("file", "a bitmap needs the name of an image file");
+    return fallback;
 }
 
 } // namespace tungsten

@@ -274,7 +274,7 @@ float RefractiveConnections::indexTowards(int medium, const RefractedEmitter& la
     for (int i = 0; i < MostBoundaries; ++i) {
         const auto hit = scene_->geometry->intersect(ray);
         if (!hit || scene_->primitives[hit->shape].emitter == lamp.index) break;
-        const float relative = relativeIndex(scene_->bsdfOf(*hit));
+        const float relative = scene_->bsdfOf(*hit).relativeIndex();
         index *= ray.direction.dot(hit->ng) >= 0.0f ? relative : 1.0f / relative;
         ray = hit->rest(ray);
     }

@@ -1,6 +1,5 @@
 #include "photon/primitives/sliced/SliceBuilder.h"
 
-#include "tungsten/bsdf/Lambertian.h"
 #include "tungsten/emitter/Emitter.h"
 
 namespace tungsten::photon {
@@ -79,7 +78,7 @@ void SliceBuilder::depositLight(const Rules& rules, BaseVertex start, Sampler& s
 void SliceBuilder::recordSurface(const Rules& rules, const SurfaceInteraction& surface, const BaseVertex& at,
                                  const Region& region, Sampler& sampler, DepositList<SliceRecord>& list) {
     // Others are left to the chain's other records: only where f is one value do balls know it for every direction.
-    if (rules.classes.shortBeams == 0.0f || !isLambertian(*surface.bsdf)) return;
+    if (rules.classes.shortBeams == 0.0f || !surface.bsdf->isLambertian()) return;
     const Vec3f &ng = surface.hit.ng, &ns = surface.frame.n;
     const Vec3f side = ng.dot(ns) < 0.0f ? -ng : ng;
     const float arriving = -at.direction.dot(side);

@@ -1,0 +1,35 @@
+#pragma once
+// Closed sets: the models of one kind, each of which names itself and reads itself.
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tungsten {
+
+/// Its kind passes every model through an alias that demands the kind's concept (`CheckedBsdf<Lambert>`): a constraint
+/// of the pack itself would name neither model nor member where one is missing.
+template <typename... Models>
+struct ModelSet {
+    using Variant = std::variant<Models...>;
+
+    /// What scene files call them, in the order of the alphabet.
+    static std::vector<std::string> types() {
+        std::vector<std::string> names{Models::Type...};
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+    static bool has(const std::string& type) { return ((type == Models::Type) || ...); }
+    /// What `read.operator()<Model>()` makes of the model of that type, which the set has.
+    template <typename Read>
+    static auto read(const std::string& type, const Read& read) {
+        using First = std::variant_alternative_t<0, Variant>;
+        std::optional<decltype(read.template operator()<First>())> result;
+        ((type == Models::Type && (result.emplace(read.template operator()<Models>()), true)) || ...);
+        return std::move(*result);
+    }
+};
+
+} // namespace tungsten
